@@ -45,10 +45,10 @@ class _Tour:
 
 def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
     """Drive through the house and map it, and return the result."""
-    walls, solid = house.faces(), house.faces(("walls", "furniture"))
+    walls, solid = house.upright_faces(), house.upright_faces(("walls", "furniture"))
     steps: list[float] = []
     os.environ.pop("ROS_DISTRO", None)
-    with house.simulation() as test:
+    with house.make_house_simulation() as test:
         drift = house.Drift(test, scale, yaw_per_meter, noise=noise)
         options = NodeOptions(parameters={"use_sim_time": True}, remappings=[("/tf", "/drifting_tf")])
         node: Any = AsyncSlamToolbox(test.graph, options)
@@ -61,18 +61,18 @@ def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
             steps.append(time.thread_time() - begun)
 
         toolbox._step_guard.callback = timed
-        house.drive(test, house.TOUR)
+        house.drive_through(test, house.TOUR_POINTS)
         here = test.robot_pose()
         true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
         told = relative_pose(true, compose(toolbox._map_to_odom, drift.pose))
         odometry = relative_pose(true, drift.pose)
         occupied = house.occupied_centers(toolbox.grid())
-        near = occupied[house.distances(walls, occupied) < 0.2]
+        near = occupied[house.distances_to_faces(walls, occupied) < 0.2]
         return _Tour(
             float(np.hypot(odometry[0], odometry[1])),
             float(np.hypot(told[0], told[1])),
             abs(float(told[2])),
-            house.distances(solid, near),
+            house.distances_to_faces(solid, near),
             steps,
             len(toolbox.mapper.scans),
         )

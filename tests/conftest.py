@@ -46,7 +46,10 @@ def pytest_collection() -> Generator[None, object, object]:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Ignore modules of pages, and modules that are wholly marked, in `make test-base`: their imports would fail."""
+    """Ignore modules of pages, and wholly marked modules, in `make test-base`.
+
+    Their imports would fail.
+    """
     if "not extra" not in config.option.markexpr:
         return None
     if collection_path.name == "browser":
@@ -56,7 +59,7 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _state_of_the_user(tmp_path_factory):
+def _isolated_user_state(tmp_path_factory):
     """Keep the state files of tested programs separate from the user's."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
@@ -79,7 +82,10 @@ def fork_server() -> Iterator[ForkServer]:
 
 @pytest.fixture(autouse=True)
 def plain_environment(monkeypatch):
-    """Remove settings of workspace, color and language, and use a domain without nodes of other test runs."""
+    """Remove settings of workspace, color and language, and use a domain of this run.
+
+    Nodes of other test runs are in other domains.
+    """
     for name in ("AMENT_PREFIX_PATH", "COLCON_PREFIX_PATH", "ROS_PACKAGE_PATH", "NO_COLOR", "FORCE_COLOR"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("LINKWRIGHT_LANG", "en")

@@ -1,4 +1,7 @@
-"""ROS domains that no other process on this machine uses, such as other checkouts or workers of a parallel run."""
+"""ROS domains that no other process on this machine uses.
+
+Other processes are those of other checkouts, or other workers of a parallel run.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import functools
 import random
 import socket
 
-_LAST = 100
+_LAST_DOMAIN = 100
 """The last domain. From 101 on, the ports of a domain are in Linux's range of ephemeral ports."""
 _FIRST_PORT = 27_000
 
@@ -23,7 +26,7 @@ def own_domain(which: int = 0) -> int:
     Args:
         which: distinguishes several domains of a test.
     """
-    domains = list(range(1, _LAST + 1))
+    domains = list(range(1, _LAST_DOMAIN + 1))
     random.SystemRandom().shuffle(domains)
     for number in domains:
         lock = socket.socket()

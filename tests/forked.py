@@ -102,6 +102,6 @@ class ForkServer:
 
 def _start(start: Callable[..., forked.Program], words: list[str], cwd: Path, env: Mapping[str, str]) -> Program:
     reader, writer = os.pipe()
-    with Path(os.devnull).open("rb") as nothing, os.fdopen(writer, "wb"):
-        process = start("linkwright", words, cwd=cwd, env=env, streams=(nothing.fileno(), writer, writer))
+    with Path(os.devnull).open("rb") as null_device, os.fdopen(writer, "wb"):
+        process = start("linkwright", words, cwd=cwd, env=env, streams=(null_device.fileno(), writer, writer))
     return Program(process, os.fdopen(reader, encoding="utf-8"))

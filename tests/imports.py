@@ -10,7 +10,10 @@ _ALWAYS = "import importlib"
 
 
 def loaded_by(code: str) -> set[str]:
-    """Return the modules that a process loads for some code, except the modules that `_ALWAYS` loads."""
+    """Return the modules that a process loads for some code.
+
+    The modules that `_ALWAYS` loads are left out.
+    """
     return _modules(code) - _modules(_ALWAYS)
 
 

@@ -14,8 +14,10 @@ from tests.places import REPOSITORY
 _CONSTRAINTS = REPOSITORY / ".build" / "constraints.txt"
 
 
-def install(folder: Path, *others: str, extra: str = "all", project: Path = REPOSITORY) -> Path:
-    """Create an environment with the wheel and other packages, once for all workers of a test run.
+def install(folder: Path, *packages: str, extra: str = "all", project: Path = REPOSITORY) -> Path:
+    """Create an environment with the wheel and other packages.
+
+    All workers of a test run share it.
 
     Args:
         folder: a folder that the workers share, for ``wheel/`` and ``environment/``.
@@ -35,7 +37,7 @@ def install(folder: Path, *others: str, extra: str = "all", project: Path = REPO
             _uv("venv", "--clear", "--python", sys.executable, str(environment))
             (wheel,) = (folder / "wheel").glob("*.whl")
             python = ("--python", str(environment), "--constraints", str(_CONSTRAINTS))
-            _uv("pip", "install", *python, f"{wheel}[{extra}]" if extra else str(wheel), *others)
+            _uv("pip", "install", *python, f"{wheel}[{extra}]" if extra else str(wheel), *packages)
             (folder / "done").touch()
     return environment
 

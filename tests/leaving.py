@@ -6,7 +6,7 @@ import asyncio
 import socket
 import struct
 
-STEPS = 12
+STEP_COUNT = 12
 """The number of clients. Client n leaves after n turns of the event loop: while the server reads, or responds."""
 
 _RESET_AT_ONCE = struct.pack("ii", 1, 0)
@@ -17,12 +17,14 @@ UPGRADE = (
 
 
 async def request_and_reset(port: int, target: str, headers: str = "") -> None:
-    """Send three requests to a local port and reset the connection, after different numbers of turns of the event loop.
+    """Send three requests to a local port and reset the connection.
+
+    The resets come after different numbers of turns of the event loop.
 
     The server runs on the event loop of the caller.
     """
     request = f"GET {target} HTTP/1.1\r\nHost: localhost\r\n{headers}\r\n".encode()
-    for steps in range(STEPS):
+    for steps in range(STEP_COUNT):
         _, writer = await asyncio.open_connection("127.0.0.1", port)
         client = writer.get_extra_info("socket")
         client.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _RESET_AT_ONCE)

@@ -1,4 +1,7 @@
-"""Test cases on Markdown pages: a ``##`` heading is a case, and the fenced blocks below it are its parts."""
+"""Test cases on Markdown pages.
+
+A ``##`` heading is a case, and the fenced blocks below it are its parts.
+"""
 
 from __future__ import annotations
 

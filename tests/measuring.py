@@ -19,7 +19,10 @@ def _data_file() -> Path | None:
 
 
 def coverage_options() -> list[str]:
-    """Return the options that measure the coverage of a Python process, if the tests' coverage is measured."""
+    """Return the options that measure the coverage of a Python process.
+
+    They are empty unless the tests' coverage is measured.
+    """
     data_file = _data_file()
     if data_file is None:
         return []
@@ -27,7 +30,10 @@ def coverage_options() -> list[str]:
 
 
 def measured_program(program: str, part: str) -> str:
-    """Return a program for ``python -c`` that measures the coverage of a part, if the tests' coverage is measured."""
+    """Return a program for ``python -c`` that measures the coverage of a part.
+
+    It measures only if the tests' coverage is measured.
+    """
     data_file = _data_file()
     if data_file is None:
         return program

@@ -1,4 +1,7 @@
-"""Simulated publishers of other processes: a test sends their messages and makes them disappear."""
+"""Simulated publishers of other processes.
+
+A test sends their messages, and makes them disappear.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,6 @@
-"""Event loops that skip their waits: a test of some seconds takes milliseconds, also on a busy machine.
+"""Event loops that skip their waits.
+
+A test of some seconds takes milliseconds, also on a busy machine.
 
 The time of such a loop advances to the next due call, and only if no work is left. Work takes no time, however slow the
 machine is, so rates, delays and order are the same in each run. Code that reads the computer's clock
@@ -16,10 +18,10 @@ from typing import Any, TypeVar
 
 from linkwright.graph import SystemClock, Timebase
 
-_LOOK = 0.0005
+_LOOK_S = 0.0005
 """The seconds to wait for sockets and other threads before time advances."""
-_STEP = 0.02
-"""The maximum seconds per advance, so that data that arrives after `_LOOK` does not meet a timeout."""
+_STEP_S = 0.02
+"""The maximum seconds per advance, so that data that arrives after `_LOOK_S` does not meet a timeout."""
 
 T = TypeVar("T")
 
@@ -36,9 +38,9 @@ class _SkippingSelector(selectors.DefaultSelector):  # type: ignore[misc, valid-
     def select(self, timeout: float | None = None) -> Any:
         if timeout is None or timeout <= 0 or self.working:
             return super().select(timeout)
-        ready = super().select(_LOOK)
+        ready = super().select(_LOOK_S)
         if not ready:
-            self.passed += min(timeout, _STEP)
+            self.passed += min(timeout, _STEP_S)
         return ready
 
 
@@ -65,7 +67,10 @@ class SkippingLoop(asyncio.SelectorEventLoop):
 
 
 class LoopClock(Timebase):
-    """The time of the event loop, for the graph on it; each reading of the time of day is a microsecond later."""
+    """The time of the event loop, for the graph on it.
+
+    Each reading of the time of day is a microsecond later.
+    """
 
     def __init__(self) -> None:
         self._loop = asyncio.get_running_loop()
@@ -91,7 +96,10 @@ def graph_clock() -> Timebase:
 
 
 def skipping(test: Callable[..., Coroutine[Any, Any, T]]) -> Callable[..., T]:
-    """Run a test that is a coroutine on a loop that skips its waits; its fixtures must not be coroutines."""
+    """Run a test that is a coroutine on a loop that skips its waits.
+
+    Its fixtures must not be coroutines.
+    """
 
     @functools.wraps(test)
     def run(*arguments: Any, **named: Any) -> T:

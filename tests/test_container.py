@@ -1,4 +1,7 @@
-"""The container file runs the demo of the Makefile with an existing Python and existing extras, and not as root."""
+"""The container file runs the demo of the Makefile.
+
+It uses an existing Python and existing extras, and does not run as root.
+"""
 
 from __future__ import annotations
 
@@ -43,5 +46,5 @@ def test_dockerignore_keeps_files_needed_by_build():
     lines = (REPOSITORY / ".dockerignore").read_text(encoding="utf-8").splitlines()
     allowed = {line[1:] for line in lines if line.startswith("!")}
     included = PYPROJECT["tool"]["hatch"]["build"]["targets"]["sdist"]["include"]
-    needed = {path.partition("/")[0] for path in included} - {"CHANGELOG.md", "SECURITY.md"}
-    assert needed | {"pyproject.toml", "uv.lock", "LICENSE"} <= allowed
+    required_folders = {path.partition("/")[0] for path in included} - {"CHANGELOG.md", "SECURITY.md"}
+    assert required_folders | {"pyproject.toml", "uv.lock", "LICENSE"} <= allowed

@@ -1,4 +1,7 @@
-"""linkwright-core in an empty environment: small, complete, and with the findings of the whole."""
+"""linkwright-core in an empty environment.
+
+It is small and complete, and has the findings of the whole.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from tests.installed import install
 from tests.places import REPOSITORY
 
 pytestmark = pytest.mark.slow
-MOST_BYTES = 90 * 1024 * 1024
+MAX_BYTES = 90 * 1024 * 1024
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +30,7 @@ def test_engine_wheel_is_small_and_runs_its_commands(engine, tmp_path):
     result = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=False)
     assert result.returncode == 0, result.stderr
     assert "six commands" in result.stdout
-    assert sum(path.stat().st_size for path in engine.rglob("*") if path.is_file()) < MOST_BYTES
+    assert sum(path.stat().st_size for path in engine.rglob("*") if path.is_file()) < MAX_BYTES
 
 
 @pytest.mark.parametrize("package", sorted(path.name for path in (REPOSITORY / "robots").iterdir() if path.is_dir()))

@@ -11,7 +11,7 @@ import pytest
 from linkwright.process import forked
 from tests.forked import ForkServer, Program, start_process
 from tests.places import PACKAGE
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.skipif(not forked.IS_POSSIBLE, reason="programs are forked on Linux only")
 
@@ -26,7 +26,7 @@ def start(request, fork_server):
 
 def ended(program: Program) -> tuple[str, int]:
     with program.stdout:
-        return program.stdout.read(), program.wait(SECONDS)
+        return program.stdout.read(), program.wait(TIMEOUT_S)
 
 
 def test_forked_program_returns_output_and_status(start, tmp_path):
@@ -72,7 +72,7 @@ def test_signals_end_forked_program(start, tmp_path, number, status):
             program.wait(0.01)
         program.send_signal(number)
         program.stdout.read()
-        assert program.wait(SECONDS) == status
+        assert program.wait(TIMEOUT_S) == status
         assert program.poll() == status
         program.send_signal(number)  # no effect on an ended program
 
@@ -85,11 +85,11 @@ def test_forked_programs_run_in_parallel(fork_server, tmp_path):
     with first.stdout, second.stdout, printed_of_forgotten:
         printed_of_forgotten.read()
         second.terminate()
-        second.wait(SECONDS)
+        second.wait(TIMEOUT_S)
         assert first.poll() is None
         assert ended(fork_server.start(["--version"], cwd=tmp_path, env=QUIET))[1] == 0
         first.kill()
-        assert first.wait(SECONDS) == -signal.SIGKILL
+        assert first.wait(TIMEOUT_S) == -signal.SIGKILL
 
 
 def test_programs_start_as_processes_if_fork_server_fails(tmp_path, monkeypatch):
@@ -117,11 +117,11 @@ def test_killed_fork_server_is_replaced(tmp_path):
         assert any(line.startswith("Viewer: ") for line in program.stdout)
         server._server._process.kill()
         server._server._process.wait()
-        assert program.wait(SECONDS) == -signal.SIGKILL  # its status is unknown without the server
+        assert program.wait(TIMEOUT_S) == -signal.SIGKILL  # its status is unknown without the server
         os.kill(program.pid, signal.SIGTERM)
-    again = server.start(["--version"], cwd=tmp_path, env=QUIET)
-    assert isinstance(again.process, forked.ForkedProcess)
-    assert ended(again)[1] == 0
+    second_run = server.start(["--version"], cwd=tmp_path, env=QUIET)
+    assert isinstance(second_run.process, forked.ForkedProcess)
+    assert ended(second_run)[1] == 0
     server.close()
 
 

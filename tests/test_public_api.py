@@ -1,4 +1,7 @@
-"""`import linkwright` offers the names for programs, and loads each name only when it is used."""
+"""`import linkwright` offers the names for programs.
+
+It loads each name only when it is used.
+"""
 
 from __future__ import annotations
 

@@ -30,8 +30,8 @@ def bounds(requirements: list[str]) -> dict[str, str]:
 
 def test_recipe_run_requirements_match_pyproject(recipe):
     interpreter, *needed = recipe["requirements"]["run"]
-    both = [*ENGINE["dependencies"], *PROJECT["dependencies"]]
-    assert bounds(needed) == bounds([name for name in both if not name.startswith(ENGINE["name"])])
+    dependencies = [*ENGINE["dependencies"], *PROJECT["dependencies"]]
+    assert bounds(needed) == bounds([name for name in dependencies if not name.startswith(ENGINE["name"])])
     assert interpreter == "python >=${{ python_min }}"
     assert PROJECT["requires-python"] == f">={recipe['context']['python_min']}"
 
@@ -40,9 +40,11 @@ def test_recipe_host_requirements_match_build_requirements(recipe, monkeypatch):
     pinned, installer, *needed = recipe["requirements"]["host"]
     assert (pinned, installer) == ("python ${{ python_min }}.*", "pip")
     hook = (REPOSITORY / "hatch_build.py").read_text(encoding="utf-8")
-    ours = re.findall(r'"([a-z]+>=[\d.]+)"', hook.partition("*([]")[0])
-    assert len(ours) == 2  # for the stubs and the catalogs; the source distribution contains the built page
-    assert bounds(needed) == bounds([*PYPROJECT["build-system"]["requires"], *ours])
+    hook_requirements = re.findall(r'"([a-z]+>=[\d.]+)"', hook.partition("*([]")[0])
+    assert (
+        len(hook_requirements) == 2
+    )  # for the stubs and the catalogs; the source distribution contains the built page
+    assert bounds(needed) == bounds([*PYPROJECT["build-system"]["requires"], *hook_requirements])
 
 
 def test_recipe_metadata_matches_pyproject(recipe):

@@ -1,4 +1,7 @@
-"""The results of `make release`: the changelog of a version, the bill of materials, and files without dates."""
+"""The results of `make release`.
+
+The tests cover the changelog of a version, the bill of materials, and files without dates.
+"""
 
 from __future__ import annotations
 
@@ -54,9 +57,9 @@ def test_release_notes_require_unreleased_changes(notes):
 
 
 def test_unreleased_changes_become_section_of_new_version(notes):
-    begun = notes.begun(CHANGELOG, "0.3.0", "2026-11-22", "0.2.0")
-    assert "## [Unreleased]\n\n## [0.3.0] - 2026-11-22\n\n### Added\n\n- Wings.\n\n## [0.2.0]" in begun
-    assert notes.sections(begun) == {
+    started_notes = notes.begun(CHANGELOG, "0.3.0", "2026-11-22", "0.2.0")
+    assert "## [Unreleased]\n\n## [0.3.0] - 2026-11-22\n\n### Added\n\n- Wings.\n\n## [0.2.0]" in started_notes
+    assert notes.sections(started_notes) == {
         "Unreleased": "",
         "0.3.0": "### Added\n\n- Wings.",
         "0.2.0": "### Changed\n\n- Legs are longer.",
@@ -90,8 +93,8 @@ def test_new_version_is_written_to_all_files(release, tmp_path):
     release.begin("0.3.0", tmp_path)
     assert release.read_version(tmp_path) == "0.3.0"
     assert (tmp_path / release.RECIPE).read_text(encoding="utf-8") == '  version: "0.3.0"\n'
-    needed = 'dependencies = ["linkwright-core==0.3.0", "other==0.2.0"]\n'
-    assert (tmp_path / release.PROJECT).read_text(encoding="utf-8") == needed
+    expected_text = 'dependencies = ["linkwright-core==0.3.0", "other==0.2.0"]\n'
+    assert (tmp_path / release.PROJECT).read_text(encoding="utf-8") == expected_text
     assert "\n## [0.3.0] - 20" in (tmp_path / "CHANGELOG.md").read_text(encoding="utf-8")
 
 
@@ -103,7 +106,10 @@ def test_changelog_has_section_of_current_version(release, notes):
 
 
 def listed() -> str:
-    """Return cyclonedx-py's list of components for an environment with Linkwright and a package from a folder."""
+    """Return cyclonedx-py's list of components for an environment.
+
+    It has Linkwright and a package from a folder.
+    """
     local = {"type": "distribution", "url": "file:///home/somebody/linkwright.whl"}
     website = {"type": "website", "url": "https://example.org"}
     components = [
@@ -115,35 +121,39 @@ def listed() -> str:
 
 
 def test_bill_of_materials_lists_python_and_npm_packages(bill):
-    whole = json.loads(bill.complete(listed()))
-    assert whole["metadata"]["component"] == {
+    bill_of_materials = json.loads(bill.complete(listed()))
+    assert bill_of_materials["metadata"]["component"] == {
         "bom-ref": "linkwright==0.1.0",
         "name": "linkwright",
         "type": "application",
     }
-    components = {component["name"]: component for component in whole["components"]}
-    wanted = json.loads((REPOSITORY / "frontend" / "package.json").read_text(encoding="utf-8"))["dependencies"]
+    components = {component["name"]: component for component in bill_of_materials["components"]}
+    npm_dependencies = json.loads((REPOSITORY / "frontend" / "package.json").read_text(encoding="utf-8"))[
+        "dependencies"
+    ]
     locked = json.loads((REPOSITORY / "frontend" / "package-lock.json").read_text(encoding="utf-8"))["packages"]
     bundled = {
         path.removeprefix("node_modules/") for path, package in locked.items() if path and not package.get("dev")
     }
-    assert bundled >= {"dockview-core", "@lezer/common", *wanted}
+    assert bundled >= {"dockview-core", "@lezer/common", *npm_dependencies}
     assert set(components) == {"numpy", *bundled}
-    for name, version in wanted.items():
+    for name, version in npm_dependencies.items():
         assert components[name]["purl"] == f"pkg:npm/{name.replace('@', '%40')}@{version}"
         assert components[name]["licenses"][0]["license"]["id"] == "MIT"
         (digest,) = components[name]["hashes"]
         assert digest["alg"] == "SHA-512"
         assert len(digest["content"]) == 128
-    depending = {dependency["ref"]: dependency.get("dependsOn", []) for dependency in whole["dependencies"]}
-    assert set(depending["linkwright==0.1.0"]) == {component["bom-ref"] for component in whole["components"]}
+    depending = {dependency["ref"]: dependency.get("dependsOn", []) for dependency in bill_of_materials["dependencies"]}
+    assert set(depending["linkwright==0.1.0"]) == {
+        component["bom-ref"] for component in bill_of_materials["components"]
+    }
     assert set(depending) == {"linkwright==0.1.0", *depending["linkwright==0.1.0"]}
 
 
 def test_bill_of_materials_contains_no_local_paths(bill):
-    whole = bill.complete(listed())
-    assert "file:" not in whole
-    assert "https://example.org" in whole
+    bill_of_materials = bill.complete(listed())
+    assert "file:" not in bill_of_materials
+    assert "https://example.org" in bill_of_materials
 
 
 def test_bill_of_materials_requires_linkwright(bill):

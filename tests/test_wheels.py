@@ -48,12 +48,12 @@ def test_all_dependencies_install_without_compiler(
     allowed = PLAIN | {
         name for name, since in PLAIN_IF_NEED_BE.items() if PYTHONS.index(python) >= PYTHONS.index(since)
     }
-    needed = {package["name"]: package for package in _needed(lock, _environment(system, python))}
+    required_packages = {package["name"]: package for package in _needed(lock, _environment(system, python))}
     tags = _tags(system, python)
-    without = {name for name, package in needed.items() if not _has_wheel(package, tags)}
-    assert {"aiohttp", "numpy", "pillow", "vosk"} <= set(needed)  # packages of the base and of extras
-    assert without - allowed == set()
-    assert without >= PLAIN, "packages with wheels must be removed from the exceptions"
+    packages_without_wheel = {name for name, package in required_packages.items() if not _has_wheel(package, tags)}
+    assert {"aiohttp", "numpy", "pillow", "vosk"} <= set(required_packages)  # packages of the base and of extras
+    assert packages_without_wheel - allowed == set()
+    assert packages_without_wheel >= PLAIN, "packages with wheels must be removed from the exceptions"
 
 
 def test_exceptions_for_new_python_versions_are_needed(lock: dict[str, list[dict[str, Any]]]) -> None:
@@ -95,19 +95,19 @@ def _has_wheel(package: dict[str, Any], tags: set[Tag]) -> bool:
 def _needed(lock: dict[str, list[dict[str, Any]]], environment: dict[str, str]) -> Iterator[dict[str, Any]]:
     """Return the packages that ``linkwright[all]`` needs in an environment."""
     (root,) = lock["linkwright"]
-    asked = [*root["dependencies"], *root["optional-dependencies"]["all"]]
-    seen: set[tuple[str, str, str]] = set()
-    while asked:
-        wanted = asked.pop()
-        if "marker" in wanted and not Marker(wanted["marker"]).evaluate(environment):
+    pending = [*root["dependencies"], *root["optional-dependencies"]["all"]]
+    visited: set[tuple[str, str, str]] = set()
+    while pending:
+        dependency = pending.pop()
+        if "marker" in dependency and not Marker(dependency["marker"]).evaluate(environment):
             continue
-        package = _chosen(lock, wanted, environment)
-        for extra in ("", *wanted.get("extra", ())):
+        package = _chosen(lock, dependency, environment)
+        for extra in ("", *dependency.get("extra", ())):
             key = (package["name"], package.get("version", ""), extra)
-            if key in seen:
+            if key in visited:
                 continue
-            seen.add(key)
-            asked += (
+            visited.add(key)
+            pending += (
                 package.get("optional-dependencies", {}).get(extra, ()) if extra else package.get("dependencies", ())
             )
         if "registry" in package["source"]:  # the package is from an index
@@ -115,13 +115,13 @@ def _needed(lock: dict[str, list[dict[str, Any]]], environment: dict[str, str]) 
 
 
 def _chosen(
-    lock: dict[str, list[dict[str, Any]]], wanted: dict[str, Any], environment: dict[str, str]
+    lock: dict[str, list[dict[str, Any]]], dependency: dict[str, Any], environment: dict[str, str]
 ) -> dict[str, Any]:
     """Return the version of a package in the lock for a machine."""
     (package,) = [
         package
-        for package in lock[wanted["name"]]
-        if wanted.get("version", package.get("version")) == package.get("version")
+        for package in lock[dependency["name"]]
+        if dependency.get("version", package.get("version")) == package.get("version")
         and any(
             Marker(marker).evaluate(environment)
             for marker in package.get("resolution-markers", ("python_version > '3'",))

@@ -1,4 +1,6 @@
-"""Waiting for the results of other threads, processes and tasks, instead of waiting for a fixed time.
+"""Waiting for the results of other threads, processes and tasks.
+
+The tests do not wait for a fixed time.
 
 A passing test waits no longer than necessary, so the limits are generous: a busy machine causes no failures.
 """
@@ -12,16 +14,18 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-SECONDS = 60.0
-_PAUSE = 0.005
+TIMEOUT_S = 60.0
+_PAUSE_S = 0.005
 _EXECUTOR_WAITS = ("_sleep", "work.py")
 """The function, and its file, in which an executor waits for work."""
 
 
 def wait_until(
-    condition: Callable[[], object], seconds: float = SECONDS, what: object = "", pause: float = _PAUSE
+    condition: Callable[[], object], seconds: float = TIMEOUT_S, what: object = "", pause: float = _PAUSE_S
 ) -> None:
-    """Wait in this thread until a condition holds; on failure, the message contains ``what``, or its result.
+    """Wait in this thread until a condition holds.
+
+    On failure, the message contains ``what``, or its result.
 
     The pause between two checks is given in seconds: it is longer if a check is expensive, as in a browser.
     """
@@ -31,16 +35,19 @@ def wait_until(
         time.sleep(pause)
 
 
-async def eventually(condition: Callable[[], object], seconds: float = SECONDS, what: object = "") -> None:
+async def eventually(condition: Callable[[], object], seconds: float = TIMEOUT_S, what: object = "") -> None:
     """Let the other tasks run until a condition holds."""
     limit = time.monotonic() + seconds
     while not condition():
         assert time.monotonic() < limit, _failure(seconds, what)
-        await asyncio.sleep(_PAUSE)
+        await asyncio.sleep(_PAUSE_S)
 
 
 def is_waiting(thread: threading.Thread) -> bool:
-    """Return whether a thread waits for another one (for an event, a condition, the work of an executor)."""
+    """Return whether a thread waits for another one.
+
+    It may wait for an event, a condition, or the work of an executor.
+    """
     frame = sys._current_frames().get(thread.ident or 0)
     if frame is None:
         return False

@@ -1,3 +1,5 @@
+"""Fixtures of the tests of recordings."""
+
 from __future__ import annotations
 
 from importlib.util import find_spec

@@ -14,14 +14,17 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import String, serialize, type_hash
 from linkwright.messages.schema_text import schema_of
 
-START = 1_700_000_000_000_000_000
+START_NS = 1_700_000_000_000_000_000
 STRING = "std_msgs/msg/String"
 MODES = [CompressionMode.FILE, CompressionMode.MESSAGE]
 PLUGINS = [StoragePlugin.MCAP, StoragePlugin.SQLITE3]
 
 
-def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length: int = 20) -> Path:
-    """Write a folder as `ros2 bag record --compression-mode` does, with messages of ``/a`` and ``/b`` in turn."""
+def record_compressed(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length: int = 20) -> Path:
+    """Write a folder as `ros2 bag record --compression-mode` does.
+
+    Messages of ``/a`` and ``/b`` alternate.
+    """
     writer = Writer(folder, version=8, storage_plugin=plugin)
     writer.set_compression(mode, CompressionFormat.ZSTD)
     with writer:
@@ -30,7 +33,7 @@ def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length:
             for name in ("/a", "/b")
         ]
         for number in range(length):
-            writer.write(topics[number % 2], START + number, serialize(String(data=f"number {number}" * 100)))
+            writer.write(topics[number % 2], START_NS + number, serialize(String(data=f"number {number}" * 100)))
     return folder
 
 
@@ -39,16 +42,16 @@ def recorded(folder: Path, plugin: StoragePlugin, mode: CompressionMode, length:
 def test_compressed_file_without_folder_has_same_messages(
     tmp_path: Path, plugin: StoragePlugin, mode: CompressionMode
 ) -> None:
-    folder = recorded(tmp_path / "bag", plugin, mode)
+    folder = record_compressed(tmp_path / "bag", plugin, mode)
     (file,) = (path for path in folder.iterdir() if path.name != "metadata.yaml")
-    alone = tmp_path / file.name
-    shutil.copy(file, alone)
-    assert is_recording(alone)
-    with BagReader(folder) as whole, BagReader(alone) as single:
-        assert list(single.messages()) == list(whole.messages())
-        assert single.storage == whole.storage == plugin.name.lower()
-        for at in (START - 1, START, START + 7, START + 30):
-            assert single.state_at(["/a", "/b"], at) == whole.state_at(["/a", "/b"], at)
+    file_copy = tmp_path / file.name
+    shutil.copy(file, file_copy)
+    assert is_recording(file_copy)
+    with BagReader(folder) as folder_reader, BagReader(file_copy) as file_reader:
+        assert list(file_reader.messages()) == list(folder_reader.messages())
+        assert file_reader.storage == folder_reader.storage == plugin.name.lower()
+        for time_ns in (START_NS - 1, START_NS, START_NS + 7, START_NS + 30):
+            assert file_reader.state_at(["/a", "/b"], time_ns) == folder_reader.state_at(["/a", "/b"], time_ns)
     (folder / "metadata.yaml").unlink()
     assert is_recording(folder)
     with BagReader(folder) as bag:
@@ -56,7 +59,7 @@ def test_compressed_file_without_folder_has_same_messages(
 
 
 def test_truncated_compressed_mcap_gives_complete_messages(tmp_path: Path) -> None:
-    folder = recorded(tmp_path / "bag", StoragePlugin.MCAP, CompressionMode.FILE, length=20_000)
+    folder = record_compressed(tmp_path / "bag", StoragePlugin.MCAP, CompressionMode.FILE, length=20_000)
     (file,) = folder.glob("*.mcap.zstd")
     cut = tmp_path / "cut.mcap.zstd"
     cut.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
@@ -70,7 +73,7 @@ def test_damaged_compressed_files_are_reported(tmp_path: Path, capsys: pytest.Ca
     plain.write_text("not compressed")
     with pytest.raises(LinkwrightError, match="it does not begin with a zstd header"):
         BagReader(plain)
-    (file,) = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.FILE, 20_000).glob("*.zstd")
+    (file,) = record_compressed(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.FILE, 20_000).glob("*.zstd")
     cut = tmp_path / "cut.db3.zstd"
     cut.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     assert main(["bag", "info", str(cut)]) == 1
@@ -78,7 +81,7 @@ def test_damaged_compressed_files_are_reported(tmp_path: Path, capsys: pytest.Ca
 
 
 def test_missing_files_listed_in_metadata_are_named(tmp_path: Path) -> None:
-    folder = recorded(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.MESSAGE)
+    folder = record_compressed(tmp_path / "bag", StoragePlugin.SQLITE3, CompressionMode.MESSAGE)
     (folder / "bag.db3").unlink()
     with pytest.raises(LinkwrightError, match=r"files that its metadata.yaml lists are missing: bag\.db3$"):
         BagReader(folder)

@@ -1,4 +1,4 @@
-"""The end of a recording that another thread writes, because the process is about to be ended."""
+"""The end of a recording that another thread writes while the process is being ended."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from linkwright.bag import BagReader, BagWriter
 from linkwright.files.unfinished import finish_all
 from linkwright.messages import String, serialize
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 FORMS = {
     "mcap": ("bag", {}),
@@ -28,7 +28,7 @@ def writer(request: pytest.FixtureRequest, tmp_path: Path) -> BagWriter:
     return writer
 
 
-def numbers(path: Path) -> list[int]:
+def message_times(path: Path) -> list[int]:
     """Return the times of a complete recording's messages."""
     with BagReader(path) as bag:
         stamps = [stamp for _, stamp, _ in bag.messages()]
@@ -54,12 +54,12 @@ def test_finish_all_completes_recording_while_thread_writes(writer: BagWriter) -
         finish_all()
     finally:
         over.set()
-        thread.join(SECONDS)
-    numbers_written = numbers(writer.path)
+        thread.join(TIMEOUT_S)
+    numbers_written = message_times(writer.path)
     assert numbers_written == list(range(1, len(numbers_written) + 1))
     assert len(numbers_written) >= 100
     writer.close()
-    assert numbers(writer.path) == numbers_written
+    assert message_times(writer.path) == numbers_written
 
 
 def test_finish_all_leaves_closed_recording_unchanged(writer: BagWriter) -> None:

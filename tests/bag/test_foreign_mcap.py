@@ -13,41 +13,47 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import deserialize, get_message, serialize
 
 String = get_message("std_msgs/msg/String")
-MAGIC = b"\x89MCAP0\r\n"
+MCAP_MAGIC = b"\x89MCAP0\r\n"
 START_NS = 1_000_000_000
 
 
-def text(value: str | bytes) -> bytes:
+def string_field(value: str | bytes) -> bytes:
     data = value.encode() if isinstance(value, str) else value
     return struct.pack("<I", len(data)) + data
 
 
-def record(kind: int, body: bytes) -> bytes:
+def mcap_record(kind: int, body: bytes) -> bytes:
     return struct.pack("<BQ", kind, len(body)) + body
 
 
-def channel(number: int, topic: str, encoding: str) -> bytes:
-    return record(0x04, struct.pack("<HH", number, number) + text(topic) + text(encoding) + text(""))
+def channel_record(number: int, topic: str, encoding: str) -> bytes:
+    return mcap_record(
+        0x04, struct.pack("<HH", number, number) + string_field(topic) + string_field(encoding) + string_field("")
+    )
 
 
-def schema(number: int, name: str, language: str, data: bytes) -> bytes:
-    return record(0x03, struct.pack("<H", number) + text(name) + text(language) + text(data))
+def schema_record(number: int, name: str, language: str, data: bytes) -> bytes:
+    return mcap_record(
+        0x03, struct.pack("<H", number) + string_field(name) + string_field(language) + string_field(data)
+    )
 
 
-def message(number: int, stamp_ns: int, data: bytes) -> bytes:
-    return record(0x05, struct.pack("<HIQQ", number, 0, stamp_ns, stamp_ns) + data)
+def message_record(number: int, stamp_ns: int, data: bytes) -> bytes:
+    return mcap_record(0x05, struct.pack("<HIQQ", number, 0, stamp_ns, stamp_ns) + data)
 
 
-OURS = schema(1, "std_msgs/msg/String", "ros2msg", b"string data") + channel(1, "/chatter", "cdr")
-OTHERS = (
-    schema(2, "thing", "jsonschema", b'{"type":"object"}')
-    + channel(2, "/thing", "json")
-    + schema(3, "foxglove.Pose", "protobuf", bytes(range(128, 250)))  # not text
-    + channel(3, "/pose", "protobuf")
+SUPPORTED_CHANNELS = schema_record(1, "std_msgs/msg/String", "ros2msg", b"string data") + channel_record(
+    1, "/chatter", "cdr"
+)
+UNSUPPORTED_CHANNELS = (
+    schema_record(2, "thing", "jsonschema", b'{"type":"object"}')
+    + channel_record(2, "/thing", "json")
+    + schema_record(3, "foxglove.Pose", "protobuf", bytes(range(128, 250)))  # not text
+    + channel_record(3, "/pose", "protobuf")
 )
 
 
-def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
+def write_file(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
     """Write a file of five messages on each of three channels.
 
     Args:
@@ -58,14 +64,16 @@ def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
     """
     stamps = [START_NS + number * 1000 for number in range(5)]
     parts = [
-        message(channel, stamp, (serialize(String(data=f"{stamp}")), b"{}", b"\x01")[channel - 1])
+        message_record(channel, stamp, (serialize(String(data=f"{stamp}")), b"{}", b"\x01")[channel - 1])
         for stamp in stamps
         for channel in (1, 2, 3)
     ]
     data = declared + b"".join(parts)
-    head = MAGIC + record(0x01, text(profile) + text("another program"))
+    head = MCAP_MAGIC + mcap_record(0x01, string_field(profile) + string_field("another program"))
     span = struct.pack("<QQ", stamps[0], stamps[-1])
-    chunk = record(0x06, span + struct.pack("<QI", len(data), 0) + text("") + struct.pack("<Q", len(data)) + data)
+    chunk = mcap_record(
+        0x06, span + struct.pack("<QI", len(data), 0) + string_field("") + struct.pack("<Q", len(data)) + data
+    )
     summary, summary_at = b"", 0
     body = data if kind == "loose" else chunk
     if kind == "indexed":
@@ -73,16 +81,18 @@ def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
         for number in (1, 2, 3):
             offsets += struct.pack("<HQ", number, len(head) + len(chunk) + len(places))
             entries = struct.pack("<QQ", stamps[0], len(declared)) * 5
-            places += record(0x07, struct.pack("<H", number) + text(entries))
+            places += mcap_record(0x07, struct.pack("<H", number) + string_field(entries))
         body += places
         counts = b"".join(struct.pack("<HQ", number, 5) for number in (1, 2, 3))
-        index = span + struct.pack("<QQ", len(head), len(chunk)) + text(offsets) + struct.pack("<Q", len(places))
-        index += text("") + struct.pack("<QQ", len(data), len(data))
-        statistics = struct.pack("<QHIIII", 15, 3, 3, 0, 0, 1) + span + text(counts)
-        summary = declared + record(0x08, index) + record(0x0B, statistics)
-    end = record(0x0F, bytes(4))
+        index = (
+            span + struct.pack("<QQ", len(head), len(chunk)) + string_field(offsets) + struct.pack("<Q", len(places))
+        )
+        index += string_field("") + struct.pack("<QQ", len(data), len(data))
+        statistics = struct.pack("<QHIIII", 15, 3, 3, 0, 0, 1) + span + string_field(counts)
+        summary = declared + mcap_record(0x08, index) + mcap_record(0x0B, statistics)
+    end = mcap_record(0x0F, bytes(4))
     summary_at = len(head) + len(body) + len(end) if summary else 0
-    end += summary + record(0x02, struct.pack("<QQI", summary_at, 0, 0)) + MAGIC
+    end += summary + mcap_record(0x02, struct.pack("<QQI", summary_at, 0, 0)) + MCAP_MAGIC
     path.write_bytes(head + body + (end if kind != "cut off" else b"\x05\x99"))
     return path
 
@@ -90,7 +100,7 @@ def write(path: Path, declared: bytes, kind: str, profile: str = "") -> Path:
 @pytest.mark.parametrize("profile", ["", "ros2", "x"])
 @pytest.mark.parametrize("kind", ["indexed", "unindexed", "loose", "cut off"])
 def test_bag_reader_reads_ros2_topics_and_names_others(tmp_path: Path, kind: str, profile: str) -> None:
-    with BagReader(write(tmp_path / "x.mcap", OURS + OTHERS, kind, profile)) as bag:
+    with BagReader(write_file(tmp_path / "x.mcap", SUPPORTED_CHANNELS + UNSUPPORTED_CHANNELS, kind, profile)) as bag:
         assert [(topic.name, topic.type_name, topic.count) for topic in bag.topics] == [
             ("/chatter", "std_msgs/msg/String", 5)
         ]
@@ -106,7 +116,7 @@ def test_bag_reader_reads_ros2_topics_and_names_others(tmp_path: Path, kind: str
 
 
 def test_mcap_without_ros2_topics_is_reported_as_one_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = write(tmp_path / "x.mcap", OTHERS, "indexed")
+    path = write_file(tmp_path / "x.mcap", UNSUPPORTED_CHANNELS, "indexed")
     assert main(["bag", "info", str(path)]) == 1
     output = capsys.readouterr()
     assert output.out == ""

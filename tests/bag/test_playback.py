@@ -15,16 +15,16 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, Graph, JumpClock, LogRecord, QoSProfile
 from linkwright.messages import String, deserialize, get_message, serialize
 
-START = 1_700_000_000_000_000_000
-SECOND = 1_000_000_000
+START_NS = 1_700_000_000_000_000_000
+SECOND_NS = 1_000_000_000
 STRING, TF = "std_msgs/msg/String", "tf2_msgs/msg/TFMessage"
 
 
-def text(data: str) -> bytes:
+def string_text(data: str) -> bytes:
     return serialize(String(data=data))
 
 
-def transform(child: str) -> bytes:
+def make_transform(child: str) -> bytes:
     message = get_message(TF)()
     stamped_transform = get_message("geometry_msgs/msg/TransformStamped")()
     stamped_transform.child_frame_id = child
@@ -32,8 +32,11 @@ def transform(child: str) -> bytes:
     return serialize(message)
 
 
-def recorded(folder: Path, storage: str = "mcap", *, compressed: bool = False, chunk: int = 3) -> Path:
-    """Record 20 s: ``/a`` each second, ``/b`` each fourth, ``/tf`` twice a second, ``/tf_static`` at 0 and 9 s."""
+def write_recording(folder: Path, storage: str = "mcap", *, compressed: bool = False, chunk: int = 3) -> Path:
+    """Write a recording of 20 s.
+
+    ``/a`` has a message each second, ``/b`` each fourth, ``/tf`` twice a second, and ``/tf_static`` at 0 and 9 s.
+    """
     path = folder / "bag"
     with BagWriter(path, storage, compression="storage" if compressed else "none") as writer:
         for name, kind, qos in (
@@ -44,22 +47,22 @@ def recorded(folder: Path, storage: str = "mcap", *, compressed: bool = False, c
             ("/tf_static", TF, DEFAULT_QOS),
         ):
             writer.add_topic(name, kind, [qos])
-        writer.write("/robot_description", START, text("<robot/>"))
+        writer.write("/robot_description", START_NS, string_text("<robot/>"))
         for half in range(40):
-            stamp = START + half * SECOND // 2
+            stamp = START_NS + half * SECOND_NS // 2
             if half in (0, 18):
-                writer.write("/tf_static", stamp, transform(f"static {half}"))
-            writer.write("/tf", stamp, transform(f"moving {half}"))
+                writer.write("/tf_static", stamp, make_transform(f"static {half}"))
+            writer.write("/tf", stamp, make_transform(f"moving {half}"))
             if half % 2 == 0:
-                writer.write("/a", stamp, text(f"a {half // 2}"))
+                writer.write("/a", stamp, string_text(f"a {half // 2}"))
             if half % 8 == 0:
-                writer.write("/b", stamp, text(f"b {half // 2}"))
+                writer.write("/b", stamp, string_text(f"b {half // 2}"))
             if half % chunk == 0:
                 writer.flush()
     return path
 
 
-def words(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
+def message_words(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
     return [
         deserialize(data, String).data
         if topic in ("/a", "/b", "/robot_description")
@@ -75,56 +78,60 @@ TOPICS = ("/a", "/b", "/robot_description", "/tf", "/tf_static")
 def test_state_at_returns_last_message_of_each_topic_and_transforms(
     tmp_path: Path, storage: str, compressed: bool
 ) -> None:
-    with BagReader(recorded(tmp_path, storage, compressed=compressed)) as bag:
-        at = START + 7 * SECOND + 1
-        assert words(bag.state_at(TOPICS, at)) == [
+    with BagReader(write_recording(tmp_path, storage, compressed=compressed)) as bag:
+        time_ns = START_NS + 7 * SECOND_NS + 1
+        assert message_words(bag.state_at(TOPICS, time_ns)) == [
             "static 0", "<robot/>", "b 4", "moving 11", "moving 12", "moving 13", "moving 14", "a 7",
         ]  # fmt: skip
-        assert words(bag.state_at(["/tf_static", "/a"], START + 12 * SECOND)) == ["static 0", "static 18", "a 12"]
-        assert bag.state_at(["/a"], START - 1) == []
-        assert bag.time_before(["/a", "/b"], START + 5 * SECOND) == START + 4 * SECOND
-        assert bag.time_before(["/a"], START) is None
+        assert message_words(bag.state_at(["/tf_static", "/a"], START_NS + 12 * SECOND_NS)) == [
+            "static 0",
+            "static 18",
+            "a 12",
+        ]
+        assert bag.state_at(["/a"], START_NS - 1) == []
+        assert bag.time_before(["/a", "/b"], START_NS + 5 * SECOND_NS) == START_NS + 4 * SECOND_NS
+        assert bag.time_before(["/a"], START_NS) is None
 
 
-def without_index(whole: bytes, *, message_indexes: bool) -> bytes:
-    """Write a finished MCAP file without a summary, and without chunk indexes on request."""
-    records, place = bytearray(whole[:8]), 8
+def without_index(data: bytes, *, message_indexes: bool) -> bytes:
+    """Return a finished MCAP file without its summary, and without message indexes on request."""
+    records, place = bytearray(data[:8]), 8
     while True:
-        kind, length = struct.unpack_from("<BQ", whole, place)
+        kind, length = struct.unpack_from("<BQ", data, place)
         end = place + 9 + length
         if kind == 0x0F:  # the record DataEnd
             break
         if kind != 0x07 or message_indexes:
-            records += whole[place:end]
+            records += data[place:end]
         place = end
-    return bytes(records) + struct.pack("<BQI", 0x0F, 4, 0) + struct.pack("<BQ", 0x02, 20) + bytes(20) + whole[:8]
+    return bytes(records) + struct.pack("<BQI", 0x0F, 4, 0) + struct.pack("<BQ", 0x02, 20) + bytes(20) + data[:8]
 
 
 @pytest.mark.parametrize("compressed", [False, True])
 @pytest.mark.parametrize("way", ["cut off", "without a summary", "without any index"])
 def test_bag_reader_indexes_mcap_without_index(tmp_path: Path, way: str, compressed: bool) -> None:
-    folder = recorded(tmp_path, chunk=3, compressed=compressed)
+    folder = write_recording(tmp_path, chunk=3, compressed=compressed)
     (file,) = folder.glob("*.mcap")
     with BagReader(file) as bag:
-        whole = list(bag.messages())
-        at = START + 7 * SECOND + 1
-        state, counts = bag.state_at(TOPICS, at), bag.counts(4)
-    bare = tmp_path / "bare.mcap"
+        messages = list(bag.messages())
+        time_ns = START_NS + 7 * SECOND_NS + 1
+        state, counts = bag.state_at(TOPICS, time_ns), bag.counts(4)
+    unindexed = tmp_path / "bare.mcap"
     data = file.read_bytes()
-    bare.write_bytes(
+    unindexed.write_bytes(
         data[:-20] if way == "cut off" else without_index(data, message_indexes=way != "without any index")
     )
-    with BagReader(bare) as bag:
+    with BagReader(unindexed) as bag:
         assert bool(bag.findings) == (way == "cut off")
-        assert list(bag.messages()) == whole
-        assert bag.state_at(TOPICS, at) == state
+        assert list(bag.messages()) == messages
+        assert bag.state_at(TOPICS, time_ns) == state
         assert bag.counts(4) == counts
         assert {topic.name: topic.count for topic in bag.topics} == {name: sum(row) for name, row in counts.items()}
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_message_counts_per_interval_are_returned(tmp_path: Path, storage: str) -> None:
-    with BagReader(recorded(tmp_path, storage, chunk=1)) as bag:
+    with BagReader(write_recording(tmp_path, storage, chunk=1)) as bag:
         counts = bag.counts(2)
     assert counts["/a"] == [10, 10]
     assert counts["/robot_description"] == [1, 0]
@@ -132,27 +139,34 @@ def test_message_counts_per_interval_are_returned(tmp_path: Path, storage: str) 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_state_at_matches_reading_all_messages(tmp_path: Path, storage: str) -> None:
-    """Also compare times before and after all messages, in long pauses, and at equal times of several messages."""
-    stamps = [0, 1, 1, 5, 9_000, 9_001, 9_001, 500_000_000, 500_000_001, 7 * SECOND, 90 * SECOND]
+    """Compare the state at many times with a reading of all messages.
+
+    The times are also before and after all messages, in long pauses, and at equal times of several messages.
+    """
+    stamps = [0, 1, 1, 5, 9_000, 9_001, 9_001, 500_000_000, 500_000_001, 7 * SECOND_NS, 90 * SECOND_NS]
     topics = ("/a", "/b", "/tf", "/tf_static")
     with BagWriter(tmp_path / "bag", storage) as writer:
         for name in topics:
             writer.add_topic(name, TF if "tf" in name else STRING, [DEFAULT_QOS])
         for number, stamp in enumerate(stamps):
             for topic in topics[: 1 + number % 4]:
-                writer.write(topic, START + stamp, transform(f"{number}") if "tf" in topic else text(f"{number}"))
+                writer.write(
+                    topic, START_NS + stamp, make_transform(f"{number}") if "tf" in topic else string_text(f"{number}")
+                )
     with BagReader(tmp_path / "bag") as bag:
-        whole = list(bag.messages())
-        for at in sorted({START + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
-            before = [message for message in whole if message[1] <= at]
+        messages = list(bag.messages())
+        for time_ns in sorted({START_NS + stamp + step for stamp in stamps for step in (-1, 0, 1)}):
+            before = [message for message in messages if message[1] <= time_ns]
             transforms = [message for message in before if message[0] == "/tf"]
-            since = min(at, transforms[-1][1] if transforms and transforms[-1][1] < at - 2 * SECOND else at)
-            moving = [transform for transform in transforms if transform[1] >= since - 2 * SECOND]
+            since = min(
+                time_ns, transforms[-1][1] if transforms and transforms[-1][1] < time_ns - 2 * SECOND_NS else time_ns
+            )
+            moving = [transform for transform in transforms if transform[1] >= since - 2 * SECOND_NS]
             last = [[message for message in before if message[0] == topic][-1:] for topic in ("/a", "/b")]
             static = [message for message in before if message[0] == "/tf_static"]
-            assert sorted(bag.state_at(topics, at)) == sorted([*static, *moving, *last[0], *last[1]])
-            assert bag.time_before(topics, at) == max(
-                (message[1] for message in whole if message[1] < at), default=None
+            assert sorted(bag.state_at(topics, time_ns)) == sorted([*static, *moving, *last[0], *last[1]])
+            assert bag.time_before(topics, time_ns) == max(
+                (message[1] for message in messages if message[1] < time_ns), default=None
             )
 
 
@@ -180,7 +194,7 @@ class PlayedRecording:
 
     def _tick(self, message: Any) -> None:
         stamp = message.clock
-        self.times.append(stamp.sec * SECOND + stamp.nanosec - START)
+        self.times.append(stamp.sec * SECOND_NS + stamp.nanosec - START_NS)
 
     async def settle(self) -> None:
         for _ in range(4):  # a seek takes a few turns of the loop
@@ -195,7 +209,7 @@ class PlayedRecording:
 
 @pytest.fixture
 async def recording(tmp_path: Path, request: pytest.FixtureRequest) -> AsyncIterator[PlayedRecording]:
-    recording = PlayedRecording(recorded(tmp_path, getattr(request, "param", "mcap")))
+    recording = PlayedRecording(write_recording(tmp_path, getattr(request, "param", "mcap")))
     yield recording
     recording.playback.close()
     recording.bag.close()
@@ -210,7 +224,7 @@ async def test_playback_publishes_subscribed_topics_and_clock(recording: PlayedR
     await recording.clock.advance(2.5)
     assert await recording.take_heard() == ["a 1", "a 2"]
     assert recording.times == sorted(recording.times)
-    assert 2.4 * SECOND < recording.times[-1] <= 2.5 * SECOND
+    assert 2.4 * SECOND_NS < recording.times[-1] <= 2.5 * SECOND_NS
     recording.listen("/b")
     assert await recording.take_heard() == ["b 0"], "a late subscription receives the last message"
     recording.playback.set_speed(2)
@@ -225,13 +239,13 @@ async def test_seek_resets_listeners_before_publishing_state(recording: PlayedRe
     recording.listen("/a")
     recording.listen("/b")
     await recording.take_heard()
-    recording.playback.seek(START + 3 * SECOND)
-    recording.playback.seek(START + 10 * SECOND + 5)
+    recording.playback.seek(START_NS + 3 * SECOND_NS)
+    recording.playback.seek(START_NS + 10 * SECOND_NS + 5)
     assert await recording.take_heard() == ["reset", "b 8", "a 10"], "only the last of several seeks is executed"
-    assert recording.playback.position_ns == START + 10 * SECOND + 5
-    recording.playback.seek(START + 2 * SECOND)
+    assert recording.playback.position_ns == START_NS + 10 * SECOND_NS + 5
+    recording.playback.seek(START_NS + 2 * SECOND_NS)
     assert await recording.take_heard() == ["reset", "b 0", "a 2"]
-    assert recording.times[-1] == 2 * SECOND
+    assert recording.times[-1] == 2 * SECOND_NS
     recording.playback.play()
     await recording.clock.advance(1.1)
     assert await recording.take_heard() == ["a 3"]
@@ -243,10 +257,10 @@ async def test_step_moves_between_messages_of_subscribed_topics(recording: Playe
     recording.playback.step(forward=True)
     recording.playback.step(forward=True)
     assert await recording.take_heard() == ["b 4", "b 8"]
-    assert recording.playback.position_ns == START + 8 * SECOND
+    assert recording.playback.position_ns == START_NS + 8 * SECOND_NS
     recording.playback.step(forward=False)
     assert await recording.take_heard() == ["reset", "b 4"]
-    recording.playback.seek(START)
+    recording.playback.seek(START_NS)
     await recording.take_heard()
     recording.playback.step(forward=False)
     assert await recording.take_heard() == []
@@ -257,14 +271,14 @@ async def test_step_by_topic_publishes_messages_between(recording: PlayedRecordi
     await recording.take_heard()
     recording.playback.step(True, "/b")
     assert await recording.take_heard() == ["a 1", "a 2", "a 3", "a 4"], "messages of other topics are published too"
-    assert recording.playback.position_ns == START + 4 * SECOND
+    assert recording.playback.position_ns == START_NS + 4 * SECOND_NS
     recording.playback.step(False, "/tf_static")
     assert await recording.take_heard() == ["reset", "a 0"]
-    recording.playback.seek(START + 19 * SECOND)
+    recording.playback.seek(START_NS + 19 * SECOND_NS)
     await recording.take_heard()
     recording.playback.step(True, "/b")
     assert await recording.take_heard() == [], "there is no later message of the topic"
-    assert recording.playback.position_ns == START + 19 * SECOND
+    assert recording.playback.position_ns == START_NS + 19 * SECOND_NS
 
 
 async def test_step_over_too_many_messages_becomes_seek(
@@ -275,15 +289,15 @@ async def test_step_over_too_many_messages_becomes_seek(
     await recording.take_heard()
     recording.playback.step(True, "/b")
     assert (await recording.take_heard())[-2:] == ["reset", "a 4"]
-    assert recording.playback.position_ns == START + 4 * SECOND
+    assert recording.playback.position_ns == START_NS + 4 * SECOND_NS
 
 
 async def test_step_back_without_subscriptions_keeps_position(recording: PlayedRecording) -> None:
-    recording.playback.seek(START + 8 * SECOND)
+    recording.playback.seek(START_NS + 8 * SECOND_NS)
     await recording.settle()
     recording.playback.step(forward=False)
     await recording.settle()
-    assert recording.playback.position_ns == START + 8 * SECOND
+    assert recording.playback.position_ns == START_NS + 8 * SECOND_NS
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
@@ -292,11 +306,11 @@ def test_state_at_keeps_transforms_from_before_a_pause(tmp_path: Path, storage: 
     with BagWriter(tmp_path / "bag", storage) as writer:
         writer.add_topic("/tf", TF, [DEFAULT_QOS])
         for stamp in (0, 59, 60, 180):
-            writer.write("/tf", START + stamp * SECOND, transform(f"{stamp}"))
+            writer.write("/tf", START_NS + stamp * SECOND_NS, make_transform(f"{stamp}"))
     with BagReader(tmp_path / "bag") as bag:
-        for at, stamps in ((0, [0]), (40, [0]), (60, [59, 60]), (100, [59, 60]), (179, [59, 60]), (181, [180])):
-            assert [message[1] for message in bag.state_at(["/tf"], START + at * SECOND)] == [
-                START + stamp * SECOND for stamp in stamps
+        for time_ns, stamps in ((0, [0]), (40, [0]), (60, [59, 60]), (100, [59, 60]), (179, [59, 60]), (181, [180])):
+            assert [message[1] for message in bag.state_at(["/tf"], START_NS + time_ns * SECOND_NS)] == [
+                START_NS + stamp * SECOND_NS for stamp in stamps
             ]
 
 
@@ -309,7 +323,7 @@ def test_empty_recording_is_reported(tmp_path: Path) -> None:
 
 async def test_playback_stops_at_end_or_loops(recording: PlayedRecording) -> None:
     recording.listen("/b")
-    recording.playback.seek(START + 19 * SECOND)
+    recording.playback.seek(START_NS + 19 * SECOND_NS)
     await recording.take_heard()
     recording.playback.play()
     await recording.clock.advance(2.0)
@@ -321,7 +335,7 @@ async def test_playback_stops_at_end_or_loops(recording: PlayedRecording) -> Non
     assert (await recording.take_heard())[:2] == ["reset", "b 0"]
     assert recording.playback.playing
     await recording.clock.advance(20.0)
-    assert recording.playback.position_ns < START + 2 * SECOND, "playback has started again from the beginning"
+    assert recording.playback.position_ns < START_NS + 2 * SECOND_NS, "playback has started again from the beginning"
 
 
 async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Path) -> None:
@@ -329,22 +343,22 @@ async def test_playback_slows_down_when_messages_exceed_tick_limit(tmp_path: Pat
     with BagWriter(path) as writer:
         writer.add_topic("/a", STRING, [DEFAULT_QOS])
         for number in range(5000):
-            writer.write("/a", START + number * 1000, text(str(number)))
+            writer.write("/a", START_NS + number * 1000, string_text(str(number)))
     recording = PlayedRecording(path)
     recording.listen("/a")
     await recording.take_heard()
     recording.playback.play()
     await recording.clock.advance(0.017)
-    assert recording.playback.position_ns == START + 1001 * 1000 - 1
+    assert recording.playback.position_ns == START_NS + 1001 * 1000 - 1
     await recording.clock.advance(0.1)
-    assert recording.playback.position_ns == START + 4999 * 1000
+    assert recording.playback.position_ns == START_NS + 4999 * 1000
     recording.playback.close()
     recording.bag.close()
     await recording.graph.close()
 
 
 async def test_damaged_chunk_pauses_playback_and_is_reported(tmp_path: Path) -> None:
-    path = recorded(tmp_path, compressed=True)
+    path = write_recording(tmp_path, compressed=True)
     (file,) = path.glob("*.mcap")
     magic = b"\x28\xb5\x2f\xfd"  # starts each zstd frame
     first, rest = file.read_bytes().split(magic, 1)
@@ -353,7 +367,7 @@ async def test_damaged_chunk_pauses_playback_and_is_reported(tmp_path: Path) -> 
     recording.listen("/a")
     recording.failures.clear()
     recording.playback.play()
-    recording.playback.seek(START + 12 * SECOND)
+    recording.playback.seek(START_NS + 12 * SECOND_NS)
     await recording.settle()
     assert [failure.diagnostics[0].code for failure in recording.failures] == ["BAG102"]
     assert not recording.playback.playing

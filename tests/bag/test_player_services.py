@@ -10,14 +10,17 @@ from linkwright.bag import BagReader, BagWriter, Player, PlayerServices, PlayOpt
 from linkwright.graph import DEFAULT_QOS, Graph, JumpClock
 from linkwright.messages import String, get_message, serialize
 
-SECOND = 1_000_000_000
-START = 1_700_000_000 * SECOND
+SECOND_NS = 1_000_000_000
+START = 1_700_000_000 * SECOND_NS
 
 Time = get_message("builtin_interfaces/msg/Time")
 
 
 class PlayerHarness:
-    """A recording of a message each second, a player, a subscription to its topic, and clients of its services."""
+    """A player of a recording, a subscription to its topic, and clients of its services.
+
+    The recording has a message each second.
+    """
 
     def __init__(self, graph: Graph, bag: BagReader, options: PlayOptions) -> None:
         self.graph = graph
@@ -32,9 +35,9 @@ class PlayerHarness:
     async def call(self, name: str, **request):
         kind = "".join(word.title() for word in name.split("_"))
         client = self._node.create_client(f"rosbag2_interfaces/srv/{kind}", f"/rosbag2_player/{name}")
-        answer = client.call_async(client.srv_type.Request(**request))
+        response = client.call_async(client.srv_type.Request(**request))
         await self.graph.settle()
-        return answer.result()
+        return response.result()
 
 
 @pytest.fixture
@@ -47,7 +50,7 @@ async def scene(clock, tmp_path: Path):
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
         for number in range(5):
-            writer.write("/chatter", START + number * SECOND, serialize(String(data=str(number))))
+            writer.write("/chatter", START + number * SECOND_NS, serialize(String(data=str(number))))
     graph = Graph(clock=clock)
     with BagReader(tmp_path / "bag") as bag:
         yield lambda **options: PlayerHarness(graph, bag, PlayOptions(**options))
@@ -77,8 +80,8 @@ async def test_player_rate_is_set_and_returned(scene, clock):
     scene = scene()
     await clock.advance(0.5)
     assert (await scene.call("set_rate", rate=10.0)).success
-    for wrong in (0.0, -1.0, float("nan"), float("inf")):
-        assert not (await scene.call("set_rate", rate=wrong)).success
+    for invalid_rate in (0.0, -1.0, float("nan"), float("inf")):
+        assert not (await scene.call("set_rate", rate=invalid_rate)).success
     assert (await scene.call("get_rate")).rate == 10.0
     await clock.advance(0.3)
     assert scene.heard == ["0", "1", "2", "3"]
@@ -123,8 +126,8 @@ async def test_loop_over_zero_duration_recording_does_not_block(clock, tmp_path)
 async def test_player_seek_continues_from_given_time(scene, clock, paused):
     scene = scene(paused=paused)
     await clock.advance(0.5)
-    there = START // SECOND + 3
-    assert (await scene.call("seek", time=Time(sec=there))).success
+    seek_s = START // SECOND_NS + 3
+    assert (await scene.call("seek", time=Time(sec=seek_s))).success
     if paused:
         await scene.call("resume")
     await clock.advance(0.9)

@@ -11,7 +11,7 @@ from linkwright.bag import BagReader, BagWriter, Recorder, RecorderServices, Top
 from linkwright.graph import DEFAULT_QOS, Graph, JumpClock
 from linkwright.messages import String, deserialize, get_message
 
-START = 1_700_000_000_000_000_000
+START_NS = 1_700_000_000_000_000_000
 
 
 class RecorderHarness:
@@ -37,9 +37,9 @@ class RecorderHarness:
     async def call(self, name: str) -> Any:
         kind = "".join(word.title() for word in name.split("_"))
         client = self._node.create_client(f"rosbag2_interfaces/srv/{kind}", f"/rosbag2_recorder/{name}")
-        answer = client.call_async(client.srv_type.Request())
+        response = client.call_async(client.srv_type.Request())
         await self.graph.settle()
-        return answer.result()
+        return response.result()
 
     def recorded(self) -> list[str]:
         self.recorder.close()
@@ -52,7 +52,7 @@ class RecorderHarness:
 
 @pytest.fixture
 async def scene(tmp_path: Path):
-    graph = Graph(clock=JumpClock(START))
+    graph = Graph(clock=JumpClock(START_NS))
     yield lambda **options: RecorderHarness(graph, tmp_path / "bag", **options)
     await graph.close()
 

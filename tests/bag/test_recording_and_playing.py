@@ -16,13 +16,13 @@ from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS, Grap
 from linkwright.graph.endpoints.service import ServiceIntrospectionState
 from linkwright.messages import String, deserialize, get_message, serialize, type_hash
 
-START = 1_700_000_000_000_000_000
-SECOND = 1_000_000_000
+START_NS = 1_700_000_000_000_000_000
+SECOND_NS = 1_000_000_000
 
 
 @pytest.fixture
 def clock() -> JumpClock:
-    return JumpClock(START)
+    return JumpClock(START_NS)
 
 
 @pytest.fixture
@@ -38,7 +38,7 @@ async def graph(clock: JumpClock, log: list[LogRecord]) -> AsyncIterator[Graph]:
     assert asyncio.all_tasks() == {asyncio.current_task()}
 
 
-def texts(path: Path) -> list[str]:
+def recorded_texts(path: Path) -> list[str]:
     with BagReader(path) as bag:
         return [deserialize(data, String).data for topic, _, data in bag.messages() if topic == "/chatter"]
 
@@ -52,8 +52,13 @@ async def test_recorder_writes_topics_with_message_times(graph: Graph, clock: Ju
     recorder.close()
     assert recorder.message_count == 4
     with BagReader(tmp_path / "bag") as bag:
-        assert [stamp - START for _, stamp, _ in bag.messages()] == [0, SECOND // 4, SECOND // 2, SECOND * 3 // 4]
-    assert texts(tmp_path / "bag") == ["0", "1", "2", "3"]
+        assert [stamp - START_NS for _, stamp, _ in bag.messages()] == [
+            0,
+            SECOND_NS // 4,
+            SECOND_NS // 2,
+            SECOND_NS * 3 // 4,
+        ]
+    assert recorded_texts(tmp_path / "bag") == ["0", "1", "2", "3"]
 
 
 async def test_recorder_subscribes_to_later_topics_until_all_exist(
@@ -66,7 +71,7 @@ async def test_recorder_subscribes_to_later_topics_until_all_exist(
     publisher.publish(String(data="late"))
     await clock.advance(0.1)
     recorder.close()
-    assert texts(tmp_path / "bag") == ["late"]
+    assert recorded_texts(tmp_path / "bag") == ["late"]
     logged = [record.text for record in log if record.node == "recorder"]
     assert logged == [
         "Listening for topics...",
@@ -84,7 +89,7 @@ async def test_recorder_receives_latched_messages_published_earlier(
     recorder = Recorder(graph.create_node("recorder"), TopicSelection(everything=True), BagWriter(tmp_path / "bag"))
     await clock.advance(0.1)
     recorder.close()
-    assert texts(tmp_path / "bag") == ["before"]
+    assert recorded_texts(tmp_path / "bag") == ["before"]
 
 
 async def test_paused_recorder_writes_nothing(graph: Graph, clock: JumpClock, tmp_path: Path) -> None:
@@ -97,7 +102,7 @@ async def test_paused_recorder_writes_nothing(graph: Graph, clock: JumpClock, tm
         await clock.advance(0.1)
         recorder.toggle_paused()
     recorder.close()
-    assert texts(tmp_path / "bag") == ["yes"]
+    assert recorded_texts(tmp_path / "bag") == ["yes"]
 
 
 async def test_unknown_type_is_reported_once(
@@ -155,12 +160,12 @@ async def test_service_events_are_recorded_and_played(graph: Graph, clock: JumpC
     assert (events[0].request[0].a, events[0].request[0].b) == (2, 3)
 
 
-def record(folder: Path, times: list[float]) -> BagReader:
+def write_recording(folder: Path, times: list[float]) -> BagReader:
     """Write a recording of one message at each of these times, in seconds after its start."""
     with BagWriter(folder / "bag") as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
         for number, seconds in enumerate(times):
-            writer.write("/chatter", round(seconds * SECOND) + SECOND, serialize(String(data=str(number))))
+            writer.write("/chatter", round(seconds * SECOND_NS) + SECOND_NS, serialize(String(data=str(number))))
     return BagReader(folder / "bag")
 
 
@@ -173,7 +178,7 @@ class ChatterRecorder:
         graph.create_node("listener").create_subscription(String, topic, self._hear, DEFAULT_QOS)
 
     def _hear(self, message: String) -> None:
-        self.heard.append((round(self._clock.steady_ns() / SECOND, 3), message.data))
+        self.heard.append((round(self._clock.steady_ns() / SECOND_NS, 3), message.data))
 
 
 @pytest.fixture
@@ -185,7 +190,7 @@ async def test_player_keeps_intervals_between_messages(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = ChatterRecorder(graph, clock)
-    with record(tmp_path, [0, 0.5, 0.5, 2]) as bag:
+    with write_recording(tmp_path, [0, 0.5, 0.5, 2]) as bag:
         player = Player(player_node, bag, PlayOptions())
         player.start()
         await clock.advance(1.9)
@@ -200,7 +205,7 @@ async def test_player_applies_rate_delay_offset_and_duration(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = ChatterRecorder(graph, clock)
-    with record(tmp_path, [0, 1, 2, 3, 4]) as bag:
+    with write_recording(tmp_path, [0, 1, 2, 3, 4]) as bag:
         options = PlayOptions(rate=2.0, delay=1.0, start_offset=1.0, duration=2.0)
         player = Player(player_node, bag, options)
         player.start()
@@ -212,7 +217,7 @@ async def test_player_pause_stops_recording_time(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = ChatterRecorder(graph, clock)
-    with record(tmp_path, [0, 1, 2]) as bag:
+    with write_recording(tmp_path, [0, 1, 2]) as bag:
         player = Player(player_node, bag, PlayOptions())
         player.start()
         await clock.advance(0.5)
@@ -231,7 +236,7 @@ async def test_player_rate_can_change_during_playback(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = ChatterRecorder(graph, clock)
-    with record(tmp_path, [0, 1, 2, 3]) as bag:
+    with write_recording(tmp_path, [0, 1, 2, 3]) as bag:
         player = Player(player_node, bag, PlayOptions())
         player.start()
         await clock.advance(1.5)
@@ -246,7 +251,7 @@ async def test_looping_player_restarts_until_closed(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
     listener = ChatterRecorder(graph, clock)
-    with record(tmp_path, [0, 1]) as bag:
+    with write_recording(tmp_path, [0, 1]) as bag:
         player = Player(player_node, bag, PlayOptions(loop=True, delay=0.5))
         player.start()
         await clock.advance(4)
@@ -264,14 +269,14 @@ async def test_player_publishes_recording_time_on_clock(
     graph.create_node("watch").create_subscription(
         get_message("rosgraph_msgs/msg/Clock"), "/clock", lambda message: clocks.append(message.clock.nanoseconds), 10
     )
-    with record(tmp_path, [0, 2]) as bag:
+    with write_recording(tmp_path, [0, 2]) as bag:
         Player(player_node, bag, PlayOptions(clock_hz=4, rate=2)).start()
         await clock.advance(1)
-    assert clocks == [SECOND * 3 // 2, SECOND * 2, SECOND * 5 // 2, SECOND * 3]
+    assert clocks == [SECOND_NS * 3 // 2, SECOND_NS * 2, SECOND_NS * 5 // 2, SECOND_NS * 3]
 
 
 async def test_unknown_topic_is_reported_before_playing(player_node: Node, tmp_path: Path) -> None:
-    with record(tmp_path, [0]) as bag, pytest.raises(LinkwrightError, match="'/chater'"):
+    with write_recording(tmp_path, [0]) as bag, pytest.raises(LinkwrightError, match="'/chater'"):
         Player(player_node, bag, PlayOptions(topics=["/chater"]))
 
 
@@ -292,7 +297,7 @@ def record_of_a_foreign_type(path: Path, package: str, storage: StoragePlugin, *
             samples = [sample(kind=1, label="topsoil")] * number
             message = probe(depth=number / 2, samples=samples, header=header(stamp(sec=number, nanosec=0), "drill"))
             data = store.serialize_cdr(message, probe.__msgtype__)
-            writer.write(connection, SECOND * (number + 1), data)
+            writer.write(connection, SECOND_NS * (number + 1), data)
 
 
 @pytest.mark.parametrize("storage", [StoragePlugin.MCAP, StoragePlugin.SQLITE3])
@@ -343,7 +348,7 @@ async def test_malformed_definition_is_reported_and_other_topics_play(
 
 
 async def test_player_excludes_given_topics(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
-    with record(tmp_path, [0]) as bag:
+    with write_recording(tmp_path, [0]) as bag:
         player = Player(player_node, bag, PlayOptions(without=["/chatter"]))
         player.start()
         await clock.advance(1)
@@ -354,7 +359,7 @@ async def test_player_excludes_given_topics(graph: Graph, clock: JumpClock, play
 async def test_player_selects_topics_by_regular_expression(
     graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path
 ) -> None:
-    with record(tmp_path, [0]) as bag:
+    with write_recording(tmp_path, [0]) as bag:
         for options in (PlayOptions(pattern="^/other"), PlayOptions(without_pattern="chat")):
             assert Player(player_node, bag, options).publishers == ()
         assert [publisher.name for publisher in Player(player_node, bag, PlayOptions(pattern="chat")).publishers] == [
@@ -364,8 +369,8 @@ async def test_player_selects_topics_by_regular_expression(
 
 async def test_player_stops_at_given_time(graph: Graph, clock: JumpClock, player_node: Node, tmp_path: Path) -> None:
     listener = ChatterRecorder(graph, clock)
-    with record(tmp_path, [0, 1, 2]) as bag:
-        player = Player(player_node, bag, PlayOptions(until_ns=round(2.5 * SECOND), duration=9.0))
+    with write_recording(tmp_path, [0, 1, 2]) as bag:
+        player = Player(player_node, bag, PlayOptions(until_ns=round(2.5 * SECOND_NS), duration=9.0))
         player.start()
         await clock.advance(5)
         assert player.finished
@@ -380,7 +385,7 @@ async def test_player_publishes_clock_before_messages(
     graph.create_node("watcher").create_subscription(
         get_message("rosgraph_msgs/msg/Clock"), "/clock", lambda message: times.append(message.clock.sec), 10
     )
-    with record(tmp_path, [0, 1, 3]) as bag:
+    with write_recording(tmp_path, [0, 1, 3]) as bag:
         Player(player_node, bag, options).start()
         await clock.advance(5)
     assert times == [1, 2, 4]

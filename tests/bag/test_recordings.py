@@ -32,22 +32,22 @@ from linkwright.graph import (
 )
 from linkwright.messages import JointState, String, deserialize, serialize
 
-START = 1_700_000_000_000_000_000
+START_NS = 1_700_000_000_000_000_000
 
 
-def write(folder: Path, storage: str = "mcap", count: int = 3, name: str = "bag", **options: bool) -> Path:
+def write_recording(folder: Path, storage: str = "mcap", count: int = 3, name: str = "bag", **options: bool) -> Path:
     """Write a recording of two topics."""
     path = folder / name
     with BagWriter(path, storage, **options) as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String", [DESCRIPTION_QOS])
         writer.add_topic("/joint_states", "sensor_msgs/msg/JointState", [DEFAULT_QOS, SENSOR_DATA_QOS])
         for number in range(count):
-            writer.write("/chatter", START + number * 1_000_000_000, serialize(String(data=f"number {number}")))
-        writer.write("/joint_states", START + 500_000_000, serialize(JointState(name=["a"], position=[0.5])))
+            writer.write("/chatter", START_NS + number * 1_000_000_000, serialize(String(data=f"number {number}")))
+        writer.write("/joint_states", START_NS + 500_000_000, serialize(JointState(name=["a"], position=[0.5])))
     return path
 
 
-def code_of(error: pytest.ExceptionInfo[LinkwrightError]) -> str:
+def diagnostic_code(error: pytest.ExceptionInfo[LinkwrightError]) -> str:
     (diagnostic,) = error.value.diagnostics
     return diagnostic.code
 
@@ -55,19 +55,19 @@ def code_of(error: pytest.ExceptionInfo[LinkwrightError]) -> str:
 @pytest.mark.parametrize("storage", STORAGES)
 @pytest.mark.parametrize("key", ["offered_qos_profiles", "type_description_hash"])
 def test_metadata_contradicting_files_hides_no_messages(tmp_path: Path, storage: str, key: str) -> None:
-    path = write(tmp_path, storage) / "metadata.yaml"
+    path = write_recording(tmp_path, storage) / "metadata.yaml"
     document = yaml.safe_load(path.read_text(encoding="utf-8"))
     for topic in document["rosbag2_bagfile_information"]["topics_with_message_count"]:
         topic["topic_metadata"][key] = "RIHS01_0" if "hash" in key else ""
     path.write_text(yaml.safe_dump(document), encoding="utf-8")
     with BagReader(path.parent) as bag:
         assert len(list(bag.messages())) == 4
-        assert bag.state_at(["/joint_states"], START + 10**9)
+        assert bag.state_at(["/joint_states"], START_NS + 10**9)
 
 
 @pytest.mark.parametrize("storage", STORAGES)
 def test_bag_reader_returns_messages_ordered_by_time(tmp_path: Path, storage: str) -> None:
-    with BagReader(write(tmp_path, storage)) as bag:
+    with BagReader(write_recording(tmp_path, storage)) as bag:
         assert bag.storage == storage
         assert [(topic.name, topic.type_name, topic.count) for topic in bag.topics] == [
             ("/chatter", "std_msgs/msg/String", 3),
@@ -75,9 +75,9 @@ def test_bag_reader_returns_messages_ordered_by_time(tmp_path: Path, storage: st
         ]
         assert bag.topics[0].offered_qos == (DESCRIPTION_QOS,)
         assert bag.topics[1].offered_qos == (DEFAULT_QOS, SENSOR_DATA_QOS)
-        assert (bag.start_ns, bag.end_ns) == (START, START + 2_000_000_000)
+        assert (bag.start_ns, bag.end_ns) == (START_NS, START_NS + 2_000_000_000)
         messages = list(bag.messages())
-    assert [(topic, stamp - START) for topic, stamp, _ in messages] == [
+    assert [(topic, stamp - START_NS) for topic, stamp, _ in messages] == [
         ("/chatter", 0),
         ("/joint_states", 500_000_000),
         ("/chatter", 1_000_000_000),
@@ -88,7 +88,7 @@ def test_bag_reader_returns_messages_ordered_by_time(tmp_path: Path, storage: st
 
 @pytest.mark.parametrize("storage", STORAGES)
 def test_rosbags_library_reads_types_and_content(tmp_path: Path, storage: str) -> None:
-    path = write(tmp_path, storage)
+    path = write_recording(tmp_path, storage)
     with AnyReader([path], default_typestore=get_typestore(Stores.ROS2_HUMBLE)) as reader:
         texts = [
             reader.deserialize(data, connection.msgtype).data
@@ -103,15 +103,18 @@ def test_rosbags_library_reads_types_and_content(tmp_path: Path, storage: str) -
 def test_compressed_recording_is_smaller_with_equal_messages(tmp_path: Path) -> None:
     (tmp_path / "plain").mkdir()
     (tmp_path / "small").mkdir()
-    plain, small = write(tmp_path / "plain", count=400), write(tmp_path / "small", count=400, compression="storage")
-    with BagReader(plain) as plain_bag, BagReader(small) as small_bag:
+    plain, compressed = (
+        write_recording(tmp_path / "plain", count=400),
+        write_recording(tmp_path / "small", count=400, compression="storage"),
+    )
+    with BagReader(plain) as plain_bag, BagReader(compressed) as small_bag:
         assert list(plain_bag.messages()) == list(small_bag.messages())
         assert small_bag.files[0].stat().st_size < plain_bag.files[0].stat().st_size / 2
 
 
 def test_messages_can_be_filtered_by_topic_and_start_time(tmp_path: Path) -> None:
-    with BagReader(write(tmp_path)) as bag:
-        assert [stamp - START for _, stamp, _ in bag.messages(["/chatter"], START + 1)] == [
+    with BagReader(write_recording(tmp_path)) as bag:
+        assert [stamp - START_NS for _, stamp, _ in bag.messages(["/chatter"], START_NS + 1)] == [
             1_000_000_000,
             2_000_000_000,
         ]
@@ -127,7 +130,7 @@ from linkwright.messages import String, serialize
 writer = BagWriter({str(path)!r}, **{options!r})
 writer.add_topic("/chatter", "std_msgs/msg/String")
 for number in range(5):
-    writer.write("/chatter", {START} + number, serialize(String(data=str(number))))
+    writer.write("/chatter", {START_NS} + number, serialize(String(data=str(number))))
 writer.flush()
 os._exit(1)
 """
@@ -139,31 +142,34 @@ os._exit(1)
 
 
 def test_single_file_recording_has_no_folder(tmp_path: Path) -> None:
-    path = write(tmp_path / "new", name="run.mcap", single_file=True)
+    path = write_recording(tmp_path / "new", name="run.mcap", single_file=True)
     assert [file.name for file in path.parent.iterdir()] == ["run.mcap"]
-    with BagReader(path) as bag, BagReader(write(tmp_path)) as folder:
+    with BagReader(path) as bag, BagReader(write_recording(tmp_path)) as folder:
         assert not bag.findings
         assert list(bag.messages()) == list(folder.messages())
         assert bag.topics == folder.topics
         assert "Files:             run.mcap" in summarize_bag(bag)
     with pytest.raises(LinkwrightError) as error:
         BagWriter(path, single_file=True)
-    assert code_of(error) == "BAG105"
+    assert diagnostic_code(error) == "BAG105"
     assert str(error.value.diagnostics[0].hint) == "choose another file"
 
 
-def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
-    """Write files without metadata, each with three messages of a topic, starting a second after the previous file."""
+def write_parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
+    """Write files without metadata, each with three messages of a topic.
+
+    Each file starts a second after the previous one.
+    """
     files = []
     for number, name in enumerate(names):
         with BagWriter(folder / f"part{number}", storage) as writer:
             writer.add_topic("/chatter", "std_msgs/msg/String", [DEFAULT_QOS])
             if number == 1:
                 writer.add_topic("/other", "std_msgs/msg/String", [DEFAULT_QOS])
-                writer.write("/other", START, serialize(String(data="early")))
+                writer.write("/other", START_NS, serialize(String(data="early")))
             for step in range(3):
                 # The last message of a file is later than the first message of the next file.
-                stamp = START + number * 1_000_000_000 + step * 400_000_000
+                stamp = START_NS + number * 1_000_000_000 + step * 400_000_000
                 writer.write("/chatter", stamp, serialize(String(data=f"{number}.{step}")))
         (file,) = (path for path in (folder / f"part{number}").iterdir() if path.name != "metadata.yaml")
         files.append(folder / "drive" / f"{name}{file.suffix}")
@@ -172,29 +178,29 @@ def parts(folder: Path, storage: str, names: Sequence[str]) -> list[Path]:
     return files
 
 
-def texts(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
+def message_texts(messages: Iterable[tuple[str, int, bytes]]) -> list[str]:
     return [deserialize(data, String).data for _, _, data in messages]
 
 
 @pytest.mark.parametrize("storage", STORAGES)
 def test_numbered_files_without_metadata_form_one_recording(tmp_path: Path, storage: str) -> None:
-    files = parts(tmp_path, storage, ["drive_10", "drive_9", "drive_11"])
+    files = write_parts(tmp_path, storage, ["drive_10", "drive_9", "drive_11"])
     with BagReader(tmp_path / "drive") as bag:
         assert {topic.name: topic.count for topic in bag.topics} == {"/chatter": 9, "/other": 1}
-        assert (bag.start_ns, bag.end_ns) == (START, START + 2_800_000_000)
-        whole = list(bag.messages())
-        assert texts(whole) == ["0.0", "early", "0.1", "0.2", "1.0", "1.1", "1.2", "2.0", "2.1", "2.2"]
-        assert [stamp for _, stamp, _ in whole] == sorted(stamp for _, stamp, _ in whole)
-        assert texts(bag.messages(["/chatter"], START + 1_700_000_000)) == ["1.2", "2.0", "2.1", "2.2"]
-        assert texts(bag.state_at(["/chatter", "/other"], START + 1_900_000_000)) == ["early", "1.2"]
-        assert bag.time_before(["/chatter"], START + 1_000_000_000) == START + 800_000_000
+        assert (bag.start_ns, bag.end_ns) == (START_NS, START_NS + 2_800_000_000)
+        messages = list(bag.messages())
+        assert message_texts(messages) == ["0.0", "early", "0.1", "0.2", "1.0", "1.1", "1.2", "2.0", "2.1", "2.2"]
+        assert [stamp for _, stamp, _ in messages] == sorted(stamp for _, stamp, _ in messages)
+        assert message_texts(bag.messages(["/chatter"], START_NS + 1_700_000_000)) == ["1.2", "2.0", "2.1", "2.2"]
+        assert message_texts(bag.state_at(["/chatter", "/other"], START_NS + 1_900_000_000)) == ["early", "1.2"]
+        assert bag.time_before(["/chatter"], START_NS + 1_000_000_000) == START_NS + 800_000_000
         assert sum(bag.counts(10)["/chatter"]) == 9
         assert sorted(bag.files) == sorted(files)
         assert summarize_bag(bag).count("Type: std_msgs/msg/String | Count: 9") == 1
 
 
 def test_empty_part_is_skipped_with_warning(tmp_path: Path) -> None:
-    parts(tmp_path, "mcap", ["drive_0", "drive_1"])
+    write_parts(tmp_path, "mcap", ["drive_0", "drive_1"])
     (tmp_path / "drive" / "drive_2.mcap").touch()
     with BagReader(tmp_path / "drive") as bag:
         assert [finding.code for finding in bag.findings] == ["BAG109"]
@@ -202,7 +208,7 @@ def test_empty_part_is_skipped_with_warning(tmp_path: Path) -> None:
 
 
 def test_differently_named_files_form_one_recording_only_if_listed(tmp_path: Path) -> None:
-    files = parts(tmp_path, "mcap", ["morning", "noon"])
+    files = write_parts(tmp_path, "mcap", ["morning", "noon"])
     with pytest.raises(
         LinkwrightError, match=r"show that they belong to different recordings: morning.mcap, noon.mcap"
     ) as caught:
@@ -214,11 +220,11 @@ def test_differently_named_files_form_one_recording_only_if_listed(tmp_path: Pat
 
 
 def test_damaged_part_is_named(tmp_path: Path) -> None:
-    files = parts(tmp_path, "mcap", ["drive_0", "drive_1"])
+    files = write_parts(tmp_path, "mcap", ["drive_0", "drive_1"])
     files[1].write_bytes(b"nothing of the kind")
     with pytest.raises(LinkwrightError, match=r"'drive_1.mcap' cannot be read") as caught:
         BagReader(tmp_path / "drive")
-    assert code_of(caught) == "BAG102"
+    assert diagnostic_code(caught) == "BAG102"
 
 
 @pytest.mark.parametrize(
@@ -245,7 +251,7 @@ def test_empty_recording_can_be_read(tmp_path: Path) -> None:
 
 
 def test_summary_lists_files_and_topics(tmp_path: Path) -> None:
-    with BagReader(write(tmp_path)) as bag:
+    with BagReader(write_recording(tmp_path)) as bag:
         lines = summarize_bag(bag).splitlines()
         assert summarize_bag(bag, topic_names_only=True) == "/chatter\n/joint_states\n"
     assert lines[0] == ""
@@ -263,7 +269,7 @@ def test_summary_lists_files_and_topics(tmp_path: Path) -> None:
 def test_missing_recording_is_an_error(tmp_path: Path) -> None:
     with pytest.raises(LinkwrightError) as error:
         BagReader(tmp_path / "none")
-    assert code_of(error) == "BAG101"
+    assert diagnostic_code(error) == "BAG101"
 
 
 def test_folder_without_recording_is_an_error(tmp_path: Path) -> None:
@@ -277,7 +283,7 @@ def test_damaged_file_is_an_error(tmp_path: Path, content: bytes) -> None:
     path.write_bytes(content)
     with pytest.raises(LinkwrightError) as error:
         BagReader(path)
-    assert code_of(error) == "BAG102"
+    assert diagnostic_code(error) == "BAG102"
 
 
 @pytest.mark.parametrize(("cut", "left"), [(1, 300), (700, 300), (3000, 300), (10_000, 100), (20_000, 0)])
@@ -286,20 +292,20 @@ def test_truncated_file_gives_complete_chunks(tmp_path: Path, cut: int, left: in
     with BagWriter(path) as writer:
         writer.add_topic("/chatter", "std_msgs/msg/String")
         for number in range(300):
-            writer.write("/chatter", START + number, serialize(String(data=f"number {number}")))
+            writer.write("/chatter", START_NS + number, serialize(String(data=f"number {number}")))
             if number % 100 == 99:
                 writer.flush()
     file = path / "bag_0.mcap"
-    whole = file.read_bytes()
-    file.write_bytes(whole[:-cut])
+    data = file.read_bytes()
+    file.write_bytes(data[:-cut])
     with BagReader(path) as bag:
-        stamps = [stamp - START for _, stamp, _ in bag.messages()]
+        stamps = [stamp - START_NS for _, stamp, _ in bag.messages()]
         assert [finding.code for finding in bag.findings] == ["BAG109"]
     assert stamps == list(range(left))
 
 
 def test_bag_info_warns_about_truncated_recording(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path = write(tmp_path)
+    path = write_recording(tmp_path)
     assert main(["bag", "info", str(path)]) == 0
     assert capsys.readouterr().err == ""
     with BagReader(path) as bag:
@@ -311,16 +317,16 @@ def test_bag_info_warns_about_truncated_recording(tmp_path: Path, capsys: pytest
 
 
 def test_existing_folder_is_not_overwritten(tmp_path: Path) -> None:
-    write(tmp_path)
+    write_recording(tmp_path)
     with pytest.raises(LinkwrightError) as error:
         BagWriter(tmp_path / "bag")
-    assert code_of(error) == "BAG105"
+    assert diagnostic_code(error) == "BAG105"
 
 
 def test_unknown_topic_error_suggests_nearest(tmp_path: Path) -> None:
-    with BagReader(write(tmp_path)) as bag, pytest.raises(LinkwrightError) as error:
+    with BagReader(write_recording(tmp_path)) as bag, pytest.raises(LinkwrightError) as error:
         bag.messages(["/chater"])
-    assert code_of(error) == "BAG103"
+    assert diagnostic_code(error) == "BAG103"
     assert "/chatter" in (error.value.diagnostics[0].hint or "")
 
 
@@ -356,7 +362,7 @@ def test_topic_selection_filters_topics(selection: TopicSelection, selected: lis
 def test_invalid_topic_pattern_is_reported() -> None:
     with pytest.raises(LinkwrightError) as error:
         TopicSelection(pattern="(")
-    assert code_of(error) == "BAG104"
+    assert diagnostic_code(error) == "BAG104"
 
 
 def test_qos_profiles_survive_recording() -> None:
@@ -388,14 +394,14 @@ def test_playing_qos_uses_largest_recorded_history() -> None:
     """History and depth do not affect compatibility (as in rosbag2)."""
     profiles = [QoSProfile(depth=20), QoSProfile(depth=50, lifespan=Duration(seconds=1.0)), QoSProfile(depth=1)]
     assert profile_for_playing(profiles) == profiles[1]
-    everything = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-    assert profile_for_playing([*profiles, everything]) == everything
+    keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    assert profile_for_playing([*profiles, keep_all]) == keep_all
 
 
 def test_playing_qos_defaults_to_depth_ten_if_history_is_unknown() -> None:
     """Fast DDS does not announce history and depth."""
-    untold = QoSProfile(history=HistoryPolicy.UNKNOWN, depth=0)
-    assert profile_for_playing([from_library(to_library(untold))]) == QoSProfile(depth=10)
+    unknown_history = QoSProfile(history=HistoryPolicy.UNKNOWN, depth=0)
+    assert profile_for_playing([from_library(to_library(unknown_history))]) == QoSProfile(depth=10)
 
 
 def test_qos_overrides_are_parsed() -> None:

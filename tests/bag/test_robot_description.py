@@ -1,4 +1,4 @@
-"""The description of the robot that a recording was made with, and its comparison with a file."""
+"""The description with which a recording was made, and its comparison with a file."""
 
 from __future__ import annotations
 

@@ -1,3 +1,5 @@
+"""Fixtures of the bridge tests: two networks, a bridge between them, and processes on both."""
+
 from __future__ import annotations
 
 import asyncio
@@ -13,7 +15,7 @@ from linkwright.bridge.filters import NameFilter
 from linkwright.bridge.networks import read_network
 from linkwright.graph import LogRecord
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 from tests.wire.conftest import Process, domain, router_port  # noqa: F401 - fixtures, which take no part here else
 
 collect_ignore_glob = [] if find_spec("zenoh") and find_spec("cyclonedds") else ["test_*.py"]
@@ -42,7 +44,7 @@ class Bridge:
         self._task: asyncio.Task[None] | None = None
         self._thread = threading.Thread(target=self._run, name="bridge")
         self._thread.start()
-        assert self._ready.wait(SECONDS)
+        assert self._ready.wait(TIMEOUT_S)
 
     def _run(self) -> None:
         asyncio.set_event_loop(self._loop)
@@ -59,7 +61,7 @@ class Bridge:
         if self._thread.is_alive():
             assert self._task is not None
             self._loop.call_soon_threadsafe(self._task.cancel)
-            self._thread.join(SECONDS)
+            self._thread.join(TIMEOUT_S)
         assert not self._thread.is_alive()
 
 

@@ -1,3 +1,5 @@
+"""The name filters that select what a bridge forwards."""
+
 from __future__ import annotations
 
 import pytest
@@ -7,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError
 
 
 @pytest.mark.parametrize(
-    ("allowed", "denied", "passing", "blocked"),
+    ("allowed", "denied", "matching_names", "blocked"),
     [
         ((), (), ["/a", "/a/b"], []),
         (("/a",), (), ["/a", "/a/b/c"], ["/ab", "/b", "/b/a"]),
@@ -19,9 +21,9 @@ from linkwright.diagnostics import LinkwrightError
         (("/*",), (), ["/a", "/a/b/c"], []),
     ],
 )
-def test_name_filter_matches_allowed_names_and_names_below_them(allowed, denied, passing, blocked):
+def test_name_filter_matches_allowed_names_and_names_below_them(allowed, denied, matching_names, blocked):
     name_filter = NameFilter(allowed, denied)
-    assert [name for name in (*passing, *blocked) if name_filter.passes(name)] == passing
+    assert [name for name in (*matching_names, *blocked) if name_filter.passes(name)] == matching_names
 
 
 @pytest.mark.parametrize("pattern", ["", "scan", "/a/", "//", "/a b", "/a.*", "/[ab]"])

@@ -18,7 +18,7 @@ from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.messages import String, deserialize, get_message, get_service, serialize
 from linkwright.nodes.options import EXECUTABLES, NodeOptions
 from tests.leaving import UPGRADE, request_and_reset
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 V1 = ("foxglove.websocket.v1",)
 
@@ -30,7 +30,7 @@ class Foxglove:
         self.socket = socket_
 
     async def next(self):
-        message = await self.socket.receive(timeout=SECONDS)
+        message = await self.socket.receive(timeout=TIMEOUT_S)
         if message.type is aiohttp.WSMsgType.TEXT:
             return json.loads(message.data)
         assert message.type is aiohttp.WSMsgType.BINARY, message
@@ -115,11 +115,11 @@ async def test_new_client_receives_server_info_and_channels():
         for protocol in ("foxglove.websocket.v1", "foxglove.sdk.v1"):
             async with setup.client((protocol,)) as client:
                 assert client.socket.protocol == protocol
-                hello = await client.next()
-                assert hello["op"] == "serverInfo"
-                assert hello["supportedEncodings"] == ["cdr"]
+                server_info = await client.next()
+                assert server_info["op"] == "serverInfo"
+                assert server_info["supportedEncodings"] == ["cdr"]
                 assert {"clientPublish", "parameters", "services", "connectionGraph", "assets"} <= set(
-                    hello["capabilities"]
+                    server_info["capabilities"]
                 )
                 chatter = await client.channel("/chatter")
                 assert chatter["encoding"] == "cdr"
@@ -182,12 +182,12 @@ async def test_client_publishes_to_ros_topic():
 async def test_client_calls_service():
     set_bool = get_service("std_srvs/srv/SetBool")
 
-    def answer(request, response):
+    def on_request(request, response):
         response.success, response.message = True, f"set to {request.data}"
         return response
 
     async with bridge_setup() as setup, setup.client() as client:
-        setup.node.create_service(set_bool, "/light", answer)
+        setup.node.create_service(set_bool, "/light", on_request)
         light = None
         while light is None:
             services = (await client.until("advertiseServices"))["services"]
@@ -217,8 +217,8 @@ async def test_parameters_are_read_set_and_subscribed():
         await client.send("subscribeParameterUpdates", parameterNames=["/robot.speed"])
         change = {"name": "/robot.speed", "value": 2, "type": "float64"}
         await client.send("setParameters", parameters=[change], id="two")
-        answers = [await client.until("parameterValues") for _ in range(2)]
-        assert [answer["parameters"][0]["value"] for answer in answers] == [2.0, 2.0]
+        responses = [await client.until("parameterValues") for _ in range(2)]
+        assert [response["parameters"][0]["value"] for response in responses] == [2.0, 2.0]
         assert setup.node.get_parameter("speed").value == 2.0
         await client.send("getParameters", parameterNames=[], id="all")
         names = {parameter["name"] for parameter in (await client.until("parameterValues"))["parameters"]}
@@ -312,9 +312,9 @@ async def test_only_meshes_of_packages_in_robot_description_are_served(tmp_path,
             "/etc/passwd",
             "http://example.com/a.stl",
         ):
-            failed, why = await fetched(client, request)
-            assert failed == 1, request
-            assert b"secret" not in why
+            status, reason = await fetched(client, request)
+            assert status == 1, request
+            assert b"secret" not in reason
 
 
 @pytest.mark.parametrize(
@@ -353,7 +353,7 @@ async def test_connection_from_other_origin_is_rejected():
 
 async def test_connection_without_foxglove_subprotocol_is_closed():
     async with bridge_setup() as setup, setup.client(()) as client:
-        message = await client.socket.receive(timeout=SECONDS)
+        message = await client.socket.receive(timeout=TIMEOUT_S)
         assert message.type is aiohttp.WSMsgType.CLOSE
         assert client.socket.close_code == 1002
 

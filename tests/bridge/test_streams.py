@@ -1,3 +1,5 @@
+"""The streams of messages: which one a subscription awaits, and which ones it can receive."""
+
 from __future__ import annotations
 
 import pytest
@@ -29,11 +31,11 @@ def test_subscription_awaits_the_stream_that_its_publisher_uses(type_name, messa
 
 
 def test_type_hash_distinguishes_streams_only_when_keyed():
-    ours, theirs = (
+    linkwright_endpoint, other_endpoint = (
         endpoint(EndpointKind.PUBLISHER, "std_msgs/msg/String", type_hash) for type_hash in ("", OTHER_HASH)
     )
-    assert publisher_stream(ours, is_keyed=True) != publisher_stream(theirs, is_keyed=True)
-    assert publisher_stream(ours, is_keyed=False) == publisher_stream(theirs, is_keyed=False)
+    assert publisher_stream(linkwright_endpoint, is_keyed=True) != publisher_stream(other_endpoint, is_keyed=True)
+    assert publisher_stream(linkwright_endpoint, is_keyed=False) == publisher_stream(other_endpoint, is_keyed=False)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,7 @@
-"""A small arm of two files, with masses, limits, a rail and a mimic joint, for tests of the page."""
+"""A small arm of two files, for tests of the page.
+
+It has masses, limits, a prismatic joint and a mimic joint.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The arm seen from above, with a known scale of pixels, and the messages of the page's tools."""
+"""The arm seen from above, with a known scale of pixels.
+
+It also receives the messages of the page's tools.
+"""
 
 from __future__ import annotations
 
@@ -8,11 +11,11 @@ import yaml
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
-from tests.browser.conftest import SECONDS, state, until
+from tests.browser.conftest import TIMEOUT_S, state, until
 from tests.viewer.scene import ARM
 from tests.waiting import wait_until
 
-SCALE = 50.0
+PIXELS_PER_METER = 50.0
 """The scale of the file's TopDownOrtho view in pixels per meter."""
 CONFIG = {
     "Visualization Manager": {
@@ -32,7 +35,7 @@ CONFIG = {
             },
         ],
         "Global Options": {"Fixed Frame": "base", "Background Color": "48; 48; 48", "Frame Rate": 30},
-        "Views": {"Current": {"Class": "rviz_default_plugins/TopDownOrtho", "Scale": SCALE}, "Saved": None},
+        "Views": {"Current": {"Class": "rviz_default_plugins/TopDownOrtho", "Scale": PIXELS_PER_METER}, "Saved": None},
     }
 }
 TIP = (3.0, 1.0)
@@ -60,7 +63,7 @@ class ArmPage:
     def pixel(self, x: float, y: float) -> tuple[float, float]:
         """Return the page's pixel of a point of the fixed frame, while the file's view is shown."""
         box = self.page.locator("canvas").first.bounding_box()
-        return box["x"] + box["width"] / 2 + x * SCALE, box["y"] + box["height"] / 2 - y * SCALE
+        return box["x"] + box["width"] / 2 + x * PIXELS_PER_METER, box["y"] + box["height"] / 2 - y * PIXELS_PER_METER
 
     def click(self, x: float, y: float, **options: Any) -> None:
         pixel = self.pixel(x, y)
@@ -82,7 +85,7 @@ class ArmPage:
 
     def single_message(self, topic: str) -> Any:
         """Wait for a topic's message, and return it; fail if it has several."""
-        wait_until(lambda: self.messages[topic], SECONDS)
+        wait_until(lambda: self.messages[topic], TIMEOUT_S)
         (message,) = self.messages[topic]
         return message
 
@@ -100,7 +103,10 @@ class ArmPage:
 
 
 def open_scene(live: Any, open_page: Any) -> ArmPage:
-    """Publish the arm, and open a page that shows it from above; the arguments are the fixtures of these names."""
+    """Publish the arm, and open a page that shows it from above.
+
+    The arguments are the fixtures of these names.
+    """
     viewer = live(yaml.safe_dump(CONFIG))
     viewer.publish("/robot_description", String(data=ARM), DESCRIPTION_QOS)
     viewer.place("tip", *TIP, 0.0)

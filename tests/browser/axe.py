@@ -73,7 +73,7 @@ _RUN = """async ([selector, worst]) => {
 }"""
 
 
-def violations(page: Page, within: str | None = None) -> list[str]:
+def find_violations(page: Page, selector: str | None = None) -> list[str]:
     """Return the violations in the page or in one of its elements, in dark and in light colors.
 
     Raises:
@@ -82,8 +82,8 @@ def violations(page: Page, within: str | None = None) -> list[str]:
     if not page.evaluate("() => 'contrastOf' in window"):
         page.evaluate(SCRIPT.read_text(encoding="utf-8") + _PREPARE)
     found_violations = []
-    for theme, worst in THEMES.items():
+    for theme, darkest in THEMES.items():
         page.emulate_media(color_scheme=theme)
         page.wait_for_function("theme => document.documentElement.dataset.theme === theme", arg=theme)
-        found_violations += [f"{theme}: {violation}" for violation in page.evaluate(_RUN, [within, worst])]
+        found_violations += [f"{theme}: {violation}" for violation in page.evaluate(_RUN, [selector, darkest])]
     return found_violations

@@ -20,11 +20,11 @@ from playwright.sync_api import Browser, Page, Playwright, sync_playwright
 
 from tests import forked
 from tests.browser.failure_report import describe_pages
-from tests.browser.live import POLL_PERIOD, LiveViewer, configuration
+from tests.browser.live import POLL_PERIOD_S, LiveViewer, configuration
 from tests.forked import ForkServer, start_process
 from tests.waiting import wait_until
 
-SECONDS = 60.0
+TIMEOUT_S = 60.0
 """The tests' time limit. It is long, because a busy machine without a GPU may need seconds for a frame."""
 
 Value = TypeVar("Value")
@@ -65,7 +65,10 @@ _GROUPED = """
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Add the content of the pages to the report of a failed test, because the failure may not be repeatable."""
+    """Add the content of the pages to the report of a failed test.
+
+    The failure may not be repeatable.
+    """
     report = yield
     browser = getattr(item, "funcargs", {}).get("browser")
     if report.when == "call" and report.failed and browser is not None:
@@ -97,7 +100,10 @@ def playwright() -> Iterator[Playwright]:
 
 @pytest.fixture(scope="module")
 def browser(playwright: Playwright) -> Iterator[Browser]:
-    """Run a browser for each module; it starts in a tenth of a second, and modules do not affect each other."""
+    """Run a browser for each module.
+
+    It starts in a tenth of a second, and modules do not affect each other.
+    """
     with run_browser(playwright) as new_browser:
         yield new_browser
 
@@ -111,7 +117,7 @@ class Program:
     output: list[str] = field(default_factory=list)
     _lines: queue.Queue[str | None] = field(default_factory=queue.Queue)
 
-    def wait_for(self, pattern: str, seconds: float = SECONDS) -> re.Match[str]:
+    def wait_for(self, pattern: str, seconds: float = TIMEOUT_S) -> re.Match[str]:
         """Read until a line matches; fail with all output after the time limit."""
         deadline = time.monotonic() + seconds
         while True:
@@ -124,7 +130,7 @@ class Program:
             if time.monotonic() >= deadline:
                 pytest.fail(f"no line like {pattern!r} within {seconds} s:\n{''.join(self.output)}")
 
-    def interrupt(self, seconds: float = SECONDS) -> int:
+    def interrupt(self, seconds: float = TIMEOUT_S) -> int:
         """Interrupt the command as Ctrl-C does, and return its exit status."""
         self.process.send_signal(signal.SIGINT)
         return self.process.wait(timeout=seconds)
@@ -143,14 +149,20 @@ Start = Callable[..., Program]
 
 @pytest.fixture
 def start(tmp_path: Path, fork_server: ForkServer) -> Iterator[Start]:
-    """Return a function that starts `linkwright WORDS... --no-open` and waits for the viewer's address."""
+    """Return a function that starts `linkwright WORDS... --no-open`.
+
+    It waits for the viewer's address.
+    """
     with program_starter(fork_server.start, tmp_path) as run:
         yield run
 
 
 @pytest.fixture
 def start_fresh(tmp_path: Path) -> Iterator[Start]:
-    """Return the same function with processes that import everything themselves, as users' processes do."""
+    """Return the same function with processes that import everything themselves.
+
+    Users' processes do so.
+    """
     with program_starter(start_process, tmp_path) as run:
         yield run
 
@@ -178,15 +190,18 @@ def program_starter(start_program: Callable[..., forked.Program], folder: Path) 
     for program, reader in programs:
         if program.process.poll() is None:
             program.process.terminate()
-            program.process.wait(timeout=SECONDS)
-        reader.join(timeout=SECONDS)
+            program.process.wait(timeout=TIMEOUT_S)
+        reader.join(timeout=TIMEOUT_S)
         assert program.process.stdout is not None
         program.process.stdout.close()
 
 
 @pytest.fixture
 def live() -> Iterator[Callable[..., LiveViewer]]:
-    """Return a function that starts a viewer in this process with a configuration; see `LiveViewer`."""
+    """Return a function that starts a viewer in this process with a configuration.
+
+    See `LiveViewer`.
+    """
     viewers: list[LiveViewer] = []
 
     def run(config: str, **options: Any) -> LiveViewer:
@@ -200,7 +215,10 @@ def live() -> Iterator[Callable[..., LiveViewer]]:
 
 @pytest.fixture
 def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
-    """Return a function that opens a program's page, by default at 1280x800, and waits for the robot."""
+    """Return a function that opens a program's page and waits for the robot.
+
+    The page has 1280x800 pixels by default.
+    """
     contexts = []
     errors: list[str] = []
 
@@ -214,14 +232,14 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
         context = browser.new_context(
             viewport={"width": size[0], "height": size[1]}, locale="en-US", color_scheme=theme
         )
-        context.set_default_timeout(1000 * SECONDS)
+        context.set_default_timeout(1000 * TIMEOUT_S)
         contexts.append(context)
         page = context.new_page()
         page.on("pageerror", lambda error: errors.append(str(error)))
         page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
         page.goto(program.url)
         if wait:
-            page.wait_for_function("window.linkwright?.ready === true", polling=1000 * POLL_PERIOD)
+            page.wait_for_function("window.linkwright?.ready === true", polling=1000 * POLL_PERIOD_S)
         return page
 
     yield open_url
@@ -232,7 +250,10 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
 
 @pytest.fixture
 def grouped_displays(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[LiveViewer, Page]:
-    """Return a viewer with a grid, and a group of axes and an unknown display, together with its page."""
+    """Return a viewer and its page.
+
+    The viewer has a grid, and a group of axes and an unknown display.
+    """
     viewer = live(configuration(_GROUPED))
     viewer.place("tip", 1.0, 0.0, 0.0)
     page = open_page(viewer, wait=False)
@@ -249,25 +270,25 @@ def until(page: Page, condition: str) -> None:
     """Wait until a JavaScript condition over `lw` (window.linkwright) holds."""
     page.wait_for_function(
         f"() => {{ const lw = window.linkwright; return lw && ({condition}); }}",
-        timeout=1000 * SECONDS,
-        polling=1000 * POLL_PERIOD,
+        timeout=1000 * TIMEOUT_S,
+        polling=1000 * POLL_PERIOD_S,
     )
 
 
-def becomes(read: Callable[[], Value], expected: Value) -> None:
+def wait_until_equal(read: Callable[[], Value], expected: Value) -> None:
     """Read a value repeatedly until it is the expected one; fail with the last value."""
-    limit = time.monotonic() + SECONDS
+    limit = time.monotonic() + TIMEOUT_S
     while (value := read()) != expected and time.monotonic() < limit:
-        time.sleep(POLL_PERIOD)
+        time.sleep(POLL_PERIOD_S)
     assert value == expected
 
 
 def wait_two_seconds(page: Page) -> None:
     """Wait until the clock of the page's Time panel has advanced by two seconds."""
     elapsed = page.locator(".time-panel .figure").last
-    wait_until(elapsed.inner_text, SECONDS, pause=POLL_PERIOD)
+    wait_until(elapsed.inner_text, TIMEOUT_S, pause=POLL_PERIOD_S)
     start = float(elapsed.inner_text())
-    wait_until(lambda: float(elapsed.inner_text()) >= start + 2, SECONDS, pause=POLL_PERIOD)
+    wait_until(lambda: float(elapsed.inner_text()) >= start + 2, TIMEOUT_S, pause=POLL_PERIOD_S)
 
 
 def count_frames(page: Page) -> int:

@@ -1,4 +1,6 @@
-"""An installed Firefox, driven by WebDriver BiDi, which it supports itself (https://w3c.github.io/webdriver-bidi/).
+"""An installed Firefox, driven by WebDriver BiDi.
+
+Firefox supports this protocol itself (https://w3c.github.io/webdriver-bidi/).
 
 Playwright drives only its own build of Firefox, and Debian has no geckodriver; decision 0065 explains the choice.
 Without a display Firefox has no WebGL: on Linux that takes an X server, such as Xvfb.
@@ -23,8 +25,8 @@ from typing import Any, TypeVar
 import aiohttp
 from PIL import Image
 
-from tests.browser.live import POLL_PERIOD
-from tests.waiting import SECONDS, wait_until
+from tests.browser.live import POLL_PERIOD_S
+from tests.waiting import TIMEOUT_S, wait_until
 
 Result = TypeVar("Result")
 
@@ -38,7 +40,7 @@ _PREFERENCES = {
 }
 
 
-def find() -> str | None:
+def find_firefox() -> str | None:
     """Return Firefox's program: LINKWRIGHT_FIREFOX, or one on the PATH."""
     names = ("firefox-esr", "firefox")
     return os.environ.get("LINKWRIGHT_FIREFOX") or next(filter(None, map(shutil.which, names)), None)
@@ -58,7 +60,7 @@ def launch(folder: Path, *, headless: bool = False) -> Iterator[Firefox]:
             environment["DISPLAY"] = stack.enter_context(_display(folder / "xvfb.log"))
         text = "".join(f"user_pref({json.dumps(name)}, {json.dumps(value)});\n" for name, value in _PREFERENCES.items())
         (folder / "user.js").write_text(text, encoding="utf-8")
-        command = [find() or "firefox", "--no-remote", "--profile", str(folder), "--remote-debugging-port=0"]
+        command = [find_firefox() or "firefox", "--no-remote", "--profile", str(folder), "--remote-debugging-port=0"]
         process = _run_logged([*command, *(["--headless"] if headless else [])], environment, folder / "firefox.log")
         address = stack.enter_context(process)(r"WebDriver BiDi listening on (\S+)\n")
         yield stack.enter_context(contextlib.closing(Firefox(address)))
@@ -90,7 +92,7 @@ def _run_logged(command: list[str], environment: dict[str, str], log: Path) -> I
             yield wait_for_line
         finally:
             process.terminate()
-            process.wait(timeout=SECONDS)
+            process.wait(timeout=TIMEOUT_S)
 
 
 class Firefox:
@@ -122,7 +124,7 @@ class Firefox:
         return self._run(self._call(method, parameters))
 
     def _run(self, coroutine: Coroutine[Any, Any, Result]) -> Result:
-        return asyncio.run_coroutine_threadsafe(asyncio.wait_for(coroutine, SECONDS), self._loop).result()
+        return asyncio.run_coroutine_threadsafe(asyncio.wait_for(coroutine, TIMEOUT_S), self._loop).result()
 
     async def _call(self, method: str, parameters: dict[str, Any]) -> dict[str, Any]:
         self._number += 1
@@ -155,10 +157,13 @@ class Firefox:
     def until(self, condition: str) -> None:
         """Wait until a JavaScript condition over ``lw`` (window.linkwright) holds."""
         expression = f"((lw) => Boolean(lw && ({condition})))(window.linkwright)"
-        wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}", pause=POLL_PERIOD)
+        wait_until(lambda: self.evaluate(expression), what=f"{condition}; {self.errors}", pause=POLL_PERIOD_S)
 
     def press(self, *keys: str) -> None:
-        """Press keys one after another. WebDriver names them by a letter, or by a code such as ``\\ue014`` (right)."""
+        """Press keys one after another.
+
+        WebDriver names them by a letter, or by a code such as ``\ue014`` (right).
+        """
         actions = [{"type": action_type, "value": key} for key in keys for action_type in ("keyDown", "keyUp")]
         source = {"type": "key", "id": "keyboard", "actions": actions}
         self.call("input.performActions", context=self._tab, actions=[source])
@@ -203,5 +208,5 @@ class Firefox:
         self._run(self._socket.close())
         self._run(self._session.close())
         self._loop.call_soon_threadsafe(self._loop.stop)
-        self._thread.join(SECONDS)
+        self._thread.join(TIMEOUT_S)
         self._loop.close()

@@ -14,7 +14,7 @@ from PIL import Image
 from playwright.sync_api import Page
 
 FOLDER = Path(__file__).parent / "pictures"
-_COLORS = 96
+_MAX_COLORS = 96
 
 
 def keep(page: Page, name: str) -> None:
@@ -23,4 +23,4 @@ def keep(page: Page, name: str) -> None:
         return
     with Image.open(io.BytesIO(page.screenshot())) as image:
         FOLDER.mkdir(exist_ok=True)
-        image.convert("RGB").quantize(_COLORS).save(FOLDER / f"{name}.png", optimize=True)
+        image.convert("RGB").quantize(_MAX_COLORS).save(FOLDER / f"{name}.png", optimize=True)

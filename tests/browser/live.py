@@ -18,7 +18,7 @@ from tests.waiting import wait_until
 
 Result = TypeVar("Result")
 
-POLL_PERIOD = 0.05
+POLL_PERIOD_S = 0.05
 """The pause in seconds between two checks of a browser; each check costs four processes some milliseconds."""
 
 FILE = """\
@@ -40,7 +40,10 @@ Visualization Manager:
 
 
 def configuration(displays: str, *, distance: float = 10.0, pitch: float = 0.6, yaw: float = 0.8) -> str:
-    """Return a .rviz file with an Orbit view around the frame ``base``; `displays` are its entries as YAML."""
+    """Return a .rviz file with an Orbit view around the frame ``base``.
+
+    `displays` are its entries as YAML.
+    """
     entries = "".join(f"    {line}\n" for line in displays.strip("\n").splitlines())
     return FILE.format(displays=entries.rstrip("\n"), distance=distance, pitch=pitch, yaw=yaw)
 
@@ -112,7 +115,7 @@ class LiveViewer:
             expression = "([number]) => window.linkwright?.received === number && window.linkwright.settled"
             return number is not None and page.evaluate(expression, [number]) and self.run(last_number) == number
 
-        wait_until(is_settled, 60, pause=POLL_PERIOD)
+        wait_until(is_settled, 60, pause=POLL_PERIOD_S)
 
     def status(self, name: str) -> dict[str, tuple[str, str]]:
         """Return the status rows of a display: name -> level, text."""

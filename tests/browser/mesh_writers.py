@@ -1,4 +1,7 @@
-"""Mesh files of all formats, written by hand: a box of 0.1 x 0.2 x 0.3 m with a corner at the origin."""
+"""Mesh files of all formats, written by hand.
+
+Each contains a box of 0.1 x 0.2 x 0.3 m with a corner at the origin.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import json
 import struct
 import zlib
 
-SIZE = (0.1, 0.2, 0.3)
+BOX_SIZE_M = (0.1, 0.2, 0.3)
 TRIANGLES = (
     (0, 2, 1),
     (1, 2, 3),
@@ -23,15 +26,16 @@ TRIANGLES = (
 )
 
 
-def corners(scale: float = 1.0) -> list[tuple[float, float, float]]:
+def box_corners(scale: float = 1.0) -> list[tuple[float, float, float]]:
     """Return the corners; x changes fastest."""
     return [
-        (SIZE[0] * scale * (i & 1), SIZE[1] * scale * (i >> 1 & 1), SIZE[2] * scale * (i >> 2 & 1)) for i in range(8)
+        (BOX_SIZE_M[0] * scale * (i & 1), BOX_SIZE_M[1] * scale * (i >> 1 & 1), BOX_SIZE_M[2] * scale * (i >> 2 & 1))
+        for i in range(8)
     ]
 
 
-def stl_text() -> bytes:
-    points = corners()
+def write_stl_text() -> bytes:
+    points = box_corners()
     facets = "".join(
         "facet normal 0 0 0\nouter loop\n"
         + "".join("vertex {} {} {}\n".format(*points[corner]) for corner in triangle)
@@ -41,10 +45,10 @@ def stl_text() -> bytes:
     return f"solid box\n{facets}endsolid box\n".encode()
 
 
-def stl_binary(*, color: bool = False) -> bytes:
+def write_stl_binary(*, color: bool = False) -> bytes:
     """Return a binary STL; `color` adds the colors of Materialise Magics, which RViz ignores."""
     header = b"COLOR=" + bytes((0, 255, 0, 255)) if color else b""
-    points = corners()
+    points = box_corners()
     facets = b"".join(
         struct.pack(
             "<12fH", 0, 0, 0, *(value for corner in triangle for value in points[corner]), 0x801F if color else 0
@@ -54,14 +58,14 @@ def stl_binary(*, color: bool = False) -> bytes:
     return header.ljust(80, b"\0") + struct.pack("<I", len(TRIANGLES)) + facets
 
 
-def obj(materials: str = "", use: str = "") -> bytes:
-    points = "".join("v {} {} {}\n".format(*point) for point in corners())
+def write_obj(materials: str = "", use: str = "") -> bytes:
+    points = "".join("v {} {} {}\n".format(*point) for point in box_corners())
     faces = "".join("f {} {} {}\n".format(*(corner + 1 for corner in triangle)) for triangle in TRIANGLES)
     library = f"mtllib {materials}\n" if materials else ""
     return f"{library}o box\n{points}{f'usemtl {use}' if use else ''}\n{faces}".encode()
 
 
-def dae(
+def write_dae(
     *,
     up: str = "Z_UP",
     unit: float = 1.0,
@@ -80,7 +84,7 @@ def dae(
         scale: the factor of the corners.
         extra: more elements of the material.
     """
-    points = " ".join(str(value) for point in corners(1 / unit if scale is None else scale) for value in point)
+    points = " ".join(str(value) for point in box_corners(1 / unit if scale is None else scale) for value in point)
     indices = " ".join(str(corner) for triangle in TRIANGLES for corner in triangle)
     effect = f"<effect id='e'><profile_COMMON><technique sid='t'><lambert><diffuse>{diffuse}</diffuse>{extra}</lambert>"
     material = (
@@ -107,8 +111,8 @@ def dae(
 <scene><instance_visual_scene url="#w"/></scene></COLLADA>""".encode()
 
 
-def glb(*, color: tuple[float, ...] | None = None, rotation: tuple[float, ...] | None = None) -> bytes:
-    points = b"".join(struct.pack("<3f", *point) for point in corners())
+def write_glb(*, color: tuple[float, ...] | None = None, rotation: tuple[float, ...] | None = None) -> bytes:
+    points = b"".join(struct.pack("<3f", *point) for point in box_corners())
     indices = b"".join(struct.pack("<3H", *triangle) for triangle in TRIANGLES)
     node: dict[str, object] = {"mesh": 0}
     if rotation:
@@ -121,7 +125,14 @@ def glb(*, color: tuple[float, ...] | None = None, rotation: tuple[float, ...] |
         "nodes": [node],
         "meshes": [{"primitives": [primitive]}],
         "accessors": [
-            {"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [0, 0, 0], "max": list(SIZE)},
+            {
+                "bufferView": 0,
+                "componentType": 5126,
+                "count": 8,
+                "type": "VEC3",
+                "min": [0, 0, 0],
+                "max": list(BOX_SIZE_M),
+            },
             {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"},
         ],
         "bufferViews": [
@@ -141,7 +152,7 @@ def glb(*, color: tuple[float, ...] | None = None, rotation: tuple[float, ...] |
     return struct.pack("<4sII", b"glTF", 2, 12 + len(chunks)) + chunks
 
 
-def png(*color: int) -> bytes:
+def make_png(*color: int) -> bytes:
     """Return an image of one pixel."""
 
     def chunk(chunk_type: bytes, data: bytes) -> bytes:

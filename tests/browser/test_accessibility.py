@@ -13,11 +13,11 @@ from playwright.sync_api import Browser, Locator, Page
 from linkwright.graph.log.logger import Logger
 from linkwright.messages import get_message
 from tests.browser.arm import write_arm
-from tests.browser.axe import violations
-from tests.browser.conftest import SECONDS, becomes, state, until
+from tests.browser.axe import find_violations
+from tests.browser.conftest import TIMEOUT_S, state, until, wait_until_equal
 from tests.browser.live import LiveViewer, configuration
 from tests.browser.test_modeling import open_modeling
-from tests.browser.test_overlays import unfold
+from tests.browser.test_overlays import unfold_overlays
 
 pytestmark = pytest.mark.browser
 
@@ -42,23 +42,23 @@ def open_panel(page: Page, name: str) -> str:
     return f".dv-groupview:has([data-tab-panel-id='{tab.first.get_attribute('data-tab-panel-id')}'])"
 
 
-def violations_in_panels(page: Page, *names: str) -> list[str]:
-    return [f"{name}: {violation}" for name in names for violation in violations(page, open_panel(page, name))]
+def find_panel_violations(page: Page, *names: str) -> list[str]:
+    return [f"{name}: {violation}" for name in names for violation in find_violations(page, open_panel(page, name))]
 
 
-def violations_in_menu(page: Page) -> list[str]:
+def find_menu_violations(page: Page) -> list[str]:
     """Return the violations in the open menu, and close it."""
     page.get_by_role("menu").wait_for()
-    found_violations = violations(page, ".menu")
+    found_violations = find_violations(page, ".menu")
     page.keyboard.press("Escape")
     return found_violations
 
 
-def violations_in_dialog(page: Page, keys: str) -> list[str]:
+def find_dialog_violations(page: Page, keys: str) -> list[str]:
     """Return the violations in the dialog that a key combination opens."""
     page.keyboard.press(keys)
     page.locator("dialog[open]").wait_for()
-    found_violations = violations(page, "dialog")
+    found_violations = find_violations(page, "dialog")
     page.keyboard.press("Escape")
     page.locator("dialog[open]").wait_for(state="detached")
     return found_violations
@@ -73,24 +73,24 @@ def test_robot_page_and_description_panels_pass_axe(start, open_page, tmp_path: 
     page.get_by_role("treeitem").filter(has_text="Links").last.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
     page.locator(".selection-card .provenance").wait_for(state="attached")
-    unfold(page)
+    unfold_overlays(page)
     page.locator(".selection-card .provenance").wait_for()
     page.locator(".inspect > button").click()  # the clicks on rows have closed the card of Inspect
-    assert violations(page) == []
+    assert find_violations(page) == []
     for name in ("File", "Panels", "Share", "Colors"):
         page.get_by_role("button", name=name, exact=True).click()
-        assert violations_in_menu(page) == []
+        assert find_menu_violations(page) == []
     for keys in ("?", "Control+o", "Control+Shift+s"):
-        assert violations_in_dialog(page, keys) == []
+        assert find_dialog_violations(page, keys) == []
     panels = ("Joints", "Links", "Diagram", "Source", "Joint Table", "Edit robot")
-    assert violations_in_panels(page, "Views", "Tool Properties", "Selection", "Transformation", *panels) == []
+    assert find_panel_violations(page, "Views", "Tool Properties", "Selection", "Transformation", *panels) == []
     file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
-    assert violations(page, OVERLAYS) == []
-    assert violations_in_panels(page, "Diagnostics") == []
+    assert find_violations(page, OVERLAYS) == []
+    assert find_panel_violations(page, "Diagnostics") == []
 
 
-RING = """() => {
+FOCUS_RING = """() => {
   const { outlineStyle, outlineWidth, boxShadow } = getComputedStyle(document.activeElement);
   const name = document.activeElement.getAttribute("aria-label") ?? document.activeElement.textContent;
   const ring = (outlineStyle !== "none" && parseFloat(outlineWidth) >= 2) || boxShadow !== "none";
@@ -104,7 +104,7 @@ def test_keyboard_focus_has_visible_ring(start, open_page, tmp_path: Path):
     focused_elements: list[str] = []
     for _ in range(150):
         page.keyboard.press("Tab")
-        name, has_ring, is_end = page.evaluate(RING)
+        name, has_ring, is_end = page.evaluate(FOCUS_RING)
         if is_end:
             break
         assert has_ring, name
@@ -118,21 +118,21 @@ def test_displays_menu_and_dialogs_pass_axe(live: Callable[..., LiveViewer], ope
     row = page.locator("[data-key='display-1'] .row-title")
     row.click()
     for keys in ("Alt+a", "F2"):
-        assert violations_in_dialog(page, keys) == []
+        assert find_dialog_violations(page, keys) == []
     row.dblclick()
-    assert violations(page) == []
+    assert find_violations(page) == []
     row.click(button="right")
-    assert violations_in_menu(page) == []
+    assert find_menu_violations(page) == []
 
 
-def publish_until_shown(publish: Callable[[], None], answer: Locator) -> None:
+def publish_until_shown(publish: Callable[[], None], shown_text: Locator) -> None:
     """Publish a text until the page shows it; the page may subscribe a moment later."""
 
     def is_shown() -> bool:
         publish()
-        return answer.count() > 0
+        return shown_text.count() > 0
 
-    becomes(is_shown, True)
+    wait_until_equal(is_shown, True)
 
 
 def test_live_panels_pass_axe(live: Callable[..., LiveViewer], open_page):
@@ -152,60 +152,60 @@ def test_live_panels_pass_axe(live: Callable[..., LiveViewer], open_page):
     page = open_page(viewer, wait=False)
     open_panel(page, "Plots")
     page.get_by_role("button", name="Add a series").first.click()
-    assert violations_in_panels(page, "Plots") == []
+    assert find_panel_violations(page, "Plots") == []
     for text in ("/joint_states.position[0]", "/joint_states.wrong"):
         page.get_by_role("combobox", name="Topic and field").fill(text)
         page.keyboard.press("Enter")
         say_joints()
         page.get_by_role("button", name="Add a series").first.click()
     publish_until_shown(say_joints, page.get_by_text("has no field"))
-    assert violations_in_panels(page, "Plots") == []
+    assert find_panel_violations(page, "Plots") == []
     open_panel(page, "Topics")
     page.get_by_role("button", name="Last message of /joint_states").click()
     publish_until_shown(say_joints, page.locator(".topic-message:visible").get_by_text("position"))
-    assert violations_in_panels(page, "Topics") == []
+    assert find_panel_violations(page, "Topics") == []
     open_panel(page, "Node graph")
     page.locator(".vertex[data-id='node:/arm']").click()
-    assert violations_in_panels(page, "Node graph") == []
+    assert find_panel_violations(page, "Node graph") == []
     open_panel(page, "Parameters")
     page.get_by_role("option", name="/arm").click()
     page.get_by_role("textbox", name="speed").fill("fast")
     page.keyboard.press("Enter")
-    assert violations_in_panels(page, "Parameters") == []
+    assert find_panel_violations(page, "Parameters") == []
     viewer.run(lambda: logger.error("the arm is hot"))  # a late subscriber gets no records older than 10 s
     open_panel(page, "Log")
     page.locator(".virtual-list").get_by_text("the arm is hot").click()
-    assert violations_in_panels(page, "Log") == []
+    assert find_panel_violations(page, "Log") == []
     open_panel(page, "Voice")
     page.locator(".word-box summary").click()
     answer = get_message("std_msgs/msg/String")(data="Turning left.")
     publish_until_shown(lambda: viewer.publish("/voice/response", answer), page.locator(".voice-said.response"))
-    assert violations_in_panels(page, "Voice", "Teleop") == []
+    assert find_panel_violations(page, "Voice", "Teleop") == []
 
 
 def test_world_modeling_passes_axe(start, open_page, tmp_path: Path):
     page, _ = open_modeling(start, open_page, tmp_path)
     page.get_by_role("option", name="crate").click()
     page.locator("[data-key='pose/0'] input").wait_for()
-    assert violations(page) == []
+    assert find_violations(page) == []
     page.get_by_role("button", name="End modeling").click()
     page.get_by_role("button", name="Add a model").click()
     page.locator("dialog[open]").wait_for()
-    assert violations(page, "dialog") == []
+    assert find_violations(page, "dialog") == []
 
 
 def test_token_form_and_page_without_webgl_pass_axe(live: Callable[..., LiveViewer], browser: Browser):
     viewer = live(configuration(DISPLAYS))
     with browser.new_context(locale="en-US") as context:
-        context.set_default_timeout(1000 * SECONDS)
+        context.set_default_timeout(1000 * TIMEOUT_S)
         context.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")
         page = context.new_page()
         page.goto(viewer.url.partition("?")[0])
         page.locator(".door:visible").wait_for()
-        assert violations(page) == []
+        assert find_violations(page) == []
         page.goto(viewer.url)
         page.locator(".no-webgl").wait_for()
-        assert violations(page) == []
+        assert find_violations(page) == []
 
 
 def test_exported_page_passes_axe(browser: Browser, tmp_path: Path):
@@ -214,11 +214,11 @@ def test_exported_page_passes_axe(browser: Browser, tmp_path: Path):
         [sys.executable, "-m", "linkwright", "export", str(exported_file), str(write_arm(tmp_path))], check=True
     )
     with browser.new_context(locale="en-US", bypass_csp=True) as context:
-        context.set_default_timeout(1000 * SECONDS)
+        context.set_default_timeout(1000 * TIMEOUT_S)
         page = context.new_page()
         page.goto(exported_file.as_uri())
         page.get_by_role("slider").first.wait_for()
-        assert violations(page) == []
+        assert find_violations(page) == []
 
 
 def test_recording_menu_and_playback_pass_axe(start, open_page, tmp_path: Path):
@@ -226,23 +226,23 @@ def test_recording_menu_and_playback_pass_axe(start, open_page, tmp_path: Path):
     until(page, "lw.timeline?.live && lw.timeline.length > 2")
     record = page.get_by_role("button", name="Record", exact=True)
     record.click()
-    assert violations_in_menu(page) == []
+    assert find_menu_violations(page) == []
     record.click()
     page.get_by_role("menuitem", name="Record chosen topics…").click()
     page.locator("dialog[open] [type=checkbox]").first.wait_for()
-    assert violations(page, "dialog") == []
+    assert find_violations(page, "dialog") == []
     page.keyboard.press("Escape")
     record.click()
     page.get_by_role("menuitem", name="Record all topics").click()
     until(page, "lw.recording.length >= 1")
-    assert violations(page) == []
+    assert find_violations(page) == []
     page.get_by_role("button", name="Stop recording").click()
     page.get_by_role("dialog").get_by_role("button", name="Download").wait_for()
-    assert violations(page, "dialog") == []
+    assert find_violations(page, "dialog") == []
     (file,) = state(page, "recording")["files"]
     robot_page = open_page(start("view", file), wait=False)
     until(robot_page, "lw.timeline?.live === false && lw.timeline.length > 0.5")
-    assert violations(robot_page) == []
+    assert find_violations(robot_page) == []
 
 
 def test_robot_editing_and_comparison_pass_axe(start, open_page, tmp_path: Path):
@@ -256,9 +256,9 @@ def test_robot_editing_and_comparison_pass_axe(start, open_page, tmp_path: Path)
         page.locator("[data-number=xyz2]").press("Enter")
         if text == "0.77":
             page.locator(".edit-diff, .edit-refusal").first.wait_for()
-        assert violations_in_panels(page, "Edit robot") == []
+        assert find_panel_violations(page, "Edit robot") == []
     new = tmp_path / "new.xacro"
     new.write_text(file.read_text().replace('name="fore"', 'name="lower"').replace('link="fore"', 'link="lower"'))
     comparison_page = open_page(start("view", str(file), str(new)), wait=False)
     comparison_page.locator(".difference-group").first.wait_for()
-    assert violations(comparison_page) == []
+    assert find_violations(comparison_page) == []

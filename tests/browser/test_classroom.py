@@ -1,4 +1,7 @@
-"""The classroom in the page: a learner solves two steps, in both languages, with mouse and keyboard."""
+"""The classroom in the page.
+
+A learner solves two steps, in both languages, with mouse and keyboard.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from linkwright.learning.course import find_course
-from tests.browser.axe import violations
-from tests.browser.conftest import becomes, until
+from tests.browser.axe import find_violations
+from tests.browser.conftest import until, wait_until_equal
 
 pytestmark = [
     pytest.mark.browser,
@@ -106,7 +109,7 @@ def test_learner_completes_two_steps(start, open_page, workspace, language):
 def test_solution_is_applied_after_confirmation(start, open_page, workspace):
     page = open_classroom(start, open_page, workspace)
     page.get_by_role("button", name="Solution").click()
-    becomes(page.locator("dialog li").all_inner_texts, ["robot.urdf"])
+    wait_until_equal(page.locator("dialog li").all_inner_texts, ["robot.urdf"])
     page.get_by_role("button", name="Take the solution").click()
     until(page, is_passed("one-link"))
     assert (workspace / "robot.urdf").read_text() == ROBOT.read_text()
@@ -119,10 +122,10 @@ def test_catch_up_on_later_step_applies_solution_and_keeps_backup(start, open_pa
     assert page.locator(".checks-offer").is_hidden()
     page.keyboard.press("Alt+PageDown")
     page.get_by_role("button", name="Catch up").click()
-    becomes(page.locator("dialog li").all_inner_texts, ["robot.urdf"])
+    wait_until_equal(page.locator("dialog li").all_inner_texts, ["robot.urdf"])
     page.get_by_role("button", name="Take over").click()
     page.locator(".checks-offer").wait_for(state="hidden")
-    becomes((workspace / "robot.urdf").read_text, ROBOT.read_text())
+    wait_until_equal((workspace / "robot.urdf").read_text, ROBOT.read_text())
     (backup,) = (workspace / "replaced").rglob("robot.urdf")
     assert backup.read_text() == "mine"
     page.get_by_role("button", name="Steps").click()
@@ -226,12 +229,12 @@ def test_tables_keep_words_whole_and_scroll_in_their_own_box(start, open_page, w
             page.get_by_role("group", name=name).wait_for()
             assert page.evaluate(DIVIDED_WORDS) == [], (width, button)
             assert page.locator(".lesson-body").evaluate("body => body.scrollWidth <= body.clientWidth")
-    assert violations(page) == []
+    assert find_violations(page) == []
     table = page.get_by_role("group", name="Table")
     table.evaluate("box => (box.style.width = '200px')")
     table.focus()
     page.keyboard.press("ArrowRight")
-    becomes(lambda: table.evaluate("box => box.scrollLeft > 0"), True)
+    wait_until_equal(lambda: table.evaluate("box => box.scrollLeft > 0"), True)
 
 
 def test_classroom_fits_small_screen_and_passes_axe(start, open_page, workspace):
@@ -244,7 +247,7 @@ def test_classroom_fits_small_screen_and_passes_axe(start, open_page, workspace)
         assert box["width"] >= 200, selector
         assert box["x"] + box["width"] <= 1024, selector
     page.get_by_role("button", name="Steps").click()
-    becomes(lambda: page.locator(".outline-step").count(), 2)
+    wait_until_equal(lambda: page.locator(".outline-step").count(), 2)
     page.locator(".outline-step").last.click()
     until(page, "lw.panels.lesson.step === '01-one-link/mass'")
-    assert violations(page) == []
+    assert find_violations(page) == []

@@ -1,4 +1,7 @@
-"""Windows of three sizes in both languages: no control's text is clipped, and the scene has half of the window."""
+"""Windows of three sizes in both languages.
+
+No control's text is clipped, and the scene has half of the window.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from tests.browser.conftest import SECONDS, Start, becomes, until
+from tests.browser.conftest import TIMEOUT_S, Start, until, wait_until_equal
 
 pytestmark = pytest.mark.browser
 
@@ -33,7 +36,7 @@ OPEN_ALL = """async () => {
   document.activeElement.dispatchEvent(new KeyboardEvent("keydown", { key: "Escape", bubbles: true }));
 }"""
 
-CUT = """async () => {
+FIND_CUT_TEXTS = """async () => {
   const frames = () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
   const pen = document.createElement("canvas").getContext("2d");
   const room = (element, style) => element.clientWidth - parseFloat(style.paddingLeft) - parseFloat(style.paddingRight);
@@ -81,7 +84,7 @@ def test_control_texts_are_not_clipped(start: Start, browser: Browser, tmp_path,
     (tmp_path / "two.urdf").write_text(ROBOT)
     program = start("view", "two.urdf")
     context = browser.new_context(viewport={"width": 1280, "height": 800}, locale=locale)
-    context.set_default_timeout(1000 * SECONDS)
+    context.set_default_timeout(1000 * TIMEOUT_S)
     page = context.new_page()
     page.goto(program.url)
     page.wait_for_function("window.linkwright?.ready === true")
@@ -91,7 +94,7 @@ def test_control_texts_are_not_clipped(start: Start, browser: Browser, tmp_path,
         page.wait_for_function(f"document.querySelector('.dock').clientWidth === {width}")
         page.evaluate(OPEN_ALL)
         until(page, "lw.settled")
-        cut_texts[width] = page.evaluate(CUT)
+        cut_texts[width] = page.evaluate(FIND_CUT_TEXTS)
     context.close()
     assert not any(cut_texts.values()), cut_texts
 
@@ -105,7 +108,7 @@ def test_scene_takes_half_of_small_window(start: Start, browser: Browser, tmp_pa
     page.wait_for_function("window.linkwright?.ready === true")
     page.locator(".timeline-track").wait_for()
     share = "document.querySelector('.canvas-box').clientHeight / window.innerHeight"
-    becomes(lambda: page.evaluate(share) >= 0.5, True)
+    wait_until_equal(lambda: page.evaluate(share) >= 0.5, True)
     page.locator(".dv-tab", has_text="3D View").wait_for(state="hidden")
     page.close()
 
@@ -119,7 +122,7 @@ def test_inspect_card_fits_low_window(start: Start, browser: Browser, tmp_path) 
     page.locator(".timeline-track").wait_for()
     page.get_by_role("button", name="Inspect").click()
     cut = "element => element.scrollHeight > element.clientHeight + 1"
-    becomes(lambda: page.locator(".inspect-card").evaluate(cut), False)
+    wait_until_equal(lambda: page.locator(".inspect-card").evaluate(cut), False)
     page.close()
 
 
@@ -144,7 +147,7 @@ def test_row_of_clicked_link_is_visible_above_help(start: Start, browser: Browse
       const help = document.querySelector(".displays-panel .help").getBoundingClientRect();
       return row !== undefined && row.height > 0 && row.bottom <= help.top + 1;
     }"""
-    becomes(lambda: page.evaluate(is_visible), True)
+    wait_until_equal(lambda: page.evaluate(is_visible), True)
     assert page.locator(".displays-panel .row.selected").inner_text().startswith("z")
     page.close()
 

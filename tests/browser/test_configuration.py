@@ -19,11 +19,11 @@ def _user_state(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
 
 
-def names(page) -> list[str]:
+def display_names(page) -> list[str]:
     return [display["name"] for display in state(page, "displays")]
 
 
-def row(page, identity: str):
+def locate_row(page, identity: str):
     return page.locator(f"[data-key='{identity}'] .row-title")
 
 
@@ -35,7 +35,7 @@ def test_configuration_file_is_saved_and_opened(grouped_displays, tmp_path: Path
     page.keyboard.press("Enter")
     page.wait_for_function("() => document.querySelector('.file-name').textContent === 'mine.rviz'")
     assert len(list(RvizConfig.load(path).walk())) == 4
-    row(page, "display-1").click()
+    locate_row(page, "display-1").click()
     page.keyboard.press("Delete")
     until(page, "lw.displays.length === 3")
     # The page asks before it discards unsaved changes.
@@ -43,7 +43,7 @@ def test_configuration_file_is_saved_and_opened(grouped_displays, tmp_path: Path
     page.keyboard.press("Enter")
     dialog = page.get_by_role("dialog", name="Unsaved changes")
     dialog.get_by_role("button", name="Cancel").click()
-    assert len(names(page)) == 3
+    assert len(display_names(page)) == 3
     page.get_by_role("button", name="File", exact=True).click()
     page.get_by_role("menuitem", name="New", exact=True).click()
     dialog.get_by_role("button", name="Save", exact=True).click()
@@ -81,16 +81,16 @@ def test_page_can_use_its_own_displays(grouped_displays, open_page):
     other_page.get_by_role("button", name="Own", exact=True).click()
     other_page.wait_for_url("**displays=own**")
     other_page.wait_for_selector("[data-key='display-8']")
-    row(other_page, "display-5").click()
+    locate_row(other_page, "display-5").click()
     other_page.keyboard.press("Delete")
     until(other_page, "lw.displays.length === 3")
-    assert len(names(page)) == 4
+    assert len(display_names(page)) == 4
     other_page.reload()
     other_page.wait_for_selector("[data-key='display-8']")
-    assert len(names(other_page)) == 3
+    assert len(display_names(other_page)) == 3
     other_page.get_by_role("button", name="Shared", exact=True).click()
     other_page.wait_for_selector("[data-key='display-1']")
-    assert len(names(other_page)) == 4
+    assert len(display_names(other_page)) == 4
 
 
 def test_keyboard_reaches_all_controls_and_dialogs_trap_focus(grouped_displays):
@@ -122,10 +122,10 @@ def test_theme_choice_is_remembered(grouped_displays):
     page.emulate_media(color_scheme="dark")
     page.wait_for_function("() => document.documentElement.dataset.theme === 'dark'")
     background = "getComputedStyle(document.body).backgroundColor"
-    dark = page.evaluate(background)
+    dark_background = page.evaluate(background)
     page.get_by_role("button", name="Colors").click()
     page.get_by_role("menuitemcheckbox", name="Light").click()
-    assert page.evaluate(background) != dark
+    assert page.evaluate(background) != dark_background
     page.reload()
     page.wait_for_selector("[data-key='display-4']")
     assert page.evaluate("document.documentElement.dataset.theme") == "light"

@@ -1,4 +1,7 @@
-"""The panels of the description: tree, diagram, source and joint table show the same element."""
+"""The panels of the description.
+
+Tree, diagram, source and joint table show the same element.
+"""
 
 from __future__ import annotations
 
@@ -30,8 +33,8 @@ def open_panel(page, name):
     page.locator(".panel-tab", has_text=name).first.click()
 
 
-def marks(page, pane):
-    return [(mark["from"], mark["to"]) for mark in state(page, f"panels.source.{pane}.marks")]
+def marked_elements(page, panel):
+    return [(mark["from"], mark["to"]) for mark in state(page, f"panels.source.{panel}.marks")]
 
 
 def test_clicked_link_is_selected_and_marked_in_both_sources(page, arm):
@@ -39,8 +42,8 @@ def test_clicked_link_is_selected_and_marked_in_both_sources(page, arm):
     page.locator('[data-link="fore"]').click()
     until(page, "lw.selected?.link === 'fore' && lw.panels.source.origin.marks.length === 1")
     assert state(page, "panels.source.origin.file") == str(arm.parent / "segment.xacro")
-    assert marks(page, "origin") == [SEGMENT_LINK]
-    ((first, last),) = marks(page, "expanded")
+    assert marked_elements(page, "origin") == [SEGMENT_LINK]
+    ((first, last),) = marked_elements(page, "expanded")
     assert page.locator(f'.source-line.focus[data-line="{first}"]').first.inner_text().endswith('<link name="fore">')
     assert last - first > 10
 
@@ -49,13 +52,13 @@ def test_clicked_link_is_selected_and_marked_in_both_sources(page, arm):
     assert call.inner_text() == "macro segment, called at …/arm.xacro:14"
     call.click()
     until(page, f"lw.panels.source.origin.file === {str(arm)!r}")
-    assert marks(page, "origin") == [(14, 14)]
+    assert marked_elements(page, "origin") == [(14, 14)]
 
     # A joint is a separate element; the scene selects the link that it moves.
     page.locator('.joint-of[data-joint="upper_joint"]').click()
     until(page, "lw.description.focus?.kind === 'joint' && lw.selected?.link === 'upper'")
     until(page, "lw.panels.source.origin.file.endsWith('segment.xacro') && lw.panels.source.origin.marks.length === 1")
-    assert marks(page, "origin") == [SEGMENT_JOINT]
+    assert marked_elements(page, "origin") == [SEGMENT_JOINT]
 
     # A line of a macro belongs to one element of each call; each click selects the next of these elements.
     line = page.locator('.source-pane >> nth=0 >> .source-line[data-line="20"]')
@@ -120,32 +123,32 @@ def test_edited_link_flashes_and_finding_leads_to_source(page, arm):
         window.lit = new Set();
         setInterval(() => document.querySelectorAll(".link-row.flash").forEach((row) => lit.add(row.dataset.link)), 50);
     }""")
-    good = arm.read_text().replace('length="0.3" mass="1"', 'length="0.35" mass="1"')
-    arm.write_text(good)
+    valid_text = arm.read_text().replace('length="0.3" mass="1"', 'length="0.35" mass="1"')
+    arm.write_text(valid_text)
     until(page, f"lw.description.revision > {revision} && lw.description.edited.includes('fore')")
     assert state(page, "description.edited") == ["fore"]
     page.wait_for_function("window.lit.size > 0")
     page.locator(".link-row.flash").wait_for(state="detached")
     assert page.evaluate("[...window.lit]") == ["fore"]
 
-    arm.write_text(good.replace('mass="2"', 'mas="2"'))
+    arm.write_text(valid_text.replace('mass="2"', 'mas="2"'))
     page.locator(".panel-tab", has_text="Diagnostics (").click()
     page.locator(".diagnostic button.place").first.click()
     until(page, f"lw.panels.source.origin.file === {str(arm)!r}")
     problem = page.locator(".source-line.problem", has_text='mas="2"')
     problem.wait_for()
-    arm.write_text(good)
+    arm.write_text(valid_text)
     problem.wait_for(state="detached")
 
 
 def test_robot_broken_at_start_is_shown_without_tf_once_fixed(start, open_page, tmp_path):
     file = tmp_path / "robot.urdf.xacro"
-    good = Path(write_arm(tmp_path)).read_text()
-    file.write_text(good.replace("</robot>", "<link/></robot>"))
+    valid_text = Path(write_arm(tmp_path)).read_text()
+    file.write_text(valid_text.replace("</robot>", "<link/></robot>"))
     page = open_page(start("view", str(file)), wait=False)
     page.locator(".banner").wait_for()
     page.locator(".waiting").wait_for(state="hidden")  # only the banner shows the reason
-    file.write_text(good)
+    file.write_text(valid_text)
     until(page, "lw.robot?.visuals > 0 && lw.ready")
     page.locator(".banner").wait_for(state="hidden")
     displays = {display["class"].rpartition("/")[2]: display["enabled"] for display in state(page, "displays")}

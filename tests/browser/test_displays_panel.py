@@ -23,11 +23,11 @@ _SILENT = """
 """
 
 
-def names(page) -> list[str]:
+def display_names(page) -> list[str]:
     return [display["name"] for display in state(page, "displays")]
 
 
-def row(page, identity: str):
+def locate_row(page, identity: str):
     return page.locator(f"[data-key='{identity}'] .row-title")
 
 
@@ -37,7 +37,7 @@ def saved_displays(viewer) -> list[dict]:
 
 def test_display_added_by_type_can_be_undone(grouped_displays):
     viewer, page = grouped_displays
-    row(page, "display-2").click()
+    locate_row(page, "display-2").click()
     page.keyboard.press("Alt+a")
     page.keyboard.type("points of a cloud")
     page.wait_for_selector(".choice-row")
@@ -47,7 +47,7 @@ def test_display_added_by_type_can_be_undone(grouped_displays):
     page.get_by_label("Display name").fill("Cloud")
     page.keyboard.press("Enter")
     until(page, "lw.displays.length === 5")
-    assert names(page) == ["Grid", "Marks", "Axes", "Radar", "Cloud"]
+    assert display_names(page) == ["Grid", "Marks", "Axes", "Radar", "Cloud"]
     page.wait_for_function("document.title.startsWith('● ')")
     assert saved_displays(viewer)[1]["Displays"][2]["Name"] == "Cloud"
     page.keyboard.press("Control+z")
@@ -72,17 +72,17 @@ def test_display_is_added_by_topic(grouped_displays):
 
 def test_displays_are_renamed_duplicated_and_removed_by_keys(grouped_displays):
     viewer, page = grouped_displays
-    row(page, "display-3").click()
+    locate_row(page, "display-3").click()
     page.keyboard.press("F2")
     page.keyboard.type("Origin")
     page.keyboard.press("Enter")
     until(page, "lw.displays[2].name === 'Origin'")
     page.keyboard.press("Alt+d")
     until(page, "lw.displays.length === 5")
-    assert names(page) == ["Grid", "Marks", "Origin", "Origin", "Radar"]
+    assert display_names(page) == ["Grid", "Marks", "Origin", "Origin", "Radar"]
     page.keyboard.press("Delete")
     until(page, "lw.displays.length === 4")
-    row(page, "display-2").click()
+    locate_row(page, "display-2").click()
     page.keyboard.press("Delete")
     until(page, "lw.displays.length === 1")
     for _ in range(4):
@@ -93,15 +93,15 @@ def test_displays_are_renamed_duplicated_and_removed_by_keys(grouped_displays):
 
 def test_display_keys_are_ignored_on_property_rows(grouped_displays):
     _, page = grouped_displays
-    row(page, "display-1").click()
+    locate_row(page, "display-1").click()
     page.keyboard.press("ArrowRight")
-    row(page, "display-1/Alpha").click(position={"x": 30, "y": 8})
+    locate_row(page, "display-1/Alpha").click(position={"x": 30, "y": 8})
     page.keyboard.press("Delete")
     page.keyboard.press("Alt+d")
-    row(page, "display-3").click()
+    locate_row(page, "display-3").click()
     page.keyboard.press("Delete")
     until(page, "lw.displays.length === 3")
-    assert names(page) == ["Grid", "Marks", "Radar"]
+    assert display_names(page) == ["Grid", "Marks", "Radar"]
     page.wait_for_function("() => document.activeElement?.matches('[role=treeitem]')")
 
 
@@ -119,7 +119,7 @@ def test_displays_are_reordered_by_drag_and_keys(grouped_displays):
     page.locator("[data-key='display-1'] .row-title").drag_to(page.locator("[data-key='display-2']"))
     until(page, "lw.displays[0].name === 'Marks'")
     assert [display["Name"] for display in saved_displays(viewer)[0]["Displays"]] == ["Grid", "Axes", "Radar"]
-    row(page, "display-1").click()
+    locate_row(page, "display-1").click()
     page.keyboard.press("Alt+ArrowDown")
     until(page, "lw.displays[1].name === 'Axes'")
     page.keyboard.press("Control+z")
@@ -138,19 +138,22 @@ def test_filter_finds_properties(grouped_displays):
 
 def test_context_menu_renames_and_groups_display(grouped_displays):
     _, page = grouped_displays
-    row(page, "display-3").click(button="right")
+    locate_row(page, "display-3").click(button="right")
     page.keyboard.press("r")
     assert "Rename" in page.evaluate("document.activeElement.textContent")
     page.keyboard.press("Escape")
     assert page.evaluate("document.activeElement.dataset.key") == "display-3"
-    row(page, "display-3").click(button="right")
+    locate_row(page, "display-3").click(button="right")
     page.get_by_role("menuitem", name="Move to a new group").click()
     until(page, "lw.displays.length === 5")
-    assert names(page) == ["Grid", "Marks", "Group", "Axes", "Radar"]
+    assert display_names(page) == ["Grid", "Marks", "Group", "Axes", "Radar"]
 
 
 def test_reason_for_empty_display_is_shown_in_row_and_diagnostics(live, open_page):
-    """The tooltip, the help below the list and the diagnostics show the reason; the diagnostics link to the row."""
+    """The tooltip, the help below the list and the diagnostics show the reason.
+
+    The diagnostics link to the row.
+    """
     viewer = live(configuration(_SILENT))
     page = open_page(viewer, wait=False)
     reason = "Topic: No messages received: the topic has no publisher"

@@ -1,4 +1,7 @@
-"""Editing of a robot in the page, with numbers and handles: changes of the source, in both directions."""
+"""Editing of a robot in the page, with numbers and handles.
+
+The tests cover changes of the source in both directions.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 
 pytestmark = pytest.mark.browser
 
@@ -49,19 +52,19 @@ def start_editing(page, link: str) -> None:
     page.locator(".editing-part").first.wait_for()
 
 
-def number(page, name: str):
+def locate_number(page, name: str):
     return page.locator(f"[data-number={name}]")
 
 
 def type_in(page, name: str, text: str) -> None:
-    number(page, name).fill(text)
-    number(page, name).press("Enter")
+    locate_number(page, name).fill(text)
+    locate_number(page, name).press("Enter")
 
 
 def test_number_edit_is_previewed_written_and_undone(start, open_page, file):
     page = open_page(start("view", str(file)))
     start_editing(page, "mast")
-    becomes(lambda: number(page, "xyz2").input_value(), "0.5")
+    wait_until_equal(lambda: locate_number(page, "xyz2").input_value(), "0.5")
     until(page, f"Math.abs({MAST}.min[2] - 0.5) < 1e-6")
     type_in(page, "xyz2", "0.8")
     until(page, f"Math.abs({MAST}.min[2] - 0.8) < 1e-6")
@@ -77,7 +80,7 @@ def test_number_edit_is_previewed_written_and_undone(start, open_page, file):
     page.get_by_role("button", name="Undo the last written edit").click()
     until(page, "Math.abs(lw.frames.mast.position[2] - 0.5) < 1e-6")
     assert file.read_text() == ROBOT
-    becomes(lambda: number(page, "xyz2").input_value(), "0.5")
+    wait_until_equal(lambda: locate_number(page, "xyz2").input_value(), "0.5")
 
 
 def test_visual_is_rotated_in_degrees_and_reset(start, open_page, file):
@@ -90,14 +93,14 @@ def test_visual_is_rotated_in_degrees_and_reset(start, open_page, file):
     page.get_by_text('rpy="0 1.570796327 0"', exact=False).wait_for()
     page.get_by_role("button", name="Discard").click()
     until(page, f"Math.abs({MAST}.max[0] - {MAST}.min[0] - 0.2) < 1e-6")
-    assert number(page, "rpy1").input_value() == "0"
+    assert locate_number(page, "rpy1").input_value() == "0"
     assert file.read_text() == ROBOT
 
 
 def test_handle_moves_link_along_one_axis(start, open_page, file):
     page = open_page(start("view", str(file)))
     start_editing(page, "left")
-    becomes(lambda: number(page, "xyz0").input_value(), "0.6")
+    wait_until_equal(lambda: locate_number(page, "xyz0").input_value(), "0.6")
     page.get_by_role("button", name="Snap to a grid").click()
     canvas = page.locator("canvas").first.bounding_box()
     until(page, "lw.panels.editing.handles !== undefined")
@@ -133,12 +136,12 @@ def test_file_changed_meanwhile_is_not_overwritten(start, open_page, file):
     start_editing(page, "mast")
     type_in(page, "xyz2", "0.8")
     page.get_by_text('value="0.8"', exact=False).wait_for()
-    mine = ROBOT.replace('value="0.5"', 'value="0.7"')
-    file.write_text(mine)
+    external_text = ROBOT.replace('value="0.5"', 'value="0.7"')
+    file.write_text(external_text)
     until(page, "Math.abs(lw.frames.mast.position[2] - 0.7) < 1e-6")
-    becomes(lambda: number(page, "xyz2").input_value(), "0.7")
+    wait_until_equal(lambda: locate_number(page, "xyz2").input_value(), "0.7")
     assert page.get_by_role("button", name="Write", exact=True).is_disabled()
-    assert file.read_text() == mine
+    assert file.read_text() == external_text
 
 
 def test_edit_diff_is_shown_beside_numbers(start, browser, file: Path) -> None:
@@ -197,14 +200,14 @@ def test_camera_moves_to_handles_that_are_out_of_view(start, open_page, file: Pa
     assert state(page, "view.yaw") == yaw, "the view stays if the handles are visible"
     page.get_by_role("tab", name="Links").click()
     page.get_by_text("far", exact=True).first.click()
-    becomes(lambda: number(page, "xyz2").input_value(), "4")
+    wait_until_equal(lambda: locate_number(page, "xyz2").input_value(), "4")
     size = page.locator(".canvas-box canvas").bounding_box()
 
     def is_in_sight() -> bool:
-        tips = state(page, "panels.editing.handles").values()
-        return all(0 < tip["x"] < size["width"] and 0 < tip["y"] < size["height"] for tip in tips)
+        handle_positions = state(page, "panels.editing.handles").values()
+        return all(0 < tip["x"] < size["width"] and 0 < tip["y"] < size["height"] for tip in handle_positions)
 
-    becomes(is_in_sight, True)
+    wait_until_equal(is_in_sight, True)
     assert state(page, "view.yaw") == yaw, "the direction of the view stays"
     assert state(page, "view.distance") > 4, "the camera moves back, so that the robot is visible too"
 

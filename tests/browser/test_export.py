@@ -10,12 +10,12 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
-from tests.browser.conftest import becomes, state, until
-from tests.browser.golden import link, mesh, robot_of
+from tests.browser.conftest import state, until, wait_until_equal
+from tests.browser.golden import link_element, mesh_visual, robot_of
 from tests.browser.live import configuration
-from tests.browser.mesh_writers import dae, obj, png, stl_binary
+from tests.browser.mesh_writers import make_png, write_dae, write_obj, write_stl_binary
 from tests.panels.export.robots import GRIPPER
-from tests.panels.export.test_glb import textured_dae
+from tests.panels.export.test_glb import make_textured_dae
 
 pytestmark = pytest.mark.browser
 
@@ -33,33 +33,36 @@ ROBOT = configuration(
 
 @pytest.fixture
 def open_file(browser):
-    """Return a function that opens a file from disk; any request or error of the page fails the test."""
-    contexts, wrong = [], []
+    """Return a function that opens a file from disk.
+
+    Any request or error of the page fails the test.
+    """
+    contexts, errors = [], []
 
     def open_path(path: Path, locale: str = "en-US"):
         context = browser.new_context(viewport={"width": 1000, "height": 700}, locale=locale, offline=True)
         contexts.append(context)
         page = context.new_page()
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
+        page.on("pageerror", lambda error: errors.append(str(error)))
+        page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
 
         def on_request(request) -> None:
             if request.url != path.as_uri() and not request.url.startswith(("data:", "blob:")):
-                wrong.append(request.url)
+                errors.append(request.url)
 
         page.on("request", on_request)
         page.goto(path.as_uri())
         # The page's policy forbids the evaluation of text, which wait_for_function needs.
-        becomes(lambda: page.evaluate("() => window.linkwright?.ready === true"), True)
+        wait_until_equal(lambda: page.evaluate("() => window.linkwright?.ready === true"), True)
         return page
 
     yield open_path
     for context in contexts:
         context.close()
-    assert wrong == []
+    assert errors == []
 
 
-def export(target: Path, model: Path, *values: str) -> None:
+def export_page(target: Path, model: Path, *values: str) -> None:
     subprocess.run([sys.executable, "-m", "linkwright", "export", str(target), str(model), *values], check=True)
 
 
@@ -70,7 +73,10 @@ def drawn_visuals(page) -> dict:
 
 
 def assert_alike(first: dict, second: dict) -> None:
-    """Assert that two drawings are equal up to rounding, because joint positions are computed from transforms."""
+    """Assert that two drawings are equal up to rounding.
+
+    Joint positions are computed from transforms.
+    """
     assert first.keys() == second.keys()
     for name, shapes in first.items():
         for a, b in zip(shapes, second[name], strict=True):
@@ -80,14 +86,16 @@ def assert_alike(first: dict, second: dict) -> None:
 
 
 def robot_with_meshes(folder: Path) -> str:
-    (folder / "skin.png").write_bytes(png(255, 255, 0))
-    (folder / "skin.dae").write_text(textured_dae())
-    (folder / "inches.dae").write_bytes(dae(unit=0.0254, diffuse="<color>0 0 1 1</color>"))
-    (folder / "own.obj").write_bytes(obj("own.mtl", "paint"))
+    (folder / "skin.png").write_bytes(make_png(255, 255, 0))
+    (folder / "skin.dae").write_text(make_textured_dae())
+    (folder / "inches.dae").write_bytes(write_dae(unit=0.0254, diffuse="<color>0 0 1 1</color>"))
+    (folder / "own.obj").write_bytes(write_obj("own.mtl", "paint"))
     (folder / "own.mtl").write_text("newmtl paint\nKd 1 0.5 0\n")
-    (folder / "plain.stl").write_bytes(stl_binary())
+    (folder / "plain.stl").write_bytes(write_stl_binary())
     return robot_of(
-        "".join(link(path.stem, mesh(path, "")) for path in sorted(folder.iterdir()) if path.suffix in MESHES)
+        "".join(
+            link_element(path.stem, mesh_visual(path, "")) for path in sorted(folder.iterdir()) if path.suffix in MESHES
+        )
     )
 
 
@@ -99,7 +107,7 @@ def test_exported_page_draws_the_same_as_viewer(live, open_page, open_file, tmp_
     folder.mkdir()
     text = robot_with_meshes(folder)
     (tmp_path / "robot.urdf").write_text(text)
-    export(tmp_path / "robot.html", tmp_path / "robot.urdf")
+    export_page(tmp_path / "robot.html", tmp_path / "robot.urdf")
     viewer = live(ROBOT)
     for name in ("skin", "inches", "own", "plain"):
         viewer.place(name, 0.0, 0.0, 0.0)
@@ -111,7 +119,7 @@ def test_exported_page_draws_the_same_as_viewer(live, open_page, open_file, tmp_
 
 def test_exported_sliders_move_joints_and_mimic_joints(open_file, tmp_path):
     (tmp_path / "gripper.urdf").write_text(GRIPPER)
-    export(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
+    export_page(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
     page = open_file(tmp_path / "gripper.html")
     assert state(page, "joints") == pytest.approx({"turn": 0.0, "open": 0.25, "open_too": -0.45})
     slider = page.get_by_role("slider", name="open", exact=True)
@@ -132,15 +140,15 @@ def test_exported_sliders_move_joints_and_mimic_joints(open_file, tmp_path):
 
 def test_exported_page_has_visual_switches_views_and_translation(open_file, tmp_path):
     (tmp_path / "gripper.urdf").write_text(GRIPPER)
-    export(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
+    export_page(tmp_path / "gripper.html", tmp_path / "gripper.urdf")
     page = open_file(tmp_path / "gripper.html")
     page.get_by_label("Collision").check()
     page.get_by_label("Visual").uncheck()
-    becomes(lambda: state(page, "robot")["visuals"], 0)
+    wait_until_equal(lambda: state(page, "robot")["visuals"], 0)
     robot = next(display for display in state(page, "displays") if display["class"].endswith("RobotModel"))
     assert robot["drawn"]["links"]["arm"]["collisions"]
     page.get_by_role("button", name="Top").click()
-    becomes(lambda: state(page, "view")["pitch"], pytest.approx(1.57, abs=0.01))
+    wait_until_equal(lambda: state(page, "view")["pitch"], pytest.approx(1.57, abs=0.01))
     chinese = open_file(tmp_path / "gripper.html", locale="zh-CN")
     assert chinese.get_by_label("碰撞").count() == 1
 
@@ -155,24 +163,24 @@ WHEELED = """\
 """
 
 
-def grid(page) -> dict:
+def grid_drawing(page) -> dict:
     return next(display for display in state(page, "displays") if display["class"].endswith("/Grid"))["drawn"]
 
 
 def test_exported_grid_is_at_wheel_contact_height(open_file, tmp_path):
     (tmp_path / "cart.urdf").write_text(WHEELED)
-    export(tmp_path / "cart.html", tmp_path / "cart.urdf")
+    export_page(tmp_path / "cart.html", tmp_path / "cart.urdf")
     page = open_file(tmp_path / "cart.html")
-    becomes(lambda: grid(page)["offset"][2], pytest.approx(-0.25, abs=0.005))
+    wait_until_equal(lambda: grid_drawing(page)["offset"][2], pytest.approx(-0.25, abs=0.005))
 
 
 def test_exported_grid_fits_small_mesh_robot(open_file, tmp_path):
-    (tmp_path / "small.stl").write_bytes(stl_binary())
+    (tmp_path / "small.stl").write_bytes(write_stl_binary())
     visual = '<visual><geometry><mesh filename="small.stl" scale="0.1 0.1 0.1"/></geometry></visual>'
     (tmp_path / "small.urdf").write_text(f'<robot name="small"><link name="base">{visual}</link></robot>')
-    export(tmp_path / "small.html", tmp_path / "small.urdf")
+    export_page(tmp_path / "small.html", tmp_path / "small.urdf")
     page = open_file(tmp_path / "small.html")
-    becomes(lambda: grid(page)["cell"], pytest.approx(0.01))
+    wait_until_equal(lambda: grid_drawing(page)["cell"], pytest.approx(0.01))
 
 
 def open_gripper(live, open_page):
@@ -184,14 +192,14 @@ def open_gripper(live, open_page):
     return viewer, open_page(viewer)
 
 
-def share(page, entry: str) -> None:
+def open_share_menu_entry(page, entry: str) -> None:
     page.get_by_role("button", name="Share", exact=True).click()
     page.get_by_role("menuitem", name=entry, exact=True).click()
 
 
 def save_from_menu(page, entry: str, folder: Path) -> Path:
     with page.expect_download() as download:
-        share(page, entry)
+        open_share_menu_entry(page, entry)
     path = folder / download.value.suggested_filename
     download.value.save_as(path)
     return path
@@ -213,7 +221,7 @@ def test_exported_glb_shows_the_same_robot(live, open_page, tmp_path):
     path = save_from_menu(page, "Export glb…", tmp_path)
     visuals = drawn_visuals(page)
     viewer = live(ROBOT)
-    robot = f'<robot name="again"><link name="base">{mesh(path, "")}</link></robot>'
+    robot = f'<robot name="again"><link name="base">{mesh_visual(path, "")}</link></robot>'
     viewer.publish("/robot_description", String(data=robot), DESCRIPTION_QOS)
     (drawn_model,) = drawn_visuals(open_page(viewer))["base"]
     bounds = [shape["bounds"] for shapes in visuals.values() for shape in shapes]
@@ -224,20 +232,20 @@ def test_exported_glb_shows_the_same_robot(live, open_page, tmp_path):
 
 
 def test_files_outside_package_are_listed_before_export(start, open_page, tmp_path):
-    share, elsewhere = tmp_path / "robot", tmp_path / "elsewhere"
+    share, other_folder = tmp_path / "robot", tmp_path / "elsewhere"
     share.mkdir()
-    elsewhere.mkdir()
+    other_folder.mkdir()
     (share / "package.xml").write_text("<package><name>robot</name></package>")
-    (elsewhere / "part.urdf").write_text('<robot><link name="base"/></robot>')
+    (other_folder / "part.urdf").write_text('<robot><link name="base"/></robot>')
     (share / "robot.xacro").write_text(
         f"""<robot name="robot" xmlns:xacro="http://www.ros.org/wiki/xacro">
-        <xacro:include filename="{elsewhere}/part.urdf"/></robot>"""
+        <xacro:include filename="{other_folder}/part.urdf"/></robot>"""
     )
     page = open_page(start("view", str(share / "robot.xacro")))
     assert save_from_menu(page, "Export glb…", tmp_path).name == "robot.glb"
     dialog = page.get_by_role("dialog", name="The export contains files from outside the packages")
     dialog.wait_for()
-    becomes(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
+    wait_until_equal(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
 
 
 def test_screenshots_and_videos_are_saved(live, open_page, tmp_path):
@@ -251,7 +259,7 @@ def test_screenshots_and_videos_are_saved(live, open_page, tmp_path):
         colors = {pixel for _, pixel in image.convert("RGB").resize((200, 150)).getcolors(30_000)}
     assert len(colors) > 3
     assert page.locator(".canvas-box canvas").bounding_box() == canvas
-    share(page, "Record a video")
+    open_share_menu_entry(page, "Record a video")
     until(page, "document.querySelector('.recorder:not([hidden])') !== null")
     for step in range(10):
         frame_count = state(page, "framesDrawn")

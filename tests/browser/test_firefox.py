@@ -13,7 +13,7 @@ import pytest
 from tests.browser import firefox
 from tests.browser.arm import write_arm
 from tests.browser.firefox import Firefox
-from tests.browser.live import POLL_PERIOD
+from tests.browser.live import POLL_PERIOD_S
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -34,11 +34,14 @@ CRATE = """\
 
 @pytest.fixture
 def launch(tmp_path: Path) -> Iterator[Callable[..., Firefox]]:
-    """Return a function that starts Firefox; if that fails, the test is skipped, or fails in CI."""
+    """Return a function that starts Firefox.
+
+    If that fails, the test is skipped, or fails in CI.
+    """
     with ExitStack() as stack:
 
         def run(*, headless: bool) -> Firefox:
-            skip_reason = "no Firefox" if firefox.find() is None else None
+            skip_reason = "no Firefox" if firefox.find_firefox() is None else None
             if not skip_reason and not headless and not firefox.can_show_windows():
                 skip_reason = "no display and no Xvfb for Firefox's WebGL"
             if skip_reason and "CI" in os.environ:
@@ -64,7 +67,7 @@ def test_firefox_draws_and_moves_robot(start, launch, tmp_path):
         reds = sum(count for count, (r, g, b) in image.getcolors(1 << 24) if r > 80 and r > 3 * max(g, b))
         return reds / (image.width * image.height)
 
-    wait_until(lambda: share_of_red() > 0.05, what=share_of_red, pause=POLL_PERIOD)
+    wait_until(lambda: share_of_red() > 0.05, what=share_of_red, pause=POLL_PERIOD_S)
     # The arrow keys move the focus between tabs.
     browser.evaluate("document.querySelector('[data-tab-panel-id=displays]').focus()")
     browser.press(RIGHT, ENTER)
@@ -128,7 +131,7 @@ def test_firefox_drags_handle(start, launch, tmp_path):
         samples.append(browser.evaluate("window.linkwright.panels.editing.handles.z"))
         return len(samples) > 5 and samples[-1] == samples[-5]
 
-    wait_until(is_still, pause=POLL_PERIOD)
+    wait_until(is_still, pause=POLL_PERIOD_S)
     handle = samples[-1]
     canvas = browser.evaluate("document.querySelector('.canvas-box canvas').getBoundingClientRect()")
     browser.drag(canvas["x"] + handle["x"], canvas["y"] + handle["y"], 0, -60)

@@ -1,4 +1,7 @@
-"""Poses, paths, polygons, ranges, vectors and efforts in a real browser, and the rows of TF and the robot."""
+"""Geometry displays in a real browser, and the rows of TF and the robot.
+
+The tests cover poses, paths, polygons, ranges, vectors and efforts.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,9 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_message
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.live import configuration
-from tests.rviz.displays.test_geometry_displays import message, pose
+from tests.rviz.displays.test_geometry_displays import make_message, make_pose
 
 pytestmark = pytest.mark.browser
 
@@ -54,35 +57,35 @@ def publish_all(viewer) -> None:
     """Publish a message for each display; the frame ``tip`` is one meter above ``base``."""
     viewer.place("tip", 0.0, 0.0, 1.0)
     viewer.publish("/robot_description", String(data=CRANE), DESCRIPTION_QOS)
-    viewer.publish("/pose", message("geometry_msgs/msg/PoseStamped", pose=pose(1)))
-    guess = message("geometry_msgs/msg/PoseWithCovarianceStamped")
-    guess.pose.pose = pose(0, 2)
-    guess.pose.covariance = np.diag([0.25, 0.04, 0.01, 0.01, 0.01, 0.01]).ravel()
-    viewer.publish("/guess", guess)
-    viewer.publish("/cloud", message("geometry_msgs/msg/PoseArray", poses=[pose(x) for x in range(5)]))
+    viewer.publish("/pose", make_message("geometry_msgs/msg/PoseStamped", pose=make_pose(1)))
+    pose_estimate = make_message("geometry_msgs/msg/PoseWithCovarianceStamped")
+    pose_estimate.pose.pose = make_pose(0, 2)
+    pose_estimate.pose.covariance = np.diag([0.25, 0.04, 0.01, 0.01, 0.01, 0.01]).ravel()
+    viewer.publish("/guess", pose_estimate)
+    viewer.publish("/cloud", make_message("geometry_msgs/msg/PoseArray", poses=[make_pose(x) for x in range(5)]))
     particle = get_message("nav2_msgs/msg/Particle")
-    particles = [particle(pose=pose(0), weight=0.0), particle(pose=pose(1), weight=0.5)]
-    viewer.publish("/particle_cloud", message("nav2_msgs/msg/ParticleCloud", particles=particles))
+    particles = [particle(pose=make_pose(0), weight=0.0), particle(pose=make_pose(1), weight=0.5)]
+    viewer.publish("/particle_cloud", make_message("nav2_msgs/msg/ParticleCloud", particles=particles))
     for x in (0, 1, 2):
-        odometry = message("nav_msgs/msg/Odometry")
-        odometry.pose.pose = pose(x, -2)
+        odometry = make_message("nav_msgs/msg/Odometry")
+        odometry.pose.pose = make_pose(x, -2)
         viewer.publish("/odom", odometry)
-    poses = [message("geometry_msgs/msg/PoseStamped", pose=pose(x, 3)) for x in range(4)]
-    viewer.publish("/plan", message("nav_msgs/msg/Path", poses=poses))
-    field = message("geometry_msgs/msg/PolygonStamped")
+    poses = [make_message("geometry_msgs/msg/PoseStamped", pose=make_pose(x, 3)) for x in range(4)]
+    viewer.publish("/plan", make_message("nav_msgs/msg/Path", poses=poses))
+    field = make_message("geometry_msgs/msg/PolygonStamped")
     corner = get_message("geometry_msgs/msg/Point32")
     field.polygon.points = [corner(x=x, y=y, z=0.0) for x, y in ((-3.0, -3.0), (-1.0, -3.0), (-1.0, -1.0))]
     viewer.publish("/field", field)
-    sonar = message("sensor_msgs/msg/Range", range=2.0, min_range=0.1, max_range=4.0, field_of_view=math.pi / 2)
+    sonar = make_message("sensor_msgs/msg/Range", range=2.0, min_range=0.1, max_range=4.0, field_of_view=math.pi / 2)
     viewer.publish("/sonar", sonar)
-    velocity = message("geometry_msgs/msg/TwistStamped")
+    velocity = make_message("geometry_msgs/msg/TwistStamped")
     velocity.twist.linear.x, velocity.twist.angular.z = 1.0, 0.1
     viewer.publish("/speed", velocity)
-    push = message("geometry_msgs/msg/WrenchStamped")
+    push = make_message("geometry_msgs/msg/WrenchStamped")
     push.wrench.torque.z = 1.0
     viewer.publish("/push", push)
     viewer.publish("/joint_states", JointState(name=["lift"], position=[0.0], effort=[10.0]))
-    click = message("geometry_msgs/msg/PointStamped")
+    click = make_message("geometry_msgs/msg/PointStamped")
     click.point.z = 1.0
     viewer.publish("/click", click)
 
@@ -91,7 +94,7 @@ def drawings(page) -> dict[str, dict]:
     return {display["name"]: display["drawn"] for display in state(page, "displays")}
 
 
-def size(drawing: dict) -> list[float]:
+def drawn_size(drawing: dict) -> list[float]:
     return [high - low for low, high in zip(drawing["bounds"]["min"], drawing["bounds"]["max"], strict=True)]
 
 
@@ -105,7 +108,7 @@ def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     assert drawing["Pose"]["bounds"]["min"] == pytest.approx([1, -0.05, 0.95], abs=1e-3)
     assert drawing["Pose"]["bounds"]["max"] == pytest.approx([2.3, 0.05, 1.05], abs=1e-3)
     assert drawing["Guess"]["bounds"]["max"] == pytest.approx([1.3, 3.001, 2.001], abs=0.02)
-    assert (drawing["Cloud"]["arrows"], size(drawing["Cloud"])[:2]) == (0, pytest.approx([4.3, 0.12], abs=1e-3))
+    assert (drawing["Cloud"]["arrows"], drawn_size(drawing["Cloud"])[:2]) == (0, pytest.approx([4.3, 0.12], abs=1e-3))
     assert drawing["Particles"]["bounds"]["max"] == pytest.approx([1.16, 0.032, 3.5], abs=1e-3)
     assert (drawing["Way"]["arrows"], drawing["Way"]["contents"]) == (3, 3)
     assert (drawing["Plan"]["points"], drawing["Plan"]["axes"], drawing["Plan"]["wide"]) == (4, 4, True)
@@ -118,10 +121,10 @@ def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     assert drawing["Speed"]["bounds"]["max"][0] == pytest.approx(2.6, abs=1e-3)
     assert drawing["Push"]["bounds"]["max"][2] == pytest.approx(3.6, abs=1e-3)
     assert (drawing["Torque"]["rings"], drawing["Torque"]["efforts"]) == (1, [10])
-    assert size(drawing["Torque"])[1] < 0.2 < size(drawing["Torque"])[0]
-    assert size(drawing["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
+    assert drawn_size(drawing["Torque"])[1] < 0.2 < drawn_size(drawing["Torque"])[0]
+    assert drawn_size(drawing["Click"]) == pytest.approx([0.2] * 3, abs=1e-2)
     assert drawing["Axes"]["bounds"]["max"] == pytest.approx([1, 1, 2], abs=1e-3)
-    becomes(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
+    wait_until_equal(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
 
 
 def test_property_changes_and_disabling_act_at_once(live, open_page):
@@ -196,7 +199,7 @@ ROWS = configuration(
 )
 
 
-def row(page, key: str):
+def locate_row(page, key: str):
     return page.locator(f'.row[data-key="{key}"]')
 
 
@@ -214,26 +217,26 @@ def test_tree_rows_of_frames_links_and_joints_match_scene(live, open_page):
     identities = {display.config.name: display.id for display in viewer.viewer.displays}
     tf, model = identities["Frames"], identities["Robot"]
     for key in (f"{tf}", f"{tf}/Frames", f"{tf}/Frames/tip"):
-        row(page, key).locator(".twist").click()
+        locate_row(page, key).locator(".twist").click()
 
     def value(key: str) -> str:
-        result: str = row(page, key).locator(".row-value").inner_text()
+        result: str = locate_row(page, key).locator(".row-value").inner_text()
         return result
 
-    becomes(lambda: value(f"{tf}/Frames/tip#Parent"), "base")
-    becomes(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1")
+    wait_until_equal(lambda: value(f"{tf}/Frames/tip#Parent"), "base")
+    wait_until_equal(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1")
     viewer.place("tip", 0.0, 0.0, 1.5)
-    becomes(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1.5")
-    row(page, tf).locator(".twist").click()
-    top = row(page, f"{model}/Links")
+    wait_until_equal(lambda: value(f"{tf}/Frames/tip#Relative Position"), "0; 0; 1.5")
+    locate_row(page, tf).locator(".twist").click()
+    top = locate_row(page, f"{model}/Links")
     assert "Link/Joint Tree" in top.inner_text()
     top.locator(".twist").click()
-    row(page, f"{model}/Links/tip").wait_for()
+    locate_row(page, f"{model}/Links/tip").wait_for()
     names = page.locator(".row-title").all_inner_texts()
     tree = names[names.index("Link/Joint Tree") :]
     assert [name for name in tree if name in ("base", "lift", "tip")] == ["base", "lift", "tip"]
     assert "Lower Limit" not in tree
-    row(page, f"{model}/Joints/lift#Details").locator(".twist").click()
-    becomes(lambda: value(f"{model}/Joints/lift#Lower Limit"), "-1")
-    becomes(lambda: value(f"{model}/Joints/lift#Joint Axis"), "0; 1; 0")
-    becomes(lambda: value(f"{model}/Links/tip#Position"), "0; 0; 1.5")
+    locate_row(page, f"{model}/Joints/lift#Details").locator(".twist").click()
+    wait_until_equal(lambda: value(f"{model}/Joints/lift#Lower Limit"), "-1")
+    wait_until_equal(lambda: value(f"{model}/Joints/lift#Joint Axis"), "0; 1; 0")
+    wait_until_equal(lambda: value(f"{model}/Links/tip#Position"), "0; 0; 1.5")

@@ -10,10 +10,10 @@ import pytest
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
-from tests.browser.conftest import becomes, state, until
-from tests.browser.golden import GOLDEN, golden_links, link, mesh, robot_of
+from tests.browser.conftest import state, until, wait_until_equal
+from tests.browser.golden import GOLDEN, golden_links, link_element, mesh_visual, robot_of
 from tests.browser.live import configuration
-from tests.browser.mesh_writers import dae, png, stl_binary
+from tests.browser.mesh_writers import make_png, write_dae, write_stl_binary
 from tests.browser.pixels import Color, colors_at
 
 pytestmark = pytest.mark.browser
@@ -48,26 +48,26 @@ def open_robot(live, open_page, links: str, names):
 
 def test_bounds_and_colors_match_rviz(live, open_page, tmp_path):
     page = open_robot(live, open_page, golden_links(tmp_path), GOLDEN)
-    wrong = {}
+    mismatches = {}
     for name, (_, _, _, _, (low, high), color, opacity) in GOLDEN.items():
         drawing = drawn_visual(page, name)
-        (look,) = drawing["materials"]
+        (material,) = drawing["materials"]
         bounds = drawing["bounds"]
         right = (
             bounds["min"] == pytest.approx(low, abs=1e-5)
             and bounds["max"] == pytest.approx(high, abs=1e-5)
-            and (look["color"], look["opacity"]) == (color, pytest.approx(opacity))
+            and (material["color"], material["opacity"]) == (color, pytest.approx(opacity))
         )
         if not right:
-            wrong[name] = drawing
-    assert wrong == {}
+            mismatches[name] = drawing
+    assert mismatches == {}
 
 
 def test_textures_are_drawn(live, open_page, tmp_path):
-    (tmp_path / "skin.png").write_bytes(png(255, 255, 0))
+    (tmp_path / "skin.png").write_bytes(make_png(255, 255, 0))
     texture = f'<material name="skin"><texture filename="{(tmp_path / "skin.png").as_uri()}"/></material>'
     image = "<texture texture='c' texcoord='UV'/>"
-    text = dae(diffuse=image).decode()
+    text = write_dae(diffuse=image).decode()
     sampler = (
         "<newparam sid='f'><surface type='2D'><init_from>i</init_from></surface></newparam>"
         "<newparam sid='c'><sampler2D><source>f</source></sampler2D></newparam><technique sid='t'>"
@@ -78,8 +78,10 @@ def test_textures_are_drawn(live, open_page, tmp_path):
         "<library_images><image id='i'><init_from>skin.png</init_from></image></library_images><library_effects>",
     )
     (tmp_path / "skin.dae").write_text(text)
-    (tmp_path / "plain.stl").write_bytes(stl_binary())
-    links = link("dae", mesh(tmp_path / "skin.dae", "")) + link("stl", mesh(tmp_path / "plain.stl", texture))
+    (tmp_path / "plain.stl").write_bytes(write_stl_binary())
+    links = link_element("dae", mesh_visual(tmp_path / "skin.dae", "")) + link_element(
+        "stl", mesh_visual(tmp_path / "plain.stl", texture)
+    )
     page = open_robot(live, open_page, links, ("dae", "stl"))
     assert [drawn_visual(page, name)["materials"][0]["textured"] for name in ("dae", "stl")] == [True, True]
     assert {row["level"] for row in state(page, "displays")[0]["status"]} == {"ok"}
@@ -88,7 +90,7 @@ def test_textures_are_drawn(live, open_page, tmp_path):
 # --- transparency --------------------------------------------------------------------------------------------------
 
 
-def box(x: float, color: str, size: float = 0.5) -> str:
+def box_visual(x: float, color: str, size: float = 0.5) -> str:
     return (
         f'<visual><origin xyz="{x} 0 0"/><geometry><box size="0.1 {size} {size}"/></geometry>'
         f'<material name="m{x}{color}"><color rgba="{color}"/></material></visual>'
@@ -119,21 +121,24 @@ def test_transparent_layers_are_blended_by_depth(live, open_page):
     page = None
     for near_color, far_color, expected in LAYERS:
         for first in (0, 1):
-            pair = [link("near", box(0.3, near_color)), link("far", box(-0.3, far_color, 1.0))]
+            pair = [
+                link_element("near", box_visual(0.3, near_color)),
+                link_element("far", box_visual(-0.3, far_color, 1.0)),
+            ]
             description = robot_of("".join(pair if first == 0 else reversed(pair)))
             viewer.publish("/robot_description", String(data=description), DESCRIPTION_QOS)
             page = page or open_page(viewer)
-            until(page, alphas(near_color, far_color))
+            until(page, drawn_alphas(near_color, far_color))
             viewer.settle(page)
-            becomes(lambda page=page: center_color(page), pytest.approx(expected, abs=3))
+            wait_until_equal(lambda page=page: center_color(page), pytest.approx(expected, abs=3))
 
 
-def alphas(*colors: str) -> str:
+def drawn_alphas(*colors: str) -> str:
     """Return the materials of boxes with these colors."""
     boxes = []
     for name, color in zip(("near", "far"), colors, strict=True):
         r, g, b, a = (float(component) for component in color.split())
-        look = f"lw.displays[0].drawn.links?.{name}?.visuals[0]?.materials[0]"
+        material = f"lw.displays[0].drawn.links?.{name}?.visuals[0]?.materials[0]"
         code = "#" + "".join(f"{int(component * 255):02x}" for component in (r, g, b))
-        boxes.append(f"{look}?.color === '{code}' && {look}?.opacity === {a:g}")
+        boxes.append(f"{material}?.color === '{code}' && {material}?.opacity === {a:g}")
     return " && ".join(boxes)

@@ -7,7 +7,7 @@ import pytest
 
 from tests.browser.conftest import until
 from tests.browser.live import configuration
-from tests.rviz.displays.test_grid_map import grid
+from tests.rviz.displays.test_grid_map import make_grid_map
 
 pytestmark = pytest.mark.browser
 
@@ -20,7 +20,7 @@ def test_grid_map_with_missing_cell_is_drawn(live, open_page, tmp_path):
     x, y = np.meshgrid(np.linspace(-2, 2, 21), np.linspace(-2, 2, 21))
     heights = 1.5 * np.exp(-(x**2) - y**2)
     heights[3, 3] = np.nan
-    viewer.publish("/grid_map", grid(0.2, elevation=heights.tolist()))
+    viewer.publish("/grid_map", make_grid_map(0.2, elevation=heights.tolist()))
     drawn_expression = "lw.displays[0]?.drawn"
     # Each of the four squares around the hole keeps only the triangle opposite the hole.
     until(page, f"{drawn_expression}?.triangles === 20 * 20 * 2 - 4 && {drawn_expression}?.lines === 2 * 20 * 21 - 4")

@@ -1,11 +1,14 @@
-"""Invisible properties, drawn at their positions: masses, inertias, joint axes, frames, collisions."""
+"""Invisible properties, drawn at their positions.
+
+The tests cover masses, inertias, joint axes, frames, collisions.
+"""
 
 from __future__ import annotations
 
 import pytest
 
 from tests.browser.arm import write_arm
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.pixels import colors_at
 
 pytestmark = pytest.mark.browser
@@ -18,7 +21,7 @@ def page(start, open_page, tmp_path):
     return page
 
 
-def switch(page, *names):
+def toggle_overlays(page, *names):
     for name in names:
         page.locator(f'[data-inspect="{name}"] input').click()
 
@@ -34,7 +37,7 @@ def count_orange(page):
 
 
 def test_masses_inertias_and_implausible_values_are_shown(page):
-    switch(page, "centers", "boxes", "ellipsoids")
+    toggle_overlays(page, "centers", "boxes", "ellipsoids")
     until(
         page,
         "(({boxes, ellipsoids, totals}) => boxes === 3 && ellipsoids === 3 && totals?.length === 1)"
@@ -48,9 +51,9 @@ def test_masses_inertias_and_implausible_values_are_shown(page):
     # The center follows the joints.
     page.locator('[data-joint="fore_joint"] input[type=text]').fill("1.5707963")
     page.keyboard.press("Enter")
-    bent = [0.15 / 7, 0, (4 * 0.05 + 2 * 0.3 + 1 * 0.5) / 7]
-    until(page, f"Math.abs(lw.invisibleProperties.totals[0][0] - {bent[0]}) < 1e-4")
-    assert state(page, "invisibleProperties.totals[0]") == pytest.approx(bent, abs=1e-4)
+    center_of_mass = [0.15 / 7, 0, (4 * 0.05 + 2 * 0.3 + 1 * 0.5) / 7]
+    until(page, f"Math.abs(lw.invisibleProperties.totals[0][0] - {center_of_mass[0]}) < 1e-4")
+    assert state(page, "invisibleProperties.totals[0]") == pytest.approx(center_of_mass, abs=1e-4)
 
     until(page, "lw.description.findings.some(({ link, code }) => link === 'fore' && code.startsWith('LW3'))")
     assert "Mass of the robot: 7 kg" in page.locator(".inspect-facts").inner_text()
@@ -65,7 +68,7 @@ def test_inspect_card_names_missing_parts_and_closes_like_menu(start, open_page,
     page = open_page(start("view", str(tmp_path / "bare.urdf")))
     card, button = page.locator(".inspect-card"), page.locator(".inspect > button")
     button.click()
-    switch(page, "contrast", "joints")
+    toggle_overlays(page, "contrast", "joints")
     page.locator(".inspect-facts").get_by_text("All joints are fixed").wait_for()
     page.locator(".inspect-facts").get_by_text("No link has a <collision>").wait_for()
     page.locator(".canvas-box").focus()
@@ -83,7 +86,7 @@ def test_inspect_card_names_missing_parts_and_closes_like_menu(start, open_page,
 
 
 def test_joint_axes_show_limits_and_positions(page):
-    switch(page, "joints")
+    toggle_overlays(page, "joints")
     until(page, "lw.invisibleProperties.joints?.length === 4")
     page.locator('[data-joint="upper_joint"] input[type=text]').fill("0.7")
     page.keyboard.press("Enter")
@@ -94,7 +97,7 @@ def test_joint_axes_show_limits_and_positions(page):
     joints = {joint["name"]: joint for joint in state(page, "invisibleProperties.joints")}
     assert (joints["upper_joint"]["lower"], joints["upper_joint"]["upper"]) == (-2, 2)
     assert joints["finger_joint"]["position"] == pytest.approx(-0.04, abs=1e-4)
-    switch(page, "joints")
+    toggle_overlays(page, "joints")
     until(page, "lw.invisibleProperties.joints.length === 0 && lw.invisibleProperties.vertices === 0")
 
 
@@ -104,13 +107,13 @@ def test_frames_are_drawn_by_depth_and_collisions_in_contrast(page):
     distance.fill("3")
     distance.press("Enter")
     until(page, "lw.view.distance === 3")  # the base is then in the center of the scene
-    switch(page, "frames")
+    toggle_overlays(page, "frames")
     until(page, "String(lw.invisibleProperties.frames) === '1,1,1,1,1'")
     page.locator(".inspect-depth input").fill("2")
     until(page, "String(lw.invisibleProperties.frames) === '1,1,1'")
-    switch(page, "frames")
-    becomes(lambda: count_orange(page), 0)  # the base has RViz's default color, red
-    switch(page, "contrast")
-    becomes(lambda: count_orange(page) >= 3, True)
-    switch(page, "contrast")
-    becomes(lambda: count_orange(page), 0)
+    toggle_overlays(page, "frames")
+    wait_until_equal(lambda: count_orange(page), 0)  # the base has RViz's default color, red
+    toggle_overlays(page, "contrast")
+    wait_until_equal(lambda: count_orange(page) >= 3, True)
+    toggle_overlays(page, "contrast")
+    wait_until_equal(lambda: count_orange(page), 0)

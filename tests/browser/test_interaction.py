@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from tests.browser.conftest import becomes, count_frames, state, until
+from tests.browser.conftest import count_frames, state, until, wait_until_equal
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
@@ -33,7 +33,7 @@ def drag(page, dx, dy, button="left"):
     page.mouse.up(button=button)
 
 
-def robot_model(page):
+def robot_model_drawing(page):
     return next(display for display in state(page, "displays") if display["name"] == "RobotModel")
 
 
@@ -135,7 +135,7 @@ def test_clicked_link_is_selected_with_source_location(page):
 def test_idle_scene_is_not_redrawn(page):
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name="Time", exact=True).click()
-    becomes(lambda: count_frames(page) <= 2, True)
+    wait_until_equal(lambda: count_frames(page) <= 2, True)
     assert count_frames(page) <= 2
 
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from tests.browser.arm import write_arm
-from tests.browser.conftest import becomes, state, until, wait_two_seconds
+from tests.browser.conftest import state, until, wait_two_seconds, wait_until_equal
 
 pytestmark = pytest.mark.browser
 
@@ -17,7 +17,7 @@ def page(start, open_page, tmp_path):
     return open_page(start("view", str(write_arm(tmp_path))))
 
 
-def move(page, joint, text):
+def move_joint(page, joint, text):
     field = page.locator(f'[data-joint="{joint}"] input[type=text]')
     field.fill(text)
     field.press("Enter")
@@ -27,8 +27,8 @@ def test_units_limits_and_mimic_joints_are_shown(page):
     row = page.locator('.joint[data-joint="fore_joint"]')
     assert "-0.500 rad" in row.inner_text()
     page.get_by_role("button", name="deg").first.click()
-    becomes(lambda: "-28.6 deg" in row.inner_text(), True)
-    move(page, "fore_joint", "90")
+    wait_until_equal(lambda: "-28.6 deg" in row.inner_text(), True)
+    move_joint(page, "fore_joint", "90")
     until(page, f"Math.abs(lw.joints.fore_joint - {math.pi / 2}) < 1e-3")
     follower = page.locator('.joint[data-joint="finger_joint"]')
     assert "-0.5 × slide_joint + 0.01 m" in follower.inner_text()
@@ -57,7 +57,7 @@ def test_long_joint_names_keep_their_ends(start, open_page, tmp_path):
 
 
 def test_saved_poses_are_recalled_and_survive_reload(page):
-    move(page, "upper_joint", "0.5")
+    move_joint(page, "upper_joint", "0.5")
     until(page, "lw.joints.upper_joint === 0.5")
     page.get_by_label("Name of the pose").fill("bent")
     page.get_by_label("Name of the pose").press("Enter")
@@ -89,7 +89,7 @@ def test_sweep_moves_joints_until_stopped(page):
         positions_seen.add(round(state(page, "joints.upper_joint"), 2))
         return len(positions_seen) >= 6 and max(positions_seen) - min(positions_seen) > 1.5
 
-    becomes(has_swept, True)
+    wait_until_equal(has_swept, True)
     page.get_by_role("button", name="Stop the sweep").click()
 
     def is_standing_still() -> bool:
@@ -97,7 +97,7 @@ def test_sweep_moves_joints_until_stopped(page):
         wait_two_seconds(page)
         return state(page, "joints") == positions
 
-    becomes(is_standing_still, True)
+    wait_until_equal(is_standing_still, True)
 
 
 def test_dragged_link_moves_its_joint(page):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
@@ -43,7 +43,7 @@ def test_language_switch_keeps_view_state_and_reloads_no_mesh(start, open_page):
     page.get_by_role("button", name="中文").click()
     page.get_by_role("button", name="EN").wait_for()
     until(page, "lw.ready && lw.settled")
-    becomes(lambda: page.evaluate(f"() => {{ const lw = window.linkwright; return {_SHOWN}; }}"), state_before)
+    wait_until_equal(lambda: page.evaluate(f"() => {{ const lw = window.linkwright; return {_SHOWN}; }}"), state_before)
     mesh_requests = page.evaluate(
         "() => performance.getEntriesByType('resource').filter(({ name }) => name.includes('/mesh/'))"
         ".map(({ transferSize, encodedBodySize }) => transferSize < encodedBodySize)"

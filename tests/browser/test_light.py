@@ -1,4 +1,6 @@
-"""Light in the page: the studio compresses bright colors as film does; the camera's light keeps the given colors.
+"""Light in the page.
+
+The studio compresses bright colors as film does; the camera's light keeps the given colors.
 
 In `view`, robots of any color stand out from the background, also with software rendering.
 """
@@ -28,7 +30,7 @@ Visualization Manager:
 """
 
 
-def grays(start, open_page, tmp_path: Path, light: str) -> list[int]:
+def measure_ball_brightness(start, open_page, tmp_path: Path, light: str) -> list[int]:
     """Return the brightness of the ball along a line through its center, from top to bottom."""
     (tmp_path / "ball.urdf").write_text(BALL)
     (tmp_path / f"{light}.rviz").write_text(VIEW.format(light=light))
@@ -42,7 +44,7 @@ def grays(start, open_page, tmp_path: Path, light: str) -> list[int]:
 
 
 def test_studio_light_does_not_saturate_lit_surfaces(start, open_page, tmp_path):
-    camera, studio = (grays(start, open_page, tmp_path, light) for light in ("Camera", "Studio"))
+    camera, studio = (measure_ball_brightness(start, open_page, tmp_path, light) for light in ("Camera", "Studio"))
     assert max(camera) >= 254, "a face toward the camera has the given color"
     assert 225 < max(studio) < 252
     assert studio.count(max(studio)) < len(studio) / 5, "the shading shows the shape: no part is clipped to white"
@@ -51,7 +53,7 @@ def test_studio_light_does_not_saturate_lit_surfaces(start, open_page, tmp_path)
 BLACK = BALL.replace("1 1 1 1", "0 0 0 1")
 
 
-def column(page, across: float = 0.5) -> list[int]:
+def measure_column_brightness(page, across: float = 0.5) -> list[int]:
     """Return the brightness of the scene from top to bottom, at a fraction of its width."""
     box = page.locator(".canvas-box canvas").first.bounding_box()
     x = box["x"] + across * box["width"]
@@ -65,8 +67,8 @@ def test_default_view_shows_shape_of_black_and_white_robots(start, open_page, tm
     (tmp_path / "ball.urdf").write_text(robot)
     page = open_page(start("view", str(tmp_path / "ball.urdf")), theme=theme)
     until(page, "lw.settled")
-    grays = column(page)
-    ball, ground = grays[16:45], column(page, 0.02)
+    grays = measure_column_brightness(page)
+    ball, ground = grays[16:45], measure_column_brightness(page, 0.02)
     assert min(ground) > 60
     assert max(ground) < 245
     assert max(ball) - min(ball) > 25, "the shading shows that the ball is round"
@@ -78,7 +80,7 @@ def test_rviz_file_colors_are_kept(start, open_page, tmp_path):
     (tmp_path / "plain.rviz").write_text(VIEW.format(light="Camera"))
     page = open_page(start("view", str(tmp_path / "ball.urdf"), "-d", str(tmp_path / "plain.rviz")))
     until(page, "lw.settled")
-    assert set(column(page, 0.02)) == {0x30}
+    assert set(measure_column_brightness(page, 0.02)) == {0x30}
 
 
 def test_background_color_can_be_chosen(start, open_page, tmp_path):
@@ -90,4 +92,4 @@ def test_background_color_can_be_chosen(start, open_page, tmp_path):
     page.get_by_role("treeitem").filter(has_text="Backdrop").locator("select").select_option("Color")
     background.wait_for()
     until(page, "lw.settled")
-    assert column(page, 0.02)[:2] == [0x30] * 2, "the top of the scene has the background color"
+    assert measure_column_brightness(page, 0.02)[:2] == [0x30] * 2, "the top of the scene has the background color"

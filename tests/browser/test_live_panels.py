@@ -1,4 +1,7 @@
-"""The live panels in a real browser: plots, topics, node graph, parameters, log and teleop pad."""
+"""The live panels in a real browser.
+
+The tests cover plots, topics, node graph, parameters, log and teleop pad.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from playwright.sync_api import Error, Page
 from linkwright.graph import ParameterDescriptor
 from linkwright.graph.parameters.parameter import Range
 from linkwright.messages import get_message
-from tests.browser.conftest import becomes, until
+from tests.browser.conftest import until, wait_until_equal
 from tests.browser.live import LiveViewer, configuration
 from tests.waiting import wait_until
 
@@ -30,7 +33,10 @@ GRID = "- Class: rviz_default_plugins/Grid\n  Enabled: true\n  Name: Grid"
 
 @dataclass
 class Robot:
-    """Nodes that publish a current at 1 kHz and joints at 50 Hz, have parameters, log, and receive velocities."""
+    """Nodes that publish a current at 1 kHz and joints at 50 Hz.
+
+    They also have parameters, log, and receive velocities.
+    """
 
     live: LiveViewer
     velocities: list[tuple[float, float]] = field(default_factory=list)
@@ -84,7 +90,7 @@ def page(robot: Robot, open_page: Callable[..., Page]) -> Page:
     return open_page(robot.live, wait=False)
 
 
-def show(page: Page, name: str) -> None:
+def open_panel(page: Page, name: str) -> None:
     page.get_by_role("button", name="Panels").click()
     page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
 
@@ -95,7 +101,7 @@ def add_series(page: Page, text: str) -> None:
     page.keyboard.press("Enter")
 
 
-def subscribers(robot: Robot, topic: str) -> int:
+def subscriber_count(robot: Robot, topic: str) -> int:
     return robot.live.run(lambda: robot.live.node.graph.count_subscribers(topic))
 
 
@@ -103,7 +109,7 @@ MONITOR = "lw.panels.monitor"
 
 
 def test_topic_fields_are_plotted(page: Page, robot: Robot):
-    show(page, "Plots")
+    open_panel(page, "Plots")
     # The list offers the fields of a topic with the names from its messages.
     page.get_by_role("button", name="Add a series").click()
     page.keyboard.type("/joint")
@@ -115,7 +121,7 @@ def test_topic_fields_are_plotted(page: Page, robot: Robot):
     first, second = page.evaluate("window.linkwright.panels.monitor.plots[0].series")
     assert (first["name"], first["last"]) == ("/joint_states.position[shoulder]", 0.25)
     assert -1 <= second["last"] <= 1
-    becomes(lambda: len(colors_drawn(page)), 2)
+    wait_until_equal(lambda: len(find_drawn_colors(page)), 2)
     # During a pause the time window stays, and sampling continues.
     page.get_by_role("button", name="Pause").first.click()
     window = page.evaluate("window.linkwright.panels.monitor.window")
@@ -133,9 +139,9 @@ def test_topic_fields_are_plotted(page: Page, robot: Robot):
     until(page, f"{MONITOR}.window[1] > {window[1]}")
     # Removing a series ends its subscription, and closing the panel ends all of them.
     page.get_by_role("button", name="Remove /joint_states.position[shoulder]").click()
-    wait_until(lambda: subscribers(robot, "/joint_states") == 1)
-    show(page, "Plots")
-    wait_until(lambda: subscribers(robot, "/left/current") == 1)
+    wait_until(lambda: subscriber_count(robot, "/joint_states") == 1)
+    open_panel(page, "Plots")
+    wait_until(lambda: subscriber_count(robot, "/left/current") == 1)
 
 
 def test_plot_library_loads_with_first_plot_and_its_style(page: Page):
@@ -153,13 +159,13 @@ def test_plot_library_loads_with_first_plot_and_its_style(page: Page):
             observer.disconnect();
         }).observe(document.body, { childList: true, subtree: true })"""
     )
-    show(page, "Plots")
+    open_panel(page, "Plots")
     page.wait_for_function("window.positioned")
     assert page.evaluate("window.positioned") == "absolute"
     assert page.evaluate(request_count) == 2
 
 
-def colors_drawn(page: Page) -> set[str]:
+def find_drawn_colors(page: Page) -> set[str]:
     """Return which of the first two series colors the canvas of the first plot has."""
     return set(
         page.evaluate(
@@ -180,49 +186,51 @@ def colors_drawn(page: Page) -> set[str]:
 
 
 def test_misspelled_field_is_reported_with_suggestion(page: Page):
-    show(page, "Plots")
+    open_panel(page, "Plots")
     add_series(page, "/left/current.dta")
     page.get_by_text("did you mean 'data'").wait_for()
 
 
 def test_topics_are_measured_and_opened(page: Page, robot: Robot):
-    show(page, "Topics")
+    open_panel(page, "Topics")
     row = page.locator("tr[data-topic='/left/current']")
     row.wait_for()
     assert [cell.strip() for cell in row.locator("td").all_inner_texts()[1:4]] == ["std_msgs/Float64", "1", "1"]
     page.get_by_role("checkbox", name="Measure /left/current").check()
     until(page, f"{MONITOR}.traffic['/left/current']?.rate > 500")
     rate = "window.linkwright.panels.monitor.traffic['/left/current'].rate"
-    becomes(lambda: page.evaluate(rate), pytest.approx(1000, rel=0.2))
-    becomes(lambda: re.sub(r"\d+", "N", row.locator("td").nth(4).inner_text()), "N Hz")
+    wait_until_equal(lambda: page.evaluate(rate), pytest.approx(1000, rel=0.2))
+    wait_until_equal(lambda: re.sub(r"\d+", "N", row.locator("td").nth(4).inner_text()), "N Hz")
     page.get_by_role("button", name="Last message of /joint_states").click()
     page.get_by_role("button", name="position", exact=True).click()
     message = page.locator(".topic-message:visible")
     message.get_by_text("[0]").wait_for()
-    becomes(lambda: "0.25" in message.inner_text(), True)
+    wait_until_equal(lambda: "0.25" in message.inner_text(), True)
     # A click plots a number of the message.
     message.locator(".message-row", has_text="[0]").hover()
     message.get_by_role("button", name="Plot this field").first.click()
     until(page, f"{MONITOR}.plots[0].series[0].name === '/joint_states.position[0]'")
     until(page, f"{MONITOR}.plots[0].series[0].last === 0.25")
     # The Topics panel is now hidden behind the plots, and does not measure rates.
-    wait_until(lambda: subscribers(robot, "/left/current") == 1)
+    wait_until(lambda: subscriber_count(robot, "/left/current") == 1)
 
 
 def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
-    show(page, "Node graph")
+    open_panel(page, "Node graph")
     page.locator(".vertex[data-id='node:/arm']").wait_for()
     row = ["node:/arm", "topic:/joint_states", "node:/planner"]
 
     def from_left_to_right() -> list[str]:
         return sorted(row, key=lambda name: page.locator(f".vertex[data-id='{name}']").bounding_box()["x"])
 
-    becomes(from_left_to_right, row)
+    wait_until_equal(from_left_to_right, row)
     page.locator(".vertex[data-id='topic:/joint_states']").click()
     details = page.locator(".graph-details")
-    becomes(lambda: all(name in details.inner_text() for name in ("sensor_msgs/msg/JointState", "/planner")), True)
+    wait_until_equal(
+        lambda: all(name in details.inner_text() for name in ("sensor_msgs/msg/JointState", "/planner")), True
+    )
     neighbors = page.locator(".vertex.near")
-    becomes(
+    wait_until_equal(
         lambda: sorted(neighbors.evaluate_all("elements => elements.map((element) => element.dataset.id)")),
         ["node:/arm", "node:/planner"],
     )
@@ -236,11 +244,11 @@ def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
     drawing = page.locator(".graph-drawing > svg > g")
     transform = drawing.get_attribute("transform")
     page.keyboard.press("+")
-    becomes(lambda: drawing.get_attribute("transform") != transform, True)
+    wait_until_equal(lambda: drawing.get_attribute("transform") != transform, True)
 
 
 def test_parameters_are_edited(page: Page, robot: Robot):
-    show(page, "Parameters")
+    open_panel(page, "Parameters")
     page.get_by_role("option", name="/base").click()
     speed = page.get_by_role("textbox", name="speed")
     speed.fill("0.75")
@@ -263,7 +271,7 @@ def test_parameters_are_edited(page: Page, robot: Robot):
 
 
 def test_log_is_filtered_and_renders_only_visible_rows(page: Page, robot: Robot):
-    show(page, "Log")
+    open_panel(page, "Log")
     until(page, f"{MONITOR}.log !== undefined")
     robot.log_texts(*(f"line {number}" for number in range(300)))
     until(page, f"{MONITOR}.log.last === 'line 299'")
@@ -290,7 +298,7 @@ GAMEPAD = """() => {
 
 
 def test_teleop_pad_publishes_while_held(page: Page, robot: Robot):
-    show(page, "Teleop")
+    open_panel(page, "Teleop")
     until(page, f"{MONITOR}.teleop.aim?.subscribers === 1")
     pad = page.locator(".pad")
     pad.focus()
@@ -331,7 +339,7 @@ def test_teleop_pad_publishes_while_held(page: Page, robot: Robot):
 
 
 def test_teleop_pad_stops_when_touch_ends_tab_hides_or_page_crashes(page: Page, robot: Robot):
-    show(page, "Teleop")
+    open_panel(page, "Teleop")
     until(page, f"{MONITOR}.teleop.aim?.subscribers === 1")
     pad = page.locator(".pad")
     tools = page.context.new_cdp_session(page)

@@ -8,9 +8,9 @@ import pytest
 
 from tests.browser.conftest import until
 from tests.browser.live import configuration
-from tests.rviz.displays.test_interactive_markers import Control, Feedback, Server
-from tests.rviz.displays.test_interactive_markers import marker as interactive_marker
-from tests.rviz.displays.test_markers import ColorRGBA, Marker, MarkerArray, marker
+from tests.rviz.displays.test_interactive_markers import Control, Feedback, MarkerServer
+from tests.rviz.displays.test_interactive_markers import make_marker as interactive_marker
+from tests.rviz.displays.test_markers import ColorRGBA, Marker, MarkerArray, make_marker
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -40,28 +40,28 @@ endsolid c
 """
 
 
-def color(r: float, g: float, b: float, a: float = 1.0):
+def make_color(r: float, g: float, b: float, a: float = 1.0):
     return ColorRGBA(r=r, g=g, b=b, a=a)
 
 
-def all_kinds(mesh: Path) -> list[Marker]:
+def make_all_markers(mesh: Path) -> list[Marker]:
     """Return a marker of each type, in a row along y."""
     triangle = [(0, 0, 0), (1, 0, 0), (0, 0, 1)]
-    rainbow = [color(1.0, 0.0, 0.0), color(0.0, 1.0, 0.0), color(0.0, 0.0, 1.0)]
+    rainbow = [make_color(1.0, 0.0, 0.0), make_color(0.0, 1.0, 0.0), make_color(0.0, 0.0, 1.0)]
     markers = [
-        marker(0, kind=Marker.ARROW, color=color(1.0, 0.5, 0.0)),
-        marker(1, kind=Marker.CUBE, color=color(0.0, 1.0, 0.0)),
-        marker(2, kind=Marker.SPHERE, color=color(0.0, 0.0, 1.0, 0.5)),
-        marker(3, kind=Marker.CYLINDER, color=color(1.0, 1.0, 0.0)),
-        marker(4, kind=Marker.LINE_STRIP, points=triangle, colors=rainbow),
-        marker(5, kind=Marker.LINE_LIST, points=[*triangle, (1, 0, 1)], color=color(1.0, 0.0, 1.0)),
-        marker(6, kind=Marker.CUBE_LIST, points=triangle, colors=rainbow),
-        marker(7, kind=Marker.SPHERE_LIST, points=triangle, color=color(0.2, 0.8, 0.8)),
-        marker(8, kind=Marker.POINTS, points=triangle, colors=rainbow),
-        marker(9, kind=Marker.TEXT_VIEW_FACING, text="hello\n你好", color=color(1.0, 1.0, 1.0)),
-        marker(10, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri(), color=color(1.0, 0.0, 0.0)),
-        marker(11, kind=Marker.TRIANGLE_LIST, points=triangle, colors=rainbow, color=color(1.0, 1.0, 1.0)),
-        marker(12, kind=12, points=[*triangle, (1, 0, 1)], color=color(0.6, 0.3, 1.0)),
+        make_marker(0, kind=Marker.ARROW, color=make_color(1.0, 0.5, 0.0)),
+        make_marker(1, kind=Marker.CUBE, color=make_color(0.0, 1.0, 0.0)),
+        make_marker(2, kind=Marker.SPHERE, color=make_color(0.0, 0.0, 1.0, 0.5)),
+        make_marker(3, kind=Marker.CYLINDER, color=make_color(1.0, 1.0, 0.0)),
+        make_marker(4, kind=Marker.LINE_STRIP, points=triangle, colors=rainbow),
+        make_marker(5, kind=Marker.LINE_LIST, points=[*triangle, (1, 0, 1)], color=make_color(1.0, 0.0, 1.0)),
+        make_marker(6, kind=Marker.CUBE_LIST, points=triangle, colors=rainbow),
+        make_marker(7, kind=Marker.SPHERE_LIST, points=triangle, color=make_color(0.2, 0.8, 0.8)),
+        make_marker(8, kind=Marker.POINTS, points=triangle, colors=rainbow),
+        make_marker(9, kind=Marker.TEXT_VIEW_FACING, text="hello\n你好", color=make_color(1.0, 1.0, 1.0)),
+        make_marker(10, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri(), color=make_color(1.0, 0.0, 0.0)),
+        make_marker(11, kind=Marker.TRIANGLE_LIST, points=triangle, colors=rainbow, color=make_color(1.0, 1.0, 1.0)),
+        make_marker(12, kind=12, points=[*triangle, (1, 0, 1)], color=make_color(0.6, 0.3, 1.0)),
     ]
     for number, example in enumerate(markers):
         example.pose.position.y = (number - 6) * 1.5
@@ -85,7 +85,7 @@ def test_all_marker_types_are_drawn(live, open_page, tmp_path):
     mesh.write_bytes(CUBE_STL)
     viewer = live(MARKERS)
     page = open_page(viewer, wait=False)
-    viewer.publish("/marks", MarkerArray(markers=all_kinds(mesh)))
+    viewer.publish("/marks", MarkerArray(markers=make_all_markers(mesh)))
     until(page, "Object.keys(lw.displays[1]?.drawn?.markers ?? {}).length === 13")
     viewer.settle(page)  # markers are listed before they have poses
     drawing = page.evaluate("() => window.linkwright.displays[1].drawn")
@@ -95,9 +95,9 @@ def test_all_marker_types_are_drawn(live, open_page, tmp_path):
     assert low[1] == pytest.approx(-9.2, abs=0.1)
     assert high[1] == pytest.approx(9.2, abs=0.2)
     assert {level for level, _ in viewer.status("Marks").values()} == {"ok"}
-    viewer.publish("/marks", MarkerArray(markers=[marker(1, action=Marker.DELETE)]))
+    viewer.publish("/marks", MarkerArray(markers=[make_marker(1, action=Marker.DELETE)]))
     until(page, "!('a/1' in lw.displays[1].drawn.markers)")
-    viewer.publish("/marks", MarkerArray(markers=[marker(0, ns="", action=Marker.DELETEALL)]))
+    viewer.publish("/marks", MarkerArray(markers=[make_marker(0, ns="", action=Marker.DELETEALL)]))
     until(page, "Object.keys(lw.displays[1].drawn.markers).length === 0")
 
 
@@ -106,7 +106,7 @@ def test_unreadable_marker_mesh_is_reported(live, open_page, tmp_path):
     mesh.write_text("no mesh")
     viewer = live(MARKERS)
     page = open_page(viewer, wait=False)
-    mesh_marker = marker(1, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri())
+    mesh_marker = make_marker(1, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri())
     viewer.publish("/marks", MarkerArray(markers=[mesh_marker]))
     until(page, "lw.displays[1]?.status.some(row => row.name === 'a/1' && row.level === 'error')")
     assert "Mesh resource marker [a/1]" in viewer.status("Marks")["a/1"][1]
@@ -115,7 +115,9 @@ def test_unreadable_marker_mesh_is_reported(live, open_page, tmp_path):
 def test_box_selection_ignores_hidden_markers(live, open_page):
     viewer = live(MARKERS.replace("Pitch: 0.6", "Pitch: 0").replace("Yaw: 0.8", "Yaw: 0"))
     page = open_page(viewer, wait=False)
-    wall, hidden, neighbor = (marker(number, kind=Marker.CUBE, color=color(0.0, 1.0, 0.0)) for number in range(3))
+    wall, hidden, neighbor = (
+        make_marker(number, kind=Marker.CUBE, color=make_color(0.0, 1.0, 0.0)) for number in range(3)
+    )
     wall.pose.position.x, wall.scale.y, wall.scale.z = 2.0, 3.0, 3.0
     neighbor.pose.position.y = 3.0
     viewer.publish("/marks", MarkerArray(markers=[wall, hidden, neighbor]))
@@ -150,7 +152,7 @@ INTERACTIVE = configuration(
 def test_interactive_marker_is_dragged_along_its_axis(live, open_page):
     along_x = Control(name="x", interaction_mode=Control.MOVE_AXIS)
     viewer = live(INTERACTIVE)
-    server = viewer.run(lambda: Server(viewer._graph, interactive_marker("one", along_x)))
+    server = viewer.run(lambda: MarkerServer(viewer._graph, interactive_marker("one", along_x)))
     page = open_page(viewer, wait=False)
     until(page, "lw.displays[0]?.drawn?.one !== undefined")
     until(page, "lw.tools.length > 0")

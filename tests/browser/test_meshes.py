@@ -9,15 +9,15 @@ import struct
 import pytest
 import trimesh
 
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
 
-KINDS = ("stl", "obj", "glb", "dae")
+FILE_FORMATS = ("stl", "obj", "glb", "dae")
 
 
-def link(name: str, mesh: str, y: float) -> str:
+def link_element(name: str, mesh: str, y: float) -> str:
     return (
         f'<link name="{name}"><visual><geometry><mesh filename="{mesh}"/></geometry>'
         '<material name="green"><color rgba="0 0.8 0.2 1"/></material></visual></link>'
@@ -34,7 +34,10 @@ def robot(tmp_path):
     shutil.copy(PACKAGE / "meshes" / "kinect.dae", tmp_path / "box.dae")
 
     def write(*extra_links: str) -> str:
-        links = [link(extension, f"file://{tmp_path}/box.{extension}", 0.4 * n) for n, extension in enumerate(KINDS)]
+        links = [
+            link_element(extension, f"file://{tmp_path}/box.{extension}", 0.4 * n)
+            for n, extension in enumerate(FILE_FORMATS)
+        ]
         path = tmp_path / "robot.urdf"
         path.write_text(f'<robot name="r"><link name="base"/>{"".join(links)}{"".join(extra_links)}</robot>')
         return str(path)
@@ -42,25 +45,27 @@ def robot(tmp_path):
     return write
 
 
-def rows(page):
+def mesh_rows(page):
     display = next(display for display in state(page, "displays") if display["name"] == "RobotModel")
     return {row["name"]: (row["level"], row["text"]) for row in display["status"]}
 
 
 def test_all_mesh_formats_are_drawn(start, open_page, robot):
     page = open_page(start("view", robot()))
-    assert state(page, "robot.visuals") == len(KINDS)
-    becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
+    assert state(page, "robot.visuals") == len(FILE_FORMATS)
+    wait_until_equal(
+        lambda: [mesh_rows(page).get(kind, ("", ""))[0] for kind in FILE_FORMATS], ["ok"] * len(FILE_FORMATS)
+    )
 
 
 def test_malformed_collada_is_read_as_leniently_as_by_rviz(start, open_page, robot, tmp_path):
     """Exporters write invalid XML: assimp names the nodes of an STL ``<STL_BINARY>``."""
-    proper = (tmp_path / "box.dae").read_text()
-    loose = proper.replace('<node id="body"', '<!-- made -- by hand --><node id="<STL_BINARY>"', 1)
-    assert loose != proper
-    (tmp_path / "loose.dae").write_text(loose)
-    page = open_page(start("view", robot(link("loose", f"file://{tmp_path}/loose.dae", 2))))
-    becomes(lambda: rows(page).get("loose", ("", ""))[0], "ok")
+    well_formed = (tmp_path / "box.dae").read_text()
+    malformed = well_formed.replace('<node id="body"', '<!-- made -- by hand --><node id="<STL_BINARY>"', 1)
+    assert malformed != well_formed
+    (tmp_path / "loose.dae").write_text(malformed)
+    page = open_page(start("view", robot(link_element("loose", f"file://{tmp_path}/loose.dae", 2))))
+    wait_until_equal(lambda: mesh_rows(page).get("loose", ("", ""))[0], "ok")
 
 
 STL_OF_NAN = b"\0" * 80 + struct.pack("<I12fH", 1, *[0.0] * 3, math.nan, *[0.0] * 8, 0)
@@ -83,19 +88,21 @@ BROKEN = {
 def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
     for name, (data, _) in BROKEN.items():
         (tmp_path / name).write_bytes(data)
-    links = [link(f"broken_{name[:-4]}", f"file://{tmp_path}/{name}", -0.4) for name in BROKEN]
+    links = [link_element(f"broken_{name[:-4]}", f"file://{tmp_path}/{name}", -0.4) for name in BROKEN]
     page = open_page(start("view", robot(*links)))
     files_by_link = {f"broken_{name[:-4]}": (name, message) for name, (_, message) in BROKEN.items()}
-    becomes(
-        lambda: {link: rows(page).get(link, ("", ""))[0] for link in files_by_link},
+    wait_until_equal(
+        lambda: {link: mesh_rows(page).get(link, ("", ""))[0] for link in files_by_link},
         dict.fromkeys(files_by_link, "error"),
     )
     for link_name, (name, message) in files_by_link.items():
-        text = rows(page)[link_name][1]
+        text = mesh_rows(page)[link_name][1]
         assert name in text
         assert message in text
-    becomes(lambda: [rows(page).get(kind, ("", ""))[0] for kind in KINDS], ["ok"] * len(KINDS))
-    assert state(page, "robot.visuals") == len(KINDS)
+    wait_until_equal(
+        lambda: [mesh_rows(page).get(kind, ("", ""))[0] for kind in FILE_FORMATS], ["ok"] * len(FILE_FORMATS)
+    )
+    assert state(page, "robot.visuals") == len(FILE_FORMATS)
 
 
 def test_slow_mesh_is_reported_until_loaded(start, open_page, robot):
@@ -115,7 +122,7 @@ def test_slow_mesh_is_reported_until_loaded(start, open_page, robot):
     notice.wait_for(state="hidden")
     page.locator(".row", has_text="Status: Ok").nth(1).wait_for()
     page.wait_for_function("window.linkwright?.ready === true")
-    assert state(page, "robot.visuals") == len(KINDS)
+    assert state(page, "robot.visuals") == len(FILE_FORMATS)
 
 
 def test_robot_without_readable_meshes_is_reported_and_shown_by_frames(start, open_page, tmp_path):

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.conftest import becomes, until
+from tests.browser.conftest import until, wait_until_equal
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -47,7 +47,7 @@ def add_box(page) -> None:
     page.get_by_role("option", name="box", selected=True).wait_for()
 
 
-def number(page, key: str):
+def locate_number(page, key: str):
     return page.locator(f"[data-key='{key}'] input")
 
 
@@ -57,14 +57,14 @@ def test_added_box_is_moved_undone_and_saved(start, open_page, tmp_path):
     undo, redo, save = (bar.get_by_role("button", name=name) for name in ("Undo", "Redo", "Save the world"))
     assert undo.is_disabled()
     add_box(page)
-    x = float(number(page, "pose/0").input_value())
-    number(page, "pose/0").fill("1.5")
-    number(page, "pose/0").press("Enter")
+    x = float(locate_number(page, "pose/0").input_value())
+    locate_number(page, "pose/0").fill("1.5")
+    locate_number(page, "pose/0").press("Enter")
     until(page, f"Math.abs({BOUNDS}?.min[0] - 1.25) < 1e-3")
     undo.click()
-    becomes(lambda: float(number(page, "pose/0").input_value()), x)
+    wait_until_equal(lambda: float(locate_number(page, "pose/0").input_value()), x)
     redo.click()
-    becomes(lambda: number(page, "pose/0").input_value(), "1.5")
+    wait_until_equal(lambda: locate_number(page, "pose/0").input_value(), "1.5")
     assert redo.is_disabled()
     assert page.get_by_role("img", name="unsaved changes").is_visible()
     assert path.read_text() == YARD
@@ -81,17 +81,17 @@ def test_gizmo_moves_selection_and_keys_group_and_delete(start, open_page, tmp_p
     page, path = open_modeling(start, open_page, tmp_path)
     page.get_by_role("button", name="Snap to the grid").click()
     add_box(page)
-    number(page, "pose/2").fill("0")  # the middle of the box is in the middle of the view
-    number(page, "pose/2").press("Enter")
+    locate_number(page, "pose/2").fill("0")  # the middle of the box is in the middle of the view
+    locate_number(page, "pose/2").press("Enter")
     until(page, f"Math.abs({BOUNDS}?.min[2] + 0.25) < 1e-3")
-    position = [number(page, f"pose/{axis}").input_value() for axis in range(3)]
+    position = [locate_number(page, f"pose/{axis}").input_value() for axis in range(3)]
     box = page.locator(".canvas-box canvas").bounding_box()
     x, y = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
     page.mouse.move(x, y)
     page.mouse.down()
     page.mouse.move(x + 60, y, steps=4)
     page.mouse.up()
-    wait_until(lambda: [number(page, f"pose/{axis}").input_value() for axis in range(3)] != position)
+    wait_until(lambda: [locate_number(page, f"pose/{axis}").input_value() for axis in range(3)] != position)
     page.get_by_role("option", name="crate").click(modifiers=["Shift"])
     page.keyboard.press("Control+g")
     page.get_by_role("option", name="group", selected=True).wait_for()

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import trimesh
 
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.places import PACKAGE, TUTORIAL_PACKAGES, without_meshes
 from tests.waiting import wait_until
 
@@ -49,7 +49,7 @@ def test_model_is_shown(start, open_page, model, links):
     view = state(page, "view")
     assert (view["distance"], view["pitch"], view["yaw"]) == pytest.approx((1.7, 0.33, 5.5))
     assert [display["name"] for display in state(page, "displays")] == ["Grid", "RobotModel", "TF"]
-    becomes(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
+    wait_until_equal(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
 
 
 @pytest.mark.parametrize("size", [0.05, 20.0])
@@ -69,14 +69,14 @@ def test_view_fits_model_without_configuration(start, open_page, tmp_path, size)
 
 def test_grid_fits_single_mesh_model_unless_user_changed_it(start, open_page, tmp_path):
     trimesh.creation.box((100.0, 20.0, 15.0)).export(tmp_path / "hull.stl")
-    ship = tmp_path / "ship.urdf"
+    model_file = tmp_path / "ship.urdf"
     visual = f'<visual><geometry><mesh filename="file://{tmp_path}/hull.stl"/></geometry></visual>'
-    ship.write_text(f'<robot name="ship"><link name="hull">{visual}</link></robot>', encoding="utf-8")
-    program = start("view", str(ship))
+    model_file.write_text(f'<robot name="ship"><link name="hull">{visual}</link></robot>', encoding="utf-8")
+    program = start("view", str(model_file))
     page = open_page(program)
     cell = page.locator('[data-key="display-1/Cell Size"] input')
     page.locator('[data-key="display-1"] .twist').click()
-    becomes(cell.input_value, "100")
+    wait_until_equal(cell.input_value, "100")
     cell.fill("20")
     page.keyboard.press("Enter")
     second_page = open_page(program)

@@ -15,14 +15,14 @@ from tests.browser.test_markers import CUBE_STL
 from tests.rviz.displays.moveit.arm import (
     ARM,
     SolidPrimitive,
-    attached,
-    collision_object,
-    pose,
-    primitive,
-    scene,
-    signed,
-    state,
-    trajectory,
+    as_signed_bytes,
+    make_attached_object,
+    make_collision_object,
+    make_pose,
+    make_primitive,
+    make_robot_state,
+    make_scene,
+    make_trajectory,
 )
 
 pytestmark = pytest.mark.browser
@@ -43,28 +43,34 @@ MOTION_PLANNING = configuration(
 )
 
 
-def kitchen(*, wrist: float = 0.2):
+def make_kitchen_scene(*, wrist: float = 0.2):
     """Return a scene with a table, a ball, a cone, an octomap, and a cup in the hand."""
-    robot = state(shoulder=0.3, wrist=wrist)
-    cylinder = primitive(SolidPrimitive.CYLINDER, 0.3, 0.08)
+    robot = make_robot_state(shoulder=0.3, wrist=wrist)
+    cylinder = make_primitive(SolidPrimitive.CYLINDER, 0.3, 0.08)
     robot.attached_collision_objects = [
-        attached(
+        make_attached_object(
             "hand",
-            collision_object("cup", cylinder, frame="hand", at=pose(z=0.25)),
+            make_collision_object("cup", cylinder, frame="hand", object_pose=make_pose(z=0.25)),
         )
     ]
-    kitchen_scene = scene(
-        collision_object("table", primitive(SolidPrimitive.BOX, 1.0, 2.0, 0.05), at=pose(x=1.6, z=0.4)),
-        collision_object("ball", primitive(SolidPrimitive.SPHERE, 0.2), at=pose(x=1.6, y=0.5, z=0.63)),
-        collision_object("cone", primitive(SolidPrimitive.CONE, 0.5, 0.2), at=pose(x=1.6, y=-0.5, z=0.68)),
+    kitchen_scene = make_scene(
+        make_collision_object(
+            "table", make_primitive(SolidPrimitive.BOX, 1.0, 2.0, 0.05), object_pose=make_pose(x=1.6, z=0.4)
+        ),
+        make_collision_object(
+            "ball", make_primitive(SolidPrimitive.SPHERE, 0.2), object_pose=make_pose(x=1.6, y=0.5, z=0.63)
+        ),
+        make_collision_object(
+            "cone", make_primitive(SolidPrimitive.CONE, 0.5, 0.2), object_pose=make_pose(x=1.6, y=-0.5, z=0.68)
+        ),
         robot=robot,
     )
     octomap = kitchen_scene.world.octomap
-    octomap.header.frame_id, octomap.origin = "base", pose(x=-1.0, y=-1.0)
+    octomap.header.frame_id, octomap.origin = "base", make_pose(x=-1.0, y=-1.0)
     octomap.octomap.id, octomap.octomap.binary, octomap.octomap.resolution = "OcTree", True, 0.1
-    inner, leaves = struct.pack("<H", 0xFFFF), struct.pack("<H", 0xAAAA)
+    inner_node, leaf_node = struct.pack("<H", 0xFFFF), struct.pack("<H", 0xAAAA)
     octree_data = struct.pack("<H", 3 << 14) + struct.pack("<H", 3) * 12
-    octomap.octomap.data = signed(octree_data + inner + (inner + leaves * 8) * 8)
+    octomap.octomap.data = as_signed_bytes(octree_data + inner_node + (inner_node + leaf_node * 8) * 8)
     return kitchen_scene
 
 
@@ -74,7 +80,7 @@ def test_planning_scene_and_trajectory_are_drawn(live, open_page, tmp_path):
     viewer = live(MOTION_PLANNING)
     viewer.publish("/robot_description", String(data=ARM.replace('<sphere radius="0.1"/>', mesh)), DESCRIPTION_QOS)
     page = open_page(viewer, wait=False)
-    viewer.publish("/monitored_planning_scene", kitchen())
+    viewer.publish("/monitored_planning_scene", make_kitchen_scene())
     markers = "lw.displays[1]?.drawn?.markers"
     until(
         page,
@@ -84,7 +90,7 @@ def test_planning_scene_and_trajectory_are_drawn(live, open_page, tmp_path):
         page,
         f"{markers}?.['Scene Robot/hand'] === 'mesh' && {markers}?.['Scene Robot holds/cup'] === 'cylinder'",
     )
-    viewer.publish("/display_planned_path", trajectory(*(0.1 * step for step in range(15))))
+    viewer.publish("/display_planned_path", make_trajectory(*(0.1 * step for step in range(15))))
     until(
         page,
         f"{markers}?.['Planned Path/hand'] === 'mesh' && {markers}?.['Goal State/upper'] === 'cylinder'",
@@ -100,7 +106,7 @@ def test_moving_mesh_is_not_reloaded(live, open_page, tmp_path):
     viewer = live(configuration("- {Class: moveit_rviz_plugin/PlanningScene, Enabled: true, Name: Scene}"))
     viewer.publish("/robot_description", String(data=ARM.replace('<sphere radius="0.1"/>', mesh)), DESCRIPTION_QOS)
     page = open_page(viewer, wait=False)
-    viewer.publish("/monitored_planning_scene", scene(robot=state(shoulder=0.0)))
+    viewer.publish("/monitored_planning_scene", make_scene(robot=make_robot_state(shoulder=0.0)))
     until(
         page,
         "lw.displays[0]?.drawn?.markers?.['Scene Robot/hand'] === 'mesh' && "
@@ -108,7 +114,7 @@ def test_moving_mesh_is_not_reloaded(live, open_page, tmp_path):
     )
     loads = "performance.getEntriesByType('resource').filter((resource) => resource.name.includes('.stl')).length"
     until(page, f"{loads} === 1")
-    viewer.publish("/monitored_planning_scene", scene(robot=state(shoulder=math.pi), diff=True))
+    viewer.publish("/monitored_planning_scene", make_scene(robot=make_robot_state(shoulder=math.pi), diff=True))
     until(page, "lw.displays[0]?.drawn?.bounds?.[0]?.[2] < -0.9")
     assert page.evaluate(loads) == 1
 
@@ -118,6 +124,6 @@ def test_missing_mesh_is_reported(live, open_page):
     text = ARM.replace('<sphere radius="0.1"/>', '<mesh filename="file:///nowhere/hand.stl"/>')
     viewer.publish("/robot_description", String(data=text), DESCRIPTION_QOS)
     page = open_page(viewer, wait=False)
-    viewer.publish("/monitored_planning_scene", scene(robot=state(shoulder=0.0)))
+    viewer.publish("/monitored_planning_scene", make_scene(robot=make_robot_state(shoulder=0.0)))
     until(page, "lw.displays[0]?.drawn?.markers?.['Scene Robot/upper'] === 'cylinder'")
     until(page, "lw.displays[0]?.status.some((row) => row.name === 'hand' && row.text.includes('no file'))")

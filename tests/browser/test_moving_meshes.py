@@ -27,9 +27,9 @@ DISPLAYS = """
   Name: RobotModel
 """
 LINKS = ("round", "edged", "stretched")
-FACES = {"ball.stl": 20 * 4**5, "box.glb": 12 * 4**4}
+FACE_COUNTS = {"ball.stl": 20 * 4**5, "box.glb": 12 * 4**4}
 
-SLOW = """() => {
+SLOW_PAGE = """() => {
   const hold = () => {
     for (const begin = performance.now(); performance.now() - begin < 80; );
     if (window.slow) requestAnimationFrame(hold);
@@ -61,7 +61,7 @@ def keep_moving(viewer: LiveViewer) -> Iterator[None]:
         viewer.place("round", 0.0, 0.0, 0.0)
 
 
-def pixels(page: Any) -> np.ndarray:
+def scene_pixels(page: Any) -> np.ndarray:
     """Return the scene as on the screen: height x width x 3."""
     box = page.locator(".canvas-box canvas").bounding_box()
     # The notice about the slow page covers the upper right corner, and the axes cover the lower one.
@@ -92,20 +92,20 @@ def test_moving_meshes_are_simplified_and_look_the_same(live, open_page, tmp_pat
     viewer.publish("robot_description", String(data=text), DESCRIPTION_QOS)
     page = open_page(viewer)
     until(page, "lw.settled && lw.robot.visuals === 3")
-    still = pixels(page)
+    still = scene_pixels(page)
     assert state(page, "displays[0].drawn.moving") == {"pieces": 0, "triangles": 0}
 
-    all_of_them = 2 * FACES["ball.stl"] + FACES["box.glb"]
-    page.evaluate(SLOW)
+    all_of_them = 2 * FACE_COUNTS["ball.stl"] + FACE_COUNTS["box.glb"]
+    page.evaluate(SLOW_PAGE)
     with keep_moving(viewer):
         until(page, "lw.displays[0].drawn.moving.pieces === 3")
         triangles = state(page, "displays[0].drawn.moving.triangles")
-        image_in_motion = pixels(page)
+        image_in_motion = scene_pixels(page)
     assert 0 < triangles < all_of_them / 4
 
     page.evaluate("() => { window.slow = false; }")
     viewer.settle(page)
-    np.testing.assert_array_equal(pixels(page), still)
+    np.testing.assert_array_equal(scene_pixels(page), still)
 
     # Coarse frames have larger pixels: they differ along edges, but hardly within surfaces.
     difference = np.abs(image_in_motion - still).max(axis=2)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.browser.axe import violations
+from tests.browser.axe import find_violations
 from tests.browser.conftest import until
 from tests.browser.live import configuration
 from tests.navigation.page.test_navigation_panel import Nav2
@@ -29,7 +29,7 @@ def test_configuration_opens_navigation_panel_and_its_buttons_work(live, open_pa
     viewer.run(lambda: (nav2.publish_goal_states(2), nav2.publish_progress(3.456)))
     until(page, f"String({VALUES}) === 'active,active,active,1 min 15 s,3.46 m,12.5 s,2'")
     page.screenshot(path=tmp_path / "navigation.png")
-    assert violations(page, ".navigation") == []
+    assert find_violations(page, ".navigation") == []
     page.get_by_role("button", name="Cancel", exact=True).click()
     wait_until(lambda: nav2.cancel_count == 1)
     panel = page.locator(".navigation")
@@ -44,6 +44,6 @@ def test_configuration_opens_navigation_panel_and_its_buttons_work(live, open_pa
     notice = page.get_by_role("alert").filter(has_text="The goal was aborted")
     notice.filter(has_text="is in an obstacle").wait_for()
     page.screenshot(path=tmp_path / "failed.png")
-    assert violations(page, "[data-notice=goal]") == []
+    assert find_violations(page, "[data-notice=goal]") == []
     notice.get_by_role("button").click()
     notice.wait_for(state="hidden")

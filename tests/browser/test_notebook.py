@@ -1,4 +1,7 @@
-"""`linkwright.show` in a notebook: a cell of JupyterLab shows the robot, with sliders for its joints."""
+"""`linkwright.show` in a notebook.
+
+A cell of JupyterLab shows the robot, with sliders for its joints.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ import pytest
 
 from linkwright import show
 from linkwright.diagnostics import LinkwrightError
-from tests.browser.conftest import becomes, state
+from tests.browser.conftest import state, wait_until_equal
 from tests.waiting import wait_until
 
 ARM = """<robot name="arm">
@@ -82,14 +85,14 @@ def test_jupyterlab_cell_shows_robot_with_working_slider(browser, lab):
     page.locator(".jp-Cell .cm-content").first.click()
     page.keyboard.press("Shift+Enter")
     frame = page.wait_for_selector("iframe[title=arm]").content_frame()
-    becomes(lambda: frame.evaluate("() => window.linkwright?.ready === true"), True)
-    level = highest(frame)
+    wait_until_equal(lambda: frame.evaluate("() => window.linkwright?.ready === true"), True)
+    level = highest_point(frame)
     frame.get_by_role("slider").first.fill("0.5")
-    becomes(lambda: highest(frame) > level + 0.01, True)
+    wait_until_equal(lambda: highest_point(frame) > level + 0.01, True)
     page.close()
 
 
-def highest(frame) -> float:
+def highest_point(frame) -> float:
     """Return the height of the highest point of the tip, in meters."""
     robot = next(display for display in state(frame, "displays") if display["class"].endswith("RobotModel"))
     (visual,) = robot["drawn"]["links"]["tip"]["visuals"]

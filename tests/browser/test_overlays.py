@@ -1,4 +1,7 @@
-"""Overlays on the scene: everything open at once, in windows of three sizes, and nothing overlaps."""
+"""Overlays on the scene.
+
+Nothing overlaps when everything is open at once, in windows of three sizes.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from PIL import Image
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from tests.browser.arm import write_arm
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.kept_pictures import keep
 from tests.browser.live import configuration
 
@@ -48,8 +51,11 @@ TELL = """() => {
 }"""
 
 
-def overlapping(boxes: dict[str, list[float]]) -> list[str]:
-    """Return the pairs of boxes that overlap by more than an edge, and the boxes outside the scene."""
+def find_overlaps(boxes: dict[str, list[float]]) -> list[str]:
+    """Return the pairs of boxes that overlap by more than an edge.
+
+    Boxes outside the scene are returned, too.
+    """
     left, top, right, bottom = boxes.pop(".scene-box")
     overlaps = [
         f"{first} over {second}"
@@ -72,19 +78,19 @@ def test_scene_overlays_do_not_overlap(start, open_page, tmp_path):
     page.get_by_role("treeitem").filter(has_text="Links").last.locator(".row-name").dblclick()
     page.get_by_role("treeitem").filter(has_text="fore").first.locator(".row-name").click()
     page.locator(".selection-card").wait_for()
-    unfold(page)
+    unfold_overlays(page)
     page.locator(".inspect > button").click()  # the clicks on rows have closed the card of Inspect
     file.write_text(file.read_text().replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     for width, height in SIZES:
         page.set_viewport_size({"width": width, "height": height})
         page.evaluate(TELL)
-        becomes(lambda: overlapping(page.evaluate(BOXES, list(OVERLAYS))), [])
+        wait_until_equal(lambda: find_overlaps(page.evaluate(BOXES, list(OVERLAYS))), [])
         until(page, "lw.settled")
         keep(page, f"overlays-{width}x{height}")
 
 
-def unfold(page) -> None:
+def unfold_overlays(page) -> None:
     if page.locator(".selection-card .fold").get_attribute("aria-expanded") == "false":
         page.locator(".selection-card .fold").click()
 
@@ -94,7 +100,10 @@ WIDE = '<robot name="wide"><link name="base"><visual><geometry><box size="2 2 1"
 
 @pytest.mark.parametrize(("width", "height"), SIZES)
 def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, height):
-    """A card that would cover the robot is folded. If the user unfolds it, the robot moves aside until it is closed."""
+    """A card that would cover the robot is folded.
+
+    If the user unfolds it, the robot moves aside until it is closed.
+    """
     (tmp_path / "wide.urdf").write_text(WIDE)
     page = open_page(start("view", str(tmp_path / "wide.urdf")))
     page.set_viewport_size({"width": width, "height": height})
@@ -105,7 +114,7 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
     canvas = page.locator(".canvas-box canvas")
     middle = canvas.bounding_box()
     canvas.click(position={"x": middle["width"] / 2, "y": middle["height"] / 2})
-    card, fold = page.locator(".selection-card"), page.locator(".selection-card .fold")
+    card, fold_button = page.locator(".selection-card"), page.locator(".selection-card .fold")
     card.wait_for()
 
     def card_covers_robot() -> bool:
@@ -113,17 +122,17 @@ def test_selection_card_does_not_cover_robot(start, open_page, tmp_path, width, 
         return state(page, "robotsRightEdge") > box["x"] - canvas.bounding_box()["x"]
 
     reaches = right_edge > middle["width"] - 10 - min(256, 0.55 * (middle["width"] - 20))
-    assert fold.get_attribute("aria-expanded") == ("false" if reaches else "true")
+    assert fold_button.get_attribute("aria-expanded") == ("false" if reaches else "true")
     if reaches:
         assert card.bounding_box()["height"] < 45
-        fold.click()
-        becomes(lambda: state(page, "robotsRightEdge") < right_edge, True)
+        fold_button.click()
+        wait_until_equal(lambda: state(page, "robotsRightEdge") < right_edge, True)
         fit.click()  # moving aside was not enough
-    becomes(card_covers_robot, False)
+    wait_until_equal(card_covers_robot, False)
     page.keyboard.press("Escape")
     card.wait_for(state="hidden")
     page.keyboard.press("Shift+F")
-    becomes(lambda: state(page, "robotsRightEdge"), pytest.approx(right_edge, abs=1))
+    wait_until_equal(lambda: state(page, "robotsRightEdge"), pytest.approx(right_edge, abs=1))
 
 
 def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
@@ -134,10 +143,10 @@ def test_robot_shifted_aside_stays_on_canvas(start, open_page, tmp_path):
     page.get_by_role("toolbar", name="Tools", exact=True).get_by_role("button", name="Fit", exact=True).click()
     until(page, "lw.settled")
     # The robot is in the middle of the canvas, so its margins on the left and right are equal.
-    reach, width = state(page, "robotsRightEdge"), page.locator(".canvas-box canvas").bounding_box()["width"]
+    right_edge, width = state(page, "robotsRightEdge"), page.locator(".canvas-box canvas").bounding_box()["width"]
     page.locator(".inspect > button").click()
     page.locator(".inspect-card").wait_for()
-    becomes(lambda: state(page, "robotsRightEdge"), pytest.approx(reach - (width - reach), abs=1))
+    wait_until_equal(lambda: state(page, "robotsRightEdge"), pytest.approx(right_edge - (width - right_edge), abs=1))
 
 
 TALL = """\
@@ -170,13 +179,13 @@ def test_tall_robot_moves_below_banner_and_returns(start, open_page, tmp_path, w
     file.write_text(TALL.replace("</robot>", "<link/></robot>"))
     page.locator(".banner").wait_for()
     if height > 600:
-        becomes(lambda: count_head_pixels() > 0.98 * head_before, True)
+        wait_until_equal(lambda: count_head_pixels() > 0.98 * head_before, True)
     page.keyboard.press("Shift+F")  # moving down was not enough
-    becomes(lambda: count_head_pixels() > 0.15 * head_before, True)
+    wait_until_equal(lambda: count_head_pixels() > 0.15 * head_before, True)
     file.write_text(TALL)
     page.locator(".banner").wait_for(state="hidden")
     page.keyboard.press("Shift+F")
-    becomes(count_head_pixels, head_before)
+    wait_until_equal(count_head_pixels, head_before)
 
 
 def test_fit_button_shows_whole_robot(start, open_page, tmp_path):
@@ -204,7 +213,7 @@ def test_replaced_description_is_reported(live, open_page):
     publisher = viewer.run(lambda: other_node.create_publisher(String, "/robot_description", DESCRIPTION_QOS))
     viewer.run(lambda: publisher.publish(String(data=WIDE.replace('"wide"', '"narrow"'))))
     notice.get_by_text("Another node now publishes the description").wait_for()
-    becomes(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)
+    wait_until_equal(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)
 
 
 def test_missing_fixed_frame_offers_existing_frame_and_robot_display(live, open_page):

@@ -1,4 +1,7 @@
-"""The open panels: the panels of the file on the first visit of a browser, and then the user's."""
+"""The open panels.
+
+A browser opens the panels of the file on its first visit, and then the user's.
+"""
 
 from __future__ import annotations
 
@@ -7,15 +10,15 @@ from pathlib import Path
 import pytest
 
 from linkwright.rviz import RvizConfig
-from tests.browser.conftest import becomes
+from tests.browser.conftest import wait_until_equal
 from tests.browser.live import configuration
-from tests.panels.panels import RVIZ_PANELS, panels_of, window_state
+from tests.panels.panels import RVIZ_PANELS, open_panels, window_state
 
 pytestmark = pytest.mark.browser
 
 GRID = "- Class: rviz_default_plugins/Grid\n  Enabled: true\n  Name: Grid\n  Value: true"
-OURS = {"Links", "Diagnostics"}
-USUAL = ("Displays", "Views", "Tool Properties", "Selection", "Time")
+LINKWRIGHT_PANELS = {"Links", "Diagnostics"}
+DEFAULT_PANELS = ("Displays", "Views", "Tool Properties", "Selection", "Time")
 
 
 @pytest.fixture(autouse=True)
@@ -24,8 +27,11 @@ def _user_state(tmp_path, monkeypatch):
 
 
 def wait_for_panels(page, *names: str) -> None:
-    """Wait until exactly these panels are open, beside the scene and the panels that RViz does not have."""
-    expected = sorted({*names, *OURS})
+    """Wait until exactly these panels are open.
+
+    The scene and the panels that RViz does not have are always open.
+    """
+    expected = sorted({*names, *LINKWRIGHT_PANELS})
     page.wait_for_function(
         """wanted => {
           const tabs = [...document.querySelectorAll('.panel-tab')].map(tab => tab.textContent.split(' (')[0].trim());
@@ -36,13 +42,13 @@ def wait_for_panels(page, *names: str) -> None:
     )
 
 
-def close(page, name: str) -> None:
+def close_panel(page, name: str) -> None:
     tab = page.locator(".panel-tab", has_text=name)
     tab.locator(".tab-title").click()
     tab.locator(".tab-close").click()
 
 
-def choose(page, name: str) -> None:
+def choose_menu_entry(page, name: str) -> None:
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
 
@@ -69,7 +75,7 @@ def test_rviz_file_opens_panels_that_rviz_shows(live, open_page, tmp_path: Path)
     other_path.write_text("Panels:\n  - {Class: rviz_common/Time, Name: Time}\n" + configuration(GRID))
     viewer = live(configuration(GRID))
     page = open_page(viewer, wait=False)
-    wait_for_panels(page, *USUAL)  # the file does not list panels
+    wait_for_panels(page, *DEFAULT_PANELS)  # the file does not list panels
     open_file(page, path)
     wait_for_panels(page, "Displays", "Views")
     open_file(page, other_path)
@@ -78,7 +84,7 @@ def test_rviz_file_opens_panels_that_rviz_shows(live, open_page, tmp_path: Path)
     wait_for_panels(page, "Displays", "Views")
     # The scene takes the remaining width.
     columns = ("Displays", "Views", "Diagnostics")
-    becomes(lambda: [column_width(page, column) for column in columns], pytest.approx([320, 290, 290], abs=3))
+    wait_until_equal(lambda: [column_width(page, column) for column in columns], pytest.approx([320, 290, 290], abs=3))
     assert not is_unsaved(page)
     page.keyboard.press("Control+s")
     assert viewer.run(viewer.viewer.config.text) == path.read_text()
@@ -89,26 +95,26 @@ def test_opened_and_closed_panels_are_remembered_and_saved(live, open_page, tmp_
     path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
     viewer = live(configuration(GRID))
     page = open_page(viewer, wait=False)
-    wait_for_panels(page, *USUAL)
+    wait_for_panels(page, *DEFAULT_PANELS)
     open_file(page, path)
     wait_for_panels(page, "Displays", "Views")
     neighbor = open_page(viewer, wait=False)
     wait_for_panels(neighbor, "Displays", "Views")
-    close(page, "Views")
-    choose(page, "Selection")
+    close_panel(page, "Views")
+    choose_menu_entry(page, "Selection")
     wait_for_panels(page, "Displays", "Selection")
     page.locator(".file-name .unsaved").wait_for()
-    choose(page, "Plots")  # RViz does not have this panel
+    choose_menu_entry(page, "Plots")  # RViz does not have this panel
     page.reload()
     page.locator(".panel-tab", has_text="Plots").wait_for()
-    close(page, "Plots")
+    close_panel(page, "Plots")
     wait_for_panels(page, "Displays", "Selection")
     # Panels of other pages stay, and a new browser starts with the file's panels.
     wait_for_panels(neighbor, "Displays", "Views")
     wait_for_panels(open_page(viewer, wait=False), "Displays", "Selection")
     page.keyboard.press("Control+s")
     page.locator(".file-name .unsaved").wait_for(state="detached")
-    assert panels_of(RvizConfig.load(path)) == ["displays", "selection"]
+    assert open_panels(RvizConfig.load(path)) == ["displays", "selection"]
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitem", name="Reset layout").click()
     wait_for_panels(page, "Displays", "Selection")
@@ -125,9 +131,9 @@ def test_reopened_diagnostics_tab_shows_count(start, open_page, tmp_path: Path):
     page = open_page(start("view", str(tmp_path / "broken.urdf")), wait=False)
     page.get_by_role("tab", name="Diagnostics (").wait_for()
     text = page.locator(".panel-tab", has_text="Diagnostics").inner_text()
-    close(page, "Diagnostics")
+    close_panel(page, "Diagnostics")
     page.get_by_role("tab", name="Diagnostics").wait_for(state="detached")
-    choose(page, "Diagnostics")
+    choose_menu_entry(page, "Diagnostics")
     page.get_by_role("tab", name=text.strip(), exact=True).wait_for()
 
 

@@ -9,30 +9,30 @@ import pytest
 import yaml
 
 from linkwright.messages import get_message
-from tests.browser.conftest import becomes, count_frames, state, until
+from tests.browser.conftest import count_frames, state, until, wait_until_equal
 from tests.browser.pixels import Color, colors_at
 from tests.images.test_images import image
-from tests.rviz.clouds.test_clouds import cloud, depth_image, scan, xyz
-from tests.rviz.displays.test_cloud_displays import camera_info, placed
-from tests.rviz.displays.test_map_displays import cell_grid, grid, update
+from tests.rviz.clouds.test_clouds import make_cloud, make_depth_image, make_scan, xyz_array
+from tests.rviz.displays.test_cloud_displays import make_camera_info, with_frame
+from tests.rviz.displays.test_map_displays import make_cell_grid, make_grid, make_update
 from tests.viewer.packed_images import depth_message, jpeg, packed
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
-SCALE = 50.0
+PIXELS_PER_METER = 50.0
 """The scale of the TopDownOrtho view in pixels per meter, which gives the position of each pixel."""
 BACKGROUND = (48, 48, 48)
 RED, GREEN, BLUE = (255, 0, 0), (0, 255, 0), (0, 0, 255)
 
 
-def entry(cls: str, **properties: Any) -> dict[str, Any]:
+def display_entry(cls: str, **properties: Any) -> dict[str, Any]:
     properties_by_name = {name.replace("_", " "): value for name, value in properties.items()}
     return {"Class": f"rviz_default_plugins/{cls}", "Name": cls, "Enabled": True, **properties_by_name}
 
 
-def config(*displays: dict[str, Any]) -> str:
-    view = {"Class": "rviz_default_plugins/TopDownOrtho", "Scale": SCALE}
+def make_config(*displays: dict[str, Any]) -> str:
+    view = {"Class": "rviz_default_plugins/TopDownOrtho", "Scale": PIXELS_PER_METER}
     options = {"Fixed Frame": "base", "Background Color": "48; 48; 48", "Frame Rate": 30}
     manager = {"Displays": list(displays), "Global Options": options, "Views": {"Current": view, "Saved": None}}
     return yaml.safe_dump({"Visualization Manager": manager})
@@ -42,7 +42,7 @@ def colors_from_above(page: Any, *points: tuple[float, float]) -> list[Color]:
     """Return the colors at points of the fixed frame, as seen from above."""
     box = page.locator(".canvas-box canvas").bounding_box()
     x0, y0 = box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
-    return colors_at(page, *((x0 + x * SCALE, y0 - y * SCALE) for x, y in points))
+    return colors_at(page, *((x0 + x * PIXELS_PER_METER, y0 - y * PIXELS_PER_METER) for x, y in points))
 
 
 def drawing_of(page: Any, display: int = 0) -> dict[str, Any]:
@@ -51,9 +51,9 @@ def drawing_of(page: Any, display: int = 0) -> dict[str, Any]:
 
 
 def three_points(**fields: Any) -> Any:
-    array = xyz([(-2, 0, 0), (0, 0, 0), (2, 0, 0)], ("rgb", "u4"), ("intensity", "f4"))
+    array = xyz_array([(-2, 0, 0), (0, 0, 0), (2, 0, 0)], ("rgb", "u4"), ("intensity", "f4"))
     array["rgb"], array["intensity"] = [0xFF0000, 0x00FF00, 0x0000FF], [1, 2, 3]
-    return cloud(array, **fields)
+    return make_cloud(array, **fields)
 
 
 def set_property(viewer: Any, display: int, path: tuple[str, ...], value: object) -> None:
@@ -62,7 +62,7 @@ def set_property(viewer: Any, display: int, path: tuple[str, ...], value: object
 
 def test_point_cloud_is_drawn_in_all_styles(live, open_page):
     size = {"Size (m)": 0.6, "Size (Pixels)": 30}
-    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, **size)))
+    viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, **size)))
     page = open_page(viewer, wait=False)
     viewer.place("lidar", 0.0, 1.0, 0.0)
     viewer.publish("/cloud", three_points(frame="lidar"))
@@ -72,21 +72,21 @@ def test_point_cloud_is_drawn_in_all_styles(live, open_page):
         set_property(viewer, 0, ("Style",), style)
         until(page, f"lw.displays[0].drawn.style === '{style}'")
         viewer.settle(page)
-        inner = 0.2 if style == "Spheres" else 0.26
-        points = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inner, 1.0), (0.27, 1.27)]
+        inner_distance = 0.2 if style == "Spheres" else 0.26
+        points = [(-2.0, 1.0), (0.0, 1.0), (2.0, 1.0), (0.35, 1.0), (inner_distance, 1.0), (0.27, 1.27)]
 
         def read_appearance(points: list[tuple[float, float]] = points) -> tuple[list[Color], bool, bool]:
             *colors, near_edge, corner = colors_from_above(page, *points)
             return colors, near_edge[1] > 100, corner == BACKGROUND
 
-        becomes(read_appearance, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
+        wait_until_equal(read_appearance, ([RED, GREEN, BLUE, BACKGROUND], True, style == "Spheres"))
     set_property(viewer, 0, ("Style",), "Flat Squares")
     set_property(viewer, 0, ("Alpha",), 0.5)
-    becomes(lambda: colors_from_above(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
+    wait_until_equal(lambda: colors_from_above(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
 
 
 def test_clicked_point_is_selected_and_shows_fields(live, open_page):
-    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2})))
+    viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2})))
     page = open_page(viewer, wait=False)
     viewer.publish("/cloud", three_points())
     until(page, "lw.displays[0]?.drawn?.points === 3")
@@ -107,92 +107,94 @@ def test_clicked_point_is_selected_and_shows_fields(live, open_page):
 
 
 def test_large_cloud_is_updated_continuously(live, open_page):
-    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}, Color_Transformer="AxisColor")))
+    viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, Color_Transformer="AxisColor")))
     page = open_page(viewer, wait=False)
     rng = np.random.default_rng(0)
-    array = np.zeros(100_000, xyz([]).dtype)
+    array = np.zeros(100_000, xyz_array([]).dtype)
     for name in "xyz":
         array[name] = rng.uniform(-3, 3, array.size)
     # The first message arrives while the page starts, and the others follow at once. The last one is drawn completely.
     for number in range(10):
         array["x"][0] = 4.0 + number  # the bounds show which message is drawn
-        viewer.publish("/cloud", cloud(array))
+        viewer.publish("/cloud", make_cloud(array))
     until(page, "lw.displays[0]?.drawn?.bounds?.[1][0] === 13 && lw.displays[0].drawn.points === 100000")
     # Messages that arrive after the previous one is drawn are all drawn.
     for number in range(3):
         array["x"][0] = 20.0 + number
-        viewer.publish("/cloud", cloud(array))
+        viewer.publish("/cloud", make_cloud(array))
         until(page, f"lw.displays[0].drawn.bounds[1][0] === {20 + number} && lw.displays[0].drawn.points === 100000")
 
 
 def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
     displays = (
-        entry("LaserScan", Topic={"Value": "/scan"}, **{"Size (m)": 0.5}),
-        entry("Temperature", Topic={"Value": "/warm"}, **{"Size (m)": 0.5}),
-        entry("GridCells", Topic={"Value": "/cells"}),
+        display_entry("LaserScan", Topic={"Value": "/scan"}, **{"Size (m)": 0.5}),
+        display_entry("Temperature", Topic={"Value": "/temperature"}, **{"Size (m)": 0.5}),
+        display_entry("GridCells", Topic={"Value": "/cells"}),
     )
-    viewer = live(config(*displays))
+    viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.place("thermometer", 0.0, -2.0, 0.0)
-    viewer.publish("/scan", placed(scan([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])))
+    viewer.publish("/scan", with_frame(make_scan([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])))
     temperature = get_message("sensor_msgs/msg/Temperature")(temperature=100.0)
-    viewer.publish("/warm", placed(temperature, "thermometer"))
-    viewer.publish("/cells", cell_grid(-1.5, width=1.0, height=0.5))
+    viewer.publish("/temperature", with_frame(temperature, "thermometer"))
+    viewer.publish("/cells", make_cell_grid(-1.5, width=1.0, height=0.5))
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.points === 1")
     until(page, "lw.displays[2].drawn.cells === 1")
     viewer.settle(page)
     points = (1.0, 0.0), (-3.0, 0.0), (0.0, -2.0), (-1.9, 0.2), (-1.9, 0.3)
-    becomes(lambda: colors_from_above(page, *points), [RED, (255, 0, 255), RED, (25, 255, 0), BACKGROUND])
+    wait_until_equal(lambda: colors_from_above(page, *points), [RED, (255, 0, 255), RED, (25, 255, 0), BACKGROUND])
 
 
 def test_map_is_drawn_and_updated(live, open_page):
     displays = (
-        entry("Map", Topic={"Value": "/map"}, Alpha=1.0),
-        entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2}),
+        display_entry("Map", Topic={"Value": "/map"}, Alpha=1.0),
+        display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2}),
     )
-    viewer = live(config(*displays))
+    viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
-    viewer.publish("/map", grid(data=[0, 100, -1, 50, 110, -128]))
+    viewer.publish("/map", make_grid(data=[0, 100, -1, 50, 110, -128]))
     until(page, "lw.displays[0]?.drawn?.cells === 6")
     # The corner is at x = -1, and cells are half a meter wide.
     points = [(-0.75, 0.25), (-0.25, 0.25), (0.25, 0.25), (-0.75, 0.75), (-0.25, 0.75), (0.25, 0.75)]
     shades = [(255, 255, 255), (0, 0, 0), (112, 137, 134), (128, 128, 128), (0, 255, 0), (255, 0, 0)]
-    becomes(lambda: colors_from_above(page, *points), shades)
+    wait_until_equal(lambda: colors_from_above(page, *points), shades)
     set_property(viewer, 0, ("Color Scheme",), "costmap")
-    becomes(lambda: colors_from_above(page, *points[:4]), [BACKGROUND, (255, 0, 255), (112, 137, 134), (127, 0, 128)])
+    wait_until_equal(
+        lambda: colors_from_above(page, *points[:4]), [BACKGROUND, (255, 0, 255), (112, 137, 134), (127, 0, 128)]
+    )
     set_property(viewer, 0, ("Color Scheme",), "raw")
     set_property(viewer, 0, ("Binary representation",), True)
     set_property(viewer, 0, ("Binary threshold",), 50)
-    becomes(
+    wait_until_equal(
         lambda: colors_from_above(page, *points[:4]), [(0, 0, 0), (255, 255, 255), (255, 255, 255), (255, 255, 255)]
     )
     set_property(viewer, 0, ("Binary representation",), False)
     set_property(viewer, 0, ("Color Scheme",), "map")
-    viewer.publish("/map_updates", update(0, 0, 1, 1, [100]))
+    viewer.publish("/map_updates", make_update(0, 0, 1, 1, [100]))
     until(page, "lw.displays[0].drawn.counts[100] === 2")
-    becomes(lambda: colors_from_above(page, points[0]), [(0, 0, 0)])
+    wait_until_equal(lambda: colors_from_above(page, points[0]), [(0, 0, 0)])
 
 
 def test_map_drawn_behind_does_not_hide_points(live, open_page):
     displays = (
-        entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.4}),
-        entry("Map", Topic={"Value": "/map"}, Alpha=1.0, Draw_Behind=True),
+        display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.4}),
+        display_entry("Map", Topic={"Value": "/map"}, Alpha=1.0, Draw_Behind=True),
     )
-    viewer = live(config(*displays))
+    viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.place("cellar", 0.0, 0.0, -3.0)
-    viewer.publish("/map", grid())
+    viewer.publish("/map", make_grid())
     viewer.publish("/cloud", three_points(frame="cellar"))
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
     viewer.settle(page)
-    becomes(lambda: colors_from_above(page, (0.0, 0.0), (0.1, 0.1)), [GREEN, GREEN])
+    wait_until_equal(lambda: colors_from_above(page, (0.0, 0.0), (0.1, 0.1)), [GREEN, GREEN])
     set_property(viewer, 1, ("Draw Behind",), False)
     viewer.settle(page)
-    becomes(lambda: colors_from_above(page, (0.1, 0.1)) != [GREEN], True)
+    wait_until_equal(lambda: colors_from_above(page, (0.1, 0.1)) != [GREEN], True)
 
 
 def test_image_has_its_own_panel(live, open_page):
-    viewer = live(config(entry("Image", Topic={"Value": "/image"})))
+    viewer = live(make_config(display_entry("Image", Topic={"Value": "/image"})))
     page = open_page(viewer, wait=False)
     page.get_by_text("No image").wait_for()
     pixels = np.zeros((20, 40, 3), np.uint8)
@@ -208,7 +210,7 @@ def test_image_has_its_own_panel(live, open_page):
         return box["height"] > box["width"] / 2, colors
 
     # The image keeps its proportions: the area above and below it is black.
-    becomes(read_appearance, (True, [RED, BLUE, (0, 0, 0)]))
+    wait_until_equal(read_appearance, (True, [RED, BLUE, (0, 0, 0)]))
 
     page.locator(".panel-tab", has_text="Image").locator(".tab-close").click()
     until(page, "lw.displays[0].enabled === false")
@@ -221,7 +223,7 @@ def test_image_has_its_own_panel(live, open_page):
     assert page.locator(".image-panel").count() == 1
 
 
-def layers(page: Any) -> list[str]:
+def compositing_layers(page: Any) -> list[str]:
     """Return the browser's compositing layers of the page, by the attributes of their elements."""
     tools = page.context.new_cdp_session(page)
     messages: list[list[dict[str, Any]]] = []
@@ -236,18 +238,19 @@ def layers(page: Any) -> list[str]:
 
 
 def test_image_is_composited_without_repainting_page(live, open_page):
-    viewer = live(config(entry("Image", Topic={"Value": "/image"})))
+    viewer = live(make_config(display_entry("Image", Topic={"Value": "/image"})))
     page = open_page(viewer, wait=False)
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
     until(page, "lw.displays[0]?.drawn?.width === 40")
     own_layers = ("CANVAS height 20 width 40", "CANVAS data-engine", "DIV class orientation")
-    becomes(
-        lambda: [any(layer.startswith(prefix) for layer in layers(page)) for prefix in own_layers], [True, True, True]
+    wait_until_equal(
+        lambda: [any(layer.startswith(prefix) for layer in compositing_layers(page)) for prefix in own_layers],
+        [True, True, True],
     )
 
 
 def test_compressed_image_is_decoded_by_browser(live, open_page):
-    viewer = live(config(entry("Image", Topic={"Value": "/image/compressed"})))
+    viewer = live(make_config(display_entry("Image", Topic={"Value": "/image/compressed"})))
     page = open_page(viewer, wait=False)
     # An image of one blue pixel.
     data = page.evaluate(
@@ -262,20 +265,20 @@ def test_compressed_image_is_decoded_by_browser(live, open_page):
 
 def test_camera_display_shows_scene_over_image(live, open_page):
     displays = (
-        entry("Camera", Topic={"Value": "/eye/image"}, **{"Image Rendering": "background"}),
-        entry("PointCloud2", Topic={"Value": "/cloud"}, Style="Boxes", **{"Size (m)": 0.4}),
+        display_entry("Camera", Topic={"Value": "/camera/image"}, **{"Image Rendering": "background"}),
+        display_entry("PointCloud2", Topic={"Value": "/cloud"}, Style="Boxes", **{"Size (m)": 0.4}),
     )
-    viewer = live(config(*displays))
+    viewer = live(make_config(*displays))
     page = open_page(viewer, wait=False)
     # The camera is at the origin and looks along x: its z axis points ahead, and its x axis to the right.
-    viewer.place("eye", 0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
-    viewer.publish("/eye/camera_info", camera_info(40, 30))
-    info = camera_info(40, 30)
+    viewer.place("camera", 0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
+    viewer.publish("/camera/camera_info", make_camera_info(40, 30))
+    info = make_camera_info(40, 30)
     info.p = np.array([20.0, 0, 20, 0, 0, 20.0, 15, 0, 0, 0, 1, 0])
-    viewer.publish("/eye/camera_info", info)
-    viewer.publish("/eye/image", placed(image("rgb8", 40, 30, bytes([255, 255, 0]) * 1200), "eye"))
+    viewer.publish("/camera/camera_info", info)
+    viewer.publish("/camera/image", with_frame(image("rgb8", 40, 30, bytes([255, 255, 0]) * 1200), "camera"))
     until(page, "lw.displays[0]?.drawn?.image?.[0] === 40 && lw.displays[0].drawn.width > 0")
-    becomes(lambda: drawing_of(page)["middle"], [255, 255, 0, 255])  # the next frame has the image
+    wait_until_equal(lambda: drawing_of(page)["middle"], [255, 255, 0, 255])  # the next frame has the image
     assert drawing_of(page)["position"] == pytest.approx([0, 0, 0])
     viewer.publish("/cloud", three_points())
     until(page, "lw.displays[0].drawn.middle[0] < 200 && lw.displays[0].drawn.middle[2] > 100")  # blue, 2 m ahead
@@ -290,27 +293,30 @@ def test_camera_display_shows_scene_over_image(live, open_page):
 
 def test_depth_image_is_drawn_as_points(live, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
-    viewer = live(config(entry("DepthCloud", **topics)))
+    viewer = live(make_config(display_entry("DepthCloud", **topics)))
     page = open_page(viewer, wait=False)
-    viewer.publish("/depth/camera_info", camera_info(2, 1))
-    viewer.publish("/color/image", placed(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
-    viewer.publish("/depth/image", placed(depth_image([[2.0, 4.0]])))
+    viewer.publish("/depth/camera_info", make_camera_info(2, 1))
+    viewer.publish("/color/image", with_frame(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
+    viewer.publish("/depth/image", with_frame(make_depth_image([[2.0, 4.0]])))
     until(page, "lw.displays[0]?.drawn?.points === 2")
-    becomes(lambda: drawing_of(page)["bounds"], [[0, 0, 2], [2, 0, 4]])
+    wait_until_equal(lambda: drawing_of(page)["bounds"], [[0, 0, 2], [2, 0, 4]])
     # The width of a pixel is half its distance: 1 m and 2 m here.
-    becomes(lambda: colors_from_above(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
+    wait_until_equal(lambda: colors_from_above(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
 
 
 def test_depth_cloud_uses_chosen_image_transports(live, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
     hints = {"Depth Map Transport Hint": "theora", "Color Transport Hint": "compressed"}
     viewer = live(
-        config(entry("DepthCloud", **topics, **hints), entry("Image", Topic={"Value": "/depth/image/compressedDepth"}))
+        make_config(
+            display_entry("DepthCloud", **topics, **hints),
+            display_entry("Image", Topic={"Value": "/depth/image/compressedDepth"}),
+        )
     )
     page = open_page(viewer, wait=False)
     assert "choose raw, compressed" in viewer.status("DepthCloud")["Depth Map Transport Hint"][1]
     set_property(viewer, 0, ("Depth Map Transport Hint",), "compressedDepth")
-    viewer.publish("/depth/camera_info", camera_info(2, 1))
+    viewer.publish("/depth/camera_info", make_camera_info(2, 1))
     viewer.publish("/color/image/compressed", packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 255), 2, 1)))
     viewer.publish("/depth/image/compressedDepth", depth_message(np.array([[2000, 4000]], np.uint16), "rvl"))
     until(page, "lw.displays[0]?.drawn?.points === 2 && lw.displays[1].drawn?.width === 2")
@@ -321,11 +327,15 @@ def test_depth_cloud_uses_chosen_image_transports(live, open_page):
 
 
 def test_idle_displays_are_not_redrawn(live, open_page):
-    viewer = live(config(entry("PointCloud2", Topic={"Value": "/cloud"}), entry("Map", Topic={"Value": "/map"})))
+    viewer = live(
+        make_config(
+            display_entry("PointCloud2", Topic={"Value": "/cloud"}), display_entry("Map", Topic={"Value": "/map"})
+        )
+    )
     page = open_page(viewer, wait=False)
     viewer.publish("/cloud", three_points())
-    viewer.publish("/map", grid())
+    viewer.publish("/map", make_grid())
     until(page, "lw.displays[0]?.drawn?.points === 3 && lw.displays[1].drawn.cells === 6")
     viewer.settle(page)
-    becomes(lambda: count_frames(page), 0)
+    wait_until_equal(lambda: count_frames(page), 0)
     assert count_frames(page) == 0

@@ -1,4 +1,7 @@
-"""The page of a program in a terminal of the classroom: it opens beside the lesson, takes keys, and closes."""
+"""The page of a program in a terminal of the classroom.
+
+It opens beside the lesson, takes keys, and closes.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,9 @@ import pytest
 from playwright.sync_api import Frame, Page
 
 from linkwright.learning.course import find_course
-from tests.browser.axe import violations
-from tests.browser.conftest import becomes, until
-from tests.waiting import SECONDS
+from tests.browser.axe import find_violations
+from tests.browser.conftest import until, wait_until_equal
+from tests.waiting import TIMEOUT_S
 
 pytestmark = [
     pytest.mark.browser,
@@ -36,22 +39,22 @@ def page(start, open_page, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> P
     return page
 
 
-def frames_of(page: Page) -> list[Frame]:
+def wait_for_program_pages(page: Page) -> list[Frame]:
     """Wait for the pages of programs, and return their contents."""
     page.wait_for_selector(f"{FRAMES}:visible")
     frames = [frame for handle in page.locator(FRAMES).element_handles() if (frame := handle.content_frame())]
     for frame in frames:
-        frame.wait_for_function("window.linkwright?.ready === true", timeout=1000 * SECONDS)
+        frame.wait_for_function("window.linkwright?.ready === true", timeout=1000 * TIMEOUT_S)
     return frames
 
 
 def test_program_page_is_shown_until_program_ends(page):
     page.keyboard.type("linkwright view robot.urdf\n")
-    (frame,) = frames_of(page)
+    (frame,) = wait_for_program_pages(page)
     assert page.locator(FRAMES).is_visible()
     assert page.evaluate("document.activeElement.className") == "xterm-helper-textarea"
     assert frame.evaluate("location.search") == ""  # the page has removed the token and the language from its address
-    assert violations(page) == []
+    assert find_violations(page) == []
     frame.locator("canvas").first.click()
     page.keyboard.press("?")
     frame.wait_for_selector("dialog[open]")
@@ -64,11 +67,11 @@ def test_program_page_is_shown_until_program_ends(page):
     assert frame.evaluate("window.isFirst"), "the page was not reloaded"
     page.locator(".title-bar .theme-button").click()
     page.get_by_role("menuitemcheckbox", name="Dark").click()
-    (frame,) = frames_of(page)
+    (frame,) = wait_for_program_pages(page)
     frame.wait_for_selector("html[data-theme=dark]", state="attached")
     page.get_by_role("button", name="中文").click()  # reloads both pages
     page.wait_for_selector("text=程序")
-    (frame,) = frames_of(page)
+    (frame,) = wait_for_program_pages(page)
     assert frame.get_by_role("button", name="在标签页中打开").is_visible()
     with page.expect_popup() as popup:
         frame.get_by_role("button", name="在标签页中打开").click()
@@ -77,22 +80,22 @@ def test_program_page_is_shown_until_program_ends(page):
     page.locator(KEYS).focus()
     page.keyboard.press("Control+c")
     page.wait_for_selector(FRAMES, state="detached")
-    becomes(lambda: page.locator(".program-panel").count(), 0)
+    wait_until_equal(lambda: page.locator(".program-panel").count(), 0)
     until(page, "lw.ready && /[$#] *$/.test(lw.panels.terminal.text)")
 
 
 def test_second_program_has_button_and_killed_one_is_removed(page):
     page.keyboard.type("linkwright view robot.urdf & linkwright view robot.urdf --no-open --port 0 & sleep 1\n")
-    frames_of(page)
+    wait_for_program_pages(page)
     page.keyboard.type("linkwright view robot.urdf\n")
     buttons = page.locator(".program-tabs button")
-    becomes(buttons.count, 2)
-    frames_of(page)
+    wait_until_equal(buttons.count, 2)
+    wait_for_program_pages(page)
     assert [page.locator(FRAMES).nth(number).is_visible() for number in range(2)] == [False, True]
     buttons.first.click()
     assert [page.locator(FRAMES).nth(number).is_visible() for number in range(2)] == [True, False]
     page.locator(KEYS).focus()
     page.keyboard.press("Control+c")
-    becomes(page.locator(FRAMES).count, 1)
+    wait_until_equal(page.locator(FRAMES).count, 1)
     page.keyboard.type("kill -9 %1 %2\n")
     page.wait_for_selector(FRAMES, state="detached")

@@ -1,4 +1,7 @@
-"""Recording from the page in a real browser: topics and the last minutes become files that can be opened."""
+"""Recording from the page in a real browser.
+
+Topics and the last minutes become files that can be opened.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from linkwright.bag import BagReader
-from tests.browser.conftest import Program, becomes, state, until
+from tests.browser.conftest import Program, state, until, wait_until_equal
 
 pytestmark = pytest.mark.browser
 
@@ -33,13 +36,13 @@ def page(program: Program, open_page) -> Page:
     return robot_page
 
 
-def choose(page: Page, entry: str) -> None:
+def choose_record_entry(page: Page, entry: str) -> None:
     """Choose an entry of the Record menu."""
     page.get_by_role("button", name="Record", exact=True).click()
     page.get_by_role("menuitem", name=entry).click()
 
 
-def stop(page: Page) -> None:
+def stop_recording(page: Page) -> None:
     page.get_by_role("button", name="Stop recording").click()
 
 
@@ -47,7 +50,7 @@ def wait_until_stopped(page: Page, count: int) -> None:
     until(page, f"lw.recording.path === '' && lw.recording.files.length === {count}")
 
 
-def topics(page: Page) -> dict[str, int]:
+def recorded_topics(page: Page) -> dict[str, int]:
     """Return the topics of the newest file, with their message counts."""
     with BagReader(state(page, "recording")["files"][0]) as bag:
         assert not bag.findings
@@ -61,12 +64,12 @@ def recorded_duration(page: Page) -> float:
 
 
 def test_all_topics_are_recorded_downloaded_and_reopened(page: Page, open_page, start, tmp_path: Path):
-    choose(page, "Record all topics")
+    choose_record_entry(page, "Record all topics")
     until(page, "lw.recording.path !== ''")
     folder = Path(state(page, "recording")["path"])
     assert folder.parent == tmp_path
     until(page, "lw.recording.length >= 2")
-    stop(page)
+    stop_recording(page)
     wait_until_stopped(page, 1)
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text(str(folder))
@@ -76,16 +79,16 @@ def test_all_topics_are_recorded_downloaded_and_reopened(page: Page, open_page, 
     download.value.save_as(copy)
     (file,) = folder.glob("*.mcap")
     assert copy.read_bytes() == file.read_bytes()
-    assert {"/tf", "/robot_description", "/joint_states"} <= topics(page).keys()
+    assert {"/tf", "/robot_description", "/joint_states"} <= recorded_topics(page).keys()
     recorded_page = open_page(start("view", str(copy)), wait=False)
     until(recorded_page, "lw.timeline?.live === false && lw.timeline.length > 1 && lw.frames.tip")
     assert recorded_page.get_by_role("button", name="Record", exact=True).count() == 0
 
 
 def test_finished_recording_opens_in_page(page: Page):
-    choose(page, "Record all topics")
+    choose_record_entry(page, "Record all topics")
     until(page, "lw.recording.length >= 2")
-    stop(page)
+    stop_recording(page)
     wait_until_stopped(page, 1)
     page.get_by_role("dialog").get_by_role("button", name="Open here").click()
     until(page, "lw.timeline?.live === false && lw.timeline.length > 1 && lw.frames.tip")
@@ -95,24 +98,24 @@ def test_finished_recording_opens_in_page(page: Page):
 
 
 def test_chosen_topics_are_recorded(page: Page):
-    choose(page, "Record chosen topics…")
+    choose_record_entry(page, "Record chosen topics…")
     dialog = page.get_by_role("dialog")
     expect(dialog.get_by_role("button", name="Record", exact=True)).to_be_disabled()
     dialog.get_by_role("checkbox", name="/joint_states").check()
     dialog.get_by_role("button", name="Record", exact=True).click()
     until(page, "lw.recording.length >= 2")
-    stop(page)
+    stop_recording(page)
     wait_until_stopped(page, 1)
-    assert topics(page).keys() == {"/joint_states"}
+    assert recorded_topics(page).keys() == {"/joint_states"}
 
 
 def test_all_pages_show_recording_after_its_page_closes(program: Program, page: Page, open_page):
     other_page = open_page(program, wait=False)
-    choose(page, "Record all topics")
+    choose_record_entry(page, "Record all topics")
     until(other_page, "lw.recording?.path !== ''")
     page.close()
     until(other_page, "lw.recording.length >= 3")
-    stop(other_page)
+    stop_recording(other_page)
     wait_until_stopped(other_page, 1)
     other_page.get_by_role("dialog").get_by_role("button", name="OK").click()
     other_page.get_by_role("button", name="Record", exact=True).click()
@@ -121,9 +124,9 @@ def test_all_pages_show_recording_after_its_page_closes(program: Program, page: 
 
 
 def test_last_minutes_and_marked_range_are_saved(page: Page):
-    choose(page, "Save the last minutes")
+    choose_record_entry(page, "Save the last minutes")
     wait_until_stopped(page, 1)
-    assert topics(page)["/robot_description"] == 1
+    assert recorded_topics(page)["/robot_description"] == 1
     full_span = recorded_duration(page)
     page.get_by_role("dialog").get_by_role("button", name="OK").click()
     page.get_by_role("button", name="Pause (Space)").click()
@@ -139,9 +142,9 @@ def test_last_minutes_and_marked_range_are_saved(page: Page):
     page.keyboard.up("Shift")
     until(page, "lw.recording.mark && lw.recording.mark[1] > lw.recording.mark[0]")
     begin, end = state(page, "recording")["mark"]
-    choose(page, "Save the marked part")
+    choose_record_entry(page, "Save the marked part")
     wait_until_stopped(page, 2)
-    range_topics = topics(page)
+    range_topics = recorded_topics(page)
     assert range_topics["/tf"]
     assert range_topics["/robot_description"] == 1, "the description is older than the marked part, but needed"
     assert 0.0 < recorded_duration(page) < full_span
@@ -154,18 +157,18 @@ def test_range_is_marked_by_keys_and_cleared(page: Page):
     page.locator("body").focus()
     page.keyboard.press("]")
     until(page, "lw.recording.mark?.[0] === 0")
-    choose(page, "Clear the mark")
-    becomes(lambda: state(page, "recording")["mark"], None)
+    choose_record_entry(page, "Clear the mark")
+    wait_until_equal(lambda: state(page, "recording")["mark"], None)
 
 
 def test_viewer_without_history_can_record(start, open_page, tmp_path: Path):
     (tmp_path / "arm.urdf").write_text(MODEL)
     page = open_page(start("view", "arm.urdf", "--history", "0"))
-    choose(page, "Record all topics")
+    choose_record_entry(page, "Record all topics")
     until(page, "lw.recording.path !== ''")
-    stop(page)
+    stop_recording(page)
     wait_until_stopped(page, 1)
-    assert "/robot_description" in topics(page)
+    assert "/robot_description" in recorded_topics(page)
     expect(page.get_by_role("dialog")).to_contain_text("linkwright view rosbag2_")
 
 
@@ -177,6 +180,6 @@ def test_recording_folder_that_cannot_be_created_is_reported(start, open_page, t
     until(page, "lw.timeline?.live && lw.frames.tip")
     folder.rename(tmp_path / "away")
     folder.write_text("a file in its place")
-    choose(page, "Record all topics")
+    choose_record_entry(page, "Record all topics")
     expect(page.get_by_role("dialog")).to_contain_text("cannot be created")
     assert state(page, "recording")["path"] == ""

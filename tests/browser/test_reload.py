@@ -1,4 +1,7 @@
-"""Changes of the model's file while it is shown: change, error, repair; joint positions and camera stay."""
+"""Changes of the model's file while it is shown.
+
+The tests cover changes, errors and repairs; joint positions and camera stay.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ def model(tmp_path):
     return path
 
 
-def edit(path, old, new):
+def replace_in_file(path, old, new):
     text = path.read_text(encoding="utf-8")
     assert old in text
     path.write_text(text.replace(old, new), encoding="utf-8")
@@ -37,13 +40,13 @@ def test_model_reloads_after_change_error_and_fix(start_fresh, open_page, model)
     until(page, "lw.view.distance < 1.7")
     distance = state(page, "view.distance")
 
-    edit(model, 'name="wheel_joint_y" value="0.19"', 'name="wheel_joint_y" value="0.25"')
+    replace_in_file(model, 'name="wheel_joint_y" value="0.19"', 'name="wheel_joint_y" value="0.25"')
     until(page, "Math.abs(lw.frames.left_wheel_link.position[1] - 0.25) < 1e-6")
     assert state(page, "joints.left_wheel_joint") == joint
     assert state(page, "view.distance") == distance
     until(page, "lw.robot.visuals === 12")
 
-    edit(model, "<xacro:wheel ", "<xacro:whel ")
+    replace_in_file(model, "<xacro:wheel ", "<xacro:whel ")
     page.get_by_text("there is no macro", exact=False).first.wait_for()
     program.wait_for(r"there is no macro .whel.")
     program.wait_for(r"did you mean")
@@ -52,7 +55,7 @@ def test_model_reloads_after_change_error_and_fix(start_fresh, open_page, model)
     line = next(i for i, text in enumerate(model.read_text().splitlines(), 1) if "<xacro:whel" in text)
     page.get_by_text(f"mbot.xacro:{line}", exact=False).first.wait_for()
 
-    edit(model, "<xacro:whel ", "<xacro:wheel ")
+    replace_in_file(model, "<xacro:whel ", "<xacro:wheel ")
     page.get_by_text("there is no macro", exact=False).first.wait_for(state="hidden")
     assert state(page, "joints.left_wheel_joint") == joint
     page.close()  # an open page would report in the console that the server is gone
@@ -62,16 +65,16 @@ def test_model_reloads_after_change_error_and_fix(start_fresh, open_page, model)
 def test_removed_link_leaves_no_visual(start_fresh, open_page, model):
     page = open_page(start_fresh("view", str(model)))
     assert state(page, "robot.links") == 12
-    edit(model, "<xacro:laser ", "<!-- <xacro:laser ")
-    edit(model, '"${laser_joint_z}"/>', '"${laser_joint_z}"/> -->')
+    replace_in_file(model, "<xacro:laser ", "<!-- <xacro:laser ")
+    replace_in_file(model, '"${laser_joint_z}"/>', '"${laser_joint_z}"/> -->')
     until(page, "lw.robot.links === 11")
     until(page, "!('laser_link' in lw.frames)")
 
 
 def test_model_broken_at_start_is_shown_once_fixed(start_fresh, open_page, model):
-    edit(model, "</robot>", "</robott>")
+    replace_in_file(model, "</robot>", "</robott>")
     program = start_fresh("view", str(model))
     page = open_page(program, wait=False)
     page.get_by_text("</robott>", exact=False).first.wait_for()
-    edit(model, "</robott>", "</robot>")
+    replace_in_file(model, "</robott>", "</robot>")
     until(page, "lw.robot !== null && lw.robot.links === 12 && lw.ready")

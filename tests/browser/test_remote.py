@@ -8,15 +8,15 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 
-from tests.browser.conftest import SECONDS, until
+from tests.browser.conftest import TIMEOUT_S, until
 from tests.browser.live import configuration
-from tests.page.test_slow_lines import cloud, image
+from tests.page.test_slow_lines import make_cloud, make_image
 from tests.viewer.throttle import slow_line
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
-_SQUARE = 8
+_SQUARE_PX = 8
 
 SENSES = configuration(
     """
@@ -34,11 +34,14 @@ SENSES = configuration(
 )
 
 
-def noise(width: int, height: int) -> Any:
-    """Return an image of squares of random colors: hard to compress, also at the size of its panel."""
-    message = image(width, height)
-    squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE, width // _SQUARE, 3), np.uint8)
-    message.data = squares.repeat(_SQUARE, axis=0).repeat(_SQUARE, axis=1).tobytes()
+def make_noise_image(width: int, height: int) -> Any:
+    """Return an image of squares of random colors.
+
+    It is hard to compress, also at the size of its panel.
+    """
+    message = make_image(width, height)
+    squares = np.random.default_rng(1).integers(0, 256, (height // _SQUARE_PX, width // _SQUARE_PX, 3), np.uint8)
+    message.data = squares.repeat(_SQUARE_PX, axis=0).repeat(_SQUARE_PX, axis=1).tobytes()
     return message
 
 
@@ -77,12 +80,15 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     page = open_page(SlowAddress(viewer.run(line.__aenter__)), wait=False)
     until(page, "lw.displays.length === 2")
 
-    heavy = cloud(50_000), noise(1280, 720)
+    heavy_messages = make_cloud(50_000), make_noise_image(1280, 720)
     facts: dict[str, Any] = {}
 
     def is_thinned() -> bool:
-        """Publish both topics, because a silent topic's last message is sent whole; return whether both are thinned."""
-        for topic, message in zip(("/cloud", "/image"), heavy, strict=True):
+        """Publish both topics, and return whether both are thinned.
+
+        Both are published because a silent topic's last message is sent whole.
+        """
+        for topic, message in zip(("/cloud", "/image"), heavy_messages, strict=True):
             viewer.publish(topic, message)
         notice = "document.querySelector('.line-notice:not([hidden])')?.innerText ?? ''"
         facts.update(
@@ -99,7 +105,7 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
             and shown_points["width"] == 1280
         )
 
-    wait_until(is_thinned, SECONDS, lambda: facts)
+    wait_until(is_thinned, TIMEOUT_S, lambda: facts)
     # Without other traffic, all data arrives.
     until(page, "lw.displays[0].drawn.points === 50000 && document.querySelector('.line-notice').hidden")
     viewer.run(lambda: line.__aexit__(None, None, None))
@@ -109,9 +115,9 @@ def test_fast_connection_shows_no_notice(live, open_page):
     viewer = live(SENSES)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.length === 2")
-    heavy = cloud(100_000)
+    heavy_messages = make_cloud(100_000)
     for _ in range(20):
-        viewer.publish("/cloud", heavy)
+        viewer.publish("/cloud", heavy_messages)
     until(page, "lw.displays[0].drawn?.points === 100000")
     until(page, "document.querySelector('.line-notice').hidden")
 
@@ -141,7 +147,7 @@ def test_page_requests_nothing_from_other_hosts(live, browser):
     page.on("websocket", lambda socket: urls.append(socket.url))
     page.goto(viewer.url)
     until(page, "lw.displays.length === 2")
-    viewer.publish("/image", image(64, 64))
+    viewer.publish("/image", make_image(64, 64))
     # Panels that are created when they are opened may request more files.
     for name in ("File", "Panels", "Share"):
         page.get_by_role("button", name=name, exact=True).click()
@@ -150,5 +156,5 @@ def test_page_requests_nothing_from_other_hosts(live, browser):
     page.wait_for_load_state("networkidle")
     context.close()
     assert len(urls) > 3
-    elsewhere = [url for url in urls if urlsplit(url).netloc != host and not url.startswith(("data:", "blob:"))]
-    assert elsewhere == []
+    foreign_urls = [url for url in urls if urlsplit(url).netloc != host and not url.startswith(("data:", "blob:"))]
+    assert foreign_urls == []

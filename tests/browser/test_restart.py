@@ -9,7 +9,7 @@ import sys
 
 import pytest
 
-from tests.browser.conftest import SECONDS, becomes, state, until
+from tests.browser.conftest import TIMEOUT_S, state, until, wait_until_equal
 from tests.places import PACKAGE
 
 pytestmark = pytest.mark.browser
@@ -30,7 +30,7 @@ def port() -> str:
 def context(browser):
     """Return a browser whose console may show connection errors."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
-    context.set_default_timeout(1000 * SECONDS)
+    context.set_default_timeout(1000 * TIMEOUT_S)
     yield context
     context.close()
 
@@ -42,7 +42,7 @@ def open_url(context, url):
     return page
 
 
-def tabs(page) -> list[str]:
+def panel_titles(page) -> list[str]:
     """Return the titles of the panels, without the number of findings, which arrive one by one."""
     return [re.sub(r" \(\d+\)", "", text) for text in page.locator(".dv-tab").all_inner_texts()]
 
@@ -65,7 +65,7 @@ def test_pages_keep_panels_joint_pose_and_camera_after_restart(start, context, p
     page.mouse.wheel(0, -360)
     page.get_by_role("tab", name="Links").click()
     until(page, "lw.view.distance < 1")
-    view, panels = state(page, "view.values"), tabs(page)
+    view, panels = state(page, "view.values"), panel_titles(page)
 
     assert program.interrupt() == 130
     wait_until_gone(page)
@@ -73,11 +73,11 @@ def test_pages_keep_panels_joint_pose_and_camera_after_restart(start, context, p
     new_program = start("view", str(MBOT), "--port", port)
     assert new_program.url == program.url
     wait_until_connected(page)
-    becomes(lambda: state(page, "joints"), joints)
-    becomes(lambda: state(second, "joints"), joints)
+    wait_until_equal(lambda: state(page, "joints"), joints)
+    wait_until_equal(lambda: state(second, "joints"), joints)
     until(page, "lw.robot.visuals === 12 && lw.settled")
     assert state(page, "view.values") == view
-    assert tabs(page) == panels
+    assert panel_titles(page) == panels
     assert page.get_by_role("tab", name="Links").get_attribute("aria-selected") == "true"
 
 
@@ -92,16 +92,16 @@ def test_restart_with_other_file_resets_view_and_keeps_panels(start, context, po
     page.mouse.move(600, 400)
     page.mouse.wheel(0, -360)
     until(page, "lw.view.distance < 1")
-    panels = tabs(page)
+    panels = panel_titles(page)
     assert program.interrupt() == 130
     wait_until_gone(page)
     start("view", str(other_file), "--port", port)
     wait_until_connected(page)
     until(page, "lw.robot.visuals === 12 && lw.settled")
-    becomes(lambda: state(page, "view.distance"), pytest.approx(first))
+    wait_until_equal(lambda: state(page, "view.distance"), pytest.approx(first))
     assert state(page, "joints.left_wheel_joint") == 0
     assert page.title().startswith("other.xacro")
-    becomes(lambda: tabs(page), panels)
+    wait_until_equal(lambda: panel_titles(page), panels)
 
 
 @pytest.fixture
@@ -114,7 +114,7 @@ def wait_for_text(page, text: str) -> None:
     page.wait_for_function("text => window.linkwright?.panels.terminal.text?.includes(text)", arg=text, polling=50)
 
 
-def run(page, command: str) -> None:
+def run_command(page, command: str) -> None:
     until(page, f"/[$#] *$/.test({TERMINAL}.text ?? '') && {TERMINAL}.notice === ''")
     page.locator(".terminal-screen:visible .xterm-helper-textarea").focus()
     page.keyboard.type(f"{command}\n")
@@ -126,7 +126,7 @@ def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, sh
     program = start(*arguments, "--port", port)
     first = context.new_page()
     first.goto(program.url)
-    run(first, "echo mine=$((6*7))")
+    run_command(first, "echo mine=$((6*7))")
     wait_for_text(first, "mine=42")
     second = context.new_page()
     second.goto(program.url)
@@ -143,13 +143,16 @@ def test_tabs_reattach_to_terminal_of_restarted_program(start, context, port, sh
         assert "mine" not in state(page, "panels.terminal.text")
     if state(second, "panels.terminal.notice") != "":
         second.get_by_role("button", name="Show it here").click()
-    run(second, "echo again=$((6*7))")
+    run_command(second, "echo again=$((6*7))")
     wait_for_text(second, "again=42")
 
 
 @posix
 def test_page_with_lost_connection_reclaims_its_terminal(start, context, shell):
-    """The program notices the loss only after seconds; the page must keep its terminal in that time."""
+    """The program notices the loss only after seconds.
+
+    The page must keep its terminal in that time.
+    """
     sockets = []
 
     def forward_socket(page_end) -> None:
@@ -160,14 +163,14 @@ def test_page_with_lost_connection_reclaims_its_terminal(start, context, shell):
     page = context.new_page()
     page.route_web_socket(re.compile("/ws"), forward_socket)
     page.goto(start("view", str(MBOT), "--terminal").url)
-    run(page, "echo mine=$((6*7))")
+    run_command(page, "echo mine=$((6*7))")
     wait_for_text(page, "mine=42")
     sockets[0].close()
     page.locator(".notice[data-state=reconnecting]").wait_for()
     wait_until_connected(page)
     until(page, f"{TERMINAL}.notice === ''")
     assert len(sockets) == 2
-    run(page, "echo again=$((6*7))")
+    run_command(page, "echo again=$((6*7))")
     wait_for_text(page, "again=42")
 
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from tests.browser.conftest import becomes
+from tests.browser.conftest import wait_until_equal
 from tests.repositories import ARM, PACKAGE, Repository
 
 pytestmark = pytest.mark.browser
@@ -24,17 +24,17 @@ def test_scene_is_drawn_when_it_is_opened(browser, tmp_path):
     subprocess.run([sys.executable, "-m", "linkwright", "review", *arguments], check=True, capture_output=True)
     context = browser.new_context(viewport={"width": 1000, "height": 900}, offline=True)
     page = context.new_page()
-    wrong: list[str] = []
-    page.on("pageerror", lambda error: wrong.append(str(error)))
-    page.on("console", lambda message: wrong.append(message.text) if message.type == "error" else None)
+    errors: list[str] = []
+    page.on("pageerror", lambda error: errors.append(str(error)))
+    page.on("console", lambda message: errors.append(message.text) if message.type == "error" else None)
     page.goto(path.as_uri())
     assert page.locator("iframe").count() == 0
     page.click("details.scene summary")
     page.frame_locator("details.scene iframe").get_by_text("Compare", exact=True).wait_for()
-    becomes(lambda: page.frames[-1].evaluate("() => window.linkwright?.ready === true"), True)
+    wait_until_equal(lambda: page.frames[-1].evaluate("() => window.linkwright?.ready === true"), True)
     assert page.frames[-1].evaluate("() => window.origin") == "null"
     page.click("details.scene summary")
     page.click("details.scene summary")
     assert page.locator("iframe").count() == 1
     context.close()
-    assert wrong == []
+    assert errors == []

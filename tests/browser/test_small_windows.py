@@ -12,7 +12,7 @@ from playwright.sync_api import Browser, Page
 
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import get_message
-from tests.browser.conftest import SECONDS, becomes, state, until
+from tests.browser.conftest import TIMEOUT_S, state, until, wait_until_equal
 from tests.browser.live import LiveViewer, configuration
 
 pytestmark = pytest.mark.browser
@@ -34,7 +34,7 @@ def open_window_of_size(browser: Browser, live: Callable[..., LiveViewer]) -> It
 
     def open_window(width: int, height: int, locale: str = "en-US") -> Page:
         context = browser.new_context(viewport={"width": width, "height": height}, locale=locale)
-        context.set_default_timeout(1000 * SECONDS)
+        context.set_default_timeout(1000 * TIMEOUT_S)
         contexts.append(context)
         page = context.new_page()
         page.goto(viewer.url)
@@ -58,35 +58,38 @@ RECTANGLE = """([selector, part, text]) => {
 """Find and measure an element in one call, because a resized window creates all elements again."""
 
 
-def box(page: Page, selector: str, *, part_selector: str | None = None, text: str = "") -> dict[str, float]:
-    """Return the box of the first visible element, or of the first with a part that contains a text."""
+def visible_box(page: Page, selector: str, *, part_selector: str | None = None, text: str = "") -> dict[str, float]:
+    """Return the box of the first visible element.
+
+    With a text, the element has a part that contains the text.
+    """
     rectangle: dict[str, float] = page.wait_for_function(RECTANGLE, arg=[selector, part_selector, text]).json_value()
     return rectangle
 
 
 def group_box(page: Page, name: str) -> dict[str, float]:
     """Return the box of the group with a panel's tab."""
-    return box(page, ".dv-groupview", part_selector=".panel-tab", text=name)
+    return visible_box(page, ".dv-groupview", part_selector=".panel-tab", text=name)
 
 
 @pytest.mark.parametrize(("width", "height"), [(500, 800), (900, 700)])
 def test_scene_is_above_panels_up_to_tablet_width(open_window_of_size, width, height):
     page = open_window_of_size(width, height)
     width_beside = group_box(page, "Front")["width"] if width >= 600 else 0
-    becomes(lambda: box(page, ".canvas-box")["width"] + width_beside, pytest.approx(width, abs=8))
-    canvas = box(page, ".canvas-box")
+    wait_until_equal(lambda: visible_box(page, ".canvas-box")["width"] + width_beside, pytest.approx(width, abs=8))
+    canvas = visible_box(page, ".canvas-box")
     assert canvas["height"] > 300
     page.locator(".dv-tab", has_text="Displays").first.dispatch_event("pointerdown")
     page.wait_for_selector(".displays-panel")
-    becomes(lambda: box(page, ".displays-panel")["width"], width)
-    assert box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
+    wait_until_equal(lambda: visible_box(page, ".displays-panel")["width"], width)
+    assert visible_box(page, ".displays-panel")["y"] > canvas["y"] + canvas["height"]
 
 
 def test_images_are_beside_scene_in_wide_enough_window(open_window_of_size):
     page = open_window_of_size(800, 600)
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Displays").count() == 1
-    becomes(lambda: group_box(page, "Front") == group_box(page, "Back"), True)
-    scene, images = box(page, ".canvas-box"), group_box(page, "Front")
+    wait_until_equal(lambda: group_box(page, "Front") == group_box(page, "Back"), True)
+    scene, images = visible_box(page, ".canvas-box"), group_box(page, "Front")
     assert scene["x"] + scene["width"] <= images["x"]
     assert scene["width"] > images["width"] > 300
 
@@ -101,11 +104,11 @@ def test_displays_tab_is_in_front_of_images_when_panels_share_space(open_window_
 def test_displays_filter_does_not_overlap_tabs(open_window_of_size):
     page = open_window_of_size(800, 600)
     tabs, filter_ = (
-        box(page, ".dv-tab", text="Displays", part_selector=".panel-tab"),
-        box(page, ".displays-panel .search-box"),
+        visible_box(page, ".dv-tab", text="Displays", part_selector=".panel-tab"),
+        visible_box(page, ".displays-panel .search-box"),
     )
     assert filter_["y"] >= tabs["y"] + tabs["height"]
-    assert filter_["y"] < box(page, ".displays-panel .toolbar")["y"] + 30, "the filter is beside the buttons"
+    assert filter_["y"] < visible_box(page, ".displays-panel .toolbar")["y"] + 30, "the filter is beside the buttons"
 
 
 @pytest.mark.parametrize("width", [360, 390])
@@ -152,29 +155,29 @@ def test_phone_view_fits_map_until_user_moves_camera(browser, live):
 @pytest.mark.parametrize(("width", "height"), [(1024, 600), (1280, 800)])
 def test_open_panels_have_enough_space(open_window_of_size, width, height):
     page = open_window_of_size(width, height)
-    foot = box(page, ".foot")
+    foot = visible_box(page, ".foot")
     assert foot["height"] < 45, "the last minutes and the status share one line"
-    canvas = box(page, ".canvas-box")
+    canvas = visible_box(page, ".canvas-box")
     assert canvas["y"] + canvas["height"] > foot["y"] - 10, "the time fields are folded"
     page.get_by_role("button", name="Time", exact=True).click()
     page.wait_for_function("() => document.querySelector('.time-panel').offsetHeight < 45")
 
     def has_room() -> dict[str, bool]:
-        reset = box(page, ".time-panel button:last-child")
+        reset = visible_box(page, ".time-panel button:last-child")
         return {
-            "scene": box(page, ".canvas-box")["width"] > width / 3,
-            "tree": box(page, ".displays-panel .tree")["height"] > 100,
-            "time": box(page, ".time-panel")["height"] > 25,
+            "scene": visible_box(page, ".canvas-box")["width"] > width / 3,
+            "tree": visible_box(page, ".displays-panel .tree")["height"] > 100,
+            "time": visible_box(page, ".time-panel")["height"] > 25,
             "reset": reset["x"] + reset["width"] <= width,
         }
 
-    becomes(has_room, dict.fromkeys(("scene", "tree", "time", "reset"), True))
+    wait_until_equal(has_room, dict.fromkeys(("scene", "tree", "time", "reset"), True))
 
 
 @pytest.mark.parametrize(("width", "height"), [(844, 390), (667, 375), (932, 430)])
 def test_panels_are_beside_scene_on_phone_in_landscape(open_window_of_size, width, height):
     page = open_window_of_size(width, height)
-    canvas = box(page, ".canvas-box")
+    canvas = visible_box(page, ".canvas-box")
     assert canvas["height"] > 0.65 * height
     assert 0.5 * width < canvas["width"] < 0.7 * width
     assert group_box(page, "Front") == group_box(page, "Displays") == group_box(page, "Views")
@@ -182,21 +185,21 @@ def test_panels_are_beside_scene_on_phone_in_landscape(open_window_of_size, widt
     assert displays["x"] >= canvas["x"] + canvas["width"]
     assert displays["x"] + displays["width"] <= width + 1
     page.set_viewport_size({"width": height, "height": width})
-    becomes(lambda: box(page, ".canvas-box")["width"], height)
+    wait_until_equal(lambda: visible_box(page, ".canvas-box")["width"], height)
     page.set_viewport_size({"width": width, "height": height})
-    becomes(lambda: box(page, ".canvas-box")["height"] > 0.65 * height, True)
+    wait_until_equal(lambda: visible_box(page, ".canvas-box")["height"] > 0.65 * height, True)
 
 
 def test_window_resized_narrow_and_wide_keeps_its_panels(open_window_of_size):
     page = open_window_of_size(1280, 800)
     page.get_by_role("button", name="Panels", exact=True).click()
     page.get_by_role("menuitemcheckbox", name="Topics", exact=True).click()
-    becomes(lambda: group_box(page, "Topics")["y"] > box(page, ".canvas-box")["y"] + 100, True)
+    wait_until_equal(lambda: group_box(page, "Topics")["y"] > visible_box(page, ".canvas-box")["y"] + 100, True)
     page.set_viewport_size({"width": 500, "height": 800})
-    becomes(lambda: box(page, ".canvas-box")["width"], 500)
-    becomes(lambda: group_box(page, "Topics") == group_box(page, "Displays"), True)
+    wait_until_equal(lambda: visible_box(page, ".canvas-box")["width"], 500)
+    wait_until_equal(lambda: group_box(page, "Topics") == group_box(page, "Displays"), True)
     page.set_viewport_size({"width": 1280, "height": 800})
-    becomes(lambda: group_box(page, "Topics")["x"] > group_box(page, "Displays")["x"], True)
+    wait_until_equal(lambda: group_box(page, "Topics")["x"] > group_box(page, "Displays")["x"], True)
 
 
 def test_wide_text_panels_share_one_group(open_window_of_size):
@@ -204,7 +207,9 @@ def test_wide_text_panels_share_one_group(open_window_of_size):
     for name in ("Source", "Topics", "Diagram", "Log"):
         page.get_by_role("button", name="Panels", exact=True).click()
         page.get_by_role("menuitemcheckbox", name=name, exact=True).click()
-    becomes(lambda: [group_box(page, name) for name in ("Topics", "Diagram", "Log")], [group_box(page, "Source")] * 3)
+    wait_until_equal(
+        lambda: [group_box(page, name) for name in ("Topics", "Diagram", "Log")], [group_box(page, "Source")] * 3
+    )
     assert page.locator(".dv-tab[aria-selected=true]", has_text="Log").count() == 1
 
 
@@ -248,17 +253,17 @@ def test_multiple_displays_are_selected_duplicated_removed_and_restored(open_win
     def names() -> list[str]:
         return [display["name"] for display in state(page, "displays")]
 
-    at = {"x": 60, "y": 8}
-    row("Axes").click(position=at)
-    row("TF").click(position=at, modifiers=["Shift"])
+    click_position = {"x": 60, "y": 8}
+    row("Axes").click(position=click_position)
+    row("TF").click(position=click_position, modifiers=["Shift"])
     assert selected() == ["Axes", "Front", "Back", "TF"]
-    row("Front").click(position=at, modifiers=["Control"])
-    row("Back").click(position=at, modifiers=["Control"])
+    row("Front").click(position=click_position, modifiers=["Control"])
+    row("Back").click(position=click_position, modifiers=["Control"])
     assert selected() == ["Axes", "TF"]
     page.keyboard.press("Alt+d")
     until(page, "lw.displays.length === 7")
     assert names() == ["Grid", "Axes", "Axes", "Front", "Back", "TF", "TF"]
-    row("Grid").click(position=at)
+    row("Grid").click(position=click_position)
     assert selected() == ["Grid"]
     page.keyboard.press("Shift+ArrowDown")
     assert selected() == ["Grid", "Axes"]
@@ -271,7 +276,10 @@ def test_multiple_displays_are_selected_duplicated_removed_and_restored(open_win
 
 
 def test_tabs_beside_views_are_not_clipped_in_chinese(open_window_of_size):
-    """At 1280 pixels, the third tab was clipped. Characters that no font has are drawn with the same width."""
+    """At 1280 pixels, the third tab was clipped.
+
+    Characters that no font has are drawn with the same width.
+    """
     page = open_window_of_size(1280, 800, "zh-CN")
     page.evaluate(
         """() => {
@@ -293,20 +301,22 @@ def test_tabs_beside_views_are_not_clipped_in_chinese(open_window_of_size):
         is_inside = last["x"] + last["width"] <= bar["x"] + bar["width"]
         return tabs.count(), is_inside, group.locator(".dv-tabs-overflow-dropdown-default").count()
 
-    becomes(fit, (3, True, 0))
+    wait_until_equal(fit, (3, True, 0))
 
 
 def test_tabs_beside_views_are_not_clipped_in_english(open_window_of_size):
     page = open_window_of_size(1280, 800)
     group = page.locator(".dv-tabs-and-actions-container", has=page.locator(".dv-tab", has_text="Views"))
-    becomes(lambda: (group.locator(".dv-tab").count(), group.locator("[class*=overflow-dropdown]").count()), (3, 0))
+    wait_until_equal(
+        lambda: (group.locator(".dv-tab").count(), group.locator("[class*=overflow-dropdown]").count()), (3, 0)
+    )
 
 
 def test_view_type_label_stays_on_one_line_in_chinese(open_window_of_size):
     page = open_window_of_size(800, 600, "zh-CN")
     page.locator(".dv-tab", has_text="视角").click()
     label = page.locator(".view-type > .toolbar-label")
-    becomes(
+    wait_until_equal(
         lambda: label.evaluate("element => element.offsetHeight < 2 * parseFloat(getComputedStyle(element).fontSize)"),
         True,
     )

@@ -1,4 +1,7 @@
-"""Editing of a robot's files in the page: findings, completion, saving, and notices of external changes."""
+"""Editing of a robot's files in the page.
+
+The tests cover findings, completion, saving, and notices of external changes.
+"""
 
 from __future__ import annotations
 
@@ -6,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.axe import violations
-from tests.browser.conftest import becomes, until
+from tests.browser.axe import find_violations
+from tests.browser.conftest import until, wait_until_equal
 from tests.browser.test_description import open_panel
-from tests.browser.test_editing import number, type_in
+from tests.browser.test_editing import locate_number, type_in
 
 pytestmark = pytest.mark.browser
 
@@ -61,7 +64,7 @@ def wait_for_text(page, line: str) -> None:
     page.wait_for_function("part => window.linkwright.panels.source.editor.text?.includes(part)", arg=line, polling=50)
 
 
-def go_to(text, line: int, column: int = 0) -> None:
+def move_cursor(text, line: int, column: int = 0) -> None:
     """Put the cursor on a line, given from the start of its text."""
     text.press("Control+Home")
     for _ in range(line - 1):
@@ -73,23 +76,23 @@ def go_to(text, line: int, column: int = 0) -> None:
 def test_file_is_edited_and_saved_and_robot_follows(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
-    go_to(text, 4)
+    move_cursor(text, 4)
     text.press("End")
     page.keyboard.insert_text('\n  <xacro:leg name="right"/>')
     until(page, f"{EDITOR}.unsaved.length === 1")
     text.press("Control+s")
     page.get_by_text("Saved: robot.urdf.xacro").wait_for()
-    becomes(file.read_text, ROBOT.replace("</robot>", '  <xacro:leg name="right"/>\n</robot>'))
+    wait_until_equal(file.read_text, ROBOT.replace("</robot>", '  <xacro:leg name="right"/>\n</robot>'))
     until(page, "lw.frames.right !== undefined")
     text.press("Control+z")
     page.locator(".editor-bar").get_by_role("button", name="Save", exact=True).click()
-    becomes(file.read_text, ROBOT)
+    wait_until_equal(file.read_text, ROBOT)
 
 
 def test_change_on_disk_is_merged_or_reported_as_conflict(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
-    go_to(text, 1)
+    move_cursor(text, 1)
     text.press("End")
     page.keyboard.insert_text("<!-- mine -->")
     file.write_text(ROBOT.replace("0.2", "0.3"))
@@ -104,7 +107,7 @@ def test_change_on_disk_is_merged_or_reported_as_conflict(start, open_page, file
     text.press("Control+z")
     wait_for_text(page, "<!-- mine -->")
     text.press("Control+s")
-    becomes(file.read_text, ROBOT.replace("0.2", "0.3").replace('wiki/xacro">', 'wiki/xacro"><!-- mine -->'))
+    wait_until_equal(file.read_text, ROBOT.replace("0.2", "0.3").replace('wiki/xacro">', 'wiki/xacro"><!-- mine -->'))
 
 
 def test_robot_edits_and_text_edits_share_undo_history(start, open_page, file):
@@ -113,35 +116,35 @@ def test_robot_edits_and_text_edits_share_undo_history(start, open_page, file):
     page.get_by_role("tab", name="Links").click()
     page.get_by_text("left", exact=True).locator("visible=true").first.click()
     page.get_by_role("button", name="Move and rotate the joint").click()
-    becomes(lambda: number(page, "xyz2").input_value(), "0")
+    wait_until_equal(lambda: locate_number(page, "xyz2").input_value(), "0")
     type_in(page, "xyz2", "0.4")
     page.get_by_role("button", name="Write", exact=True).click()
     leg = file.parent / "leg.xacro"
-    becomes(lambda: "0.4" in leg.read_text(), True)
+    wait_until_equal(lambda: "0.4" in leg.read_text(), True)
     page.locator(".panel-tab", has_text="Source").first.click()
     wait_for_text(page, "0.4")
     page.mouse.move(0, 0)  # the tooltip of an element below the pointer could cover the tab
     text.focus()
     text.press("Control+z")
     text.press("Control+s")
-    becomes(leg.read_text, LEG)
+    wait_until_equal(leg.read_text, LEG)
 
     page.locator(".panel-tab", has_text="Edit robot").first.click()
     undo = page.get_by_role("button", name="Undo the last written edit")
     undo.click()
-    becomes(lambda: "0.4" in leg.read_text(), True)
+    wait_until_equal(lambda: "0.4" in leg.read_text(), True)
     undo.click()
-    becomes(leg.read_text, LEG)
+    wait_until_equal(leg.read_text, LEG)
 
 
 def test_findings_completion_hover_definition_and_rename(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
-    go_to(text, 4, 9)  # in xacro:leg
+    move_cursor(text, 4, 9)  # in xacro:leg
     text.press("F12")
     until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
     text.press("Control+Home")
-    go_to(text, 2, 23)  # in the name of the macro
+    move_cursor(text, 2, 23)  # in the name of the macro
     text.press("F2")
     name = page.get_by_role("textbox", name="New name")
     name.fill("limb")
@@ -149,10 +152,10 @@ def test_findings_completion_hover_definition_and_rename(start, open_page, file)
     page.get_by_role("dialog", name="Rename leg to limb").get_by_role("button", name="Rename", exact=True).click()
     page.get_by_text("Renamed to limb in 2 files, not saved yet").wait_for()
     page.get_by_role("button", name="Save 2 files").click()
-    becomes(file.read_text, ROBOT.replace("xacro:leg", "xacro:limb"))
-    becomes((file.parent / "leg.xacro").read_text, LEG.replace('"leg"', '"limb"'))
+    wait_until_equal(file.read_text, ROBOT.replace("xacro:leg", "xacro:limb"))
+    wait_until_equal((file.parent / "leg.xacro").read_text, LEG.replace('"leg"', '"limb"'))
 
-    go_to(text, 3)
+    move_cursor(text, 3)
     text.press("End")
     page.keyboard.type("\n<in", delay=20)
     page.locator(".cm-tooltip-autocomplete li").filter(has_text="inertial").first.wait_for()
@@ -184,7 +187,7 @@ def test_file_is_created_in_tree_and_escape_leaves_editor(start, open_page, file
     text.click(position={"x": 30, "y": 8})
     page.keyboard.insert_text("legs: 2\n")
     text.press("Control+s")
-    becomes((file.parent / "config" / "legs.yaml").read_text, "legs: 2\n")
+    wait_until_equal((file.parent / "config" / "legs.yaml").read_text, "legs: 2\n")
 
     text.press("Tab")
     wait_for_text(page, "legs: 2\n  ")
@@ -197,18 +200,18 @@ def test_source_editor_passes_axe(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
     page.get_by_role("button", name="Files", exact=True).click()
-    go_to(text, 3)
+    move_cursor(text, 3)
     text.press("End")
     page.keyboard.insert_text('<link name="${nam}"/>')
     until(page, f"{EDITOR}.findings.includes('XAC201')")
     page.locator(".editor-bar").get_by_role("button", name="1 finding").click()
     text.press("Control+f")
     page.locator(".cm-search").wait_for()
-    assert violations(page, ".source-panel") == []
+    assert find_violations(page, ".source-panel") == []
     assert page.evaluate("document.body.scrollHeight <= document.body.clientHeight")
 
 
-def choose(page, label: str) -> None:
+def choose_menu_entry(page, label: str) -> None:
     """Choose an entry of the open menu with the keyboard."""
     page.get_by_role("menuitem").first.wait_for()
     labels = page.get_by_role("menuitem").all_inner_texts()
@@ -223,17 +226,17 @@ def test_code_actions_fix_findings_and_extract_values(start, open_page, file):
     leg.write_text(continuous_leg)
     page = open_page(start("view", str(file)))
     text = open_editor(page)
-    go_to(text, 2)
+    move_cursor(text, 2)
     text.press("Control+.")
     page.get_by_text("There is no fix or refactoring here.").wait_for()
 
-    go_to(text, 4, 9)
+    move_cursor(text, 4, 9)
     text.press("F12")
     until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.findings.includes('LW221')")
     page.get_by_text("= left_joint").wait_for()  # the line is redrawn when its values arrive
     page.locator(".cm-lintRange").first.hover()
     page.get_by_role("button", name="Fix…").click()
-    choose(page, "apply all safe fixes in this file")
+    choose_menu_entry(page, "apply all safe fixes in this file")
     wait_for_text(page, 'xyz="0 0 1"')
     page.get_by_text("changed 1 file, not saved yet").wait_for()
     until(page, "document.activeElement.matches('.cm-content')")
@@ -244,7 +247,7 @@ def test_code_actions_fix_findings_and_extract_values(start, open_page, file):
     text.press("Control+Home")
     text.press("F8")
     text.press("Control+.")
-    choose(page, "extract '0 0 2' to a property")
+    choose_menu_entry(page, "extract '0 0 2' to a property")
     wait_for_text(page, "<xacro:property")
     assert leg.read_text() == continuous_leg
 
@@ -257,23 +260,23 @@ def test_urdf_is_converted_to_new_xacro_file(start, open_page, file):
     page.get_by_role("button", name="Files", exact=True).click()
     page.get_by_role("treeitem", name="plain.urdf").click()
     until(page, f"{EDITOR}.file.endsWith('plain.urdf')")
-    go_to(text, 1, 2)
+    move_cursor(text, 1, 2)
     page.locator(".editor-bar").get_by_role("button", name="Actions").click()
     page.get_by_role("menuitem", name="xacro").first.wait_for()
     page.get_by_role("menuitem", name="xacro").first.click()
     until(page, f"{EDITOR}.file.endsWith('plain.urdf.xacro')")
     wait_for_text(page, "xmlns:xacro")
     text.press("Control+s")
-    becomes(lambda: "xmlns:xacro" in (file.parent / "plain.urdf.xacro").read_text(), True)
+    wait_until_equal(lambda: "xmlns:xacro" in (file.parent / "plain.urdf.xacro").read_text(), True)
 
 
 def test_definitions_and_references_navigate_across_files(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
-    go_to(text, 4, 9)  # in xacro:leg
+    move_cursor(text, 4, 9)  # in xacro:leg
     text.press("F12")
     until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
-    go_to(text, 2, 23)  # in the name of the macro
+    move_cursor(text, 2, 23)  # in the name of the macro
     text.press("Shift+F12")
     page.get_by_role("listbox", name="2 references").wait_for()
     locations = page.locator(".place-list-place")
@@ -281,7 +284,7 @@ def test_definitions_and_references_navigate_across_files(start, open_page, file
         '2 <xacro:macro name="leg" params="name">',
         '4 <xacro:leg name="left"/>',
     ]
-    assert violations(page, ".source-panel") == []
+    assert find_violations(page, ".source-panel") == []
     page.keyboard.press("ArrowDown")
     page.keyboard.press("End")
     page.keyboard.press("Enter")
@@ -301,7 +304,7 @@ def test_definitions_and_references_navigate_across_files(start, open_page, file
     until(page, "document.activeElement.matches('.cm-content')")
     page.locator(".cm-line").nth(4).get_by_text("leg").first.click(modifiers=["Control"])
     until(page, f"{EDITOR}.file.endsWith('leg.xacro') && {EDITOR}.cursor === 2")
-    go_to(text, 1)
+    move_cursor(text, 1)
     text.press("F12")
     page.get_by_text("There is no definition of this.").wait_for()
 
@@ -310,7 +313,7 @@ def test_scene_follows_unsaved_text_and_keeps_last_valid_robot(start, open_page,
     program = start("view", str(file))
     page = open_page(program)
     text = open_editor(page)
-    go_to(text, 3, 10)
+    move_cursor(text, 3, 10)
     until(page, "lw.description.focus?.name === 'base'")  # the link at the cursor is selected in the scene
     text.press("End")
     page.keyboard.insert_text('\n  <xacro:leg name="right"/>')
@@ -329,9 +332,9 @@ def test_scene_follows_unsaved_text_and_keeps_last_valid_robot(start, open_page,
         text.press("Backspace")
     until(page, f"{EDITOR}.scene === 'shown'")
     text.press("Control+s")
-    becomes(lambda: "right" in file.read_text(), True)
+    wait_until_equal(lambda: "right" in file.read_text(), True)
     until(page, f"{EDITOR}.scene === null && lw.frames.right !== undefined")
-    go_to(text, 4)
+    move_cursor(text, 4)
     text.press("Shift+ArrowDown")
     text.press("Delete")
     until(page, "lw.frames.right === undefined")
@@ -341,7 +344,7 @@ def test_scene_follows_unsaved_text_and_keeps_last_valid_robot(start, open_page,
 def test_scene_edit_changes_unsaved_text_and_shares_undo(start, open_page, file):
     page = open_page(start("view", str(file)))
     text = open_editor(page)
-    go_to(text, 3)
+    move_cursor(text, 3)
     text.press("End")
     page.keyboard.insert_text(
         '<link name="tip"/><joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint>'
@@ -350,7 +353,7 @@ def test_scene_edit_changes_unsaved_text_and_shares_undo(start, open_page, file)
     page.get_by_role("tab", name="Links").click()
     page.get_by_text("tip", exact=True).locator("visible=true").first.click()
     page.get_by_role("button", name="Move and rotate the joint").click()
-    becomes(lambda: number(page, "xyz2").input_value(), "0")
+    wait_until_equal(lambda: locate_number(page, "xyz2").input_value(), "0")
     type_in(page, "xyz2", "0.4")
     page.get_by_role("button", name="Write", exact=True).click()
     page.get_by_text("Changed in the editor, not saved yet").wait_for()
@@ -377,7 +380,7 @@ def test_rename_preview_lists_changed_and_unchanged_places(start, open_page, fil
     launch.write_text("arm:\n  ros__parameters:\n    base: base\n    base_frame: base\n")
     page = open_page(start("view", str(file)))
     text = open_editor(page)
-    go_to(text, 3, 15)  # in the name of the link
+    move_cursor(text, 3, 15)  # in the name of the link
     text.press("F2")
     name = page.get_by_role("textbox", name="New name")
     name.fill("chassis")
@@ -388,7 +391,7 @@ def test_rename_preview_lists_changed_and_unchanged_places(start, open_page, fil
     preview.get_by_text("these texts are not renamed, because their meaning is uncertain: arm.yaml:3 (base)").wait_for()
     lines = [" ".join(line.split()) for line in preview.locator("li").all_inner_texts()]
     assert lines[0].startswith('3 <link name="basechassis">')
-    assert violations(page, ".rename-preview") == []
+    assert find_violations(page, ".rename-preview") == []
     page.keyboard.press("Escape")
     page.get_by_text("Nothing was renamed.").wait_for()
     until(page, f"document.activeElement.matches('.cm-content') && {EDITOR}.unsaved.length === 0")
@@ -415,7 +418,7 @@ def test_inlay_values_hover_and_colors_are_shown_in_text(start, open_page, file)
     leg.write_text(text_of_leg)
     page = open_page(start("view", str(file)))
     text = open_editor(page)
-    go_to(text, 4, 9)
+    move_cursor(text, 4, 9)
     text.press("F12")
     hint = page.locator(".cm-inlay-hint")
     hint.first.wait_for()
@@ -423,15 +426,15 @@ def test_inlay_values_hover_and_colors_are_shown_in_text(start, open_page, file)
     assert page.locator(".cm-token-macro.cm-token-definition").inner_text() == "leg"
     assert page.locator(".cm-color > i").evaluate("element => element.style.background") == "rgba(51, 153, 255, 0.5)"
 
-    go_to(text, 3)
+    move_cursor(text, 3)
     text.press("Control+.")
-    choose(page, "Choose the color…")
+    choose_menu_entry(page, "Choose the color…")
     field = page.locator("input[type=color]")
     field.evaluate("element => { element.value = '#ff0000'; element.dispatchEvent(new Event('change')); }")
     wait_for_text(page, 'rgba="1 0 0 0.5"')
     until(page, f"{EDITOR}.scene === 'shown' && document.activeElement.matches('.cm-content')")
     assert leg.read_text() == text_of_leg
-    assert violations(page, ".source-panel") == []
+    assert find_violations(page, ".source-panel") == []
 
 
 def test_symbols_are_searched_in_file_and_workspace(start, open_page, file):
@@ -443,8 +446,8 @@ def test_symbols_are_searched_in_file_and_workspace(start, open_page, file):
     names.filter(has_text="base").first.wait_for()
     assert names.all_inner_texts() == ["robot r", "xacro:include leg.xacro", "link base", "xacro:leg left"]
     search.fill("bas")
-    becomes(names.count, 1)
-    assert violations(page, ".symbol-search") == []
+    wait_until_equal(names.count, 1)
+    assert find_violations(page, ".symbol-search") == []
     page.keyboard.press("Control+Shift+O")
     search.fill("name")
     names.filter(has_text="${name}_joint").first.wait_for()

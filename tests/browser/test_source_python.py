@@ -7,8 +7,16 @@ from pathlib import Path
 import pytest
 
 from linkwright.lsp.python.programs import installed_programs
-from tests.browser.conftest import becomes, until
-from tests.browser.test_source_editor import EDITOR, LEG, ROBOT, choose, go_to, open_editor, wait_for_text
+from tests.browser.conftest import until, wait_until_equal
+from tests.browser.test_source_editor import (
+    EDITOR,
+    LEG,
+    ROBOT,
+    choose_menu_entry,
+    move_cursor,
+    open_editor,
+    wait_for_text,
+)
 
 pytestmark = [
     pytest.mark.browser,
@@ -52,7 +60,7 @@ def open_walker(page):
     return text
 
 
-def hover(page, line: int, text: str) -> None:
+def hover_text(page, line: int, text: str) -> None:
     """Move the mouse over a text of a line."""
     find = """([line, text]) => {
         const walker = document.createTreeWalker(document.querySelectorAll(".cm-line")[line - 1], NodeFilter.SHOW_TEXT);
@@ -71,7 +79,7 @@ def test_findings_hover_and_completion_follow_unsaved_text(start, open_page, pac
     page = open_page(start("view", str(package / "robot.urdf.xacro")))
     text = open_walker(page)
     until(page, f"{EDITOR}.findings.join() === 'F401'")  # no finding about the import of rclpy
-    go_to(text, 8)
+    move_cursor(text, 8)
     text.press("End")
     page.keyboard.insert_text("\n        self.get_logger().")
     page.keyboard.type("inf", delay=20)
@@ -84,7 +92,7 @@ def test_findings_hover_and_completion_follow_unsaved_text(start, open_page, pac
     )
     page.locator(".cm-lintRange-error").get_by_text("nothing").wait_for()
     text.press("Control+Home")
-    hover(page, line=3, text="Node")
+    hover_text(page, line=3, text="Node")
     page.locator(".cm-lsp-hover-tooltip").get_by_text("A node in the graph").wait_for()
     assert (package / "walker.py").read_text(encoding="utf-8") == WALKER
 
@@ -96,26 +104,26 @@ def test_finding_is_fixed_and_file_is_formatted(start, open_page, package):
     text.press("Control+Home")
     text.press("F8")
     text.press("Control+.")
-    choose(page, "Ruff (F401): Remove unused import: `os`")
+    choose_menu_entry(page, "Ruff (F401): Remove unused import: `os`")
     until(page, f"{EDITOR}.findings.length === 0")
     text.press("Shift+Alt+F")
     wait_for_text(page, '("行走😀")\n        self.count')
     text.press("Control+s")
     formatted = WALKER.replace("import os\n", "").replace("; ", "\n        ")
-    becomes(lambda: (package / "walker.py").read_text(encoding="utf-8"), formatted.replace("steps\n", "steps\n"))
+    wait_until_equal(lambda: (package / "walker.py").read_text(encoding="utf-8"), formatted)
 
 
 def test_symbol_is_renamed_in_all_files_and_definition_opens(start, open_page, package):
     page = open_page(start("view", str(package / "robot.urdf.xacro")))
     text = open_walker(page)
     until(page, f"{EDITOR}.findings.join() === 'F401'")
-    go_to(text, 2, 19)  # in the name `steps`
+    move_cursor(text, 2, 19)  # in the name `steps`
     text.press("F12")
     until(page, f"{EDITOR}.file.endsWith('gait.py') && {EDITOR}.cursor === 1")
-    go_to(text, 1, 5)
+    move_cursor(text, 1, 5)
     text.press("F2")
     name = page.get_by_role("textbox", name="New name")
-    becomes(name.input_value, "steps")
+    wait_until_equal(name.input_value, "steps")
     name.fill("strides")
     name.press("Enter")
     preview = page.get_by_role("dialog", name="Rename steps to strides")
@@ -123,5 +131,5 @@ def test_symbol_is_renamed_in_all_files_and_definition_opens(start, open_page, p
     preview.get_by_role("button", name="Rename", exact=True).click()
     page.get_by_text("Renamed to strides in 2 files, not saved yet").wait_for()
     page.get_by_role("button", name="Save 2 files").click()
-    becomes((package / "gait.py").read_text, GAIT.replace("steps", "strides"))
-    becomes(lambda: (package / "walker.py").read_text(encoding="utf-8"), WALKER.replace("steps", "strides"))
+    wait_until_equal((package / "gait.py").read_text, GAIT.replace("steps", "strides"))
+    wait_until_equal(lambda: (package / "walker.py").read_text(encoding="utf-8"), WALKER.replace("steps", "strides"))

@@ -1,4 +1,7 @@
-"""The terminal in the page: commands, keys, sizes, several terminals, and leaving it with the keyboard."""
+"""The terminal in the page.
+
+The tests cover commands, keys, sizes, several terminals, and leaving it with the keyboard.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.browser.axe import violations
-from tests.browser.conftest import becomes, state, until
+from tests.browser.axe import find_violations
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.browser.test_description import open_panel
 
 pytestmark = [
@@ -41,32 +44,32 @@ def open_terminal(page) -> None:
     page.locator(INPUT).focus()
 
 
-def run(page, command: str) -> None:
+def run_command(page, command: str) -> None:
     page.keyboard.type(f"{command}\n")
 
 
 def test_commands_run_and_are_stopped_by_keys(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
-    run(page, "echo 你好-$((40+2)); pwd")
+    run_command(page, "echo 你好-$((40+2)); pwd")
     wait_for_text(page, f"\n你好-42\n{file.parent}\n")
-    run(page, "sh -c 'echo be''gun; exec sleep 1000'")
+    run_command(page, "sh -c 'echo be''gun; exec sleep 1000'")
     wait_for_text(page, "\nbegun")
     page.keyboard.press("Control+c")
-    run(page, "echo interrupted=$?")
+    run_command(page, "echo interrupted=$?")
     wait_for_text(page, "\ninterrupted=130")
-    run(page, "sh -c 'echo once'' more; exec sleep 1000'")
+    run_command(page, "sh -c 'echo once'' more; exec sleep 1000'")
     wait_for_text(page, "\nonce more")
     page.keyboard.press("Control+z")
     wait_for_text(page, "Stopped")
-    run(page, "kill %1; env -u LINKWRIGHT_DDS linkwright topic list; echo listed=$?")
+    run_command(page, "kill %1; env -u LINKWRIGHT_DDS linkwright topic list; echo listed=$?")
     wait_for_text(page, "\nlisted=0")
     columns = state(page, "panels.terminal.size.columns")
-    run(page, "echo columns=$(stty size)")
+    run_command(page, "echo columns=$(stty size)")
     wait_for_text(page, f"columns={state(page, 'panels.terminal.size.rows')} {columns}")
     page.set_viewport_size({"width": 1000, "height": 700})
     until(page, f"{TERMINAL}.size.columns < {columns}")
-    run(page, "clear; echo columns=$(stty size)")
+    run_command(page, "clear; echo columns=$(stty size)")
     wait_for_text(
         page, f"columns={state(page, 'panels.terminal.size.rows')} {state(page, 'panels.terminal.size.columns')}\n"
     )
@@ -75,39 +78,39 @@ def test_commands_run_and_are_stopped_by_keys(start, open_page, file):
 def test_endless_output_does_not_block_page_or_program(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
-    run(page, "yes")
+    run_command(page, "yes")
     until(page, f"{TERMINAL}.scrollback >= 5000")
     assert state(page, "ready")
     page.keyboard.press("Control+c")
-    run(page, "echo done=$((1+1))")
+    run_command(page, "echo done=$((1+1))")
     wait_for_text(page, "\ndone=2")
 
 
 def test_exited_shell_is_reported_and_restarts(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
-    run(page, "exit 3")
+    run_command(page, "exit 3")
     until(page, f"{TERMINAL}.notice.includes('exit status 3')")
     page.keyboard.press("Enter")
     until(page, f"{TERMINAL}.terminals[0].status === null && {TERMINAL}.notice === ''")
-    run(page, "echo again=$((1+1))")
+    run_command(page, "echo again=$((1+1))")
     wait_for_text(page, "\nagain=2")
 
 
 def test_multiple_terminals_survive_reload(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
-    run(page, "name=first; echo $name")
+    run_command(page, "name=first; echo $name")
     wait_for_text(page, "\nfirst")
     page.get_by_role("button", name="New", exact=True).click()
     until(page, f"{TERMINAL}.current === 2")
     open_terminal(page)
-    run(page, "echo second=$name.")
+    run_command(page, "echo second=$name.")
     wait_for_text(page, "\nsecond=.")
     page.reload()
     until(page, f"{TERMINAL}.text?.includes('first') && {TERMINAL}.terminals.length === 2")
     page.locator(INPUT).focus()
-    run(page, "echo again=$name")
+    run_command(page, "echo again=$name")
     wait_for_text(page, "\nagain=first")
     page.get_by_role("tab", name="Terminal 2").click()
     wait_for_text(page, "\nsecond=.")
@@ -119,7 +122,7 @@ def test_second_page_shows_terminal_owner_and_can_take_over(start, open_page, fi
     program = start("view", str(file), "--terminal")
     first = open_page(program)
     open_terminal(first)
-    run(first, "echo mine=$((6*7))")
+    run_command(first, "echo mine=$((6*7))")
     wait_for_text(first, "\nmine=42")
     second = open_page(program)
     until(second, f"{TERMINAL}.current === 1 && {TERMINAL}.notice?.includes('another page')")
@@ -133,11 +136,11 @@ def test_text_is_copied_and_pasted_by_keys(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     open_terminal(page)
-    run(page, "clear; echo copy-$((1+1))-me")
+    run_command(page, "clear; echo copy-$((1+1))-me")
     wait_for_text(page, "copy-2-me")
     page.locator(".terminal-screen:visible .xterm-screen").dblclick(position={"x": 20, "y": 8})
     page.keyboard.press("Control+Shift+C")
-    becomes(lambda: page.evaluate("navigator.clipboard.readText()"), "copy-2-me")
+    wait_until_equal(lambda: page.evaluate("navigator.clipboard.readText()"), "copy-2-me")
     page.keyboard.type("echo pasted-")
     page.keyboard.press("Control+Shift+V")
     page.keyboard.press("Enter")
@@ -147,7 +150,7 @@ def test_text_is_copied_and_pasted_by_keys(start, open_page, file):
 def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
-    run(page, "echo ready-$((1+1)); cat -v")
+    run_command(page, "echo ready-$((1+1)); cat -v")
     wait_for_text(page, "\nready-2")  # keys that the shell still reads have other line ends
     page.keyboard.press("Control+s")
     page.keyboard.press("Control+q")
@@ -157,7 +160,7 @@ def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_
     assert state(page, "panels.terminal.focused")
     assert page.locator("dialog").count() == 0
     page.keyboard.press("Control+Shift+M")
-    becomes(lambda: page.evaluate("document.activeElement.getAttribute('role')"), "tab")
+    wait_until_equal(lambda: page.evaluate("document.activeElement.getAttribute('role')"), "tab")
     page.keyboard.press("Enter")
     until(page, f"{TERMINAL}.focused")
 
@@ -165,9 +168,9 @@ def test_keyboard_can_leave_terminal_and_page_shortcuts_are_ignored(start, open_
 def test_terminal_passes_axe_in_both_themes(start, open_page, file):
     page = open_page(start("view", str(file), "--terminal"))
     open_terminal(page)
-    run(page, r"printf '\033[31mred\033[33myellow\033[90mgrey\033[44mon blue\033[0m\n'")
+    run_command(page, r"printf '\033[31mred\033[33myellow\033[90mgrey\033[44mon blue\033[0m\n'")
     wait_for_text(page, "\nredyellowgreyon blue")
-    assert violations(page) == []
+    assert find_violations(page) == []
 
 
 def test_screen_reader_can_read_output(start, open_page, file):
@@ -175,7 +178,7 @@ def test_screen_reader_can_read_output(start, open_page, file):
     open_terminal(page)
     page.get_by_role("button", name="Let a screen reader read the terminal").click()
     page.locator(INPUT).focus()
-    run(page, "echo read-$((1+1))-aloud")
+    run_command(page, "echo read-$((1+1))-aloud")
     until(page, "document.querySelector('.xterm-accessibility-tree')?.textContent.includes('read-2-aloud')")
     assert "Ctrl+Shift+M" in page.locator(INPUT).get_attribute("aria-label")
 

@@ -1,4 +1,7 @@
-"""The timeline of a recording in a real browser: images, plots and frames belong to its time."""
+"""The timeline of a recording in a real browser.
+
+Images, plots and frames belong to its time.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +14,16 @@ from playwright.sync_api import Page
 from linkwright.bag import BagWriter
 from linkwright.graph import DEFAULT_QOS
 from linkwright.messages import TFMessage, TransformBatch, get_message, serialize
-from tests.browser.conftest import becomes, state, until
+from tests.browser.conftest import state, until, wait_until_equal
 from tests.images.test_images import image
 
 pytestmark = pytest.mark.browser
 
-START = 1_700_000_000
-SECOND = 1_000_000_000
+START_S = 1_700_000_000
+SECOND_NS = 1_000_000_000
 FLOAT = get_message("std_msgs/msg/Float64")
 
-LENGTH = 30
+LENGTH_S = 30
 """The length in seconds. Each topic has ten messages a second; number, frame and image identify the second."""
 
 
@@ -30,12 +33,12 @@ def write_recording(folder: Path) -> Path:
         writer.add_topic("/second", "std_msgs/msg/Float64", [DEFAULT_QOS])
         writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
         writer.add_topic("/camera", "sensor_msgs/msg/Image", [DEFAULT_QOS])
-        for tenth in range(10 * LENGTH + 1):
-            second, stamp = tenth // 10, START * SECOND + tenth * SECOND // 10
+        for tenth in range(10 * LENGTH_S + 1):
+            second, stamp = tenth // 10, START_S * SECOND_NS + tenth * SECOND_NS // 10
             batch = TransformBatch(("base",), ("tip",), stamp, np.array([[second, 0, 0, 0, 0, 0, 1.0]]))
             writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
             writer.write("/second", stamp, serialize(FLOAT(data=float(second))))
-            message = image("rgb8", 4, 4, bytes(color(second)) * 16)
+            message = image("rgb8", 4, 4, bytes(color_of_second(second)) * 16)
             message.header.frame_id = "tip"
             writer.write("/camera", stamp, serialize(message))
             if tenth % 10 == 9:
@@ -44,7 +47,7 @@ def write_recording(folder: Path) -> Path:
     return file
 
 
-def color(second: int) -> tuple[int, int, int]:
+def color_of_second(second: int) -> tuple[int, int, int]:
     return 8 * second, 0, 255 - 8 * second
 
 
@@ -59,11 +62,11 @@ def page(start, open_page, tmp_path: Path) -> Page:
     return recording_page
 
 
-def position(page: Page) -> float:
+def shown_position(page: Page) -> float:
     return float(state(page, "timeline")["position"])
 
 
-def track(page: Page) -> dict[str, float]:
+def track_box(page: Page) -> dict[str, float]:
     box = page.get_by_role("slider", name="Time in the recording").bounding_box()
     assert box is not None
     return dict(box)
@@ -71,20 +74,20 @@ def track(page: Page) -> dict[str, float]:
 
 def seek(page: Page, seconds: float) -> None:
     """Click on a time of the timeline."""
-    box = track(page)
-    page.mouse.click(box["x"] + box["width"] * seconds / LENGTH, box["y"] + box["height"] / 2)
-    until(page, f"Math.abs(lw.timeline.position - {seconds}) < {LENGTH / box['width'] + 0.01}")
+    box = track_box(page)
+    page.mouse.click(box["x"] + box["width"] * seconds / LENGTH_S, box["y"] + box["height"] / 2)
+    until(page, f"Math.abs(lw.timeline.position - {seconds}) < {LENGTH_S / box['width'] + 0.01}")
 
 
 def wait_for_second(page: Page, second: int) -> None:
     """Wait until the frame and the image belong to a second."""
     until(page, f"Math.abs(lw.frames.tip?.position[0] - {second}) < 1e-6")
     corner = "window.linkwright.displays.find(({ drawn }) => drawn?.width === 4).drawn.corner"
-    becomes(lambda: page.evaluate(corner), [*color(second), 255])
+    wait_until_equal(lambda: page.evaluate(corner), [*color_of_second(second), 255])
 
 
 def test_seek_shows_frames_and_images_of_that_time(page: Page):
-    assert state(page, "timeline")["length"] == LENGTH
+    assert state(page, "timeline")["length"] == LENGTH_S
     for seconds in (20.55, 4.55, 12.55):
         seek(page, seconds)
         wait_for_second(page, int(seconds))
@@ -92,7 +95,7 @@ def test_seek_shows_frames_and_images_of_that_time(page: Page):
 
 
 def test_dragging_slider_updates_scene_before_release(page: Page):
-    box = track(page)
+    box = track_box(page)
     middle = box["y"] + box["height"] / 2
     page.mouse.move(box["x"] + 0.1 * box["width"], middle)
     page.mouse.down()
@@ -101,7 +104,7 @@ def test_dragging_slider_updates_scene_before_release(page: Page):
     wait_for_second(page, 25)
     page.mouse.move(box["x"] - 100, middle)
     wait_for_second(page, 0)
-    assert position(page) == 0
+    assert shown_position(page) == 0
     page.mouse.up()
 
 
@@ -134,7 +137,7 @@ def test_steps_follow_the_chosen_topic(start, open_page, tmp_path: Path):
         writer.add_topic("/rare", "std_msgs/msg/Float64", [DEFAULT_QOS])
         for tenth in range(101):
             for topic in ("/second", *(["/rare"] if tenth % 40 == 0 else [])):
-                writer.write(topic, START * SECOND + tenth * SECOND // 10, serialize(FLOAT(data=0.0)))
+                writer.write(topic, START_S * SECOND_NS + tenth * SECOND_NS // 10, serialize(FLOAT(data=0.0)))
     page = open_page(start("view", str(tmp_path / "rare")), wait=False)
     until(page, "lw.timeline")
     page.get_by_role("combobox", name="Step by the messages of").select_option("/rare")
@@ -159,7 +162,7 @@ def test_space_plays_and_pauses_at_chosen_speed(page: Page):
     until(page, "lw.timeline.playing && lw.timeline.position > 6")
     page.keyboard.press("Space")
     until(page, "!lw.timeline.playing")
-    start_position = position(page)
+    start_position = shown_position(page)
     wait_for_second(page, int(start_position))
     page.get_by_role("combobox", name="Speed").select_option("0.1")
     page.get_by_role("button", name="Play (Space)").click()
@@ -170,12 +173,12 @@ def test_space_plays_and_pauses_at_chosen_speed(page: Page):
 
 def test_playback_stops_or_repeats_at_end(page: Page):
     page.get_by_role("combobox", name="Speed").select_option("10")
-    seek(page, LENGTH - 3)
+    seek(page, LENGTH_S - 3)
     page.get_by_role("button", name="Play (Space)").click()
-    until(page, f"!lw.timeline.playing && lw.timeline.position === {LENGTH}")
-    wait_for_second(page, LENGTH)
+    until(page, f"!lw.timeline.playing && lw.timeline.position === {LENGTH_S}")
+    wait_for_second(page, LENGTH_S)
     page.get_by_role("button", name="Repeat from the start").click()
-    seek(page, LENGTH - 3)
+    seek(page, LENGTH_S - 3)
     page.get_by_role("button", name="Play (Space)").click()
     until(page, "lw.timeline.playing && lw.timeline.position < 20")
 

@@ -1,4 +1,7 @@
-"""The token: in the printed address, and then in the browser's storage for this host and port."""
+"""The token of a page.
+
+It is in the printed address, and then in the browser's storage for this host and port.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from tests.browser.conftest import SECONDS, becomes, until
+from tests.browser.conftest import TIMEOUT_S, until, wait_until_equal
 from tests.browser.live import configuration
 
 pytestmark = pytest.mark.browser
@@ -25,7 +28,7 @@ def viewer(live):
 def context(browser):
     """Return a browser without any data."""
     context = browser.new_context(viewport={"width": 1280, "height": 800}, locale="en-US")
-    context.set_default_timeout(1000 * SECONDS)
+    context.set_default_timeout(1000 * TIMEOUT_S)
     yield context
     context.close()
 
@@ -66,7 +69,7 @@ def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
     page = context.new_page()
     page.goto(viewer.url)
     wait_until_admitted(page)
-    becomes(lambda: page.url, url_without_query(viewer))
+    wait_until_equal(lambda: page.url, url_without_query(viewer))
     page.reload()
     wait_until_admitted(page)
     second = context.new_page()
@@ -74,12 +77,12 @@ def test_token_leaves_address_bar_and_is_shared_by_all_tabs(viewer, context):
     wait_until_admitted(second)
     # The request for separate displays stays in the address, and nothing else does.
     second.get_by_role("group", name="Displays").get_by_text("Own").click()
-    becomes(lambda: second.url, f"{url_without_query(viewer)}?displays=own")
+    wait_until_equal(lambda: second.url, f"{url_without_query(viewer)}?displays=own")
     wait_until_admitted(second)
     # An outdated token in an address does not lock the browser out.
     second.goto(f"{url_without_query(viewer)}?token=of-an-earlier-run")
     wait_until_admitted(second)
-    becomes(lambda: second.url, url_without_query(viewer))
+    wait_until_equal(lambda: second.url, url_without_query(viewer))
 
 
 def test_token_is_not_sent_to_other_server_on_same_host(viewer, context, other_server):
@@ -110,7 +113,7 @@ def test_browser_without_token_shows_form_that_accepts_it(viewer, context):
     field = page.get_by_label("Address or token")
     field.fill("hello")
     field.press("Enter")
-    becomes(door.locator(".problem").inner_text, "This text contains no token.")
+    wait_until_equal(door.locator(".problem").inner_text, "This text contains no token.")
     field.fill(f"{url_without_query(viewer)}?token={'x' * 32}")
     field.press("Enter")
     door.get_by_text("This token is not valid", exact=False).wait_for()

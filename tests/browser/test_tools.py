@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.messages import get_message
 from tests.browser.arm_from_above import TIP, ArmPage, open_scene
-from tests.browser.conftest import becomes, state, until, wait_two_seconds
+from tests.browser.conftest import state, until, wait_two_seconds, wait_until_equal
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -55,7 +55,7 @@ def test_goal_pose_is_published_where_dragged(scene):
     scene.page.mouse.down()
     scene.page.mouse.move(x0, y0 - 20)
     scene.page.mouse.move(x1, y1)
-    becomes(lambda: state(scene.page, "tool.state")["arrows"], 1)
+    wait_until_equal(lambda: state(scene.page, "tool.state")["arrows"], 1)
     scene.page.mouse.up()
     until(scene.page, "lw.tool.class.endsWith('/Interact')")
     goal = scene.single_message("/goal_pose")
@@ -85,7 +85,7 @@ def test_pose_estimate_uses_covariance_of_tool_properties(scene):
 def test_clicked_point_is_published_and_drawn(scene):
     scene.press("u")
     scene.page.mouse.move(*scene.pixel(-3, -3))
-    becomes(lambda: state(scene.page, "tool.hint"), "Move over an object to select the target point.")
+    wait_until_equal(lambda: state(scene.page, "tool.hint"), "Move over an object to select the target point.")
     scene.click(0.25, 0.5)
     until(scene.page, "lw.tool.class.endsWith('/Interact')")
     point = scene.single_message("/clicked_point")
@@ -198,7 +198,7 @@ def test_pause_freezes_displayed_scene(scene):
     elapsed = page.locator(".time-panel .figure").nth(1)
     time_before = float(elapsed.inner_text())
     page.keyboard.press("r")
-    becomes(lambda: float(elapsed.inner_text()) < time_before, True)
+    wait_until_equal(lambda: float(elapsed.inner_text()) < time_before, True)
     assert not state(page, "time.paused")
 
 
@@ -218,6 +218,6 @@ def test_keyboard_shortcuts_dialog_opens_and_closes(scene):
     sheet.wait_for(state="detached")
     page.keyboard.press("F11")
     # The page draws no frames while it enters or leaves full screen, so the test polls.
-    becomes(lambda: page.evaluate("document.fullscreenElement?.className ?? null"), "scene-box")
+    wait_until_equal(lambda: page.evaluate("document.fullscreenElement?.className ?? null"), "scene-box")
     page.keyboard.press("F11")
-    becomes(lambda: page.evaluate("document.fullscreenElement"), None)
+    wait_until_equal(lambda: page.evaluate("document.fullscreenElement"), None)

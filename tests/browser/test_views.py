@@ -6,8 +6,8 @@ import math
 
 import pytest
 
-from tests.browser.arm_from_above import SCALE, TIP, ArmPage, open_scene
-from tests.browser.conftest import becomes, state, until
+from tests.browser.arm_from_above import PIXELS_PER_METER, TIP, ArmPage, open_scene
+from tests.browser.conftest import state, until, wait_until_equal
 
 pytestmark = pytest.mark.browser
 
@@ -19,7 +19,7 @@ def scene(live, open_page) -> ArmPage:
 
 def test_view_type_change_keeps_camera_pose(scene):
     above = state(scene.page, "view")
-    assert (above["type"], above["values"]["Scale"]) == ("TopDownOrtho", SCALE)
+    assert (above["type"], above["values"]["Scale"]) == ("TopDownOrtho", PIXELS_PER_METER)
     assert above["camera"]["position"] == [0, 0, 500]
     orbit = scene.show("Orbit")
     assert orbit["distance"] == pytest.approx(100)
@@ -45,9 +45,9 @@ def test_mouse_moves_orthographic_view_by_its_scale(scene):
     values = state(scene.page, "view.values")
     assert (values["X"], values["Y"]) == pytest.approx((-1, 0), abs=0.03)
     scene.drag((0, -3), (2, -3))
-    assert state(scene.page, "view.values")["Angle"] == pytest.approx(2 * SCALE * 0.005, abs=0.02)
+    assert state(scene.page, "view.values")["Angle"] == pytest.approx(2 * PIXELS_PER_METER * 0.005, abs=0.02)
     scene.page.mouse.wheel(0, -120)
-    until(scene.page, f"Math.abs(lw.view.values.Scale - {SCALE * 1.12}) < 0.5")
+    until(scene.page, f"Math.abs(lw.view.values.Scale - {PIXELS_PER_METER * 1.12}) < 0.5")
 
 
 def test_selected_number_stays_selected_while_mouse_changes_it(scene):
@@ -55,7 +55,7 @@ def test_selected_number_stays_selected_while_mouse_changes_it(scene):
     field = scene.page.locator(".row").filter(has=scene.page.get_by_text("Scale", exact=True)).locator("input")
     field.focus()
     scene.page.mouse.wheel(0, -120)
-    becomes(field.input_value, f"{SCALE * 1.12:g}")
+    wait_until_equal(field.input_value, f"{PIXELS_PER_METER * 1.12:g}")
     scene.page.keyboard.type("40")  # replaces the number, although the number changed after it was selected
     scene.page.keyboard.press("Enter")
     until(scene.page, "lw.view.values.Scale === 40")
@@ -67,7 +67,7 @@ def test_fps_view_moves_and_rotates(scene):
     start = state(scene.page, "view")
     scene.drag((0, 0), (1, 0))
     view = state(scene.page, "view")
-    assert view["yaw"] == pytest.approx(start["yaw"] - SCALE * 0.005, abs=0.01)
+    assert view["yaw"] == pytest.approx(start["yaw"] - PIXELS_PER_METER * 0.005, abs=0.01)
     assert view["camera"]["position"] == pytest.approx([5, 5, 10])
     scene.page.mouse.wheel(0, -120)
     until(scene.page, "Math.abs(lw.view.camera.position[2] - 10) > 0.5")
@@ -109,10 +109,10 @@ def test_views_are_saved_renamed_used_and_removed(scene):
     scene.show("FPS")
     page.get_by_role("treeitem").filter(has_text="map").locator(".row-name").dblclick()
     until(page, "lw.view.type === 'TopDownOrtho'")
-    assert state(page, "view.values")["Scale"] == SCALE
-    becomes(lambda: scene.saved_settings()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
+    assert state(page, "view.values")["Scale"] == PIXELS_PER_METER
+    wait_until_equal(lambda: scene.saved_settings()["Views"]["Current"]["Class"], "rviz_default_plugins/TopDownOrtho")
     views = scene.saved_settings()["Views"]
-    assert [(view["Name"], view["Scale"]) for view in views["Saved"]] == [("map", SCALE)]
+    assert [(view["Name"], view["Scale"]) for view in views["Saved"]] == [("map", PIXELS_PER_METER)]
     page.get_by_role("button", name="Remove", exact=True).click()
     until(page, "lw.view.saved.length === 0")
     assert not scene.saved_settings()["Views"]["Saved"]

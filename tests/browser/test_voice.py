@@ -16,11 +16,11 @@ from linkwright.speech.enrolled.words import RECOMMENDED_TAKES, Take, Words, wor
 from linkwright.speech.sound.spectra import BANDS
 from tests.browser.conftest import run_browser, until
 from tests.browser.live import LiveViewer, configuration
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.browser
 
-TONE = 440.0
+TONE_HZ = 440.0
 GRID = "- Class: rviz_default_plugins/Grid\n  Enabled: true\n  Name: Grid"
 STRING = "std_msgs/msg/String"
 
@@ -36,7 +36,7 @@ def browser(playwright: Playwright, tmp_path_factory: pytest.TempPathFactory) ->
 
 
 def _write_tone(path: Path) -> None:
-    samples = np.sin(2 * np.pi * TONE * np.arange(48_000) / 48_000) * 12_000
+    samples = np.sin(2 * np.pi * TONE_HZ * np.arange(48_000) / 48_000) * 12_000
     with wave.open(str(path), "wb") as file:
         file.setnchannels(1)
         file.setsampwidth(2)
@@ -91,17 +91,17 @@ def open_panel(page: Page) -> None:
 def test_push_to_talk_key_records_while_held(voice_page: tuple[Robot, Page]) -> None:
     robot, page = voice_page
     page.keyboard.down("v")
-    wait_until(lambda: robot.seconds > 1.0, SECONDS)
+    wait_until(lambda: robot.seconds > 1.0, TIMEOUT_S)
     assert robot.button_states == [True]
     page.keyboard.up("v")
-    wait_until(lambda: robot.button_states == [True, False], SECONDS)
+    wait_until(lambda: robot.button_states == [True, False], TIMEOUT_S)
     until(page, "lw.panels.voice.mode === 'ready'")
     # All blocks but the last are a tenth of a second; without gaps, a tone has one line in its spectrum.
     assert {sample.size for sample in robot.samples[:-1]} == {1600}
     sound = np.concatenate(robot.samples)[1600:11200].astype(float)
     spectrum = np.abs(np.fft.rfft(sound * np.hanning(sound.size))) ** 2
     strongest = int(np.argmax(spectrum))
-    assert abs(strongest * 16_000 / sound.size - TONE) < 4
+    assert abs(strongest * 16_000 / sound.size - TONE_HZ) < 4
     assert spectrum[strongest - 8 : strongest + 9].sum() > 0.9 * spectrum.sum()
 
 
@@ -119,7 +119,7 @@ def test_conversation_is_shown_and_commands_can_be_typed(voice_page: tuple[Robot
     field.fill("go to the kitchen")
     field.press("v")  # a letter in a text field
     field.press("Enter")
-    wait_until(lambda: robot.commands == ["go to the kitchenv"], SECONDS)
+    wait_until(lambda: robot.commands == ["go to the kitchenv"], TIMEOUT_S)
     assert robot.button_states == []
 
 
@@ -128,15 +128,15 @@ def test_talk_button_releases_when_page_loses_focus(voice_page: tuple[Robot, Pag
     open_panel(page)
     page.locator(".voice-talk").focus()
     page.keyboard.down("Space")
-    wait_until(lambda: robot.button_states == [True], SECONDS)
+    wait_until(lambda: robot.button_states == [True], TIMEOUT_S)
     page.evaluate("window.dispatchEvent(new Event('blur'))")
-    wait_until(lambda: robot.button_states == [True, False], SECONDS)
+    wait_until(lambda: robot.button_states == [True, False], TIMEOUT_S)
     page.keyboard.up("Space")
     page.get_by_label("Open listening").check()
     # The limit is low, because browsers suppress steady tones.
     until(page, "lw.panels.voice.mode === 'open' && lw.panels.voice.peak > 0.02")
     seconds = robot.seconds
-    wait_until(lambda: robot.seconds > seconds + 0.3, SECONDS)
+    wait_until(lambda: robot.seconds > seconds + 0.3, TIMEOUT_S)
     assert robot.button_states == [True, False]
 
 
@@ -169,10 +169,10 @@ def test_lost_microphone_is_reported(voice_page: tuple[Robot, Page]) -> None:
         "navigator.mediaDevices.getUserMedia = async (wanted) => (window.heard = await get(wanted)); 0"
     )
     page.keyboard.down("v")
-    wait_until(lambda: robot.seconds > 0.1, SECONDS)
+    wait_until(lambda: robot.seconds > 0.1, TIMEOUT_S)
     page.evaluate("window.heard.getTracks()[0].dispatchEvent(new Event('ended'))")
     page.wait_for_selector(".voice-notice:has-text('disconnected')")
-    wait_until(lambda: robot.button_states == [True, False], SECONDS)
+    wait_until(lambda: robot.button_states == [True, False], TIMEOUT_S)
     page.keyboard.up("v")
 
 
@@ -205,7 +205,7 @@ def test_unrecognized_speaker_can_enroll_words_at_this_place(
             words.add(name, Take(rng.uniform(1e3, 1e6, (40, BANDS)), np.ones(BANDS)))
     words.write(words_path())
     page.keyboard.down("v")
-    wait_until(lambda: robot.button_states == [True], SECONDS)
+    wait_until(lambda: robot.button_states == [True], TIMEOUT_S)
     page.keyboard.up("v")
     until(page, "lw.panels.voice.serverState !== null")
     robot.viewer.publish("/voice/propose_enrolling", get_message("std_msgs/msg/Bool")(data=True))

@@ -1,4 +1,6 @@
-"""From the microphone to the wheels: words are enrolled and spoken in a real browser, and mbot obeys.
+"""From the microphone to the wheels.
+
+Words are enrolled and spoken in a real browser, and mbot obeys.
 
 The browser's microphone is a file, which gets another word before each opening of the microphone.
 """
@@ -15,17 +17,17 @@ from playwright.sync_api import Browser, Locator, Page, Playwright
 
 from linkwright.speech.sound.wav import encode_wav
 from tests.browser.conftest import Start, run_browser, state, until
-from tests.browser.live import POLL_PERIOD
+from tests.browser.live import POLL_PERIOD_S
 from tests.speech.voices import WORDS, say
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
 
-SILENCE = 1.5
-AFTER = 1.2
+SILENCE_S = 1.5
+PAUSE_S = 1.2
 """The time in seconds that the button is held before and after the word; the file is much longer."""
 
-_KEPT = """
+_RECORD_MICROPHONE = """
 const get = navigator.mediaDevices.getUserMedia.bind(navigator.mediaDevices);
 navigator.mediaDevices.getUserMedia = async (wanted) => (window.heard = await get(wanted));
 """
@@ -71,7 +73,7 @@ def browser(playwright: Playwright, microphone: Microphone) -> Iterator[Browser]
 
 def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, seed: int, **voice: float) -> None:
     """Hold a button and speak a word."""
-    samples = say(WORDS[word], silence=SILENCE, seed=seed, **voice)
+    samples = say(WORDS[word], silence=SILENCE_S, seed=seed, **voice)
     page.evaluate(_UNPLUGGED)
     until(page, "lw.panels.voice.isOpen === false")
     microphone.put(samples)
@@ -79,11 +81,11 @@ def speak(page: Page, button: Locator, microphone: Microphone, word: str, *, see
     page.keyboard.down("Space")
     until(page, "lw.panels.voice.isOpen")
     # The browser plays the sound in real time.
-    page.wait_for_timeout(1000 * (len(samples) / 16_000 - SILENCE + AFTER))
+    page.wait_for_timeout(1000 * (len(samples) / 16_000 - SILENCE_S + PAUSE_S))
     page.keyboard.up("Space")
 
 
-def position(page: Page) -> tuple[float, float]:
+def robot_position(page: Page) -> tuple[float, float]:
     x, y, *_ = state(page, "frames")["base_footprint"]["position"]
     return x, y
 
@@ -101,7 +103,7 @@ def test_enrolled_words_drive_and_stop_mbot(
     page = open_page(program, wait=False)
     words = page.locator(".word-box summary")
     words.wait_for()  # a robot with voice commands opens the panel
-    page.add_init_script(_KEPT)
+    page.add_init_script(_RECORD_MICROPHONE)
     page.add_init_script(_BUSY)
     page.reload()
     until(page, "lw.ready && 'base_footprint' in lw.frames")
@@ -121,22 +123,22 @@ def test_enrolled_words_drive_and_stop_mbot(
                 verdict.wait_for()
             row.locator(f".word-takes:text-is('{take}/3')").wait_for()
 
-    talk = page.locator(".voice-talk")
-    x, y = position(page)
-    speak(page, talk, microphone, "forward", seed=7, speed=0.97)
+    talk_button = page.locator(".voice-talk")
+    x, y = robot_position(page)
+    speak(page, talk_button, microphone, "forward", seed=7, speed=0.97)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=forward")
     wait_until(
-        lambda: math.hypot(position(page)[0] - x, position(page)[1] - y) > 0.2,
-        what=lambda: position(page),
-        pause=POLL_PERIOD,
+        lambda: math.hypot(robot_position(page)[0] - x, robot_position(page)[1] - y) > 0.2,
+        what=lambda: robot_position(page),
+        pause=POLL_PERIOD_S,
     )
-    speak(page, talk, microphone, "stop", seed=8, speed=1.03)
+    speak(page, talk_button, microphone, "stop", seed=8, speed=1.03)
     page.wait_for_selector(".voice-said:has-text('understood') >> text=stop")
-    positions = [position(page)]
+    positions = [robot_position(page)]
 
     def is_standing() -> bool:
         page.wait_for_timeout(300)
-        positions.append(position(page))
+        positions.append(robot_position(page))
         return math.dist(positions[-1], positions[-2]) < 1e-3
 
     wait_until(is_standing, what=lambda: positions)

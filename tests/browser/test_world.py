@@ -11,7 +11,7 @@ from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS, Durabilit
 from linkwright.messages import String, TFMessage, get_message, get_service
 from linkwright.page.protocol.simulation import ModelChoices
 from linkwright.simulation.page.modeling import entities
-from tests.browser.conftest import SECONDS, becomes, state, until
+from tests.browser.conftest import TIMEOUT_S, state, until, wait_until_equal
 from tests.browser.live import configuration
 from tests.waiting import wait_until
 
@@ -55,7 +55,7 @@ def move_model(viewer, x: float) -> None:
     viewer.publish("/world_poses", TFMessage(transforms=[transform]), TF_QOS)
 
 
-def bounds(page, link: str, shape: int = 0) -> list[list[float]]:
+def drawn_bounds(page, link: str, shape: int = 0) -> list[list[float]]:
     drawing = page.evaluate("() => window.linkwright.displays[0].drawn")
     box = drawing["links"][link]["visuals"][shape]["bounds"]
     return [[round(coordinate, 2) for coordinate in box[end]] for end in ("min", "max")]
@@ -65,17 +65,19 @@ def test_models_are_drawn_and_moved(live, open_page):
     viewer = publish_world(live)
     page = open_page(viewer)
     viewer.settle(page)
-    assert bounds(page, "crate::link") == [[-2, -2, -0.5], [2, 2, 0.5]]
-    assert bounds(page, "hill::link") == [[-1, -1, 2], [1, 1, 4]]
-    assert bounds(page, "hill::link", 1) == [[0, 0, 6], [2, 2, 6.5]]
+    assert drawn_bounds(page, "crate::link") == [[-2, -2, -0.5], [2, 2, 0.5]]
+    assert drawn_bounds(page, "hill::link") == [[-1, -1, 2], [1, 1, 4]]
+    assert drawn_bounds(page, "hill::link", 1) == [[0, 0, 6], [2, 2, 6.5]]
     move_model(viewer, 3.0)
     viewer.settle(page)
-    assert bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
+    assert drawn_bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
 
 
 def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, tmp_path):
     list_requested = threading.Event()
-    monkeypatch.setattr(entities, "model_choices", lambda packages: (list_requested.wait(SECONDS), ModelChoices([]))[1])
+    monkeypatch.setattr(
+        entities, "model_choices", lambda packages: (list_requested.wait(TIMEOUT_S), ModelChoices([]))[1]
+    )
     viewer = publish_world(live)
     requests_made: list[tuple[str, object]] = []
 
@@ -118,7 +120,7 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     list_requested.set()
     dialog.get_by_text("No model is on the search path").wait_for()
     assert failure.is_visible(), "a list that arrives late does not hide the error"
-    (tmp_path / "seen.urdf").write_text(SEEN, encoding="utf-8")
+    (tmp_path / "seen.urdf").write_text(VISIBLE_ROBOT, encoding="utf-8")
     dialog.get_by_label("Model or file").fill(str(tmp_path / "seen.urdf"))
     dialog.get_by_role("button", name="Add a model").click()
     dialog.wait_for(state="detached")
@@ -162,7 +164,7 @@ def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, t
     assert page.get_by_role("dialog").is_visible()
 
 
-SEEN = """\
+VISIBLE_ROBOT = """\
 <robot name="seen"><link name="base"><visual><geometry><box size="1 1 1"/></geometry></visual></link>
   <joint name="turns" type="continuous"><parent link="base"/><child link="wheel"/></joint>
   <joint name="rolls" type="continuous"><parent link="base"/><child link="roll"/></joint>
@@ -172,7 +174,7 @@ SEEN = """\
 
 
 def test_camera_shows_world_origin_when_robot_falls_out_of_view(start, open_page, tmp_path):
-    (tmp_path / "seen.urdf").write_text(SEEN)
+    (tmp_path / "seen.urdf").write_text(VISIBLE_ROBOT)
     page = open_page(start("sim", "empty", "seen.urdf", "-x", "7", "-z", "-900"))
     page.locator(".banner").get_by_text("no link of 'seen' has a <collision>").wait_for()
     has_fallen = (
@@ -187,9 +189,10 @@ def test_model_without_collision_is_reported_until_dismissed(live, open_page):
     viewer = publish_world(live)
     page = open_page(viewer)
     falls = phrase("no link of '{name}' has a <collision>, so the model has no contacts and falls", name="seen")
-    small = phrase("links without a mass")
+    light_links_text = phrase("links without a mass")
     findings = [
-        Diagnostic(code, text, severity=Severity.WARNING) for code, text in (("SDF172", small), ("SIM143", falls))
+        Diagnostic(code, text, severity=Severity.WARNING)
+        for code, text in (("SDF172", light_links_text), ("SIM143", falls))
     ]
     viewer.run(lambda: viewer.viewer.show_diagnostics(findings))
     banner = page.locator(".banner")
@@ -252,7 +255,7 @@ SENSING = """
     <sensor name="laser" type="ray"><visualize>true</visualize><ray><scan><horizontal><samples>8</samples>
       <min_angle>-3</min_angle><max_angle>3</max_angle></horizontal></scan><range><min>0.1</min><max>5</max></range></ray>
     </sensor>
-    <sensor name="eye" type="camera"><camera><clip><near>0.5</near><far>4</far></clip></camera></sensor>
+    <sensor name="camera" type="camera"><camera><clip><near>0.5</near><far>4</far></clip></camera></sensor>
   </link></model>
 </world>"""
 
@@ -269,12 +272,12 @@ def test_sensor_rays_and_frustums_follow_display_properties(live, open_page):
     scan = get_message("sensor_msgs/msg/LaserScan")(ranges=[4.0, 3.0, 2.0, float("inf"), float("-inf"), 1.0, 1.0, 1.0])
     scan.header.frame_id = "tower::top::laser"
     viewer.publish("/world_rays", scan, SENSOR_DATA_QOS)
-    becomes(lambda: drawn(page)["rays"], {"tower::top::laser": 8})
+    wait_until_equal(lambda: drawn(page)["rays"], {"tower::top::laser": 8})
 
     def choose(name: str, choice: str) -> None:
         viewer.run(lambda: viewer.viewer.displays[0].set_property((name,), choice))
 
     choose("Camera Frustums", "All")
-    becomes(lambda: drawn(page)["frustums"], ["tower::top::eye"])
+    wait_until_equal(lambda: drawn(page)["frustums"], ["tower::top::camera"])
     choose("Lidar Rays", "None")
-    becomes(lambda: drawn(page)["rays"], {})
+    wait_until_equal(lambda: drawn(page)["rays"], {})

@@ -1,4 +1,7 @@
-"""An example repository with a pull request that changes a robot, on a service for the steps of templates."""
+"""An example repository with a pull request that changes a robot.
+
+It is on a service for the steps of templates.
+"""
 
 from __future__ import annotations
 
@@ -48,7 +51,10 @@ class Example:
 
 @pytest.fixture
 def example(tmp_path: Path) -> Example:
-    """Return a pull request that renames a link, lengthens a macro, and has hostile names and files."""
+    """Return a pull request that renames a link and lengthens a macro.
+
+    It has hostile names and files.
+    """
     repository = Repository(tmp_path / "repository")
     base = repository.commit(PACKAGE)
     repository.git("checkout", "--quiet", "-b", HOSTILE_BRANCH)

@@ -1,4 +1,7 @@
-"""A runner of composite actions with the features that our actions use: bash, inputs, outputs and conditions."""
+"""A runner of composite actions with the features that Linkwright's actions use.
+
+These are bash, inputs, outputs and conditions.
+"""
 
 from __future__ import annotations
 
@@ -59,7 +62,10 @@ class Runner:
         self.summary = temporary / "summary.md"
 
     def _prepare(self) -> dict[str, str]:
-        """Put a `python3` on the PATH that makes environments with this Linkwright and records what pip installs."""
+        """Put a `python3` on the PATH that makes environments with this Linkwright.
+
+        It also records what pip installs.
+        """
         commands = self.temporary / "commands"
         commands.mkdir(parents=True)
         self.installed = self.temporary / "installed.txt"

@@ -1,4 +1,7 @@
-"""A local service with pull requests, for programs that comment on them: GitHub, Gitea or GitLab."""
+"""A local service with pull requests, for programs that comment on them.
+
+It imitates GitHub, Gitea and GitLab.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The action for GitHub and Gitea in an example repository: its files, its comment, and code that it does not run."""
+"""The action for GitHub and Gitea in an example repository.
+
+The tests cover its files, its comment, and code that it does not run.
+"""
 
 from __future__ import annotations
 
@@ -86,12 +89,12 @@ def test_unchanged_report_is_not_posted_again(example: Example, service: Service
 def test_empty_report_posts_no_comment(example: Example, service: Service, runner: Runner) -> None:
     base = example.head
     head = example.repository.commit({"README.md": "An arm."})
-    quiet = Example(example.repository, base, head)
-    run = runner.run("review", quiet.event())
+    example_without_changes = Example(example.repository, base, head)
+    run = runner.run("review", example_without_changes.event())
     assert "the review has nothing to say" in run.output
     assert service.comments == []
     service.add(f"{MARKER}\nan older report")
-    runner.run("review", quiet.event())
+    runner.run("review", example_without_changes.event())
     assert "0 breaking changes" in service.bodies[0]
 
 

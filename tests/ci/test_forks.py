@@ -1,4 +1,7 @@
-"""The comment on a pull request of a fork: it comes from an artifact that the fork could have made."""
+"""The comment on a pull request of a fork.
+
+It comes from an artifact that the fork could have made.
+"""
 
 from __future__ import annotations
 
@@ -25,13 +28,13 @@ LINE = "> This report comes from [a run of the fork](https://example.org/runs/6)
 HEAD = "c" * 40
 
 
-def packed(comment: str | bytes = GOOD, report: str = REPORT, number: str = "5\n", **more: str) -> bytes:
+def packed(comment: str | bytes = GOOD, report: str = REPORT, number: str = "5\n", **extra_entries: str) -> bytes:
     """Return an artifact as a zip file."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in (("comment.md", comment), ("report.json", report), ("pull-request.txt", number)):
             archive.writestr(name, content)
-        for name, content in more.items():
+        for name, content in extra_entries.items():
             archive.writestr(name, content)
     return data.getvalue()
 

@@ -1,4 +1,7 @@
-"""The template for GitLab in an example repository: its note, its code quality report, and code that is not run."""
+"""The template for GitLab in an example repository.
+
+The tests cover its note, its code quality report, and code that is not run.
+"""
 
 from __future__ import annotations
 
@@ -128,8 +131,8 @@ def test_scenes_are_in_the_page_if_the_variable_says_so(runner: Runner, gitlab: 
 
 
 def test_findings_are_reported_as_code_quality(example: Example, gitlab: GitLab) -> None:
-    wrong = ARM.replace("</robot>", '<link name="loose link"/></robot>')
-    example.repository.commit({"arm_description/urdf/arm #1.urdf.xacro": wrong})
+    faulty = ARM.replace("</robot>", '<link name="loose link"/></robot>')
+    example.repository.commit({"arm_description/urdf/arm #1.urdf.xacro": faulty})
     assert gitlab.run().returncode == 0
     report = json.loads((gitlab.folder / "code-quality.json").read_text(encoding="utf-8"))
     assert report

@@ -11,8 +11,8 @@ import yaml
 from linkwright.cli import main
 from tests.ci.runner import TEMPLATES
 from tests.ci.test_pre_commit import HOOKS
-from tests.docs.pages import DOCS, Block, blocks
-from tests.docs.reader import write
+from tests.docs.pages import DOCS, Block, read_blocks
+from tests.docs.reader import write_block
 from tests.repositories import Repository
 
 PAGES = {"en": DOCS / "howto-review.md", "zh": DOCS / "zh" / "howto-review.md"}
@@ -20,7 +20,7 @@ PAGES = {"en": DOCS / "howto-review.md", "zh": DOCS / "zh" / "howto-review.md"}
 
 def files(page: Path = PAGES["en"]) -> dict[str, Any]:
     """Return the YAML files of the page by name."""
-    return {block.title: yaml.safe_load(block.text) for block in blocks(page) if block.language == "yaml"}
+    return {block.title: yaml.safe_load(block.text) for block in read_blocks(page) if block.language == "yaml"}
 
 
 def steps(name: str) -> list[dict[str, Any]]:
@@ -33,14 +33,14 @@ def steps(name: str) -> list[dict[str, Any]]:
 def test_outputs_on_page_are_current(
     language: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    shown = blocks(PAGES[language])
+    shown = read_blocks(PAGES[language])
     robot: list[Block] = [block for block in shown if block.title.endswith(".urdf")]
     review, check, _ = (block.text for block in shown if block.language == "text")
     repository = Repository(tmp_path / "robots")
-    write(next(block for block in shown if block.title.endswith("package.xml")), repository.root)
-    write(robot[0], repository.root)
+    write_block(next(block for block in shown if block.title.endswith("package.xml")), repository.root)
+    write_block(robot[0], repository.root)
     repository.commit({})
-    write(robot[1], repository.root)
+    write_block(robot[1], repository.root)
     monkeypatch.chdir(repository.root)
     assert main(["review", "--lang", language]) == 0
     assert capsys.readouterr().out == review
@@ -52,11 +52,11 @@ def test_outputs_on_page_are_current(
 def test_output_of_a_scenario_is_current(
     language: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    shown = blocks(PAGES[language])
+    shown = read_blocks(PAGES[language])
     (scenario,) = (block for block in shown if block.language == "python")
     *_, output = (block.text for block in shown if block.language == "text")
     repository = Repository(tmp_path / "robots")
-    write(scenario, repository.root)
+    write_block(scenario, repository.root)
     repository.commit({})
     repository.write({scenario.title: scenario.text.replace("TURN = 0.3", "TURN = 0.4")})
     monkeypatch.chdir(repository.root)

@@ -35,13 +35,16 @@ def test_action_files_have_valid_structure(path: Path) -> None:
         assert step.keys() <= _STEP_KEYS
         assert ("run" in step) != ("uses" in step)
         assert ("run" in step) == ("shell" in step)
-    used = set(re.findall(r"inputs\.([\w-]+)", path.read_text(encoding="utf-8")))
-    assert used == action["inputs"].keys()
+    used_inputs = set(re.findall(r"inputs\.([\w-]+)", path.read_text(encoding="utf-8")))
+    assert used_inputs == action["inputs"].keys()
 
 
 @pytest.mark.parametrize("path", sorted(TEMPLATES.rglob("*.yml")), ids=lambda path: path.parent.name)
 def test_scripts_contain_no_expressions(path: Path) -> None:
-    """An expression is inserted into the script before a shell reads it, including any branch name."""
+    """No expression is inserted into a script.
+
+    It would be inserted before a shell reads the script, including any branch name.
+    """
     definition = load(path)
     steps = definition["runs"]["steps"] if "runs" in definition else definition.values()
     for step in steps:

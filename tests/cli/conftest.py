@@ -12,7 +12,10 @@ from linkwright.graph import Graph
 
 @pytest.fixture
 def in_graph(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Graph], object]], None]:
-    """Return a function that registers a callback to add nodes to the graphs of later commands, which stay local."""
+    """Return a function that adds nodes to the graphs of later commands.
+
+    It registers a callback. The graphs stay local.
+    """
 
     def add_to_later_commands(add_nodes: Callable[[Graph], object]) -> None:
         async def join(graph: Graph, _spin_time: float | None, *, read_only: bool = False) -> None:

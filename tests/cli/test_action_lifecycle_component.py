@@ -18,7 +18,7 @@ from linkwright.nodes import NodeOptions
 from linkwright.nodes.component_container import ComponentContainer
 
 
-def run(capsys, *words: str, status: int = 0) -> tuple[str, str]:
+def run_command(capsys, *words: str, status: int = 0) -> tuple[str, str]:
     assert main(list(words)) == status
     captured = capsys.readouterr()
     return captured.out, captured.err
@@ -27,7 +27,7 @@ def run(capsys, *words: str, status: int = 0) -> tuple[str, str]:
 # action
 
 
-def fibonacci(graph: Graph) -> None:
+def serve_fibonacci(graph: Graph) -> None:
     node = graph.create_node("fibonacci_action_server")
     kind = get_action("example_interfaces/action/Fibonacci")
 
@@ -42,10 +42,10 @@ def fibonacci(graph: Graph) -> None:
         goal.succeed()
         return kind.Result(sequence=sequence)
 
-    ActionServer(node, kind, "fibonacci", execute, goal_callback=lambda goal: _verdict(goal.order))
+    ActionServer(node, kind, "fibonacci", execute, goal_callback=lambda goal: _accept_positive_orders(goal.order))
 
 
-def _verdict(order: int) -> GoalResponse:
+def _accept_positive_orders(order: int) -> GoalResponse:
     return GoalResponse.ACCEPT if order < 20 else GoalResponse.REJECT
 
 
@@ -53,36 +53,36 @@ GOAL = ["action", "send_goal", "/fibonacci", "example_interfaces/action/Fibonacc
 
 
 def test_action_list_info_and_type_print_action(in_graph, capsys):
-    in_graph(fibonacci)
-    assert run(capsys, "action", "list")[0] == "/fibonacci\n"
-    assert run(capsys, "action", "list", "-t")[0] == "/fibonacci [example_interfaces/action/Fibonacci]\n"
-    assert run(capsys, "action", "list", "-c")[0] == "1\n"
-    assert run(capsys, "action", "type", "/fibonacci")[0] == "example_interfaces/action/Fibonacci\n"
-    assert "did you mean '/fibonacci'?" in run(capsys, "action", "type", "/fibonaci", status=1)[1]
-    assert run(capsys, "action", "info", "/fibonacci")[0] == (
+    in_graph(serve_fibonacci)
+    assert run_command(capsys, "action", "list")[0] == "/fibonacci\n"
+    assert run_command(capsys, "action", "list", "-t")[0] == "/fibonacci [example_interfaces/action/Fibonacci]\n"
+    assert run_command(capsys, "action", "list", "-c")[0] == "1\n"
+    assert run_command(capsys, "action", "type", "/fibonacci")[0] == "example_interfaces/action/Fibonacci\n"
+    assert "did you mean '/fibonacci'?" in run_command(capsys, "action", "type", "/fibonaci", status=1)[1]
+    assert run_command(capsys, "action", "info", "/fibonacci")[0] == (
         "Action: /fibonacci\nAction clients: 0\nAction servers: 1\n    /fibonacci_action_server\n"
     )
-    assert run(capsys, "action", "info", "-t", "/fibonacci")[0].splitlines()[-1] == (
+    assert run_command(capsys, "action", "info", "-t", "/fibonacci")[0].splitlines()[-1] == (
         "    /fibonacci_action_server [example_interfaces/action/Fibonacci]"
     )
-    assert run(capsys, "action", "info", "-c", "/nothing")[0] == (
+    assert run_command(capsys, "action", "info", "-c", "/nothing")[0] == (
         "Action: /nothing\nAction clients: 0\nAction servers: 0\n"
     )
 
 
 def test_action_topics_and_services_are_hidden(in_graph, capsys):
-    in_graph(fibonacci)
-    assert "/_action/" not in run(capsys, "topic", "list")[0]
-    assert "/_action/" not in run(capsys, "service", "list")[0]
+    in_graph(serve_fibonacci)
+    assert "/_action/" not in run_command(capsys, "topic", "list")[0]
+    assert "/_action/" not in run_command(capsys, "service", "list")[0]
     assert (
         "    /fibonacci: example_interfaces/action/Fibonacci"
-        in run(capsys, "node", "info", "/fibonacci_action_server")[0]
+        in run_command(capsys, "node", "info", "/fibonacci_action_server")[0]
     )
 
 
 def test_send_goal_prints_goal_and_result(in_graph, capsys):
-    in_graph(fibonacci)
-    out, _ = run(capsys, *GOAL, "{order: 3}")
+    in_graph(serve_fibonacci)
+    out, _ = run_command(capsys, *GOAL, "{order: 3}")
     assert re.fullmatch(
         r"Waiting for an action server to become available\.\.\.\n"
         r"Sending goal:\n     order: 3\n\n"
@@ -94,14 +94,14 @@ def test_send_goal_prints_goal_and_result(in_graph, capsys):
 
 
 def test_send_goal_prints_feedback(in_graph, capsys):
-    in_graph(fibonacci)
-    out, _ = run(capsys, *GOAL, "{order: 3}", "--feedback")
+    in_graph(serve_fibonacci)
+    out, _ = run_command(capsys, *GOAL, "{order: 3}", "--feedback")
     assert "Feedback:\n    sequence:\n- 0\n- 1\n- 1\n\n" in out
 
 
 def test_send_goal_reports_rejected_goal(in_graph, capsys):
-    in_graph(fibonacci)
-    assert run(capsys, *GOAL, "{order: 30}", status=1)[0].endswith("Goal was rejected.\n")
+    in_graph(serve_fibonacci)
+    assert run_command(capsys, *GOAL, "{order: 30}", status=1)[0].endswith("Goal was rejected.\n")
 
 
 @pytest.mark.parametrize(
@@ -113,14 +113,14 @@ def test_send_goal_reports_rejected_goal(in_graph, capsys):
     ],
 )
 def test_send_goal_reports_invalid_arguments(in_graph, capsys, words, message):
-    in_graph(fibonacci)
-    assert message in run(capsys, "action", "send_goal", *words, status=1)[1]
+    in_graph(serve_fibonacci)
+    assert message in run_command(capsys, "action", "send_goal", *words, status=1)[1]
 
 
 # lifecycle
 
 
-class Managed(LifecycleNodeMixin):
+class ManagedNode(LifecycleNodeMixin):
     """A managed node in the graph."""
 
     def __init__(self, graph: Graph, name: str) -> None:
@@ -131,27 +131,27 @@ class Managed(LifecycleNodeMixin):
         return getattr(self._node, name)
 
 
-def camera(graph: Graph) -> None:
-    Managed(graph, "camera")
+def create_camera_node(graph: Graph) -> None:
+    ManagedNode(graph, "camera")
     graph.create_node("other")
 
 
 def test_lifecycle_nodes_prints_managed_nodes(in_graph, capsys):
-    in_graph(camera)
-    assert run(capsys, "lifecycle", "nodes")[0] == "/camera\n"
-    assert run(capsys, "lifecycle", "nodes", "-c")[0] == "1\n"
+    in_graph(create_camera_node)
+    assert run_command(capsys, "lifecycle", "nodes")[0] == "/camera\n"
+    assert run_command(capsys, "lifecycle", "nodes", "-c")[0] == "1\n"
 
 
 def test_lifecycle_get_prints_state(in_graph, capsys):
-    in_graph(camera)
-    assert run(capsys, "lifecycle", "get", "/camera")[0] == "unconfigured [1]\n"
-    assert run(capsys, "lifecycle", "get")[0] == "/camera: unconfigured [1]\n"
-    assert "Node not found" in run(capsys, "lifecycle", "get", "/nothing", status=1)[1]
+    in_graph(create_camera_node)
+    assert run_command(capsys, "lifecycle", "get", "/camera")[0] == "unconfigured [1]\n"
+    assert run_command(capsys, "lifecycle", "get")[0] == "/camera: unconfigured [1]\n"
+    assert "Node not found" in run_command(capsys, "lifecycle", "get", "/nothing", status=1)[1]
 
 
 def test_lifecycle_list_prints_transitions(in_graph, capsys):
-    in_graph(camera)
-    assert run(capsys, "lifecycle", "list", "camera")[0].splitlines() == [
+    in_graph(create_camera_node)
+    assert run_command(capsys, "lifecycle", "list", "camera")[0].splitlines() == [
         "- configure [1]",
         "\tStart: unconfigured",
         "\tGoal: configuring",
@@ -159,14 +159,14 @@ def test_lifecycle_list_prints_transitions(in_graph, capsys):
         "\tStart: unconfigured",
         "\tGoal: shuttingdown",
     ]
-    everything = run(capsys, "lifecycle", "list", "-a", "camera")[0].splitlines()
-    assert len(everything) == 3 * 25
+    all_transitions = run_command(capsys, "lifecycle", "list", "-a", "camera")[0].splitlines()
+    assert len(all_transitions) == 3 * 25
 
 
 def test_lifecycle_set_changes_state(in_graph, capsys):
-    in_graph(camera)
-    assert run(capsys, "lifecycle", "set", "/camera", "configure")[0] == "Transitioning successful\n"
-    _, err = run(capsys, "lifecycle", "set", "/camera", "configur", status=1)
+    in_graph(create_camera_node)
+    assert run_command(capsys, "lifecycle", "set", "/camera", "configure")[0] == "Transitioning successful\n"
+    _, err = run_command(capsys, "lifecycle", "set", "/camera", "configur", status=1)
     assert "Unknown transition requested" in err
     assert "- shutdown [5]" in err
     assert "did you mean 'configure'?" in err
@@ -175,40 +175,46 @@ def test_lifecycle_set_changes_state(in_graph, capsys):
 # component
 
 
-def container(graph: Graph) -> None:
+def create_container(graph: Graph) -> None:
     loaded = ComponentContainer(graph, NodeOptions(name="box"))
     loaded.load("demo_nodes_cpp", "demo_nodes_cpp::Talker", NodeOptions(name="talker"))
 
 
 def test_component_types_prints_registered_types(capsys):
-    out, _ = run(capsys, "component", "types")
+    out, _ = run_command(capsys, "component", "types")
     assert "demo_nodes_cpp\n  demo_nodes_cpp::Listener\n  demo_nodes_cpp::Talker" in out
-    assert "did you mean" in run(capsys, "component", "types", "demo_nodes_cp", status=1)[1]
+    assert "did you mean" in run_command(capsys, "component", "types", "demo_nodes_cp", status=1)[1]
 
 
 def test_component_list_prints_containers_and_components(in_graph, capsys):
-    in_graph(container)
-    assert run(capsys, "component", "list")[0] == "/box\n  1  /talker\n"
-    assert run(capsys, "component", "list", "--containers-only")[0] == "/box\n"
-    assert run(capsys, "component", "list", "/box")[0] == "1  /talker\n"
-    _, err = run(capsys, "component", "list", "/bx", status=1)
+    in_graph(create_container)
+    assert run_command(capsys, "component", "list")[0] == "/box\n  1  /talker\n"
+    assert run_command(capsys, "component", "list", "--containers-only")[0] == "/box\n"
+    assert run_command(capsys, "component", "list", "/box")[0] == "1  /talker\n"
+    _, err = run_command(capsys, "component", "list", "/bx", status=1)
     assert "Unable to find container node '/bx'" in err
     assert "did you mean '/box'?" in err
 
 
 def test_component_load_and_unload_change_container(in_graph, capsys):
-    in_graph(container)
+    in_graph(create_container)
     words = ["demo_nodes_cpp", "demo_nodes_cpp::Listener", "-n", "ear", "--node-namespace", "/head", "-r", "chatter:=c"]
-    assert run(capsys, "component", "load", "/box", *words)[0] == (
+    assert run_command(capsys, "component", "load", "/box", *words)[0] == (
         "Loaded component 2 into '/box' container node as '/head/ear'\n"
     )
-    assert run(capsys, "component", "load", "-q", "/box", *words)[0] == "2  /head/ear\n"
-    assert run(capsys, "component", "unload", "/box", "1")[0] == "Unloaded component 1 from '/box' container node\n"
-    assert run(capsys, "component", "unload", "-q", "/box", "1")[0] == "1\n"
+    assert run_command(capsys, "component", "load", "-q", "/box", *words)[0] == "2  /head/ear\n"
+    assert (
+        run_command(capsys, "component", "unload", "/box", "1")[0]
+        == "Unloaded component 1 from '/box' container node\n"
+    )
+    assert run_command(capsys, "component", "unload", "-q", "/box", "1")[0] == "1\n"
 
 
-class _Container:
-    """A substitute for the process that `component standalone` starts, with its node in the graph."""
+class _ContainerProcess:
+    """A substitute for the process that `component standalone` starts.
+
+    Its node is in the graph.
+    """
 
     def __init__(self, deaf_to: set[int], status: int | None) -> None:
         self.returncode: int | None = None
@@ -240,11 +246,11 @@ class _Container:
         self._ended.set()
 
 
-def standalone(monkeypatch, deaf_to: set[int], status: int | None) -> list[_Container]:
-    started: list[_Container] = []
+def replace_standalone_process(monkeypatch, deaf_to: set[int], status: int | None) -> list[_ContainerProcess]:
+    started: list[_ContainerProcess] = []
 
-    async def start(*_words: str) -> _Container:
-        started.append(_Container(deaf_to, status))
+    async def start(*_words: str) -> _ContainerProcess:
+        started.append(_ContainerProcess(deaf_to, status))
         return started[0]
 
     monkeypatch.setattr(asyncio, "create_subprocess_exec", start)
@@ -256,9 +262,9 @@ STANDALONE = ["component", "standalone", "-c", "box", "demo_nodes_cpp"]
 
 
 def test_standalone_component_runs_until_container_ends(in_graph, capsys, monkeypatch):
-    in_graph(container)
-    started = standalone(monkeypatch, set(), 3)
-    run(capsys, *STANDALONE, "demo_nodes_cpp::Listener", status=3)
+    in_graph(create_container)
+    started = replace_standalone_process(monkeypatch, set(), 3)
+    run_command(capsys, *STANDALONE, "demo_nodes_cpp::Listener", status=3)
     assert started[0].told == []
 
 
@@ -271,18 +277,18 @@ def test_standalone_component_runs_until_container_ends(in_graph, capsys, monkey
     ],
 )
 def test_standalone_component_ends_container_if_loading_fails(in_graph, capsys, monkeypatch, deaf_to, message):
-    in_graph(container)
-    started = standalone(monkeypatch, deaf_to, None)
-    run(capsys, *STANDALONE, "demo_nodes_cpp::Nobody", status=1)
+    in_graph(create_container)
+    started = replace_standalone_process(monkeypatch, deaf_to, None)
+    run_command(capsys, *STANDALONE, "demo_nodes_cpp::Nobody", status=1)
     assert started[0].told == message
 
 
 def test_component_commands_report_invalid_arguments(in_graph, capsys):
-    in_graph(container)
-    _, err = run(capsys, "component", "load", "/box", "demo_nodes_cpp", "demo_nodes_cpp::Talkr", status=1)
+    in_graph(create_container)
+    _, err = run_command(capsys, "component", "load", "/box", "demo_nodes_cpp", "demo_nodes_cpp::Talkr", status=1)
     assert "Failed to load component" in err
-    _, err = run(capsys, "component", "unload", "/box", "7", status=1)
+    _, err = run_command(capsys, "component", "unload", "/box", "7", status=1)
     assert "Failed to unload component 7" in err
     assert "the container's nodes are 1 /talker" in err
     words = ["load", "/box", "demo_nodes_cpp", "demo_nodes_cpp::Talker", "--log-level", "loud"]
-    assert "there is no log level 'loud'" in run(capsys, "component", *words, status=1)[1]
+    assert "there is no log level 'loud'" in run_command(capsys, "component", *words, status=1)[1]

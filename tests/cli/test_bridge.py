@@ -1,3 +1,5 @@
+"""`linkwright bridge`: its arguments, and the errors that it reports."""
+
 from __future__ import annotations
 
 import pytest

@@ -27,7 +27,9 @@ def test_check_prints_tree_of_valid_model(capsys):
 
 
 def test_checking_robot_imports_no_world_modules():
-    """Building the tables of their many elements and attributes takes longer than checking a robot.
+    """The check of a robot imports no modules of worlds.
+
+    Building their tables of elements and attributes takes longer than the check.
 
     The import of `importlib.metadata` takes as long, so `linkwright.loading.extensions` does not use it.
     """
@@ -40,7 +42,10 @@ def test_checking_robot_imports_no_world_modules():
 
 
 def test_checking_masses_and_small_meshes_imports_no_numpy(tmp_path):
-    """The import of numpy takes longer than the rest of the check; xacro has nothing to expand here."""
+    """The import of numpy takes longer than the rest of the check.
+
+    Xacro has nothing to expand here.
+    """
     box = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
     triangle = struct.pack("<12fH", 0, 0, 1, *(part for corner in box for part in corner), 0)
     (tmp_path / "part.stl").write_bytes(bytes(80) + struct.pack("<I", 1) + triangle)

@@ -1,4 +1,7 @@
-"""`linkwright check` for several files and folders: selection, formats, settings, fixes, exit status."""
+"""`linkwright check` for several files and folders.
+
+The tests cover selection, formats, settings, fixes, exit status.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.targets import find_targets
 from linkwright.lint.xacro_facts import FileFacts
 
-GOOD = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
+VALID_ROBOT = '<robot name="r">\n  <link name="base_link"/>\n</robot>\n'
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 LONG_AXIS = """<robot name="r">
   <link name="base_link"/>
@@ -34,26 +37,26 @@ ROBOT_WITH_A_PROPERTY = f"""<robot name="{{name}}" {XACRO}>
   <link name="base_link"/>
 </robot>
 """
-ONLY = ["--select", "LW2"]
+SELECTION = ["--select", "LW2"]
 
 
 @pytest.fixture(autouse=True)
-def here(tmp_path, monkeypatch):
+def working_directory(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
-def write(folder, files):
+def write_files(folder, files):
     for name, text in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(text)
 
 
-def test_folder_check_selects_standalone_descriptions(here):
-    write(
-        here,
+def test_folder_check_selects_standalone_descriptions(working_directory):
+    write_files(
+        working_directory,
         {
-            "a/plain.urdf": GOOD,
+            "a/plain.urdf": VALID_ROBOT,
             "a/robot.urdf.xacro": f'<robot name="r" {XACRO}><xacro:include filename="parts/arm.xacro"/><x/></robot>',
             "a/parts/colors.urdf": f'<robot name="c" {XACRO}/>',
             "a/parts/arm.xacro": f'<robot name="arm" {XACRO}><link name="b"/></robot>',
@@ -63,17 +66,17 @@ def test_folder_check_selects_standalone_descriptions(here):
             "a/unnamed2.xacro": f'<robot {XACRO}><xacro:include filename="parts/colors.urdf"/></robot>',
             "a/r.srdf.xacro": f'<robot name="s" {XACRO}><group name="arm"/></robot>',
             "a/broken.xacro": "<robot",
-            "build/copy.urdf": GOOD,
-            ".hidden/h.urdf": GOOD,
+            "build/copy.urdf": VALID_ROBOT,
+            ".hidden/h.urdf": VALID_ROBOT,
             "ignored/COLCON_IGNORE": "",
-            "ignored/i.urdf": GOOD,
+            "ignored/i.urdf": VALID_ROBOT,
         },
     )
-    targets = [path.relative_to(here).as_posix() for path in find_targets([here]).files]
+    targets = [path.relative_to(working_directory).as_posix() for path in find_targets([working_directory]).files]
     assert targets == ["a/broken.xacro", "a/plain.urdf", "a/robot.urdf.xacro", "a/wrapper.xacro"]
 
 
-def test_files_included_by_argument_or_environment_are_not_standalone(here):
+def test_files_included_by_argument_or_environment_are_not_standalone(working_directory):
     text = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
       <xacro:arg name="accessories" default="empty.urdf"/><xacro:arg name="model" default="other.urdf"/>
       <xacro:include filename="$(find r)/urdf/$(arg accessories)"/>
@@ -81,62 +84,73 @@ def test_files_included_by_argument_or_environment_are_not_standalone(here):
       <link name="base_link"/>
     </robot>"""
     nothing = "<robot></robot>"
-    write(here, {"r.urdf.xacro": text, "empty.urdf": nothing, "nothing.urdf": nothing, "other.urdf": GOOD})
-    assert [path.name for path in find_targets([here]).files] == ["other.urdf", "r.urdf.xacro"]
+    write_files(
+        working_directory,
+        {"r.urdf.xacro": text, "empty.urdf": nothing, "nothing.urdf": nothing, "other.urdf": VALID_ROBOT},
+    )
+    assert [path.name for path in find_targets([working_directory]).files] == ["other.urdf", "r.urdf.xacro"]
 
 
 @pytest.mark.parametrize(("text", "files"), [("<robot></robot>", []), ('<robot name="r"></robot>', ["r.urdf"])])
-def test_robot_without_name_and_content_is_not_checked_in_folder(here, text, files):
-    write(here, {"r.urdf": text})
-    assert [path.name for path in find_targets([here]).files] == files
+def test_robot_without_name_and_content_is_not_checked_in_folder(working_directory, text, files):
+    write_files(working_directory, {"r.urdf": text})
+    assert [path.name for path in find_targets([working_directory]).files] == files
 
 
-def test_package_files_are_read_once_for_all_descriptions(here, monkeypatch):
+def test_package_files_are_read_once_for_all_descriptions(working_directory, monkeypatch):
     walks, walked = [], []
     files = {f"p/urdf/{name}.xacro": ROBOT_WITH_A_PROPERTY.format(name=name) for name in ("a", "b", "c")}
-    write(here, {"p/package.xml": "<package><name>p</name></package>", **files})
+    write_files(working_directory, {"p/package.xml": "<package><name>p</name></package>", **files})
     for name in files:
-        os.utime(here / name, (1, 1))  # files that were written just now are read again
+        os.utime(working_directory / name, (1, 1))  # files that were written just now are read again
     listed, facts = PackageContext._walk, FileFacts._walk
     monkeypatch.setattr(PackageContext, "_walk", lambda self: [walks.append(self.folder), *listed(self)][1:])
     monkeypatch.setattr(FileFacts, "_walk", lambda self: [walked.append(self.document.source.name), facts(self)][1])
-    main(["check", "--select", "ALL", str(here / "p")])
-    assert walks == [here / "p"]
+    main(["check", "--select", "ALL", str(working_directory / "p")])
+    assert walks == [working_directory / "p"]
     assert sorted(Path(name).name for name in walked) == ["a.xacro", "b.xacro", "c.xacro"]
 
 
-def test_packages_are_found_around_files_and_in_folders(here):
+def test_packages_are_found_around_files_and_in_folders(working_directory):
     manifest = "<package><name>{}</name></package>"
-    write(
-        here,
+    write_files(
+        working_directory,
         {
             "src/one/package.xml": manifest.format("one"),
-            "src/one/urdf/r.urdf": GOOD,
+            "src/one/urdf/r.urdf": VALID_ROBOT,
             "src/two/package.xml": manifest.format("two"),
         },
     )
-    assert find_targets([here / "src"]).packages == (here / "src" / "one", here / "src" / "two")
-    assert find_targets([here / "src/one/urdf"]).packages == (here / "src" / "one",)
-    assert find_targets([here / "src/one/urdf/r.urdf"]).packages == ()
-    assert find_targets([here / "src/one/urdf/r.urdf"], with_packages=True).packages == (here / "src" / "one",)
+    assert find_targets([working_directory / "src"]).packages == (
+        working_directory / "src" / "one",
+        working_directory / "src" / "two",
+    )
+    assert find_targets([working_directory / "src/one/urdf"]).packages == (working_directory / "src" / "one",)
+    assert find_targets([working_directory / "src/one/urdf/r.urdf"]).packages == ()
+    assert find_targets([working_directory / "src/one/urdf/r.urdf"], with_packages=True).packages == (
+        working_directory / "src" / "one",
+    )
 
 
-def test_file_is_checked_without_package_by_default(here, capsys):
+def test_file_is_checked_without_package_by_default(working_directory, capsys):
     manifest = "<package><name>one</name><exec_depend>xacro</exec_depend><exec_depend>xacro</exec_depend></package>"
-    write(here, {"one/package.xml": manifest, "one/urdf/r.urdf": GOOD})
+    write_files(working_directory, {"one/package.xml": manifest, "one/urdf/r.urdf": VALID_ROBOT})
     assert main(["check", "one/urdf/r.urdf"]) == 0
     assert "LW8" not in capsys.readouterr().err
     assert main(["check", "--fix", "one/urdf/r.urdf"]) == 0
-    assert (here / "one/package.xml").read_text() == manifest
+    assert (working_directory / "one/package.xml").read_text() == manifest
     assert main(["check", "--package", "one/urdf/r.urdf"]) == 1
     assert "error[LW802]" in capsys.readouterr().err
     main(["check", "--package", "--fix", "one/urdf/r.urdf"])
-    assert (here / "one/package.xml").read_text().count("<exec_depend>") == 1
+    assert (working_directory / "one/package.xml").read_text().count("<exec_depend>") == 1
 
 
-def test_diff_shows_each_package_fix_once(here, capsys):
+def test_diff_shows_each_package_fix_once(working_directory, capsys):
     line = "  <exec_depend>xacro</exec_depend>\n"
-    write(here, {"one/package.xml": f"<package>\n  <name>one</name>\n{line * 3}</package>\n", "one/r.urdf": GOOD})
+    write_files(
+        working_directory,
+        {"one/package.xml": f"<package>\n  <name>one</name>\n{line * 3}</package>\n", "one/r.urdf": VALID_ROBOT},
+    )
     assert main(["check", "--diff", "one"]) == 1
     diff = capsys.readouterr().out
     assert [line for line in diff.splitlines() if line.startswith(("-", "+"))] == [
@@ -146,7 +160,7 @@ def test_diff_shows_each_package_fix_once(here, capsys):
     ]
 
 
-def _joints(count):
+def _make_joints(count):
     links = "".join(f'<link name="l{number}"/>\n' for number in range(count + 1))
     joints = "".join(
         f'<joint name="j{number}" type="continuous"><parent link="l{number}"/><child link="l{number + 1}"/>'
@@ -156,31 +170,34 @@ def _joints(count):
     return f'<robot name="r">\n{links}{joints}</robot>\n'
 
 
-def test_many_similar_findings_are_grouped_in_text_output(here, capsys):
-    write(here, {"r.urdf": _joints(70)})
-    main(["check", "r.urdf", *ONLY])
+def test_many_similar_findings_are_grouped_in_text_output(working_directory, capsys):
+    write_files(working_directory, {"r.urdf": _make_joints(70)})
+    main(["check", "r.urdf", *SELECTION])
     output = capsys.readouterr().err
     assert output.count("warning[LW221]") == 1
     assert "note: the axis of joint 'j2' has length 2, not 1: '0 0 2' (r.urdf:75:" in output
     assert "note: and 67 more like it (--all shows them)" in output
     assert output.endswith("0 errors, 70 warnings\n")
-    main(["check", "r.urdf", *ONLY, "--all"])
+    main(["check", "r.urdf", *SELECTION, "--all"])
     assert capsys.readouterr().err.count("warning[LW221]") == 70
-    main(["check", "r.urdf", *ONLY, "--format", "json"])
+    main(["check", "r.urdf", *SELECTION, "--format", "json"])
     assert len(json.loads(capsys.readouterr().out)["diagnostics"]) == 70
 
 
-def test_few_similar_findings_are_shown_separately(here, capsys):
-    write(here, {"r.urdf": _joints(3)})
-    main(["check", "r.urdf", *ONLY])
+def test_few_similar_findings_are_shown_separately(working_directory, capsys):
+    write_files(working_directory, {"r.urdf": _make_joints(3)})
+    main(["check", "r.urdf", *SELECTION])
     assert capsys.readouterr().err.count("warning[LW221]") == 3
 
 
-def test_checked_robot_is_freed_without_garbage_collector(here, monkeypatch):
-    """Count the robots when the next check begins; the garbage collector, which may not run for long, is off."""
-    robot = _joints(3).replace('<robot name="r">', f'<robot name="r" {XACRO}><xacro:property name="x" value="1"/>')
+def test_checked_robot_is_freed_without_garbage_collector(working_directory, monkeypatch):
+    """Count the robots when the next check begins.
+
+    The garbage collector, which may not run for long, is off.
+    """
+    robot = _make_joints(3).replace('<robot name="r">', f'<robot name="r" {XACRO}><xacro:property name="x" value="1"/>')
     names = [f"r{number}.{ending}" for number in range(6) for ending in ("urdf", "urdf.xacro")]
-    write(here, dict.fromkeys(names, robot))
+    write_files(working_directory, dict.fromkeys(names, robot))
     alive = []
 
     def counted(*arguments, **options):
@@ -197,27 +214,27 @@ def test_checked_robot_is_freed_without_garbage_collector(here, monkeypatch):
     assert alive == [0, *[1] * (len(names) - 1)] or alive == [0] * len(names)
 
 
-def test_several_files_print_summary_instead_of_tree(here, capsys):
-    write(here, {"a.urdf": GOOD, "b.urdf": LONG_AXIS})
-    assert main(["check", "a.urdf", "b.urdf", *ONLY]) == 0
+def test_several_files_print_summary_instead_of_tree(working_directory, capsys):
+    write_files(working_directory, {"a.urdf": VALID_ROBOT, "b.urdf": LONG_AXIS})
+    assert main(["check", "a.urdf", "b.urdf", *SELECTION]) == 0
     captured = capsys.readouterr()
     assert captured.out == ""
     assert "warning[LW221]" in captured.err
     assert captured.err.endswith("0 errors, 1 warning\n")
 
 
-def test_strict_exits_with_1_on_warnings(here):
-    write(here, {"b.urdf": LONG_AXIS})
-    assert main(["check", "b.urdf", *ONLY]) == 0
-    assert main(["check", "b.urdf", *ONLY, "--strict"]) == 1
-    assert main(["check", "b.urdf", *ONLY, "--strict", "--ignore", "axis-not-unit"]) == 0
+def test_strict_exits_with_1_on_warnings(working_directory):
+    write_files(working_directory, {"b.urdf": LONG_AXIS})
+    assert main(["check", "b.urdf", *SELECTION]) == 0
+    assert main(["check", "b.urdf", *SELECTION, "--strict"]) == 1
+    assert main(["check", "b.urdf", *SELECTION, "--strict", "--ignore", "axis-not-unit"]) == 0
 
 
-def test_format_option_writes_findings_to_standard_output(here, capsys):
-    write(here, {"b.urdf": LONG_AXIS})
-    main(["check", "b.urdf", *ONLY, "--format", "concise"])
+def test_format_option_writes_findings_to_standard_output(working_directory, capsys):
+    write_files(working_directory, {"b.urdf": LONG_AXIS})
+    main(["check", "b.urdf", *SELECTION, "--format", "concise"])
     assert capsys.readouterr().out.startswith("b.urdf:7:16: warning[LW221] ")
-    main(["check", "b.urdf", *ONLY, "--format", "json"])
+    main(["check", "b.urdf", *SELECTION, "--format", "json"])
     (diagnostic,) = json.loads(capsys.readouterr().out)["diagnostics"]
     assert (diagnostic["code"], diagnostic["file"], diagnostic["line"], diagnostic["column"]) == (
         "LW221",
@@ -225,55 +242,63 @@ def test_format_option_writes_findings_to_standard_output(here, capsys):
         7,
         16,
     )
-    main(["check", "b.urdf", *ONLY, "--format", "sarif"])
+    main(["check", "b.urdf", *SELECTION, "--format", "sarif"])
     assert json.loads(capsys.readouterr().out)["version"] == "2.1.0"
-    main(["check", "b.urdf", *ONLY, "--format", "github"])
+    main(["check", "b.urdf", *SELECTION, "--format", "github"])
     captured = capsys.readouterr()
     assert captured.out.startswith("::warning file=b.urdf,line=7")
     assert captured.err == ""
 
 
-def test_file_included_by_two_robots_is_reported_once(here, capsys):
+def test_file_included_by_two_robots_is_reported_once(working_directory, capsys):
     robot = f'<robot name="r" {XACRO}><xacro:include filename="../arm.xacro"/></robot>'
-    write(here, {"a/one.xacro": robot, "a/two.xacro": robot, "arm.xacro": LONG_AXIS.replace('name="r"', XACRO, 1)})
-    main(["check", "a", *ONLY, "--format", "json"])
+    write_files(
+        working_directory,
+        {"a/one.xacro": robot, "a/two.xacro": robot, "arm.xacro": LONG_AXIS.replace('name="r"', XACRO, 1)},
+    )
+    main(["check", "a", *SELECTION, "--format", "json"])
     assert len(json.loads(capsys.readouterr().out)["diagnostics"]) == 1
 
 
-def test_argument_values_apply_to_all_files(here, capsys):
+def test_argument_values_apply_to_all_files(working_directory, capsys):
     text = f'<robot name="r" {XACRO}><link name="$(arg n)"/></robot>'
-    write(here, {"a.xacro": text, "b.xacro": text})
-    assert main(["check", "a.xacro", "n:=x", "b.xacro", *ONLY]) == 0
-    assert main(["check", "a.xacro", "b.xacro", *ONLY]) == 1
+    write_files(working_directory, {"a.xacro": text, "b.xacro": text})
+    assert main(["check", "a.xacro", "n:=x", "b.xacro", *SELECTION]) == 0
+    assert main(["check", "a.xacro", "b.xacro", *SELECTION]) == 1
 
 
-def test_fixes_are_written_and_counted(here, capsys):
-    write(here, {"b.urdf": LONG_AXIS})
-    assert main(["check", "b.urdf", "--diff", *ONLY]) == 1
+def test_fixes_are_written_and_counted(working_directory, capsys):
+    write_files(working_directory, {"b.urdf": LONG_AXIS})
+    assert main(["check", "b.urdf", "--diff", *SELECTION]) == 1
     assert '+    <axis xyz="0 0 1"/>' in capsys.readouterr().out
-    assert (here / "b.urdf").read_text() == LONG_AXIS
-    assert main(["check", "b.urdf", "--fix", *ONLY]) == 0
-    assert (here / "b.urdf").read_text() == LONG_AXIS.replace("0 0 2", "0 0 1")
+    assert (working_directory / "b.urdf").read_text() == LONG_AXIS
+    assert main(["check", "b.urdf", "--fix", *SELECTION]) == 0
+    assert (working_directory / "b.urdf").read_text() == LONG_AXIS.replace("0 0 2", "0 0 1")
     assert "fixed 1 finding in 1 file" in capsys.readouterr().err
-    assert main(["check", "b.urdf", "--diff", *ONLY]) == 0
+    assert main(["check", "b.urdf", "--diff", *SELECTION]) == 0
 
 
-def test_statistics_count_findings_by_rule(here, capsys):
-    write(here, {"b.urdf": LONG_AXIS})
-    main(["check", "b.urdf", "--statistics", *ONLY])
+def test_statistics_count_findings_by_rule(working_directory, capsys):
+    write_files(working_directory, {"b.urdf": LONG_AXIS})
+    main(["check", "b.urdf", "--statistics", *SELECTION])
     assert capsys.readouterr().err.endswith("     1  LW221     axis-not-unit\n")
 
 
-def test_configuration_is_found_or_given_by_option(here, capsys):
-    write(here, {"r/b.urdf": LONG_AXIS, "r/linkwright.toml": 'select = ["LW1"]\n', "other.toml": 'select = ["LW2"]\n'})
+def test_configuration_is_found_or_given_by_option(working_directory, capsys):
+    write_files(
+        working_directory,
+        {"r/b.urdf": LONG_AXIS, "r/linkwright.toml": 'select = ["LW1"]\n', "other.toml": 'select = ["LW2"]\n'},
+    )
     main(["check", "r/b.urdf", "--format", "concise"])
     assert "LW221" not in capsys.readouterr().out
     main(["check", "r/b.urdf", "--format", "concise", "--config", "other.toml"])
     assert "LW221" in capsys.readouterr().out
 
 
-def test_configuration_errors_are_reported_once(here, capsys):
-    write(here, {"a.urdf": GOOD, "b.urdf": GOOD, "linkwright.toml": 'ignore = ["nonsens"]\n'})
+def test_configuration_errors_are_reported_once(working_directory, capsys):
+    write_files(
+        working_directory, {"a.urdf": VALID_ROBOT, "b.urdf": VALID_ROBOT, "linkwright.toml": 'ignore = ["nonsens"]\n'}
+    )
     assert main(["check", "a.urdf", "b.urdf"]) == 1
     assert capsys.readouterr().err.count("error[LINT104]") == 1
 
@@ -286,35 +311,43 @@ def test_configuration_errors_are_reported_once(here, capsys):
         (["b.urdf", "--config", "none.toml"], "no such file: 'none.toml'"),
     ],
 )
-def test_invalid_usage_is_rejected(here, capsys, words, message):
-    write(here, {"b.urdf": GOOD})
+def test_invalid_usage_is_rejected(working_directory, capsys, words, message):
+    write_files(working_directory, {"b.urdf": VALID_ROBOT})
     assert main(["check", *words]) == 2
     assert message in capsys.readouterr().err
 
 
-def test_missing_file_error_suggests_existing_files(here, capsys):
-    write(here, {"b.urdf": GOOD})
+def test_missing_file_error_suggests_existing_files(working_directory, capsys):
+    write_files(working_directory, {"b.urdf": VALID_ROBOT})
     assert main(["check", "c.urdf"]) == 1
     assert "choose from b.urdf" in capsys.readouterr().err
 
 
-def test_url_argument_is_printed_as_typed(here, capsys):
+def test_url_argument_is_printed_as_typed(working_directory, capsys):
     for command in ("check", "xacro", "convert", "launch"):
         assert main([command, "https://example.org/r.urdf"]) == 1
         assert "'https://example.org/r.urdf'" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(("manifest", "is_told"), [("web/package.json", False), ("package.json", True)])
-def test_public_folder_of_nested_web_package_is_skipped(here, manifest, is_told):
-    write(here, {"package.xml": "<package/>", manifest: "{}", "web/public/robot.urdf": GOOD, "urdf/robot.urdf": GOOD})
-    write(here, {"inner/package.xml": "<package/>"})
-    for folder in (here, Path()):
+def test_public_folder_of_nested_web_package_is_skipped(working_directory, manifest, is_told):
+    write_files(
+        working_directory,
+        {
+            "package.xml": "<package/>",
+            manifest: "{}",
+            "web/public/robot.urdf": VALID_ROBOT,
+            "urdf/robot.urdf": VALID_ROBOT,
+        },
+    )
+    write_files(working_directory, {"inner/package.xml": "<package/>"})
+    for folder in (working_directory, Path()):
         folders = [path.parent.name for path in find_targets([folder]).files]
         assert folders == (["urdf", "public"] if is_told else ["urdf"])
 
 
-def test_empty_folder_is_an_error(here, capsys):
-    (here / "empty").mkdir()
+def test_empty_folder_is_an_error(working_directory, capsys):
+    (working_directory / "empty").mkdir()
     assert main(["check", "empty"]) == 1
     assert "error[CLI302]: there is nothing to check in 'empty'" in capsys.readouterr().err
 
@@ -327,7 +360,7 @@ def test_empty_file_is_skipped_in_folder(tmp_path, capsys):
     assert main(["check", str(tmp_path / "later.xacro")]) == 1
 
 
-def test_warnings_in_test_folders_are_skipped_in_folder_check(here, capsys):
+def test_warnings_in_test_folders_are_skipped_in_folder_check(working_directory, capsys):
     joint = '<joint name="j" type="fixed"><parent link="a"/>{}</joint>'
     robot = f'<robot name="r"><link name="a"/><link name="b"/>{joint}</robot>'
     for folder, child in (
@@ -335,8 +368,8 @@ def test_warnings_in_test_folders_are_skipped_in_folder_check(here, capsys):
         ("tests2", '<child link="c"/>'),
         ("attest", '<child link="b"/>'),
     ):
-        (here / "p" / folder).mkdir(parents=True)
-        (here / "p" / folder / "r.urdf").write_text(robot.format(child))
+        (working_directory / "p" / folder).mkdir(parents=True)
+        (working_directory / "p" / folder / "r.urdf").write_text(robot.format(child))
     main(["check", "--format", "concise", "p"])
     output = {tuple(line.split(" ")[:2]) for line in capsys.readouterr().out.splitlines()}
     assert {place.partition("/")[2].partition("/")[0] for place, kind in output if kind.startswith("error")} == {
@@ -361,20 +394,20 @@ def test_warnings_in_test_folders_are_skipped_in_folder_check(here, capsys):
         ("vendors_arm", True),
     ],
 )
-def test_warnings_in_backup_and_vendor_folders_are_skipped(here, capsys, folder, is_told):
-    write(here, {f"p/{folder}/r.urdf": LONG_AXIS})
-    main(["check", *ONLY, "p"])
+def test_warnings_in_backup_and_vendor_folders_are_skipped(working_directory, capsys, folder, is_told):
+    write_files(working_directory, {f"p/{folder}/r.urdf": LONG_AXIS})
+    main(["check", *SELECTION, "p"])
     assert ("LW221" in capsys.readouterr().err) is is_told
 
 
 @pytest.mark.parametrize(("parent", "is_told"), [("lb", False), ("lost", True)])
-def test_unused_part_of_robot_is_not_reported_as_broken(here, capsys, parent, is_told):
+def test_unused_part_of_robot_is_not_reported_as_broken(working_directory, capsys, parent, is_told):
     joint = '<joint name="{0}" type="fixed"><parent link="base_link"/><child link="l{0}"/></joint>'
     chain = LONG_AXIS.replace("</robot>", "") + "".join(f'<link name="l{name}"/>{joint.format(name)}' for name in "bc")
     camera = f'<joint name="camera" type="fixed"><parent link="{parent}"/><child link="camera"/></joint>'
     red = '<visual><geometry><box size="1 1 1"/></geometry><material name="red"/></visual>'
-    write(
-        here,
+    write_files(
+        working_directory,
         {
             "package.xml": "<package><name>p</name></package>",
             "r.urdf.xacro": chain.replace("<robot", f"<robot {XACRO}") + "</robot>",
@@ -387,7 +420,7 @@ def test_unused_part_of_robot_is_not_reported_as_broken(here, capsys, parent, is
 
 
 @pytest.mark.parametrize(("folder", "is_told"), [("launch", True), ("launch/past", False), ("launch/old", False)])
-def test_backup_launch_files_report_no_warnings_in_folder_check(here, capsys, folder, is_told):
+def test_backup_launch_files_report_no_warnings_in_folder_check(working_directory, capsys, folder, is_told):
     text = """from launch_ros.actions import Node
 from ament_index_python.packages import get_package_share_directory
 import os
@@ -395,30 +428,34 @@ def generate_launch_description():
     return LaunchDescription([Node(package="p", parameters=[
         os.path.join(get_package_share_directory("p"), "config", "lost.yaml")])])
 """
-    write(here, {"p/package.xml": "<package><name>p</name></package>", f"p/{folder}/a.launch.py": text})
+    write_files(
+        working_directory, {"p/package.xml": "<package><name>p</name></package>", f"p/{folder}/a.launch.py": text}
+    )
     main(["check", ".", "--format", "concise"])
     assert ("LW842" in capsys.readouterr().out) is is_told
 
 
 @pytest.mark.parametrize(("folder", "count"), [("urdf", 1), ("vendor", 0)])
-def test_missing_package_of_vendor_copy_is_not_reported_in_folder(here, capsys, folder, count):
+def test_missing_package_of_vendor_copy_is_not_reported_in_folder(working_directory, capsys, folder, count):
     include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'
-    write(here, {f"{folder}/r.urdf.xacro": f'<robot name="r" {XACRO}>{include}<link name="a"/></robot>'})
+    write_files(
+        working_directory, {f"{folder}/r.urdf.xacro": f'<robot name="r" {XACRO}>{include}<link name="a"/></robot>'}
+    )
     main(["check", ".", "--format", "concise"])
     assert capsys.readouterr().out.count("PKG101") == count
 
 
-def test_missing_package_of_include_is_not_repeated_for_meshes(here, capsys):
+def test_missing_package_of_include_is_not_repeated_for_meshes(working_directory, capsys):
     mesh = '<visual><geometry><mesh filename="package://{}/a.stl"/></geometry></visual>'
     links = "".join(f'<link name="{name}">{mesh.format(name)}</link>' for name in ("far_description", "other"))
     include = '<xacro:include filename="$(find far_description)/arm.xacro"/>'
-    write(here, {"r.urdf.xacro": f'<robot name="r" {XACRO}>{include}{links}</robot>'})
+    write_files(working_directory, {"r.urdf.xacro": f'<robot name="r" {XACRO}>{include}{links}</robot>'})
     main(["check", ".", "--format", "concise"])
     output = [line for line in capsys.readouterr().out.splitlines() if "PKG101" in line or "LW423" in line]
     assert [("far_description" in line, "PKG101" in line) for line in output] == [(True, True), (False, False)]
 
 
-def test_findings_of_xacro_are_not_repeated_for_generated_urdf(here, capsys):
+def test_findings_of_xacro_are_not_repeated_for_generated_urdf(working_directory, capsys):
     joint = LONG_AXIS.partition("<joint")[2]
     chain = LONG_AXIS.replace('"arm_joint"', '"a"') + "".join(
         f'<link name="l{name}"/><joint{joint}'.replace("arm_joint", name).replace("arm_link", f"l{name}")
@@ -426,8 +463,8 @@ def test_findings_of_xacro_are_not_repeated_for_generated_urdf(here, capsys):
     )
     chain = chain.replace("</robot>", "") + "</robot>"
     drifted = chain.replace("0 0 2", "0 0 3", 1)
-    write(
-        here,
+    write_files(
+        working_directory,
         {
             "package.xml": "<package><name>p</name></package>",
             "xacro/r.urdf.xacro": chain.replace("<robot", f"<robot {XACRO}"),
@@ -435,18 +472,18 @@ def test_findings_of_xacro_are_not_repeated_for_generated_urdf(here, capsys):
             "urdf/other.urdf": chain.replace('"c"', '"d"'),
         },
     )
-    main(["check", ".", "--format", "concise", *ONLY])
+    main(["check", ".", "--format", "concise", *SELECTION])
     places = [line.partition(":")[0] for line in capsys.readouterr().out.splitlines() if "LW221" in line]
     assert sorted(places) == ["urdf/other.urdf"] * 3 + ["urdf/r.urdf"] + ["xacro/r.urdf.xacro"] * 3
 
 
 @pytest.mark.parametrize(("source", "is_told"), [("r.urdf.xacro", False), ("other.urdf.xacro", True)])
-def test_warnings_in_urdf_generated_from_checked_xacro_are_skipped(here, capsys, source, is_told):
+def test_warnings_in_urdf_generated_from_checked_xacro_are_skipped(working_directory, capsys, source, is_told):
     header = "<!-- |    This document was autogenerated by xacro from /home/me/ws/r.urdf.xacro      | -->\n"
-    write(here, {"p/r.urdf": header + LONG_AXIS, f"p/{source}": GOOD})
-    main(["check", *ONLY, "p"])
+    write_files(working_directory, {"p/r.urdf": header + LONG_AXIS, f"p/{source}": VALID_ROBOT})
+    main(["check", *SELECTION, "p"])
     assert ("LW221" in capsys.readouterr().err) is is_told
-    main(["check", *ONLY, "p/r.urdf"])
+    main(["check", *SELECTION, "p/r.urdf"])
     assert "LW221" in capsys.readouterr().err
 
 
@@ -454,11 +491,11 @@ INCLUDE = '<xacro:include filename="$(find arm)/urdf/part.xacro"/>'
 
 
 @pytest.mark.parametrize("user", ["arm", "robot"])
-def test_package_sources_take_precedence_over_installed_copies(here, capsys, user):
+def test_package_sources_take_precedence_over_installed_copies(working_directory, capsys, user):
     manifest = '<package format="3"><name>{}</name><version>1.0.0</version></package>'
     share = "ws/install/arm/share/arm"
-    write(
-        here,
+    write_files(
+        working_directory,
         {
             "ws/install/arm/share/ament_index/resource_index/packages/arm": "",
             "ws/install/.colcon_install_layout": "isolated\n",
@@ -470,11 +507,14 @@ def test_package_sources_take_precedence_over_installed_copies(here, capsys, use
             f"ws/src/{user}/urdf/r.urdf.xacro": f'<robot {XACRO} name="r">{INCLUDE}</robot>',
         },
     )
-    assert main(["check", *ONLY, "--strict", f"ws/src/{user}/urdf/r.urdf.xacro"]) == 0, capsys.readouterr().out
+    assert main(["check", *SELECTION, "--strict", f"ws/src/{user}/urdf/r.urdf.xacro"]) == 0, capsys.readouterr().out
 
 
-def test_unset_environment_variable_is_info_in_folder_check(here, capsys):
-    write(here, {"p/r.urdf.xacro": f'<robot {XACRO} name="$(env KIND_OF_ROBOT)"><link name="base_link"/></robot>'})
+def test_unset_environment_variable_is_info_in_folder_check(working_directory, capsys):
+    write_files(
+        working_directory,
+        {"p/r.urdf.xacro": f'<robot {XACRO} name="$(env KIND_OF_ROBOT)"><link name="base_link"/></robot>'},
+    )
     assert main(["check", "p"]) == 0
     assert "info[XAC214]" in capsys.readouterr().err
     assert main(["check", "p/r.urdf.xacro"]) == 1
@@ -489,10 +529,12 @@ def test_unset_environment_variable_is_info_in_folder_check(here, capsys):
         ('<limit lower="0"/>', True),
     ],
 )
-def test_urdf_without_links_is_a_part_in_folder_check(here, capsys, inside, is_told):
-    (here / "p").mkdir()
-    (here / "p" / "part.urdf").write_text(f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{inside}</robot>')
-    (here / "p" / "whole.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
+def test_urdf_without_links_is_a_part_in_folder_check(working_directory, capsys, inside, is_told):
+    (working_directory / "p").mkdir()
+    (working_directory / "p" / "part.urdf").write_text(
+        f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{inside}</robot>'
+    )
+    (working_directory / "p" / "whole.urdf").write_text('<robot name="r"><link name="base_link"/></robot>')
     main(["check", "--format", "concise", "p"])
     assert ("URDF106" in capsys.readouterr().out) is is_told
     main(["check", "--format", "concise", "p/part.urdf"])
@@ -514,57 +556,64 @@ def test_urdf_without_links_is_a_part_in_folder_check(here, capsys, inside, is_t
         ("r.urdf", "<!-- <robot/> --> robot", True),
     ],
 )
-def test_fragments_and_unfinished_files_are_skipped_in_folder(here, capsys, name, text, is_told):
-    write(here, {f"p/{name}": text, "p/whole.urdf": GOOD})
+def test_fragments_and_unfinished_files_are_skipped_in_folder(working_directory, capsys, name, text, is_told):
+    write_files(working_directory, {f"p/{name}": text, "p/whole.urdf": VALID_ROBOT})
     assert main(["check", "p"]) == int(is_told)
     assert (name in capsys.readouterr().err) is is_told
     assert main(["check", f"p/{name}"]) == 1
 
 
-def test_packages_are_searched_in_checked_folder(here, capsys, monkeypatch):
+def test_packages_are_searched_in_checked_folder(working_directory, capsys, monkeypatch):
     manifest = '<package format="3"><name>{}</name></package>'
-    whole = f'<robot name="r" {XACRO}><xacro:include filename="$(find yonder)/part.xacro"/></robot>'
-    files = {"a/b/here_by/package.xml": manifest.format("here_by"), "a/b/here_by/urdf/r.urdf.xacro": whole}
-    files |= {"c/yonder/package.xml": manifest.format("yonder"), "c/yonder/part.xacro": GOOD}
-    write(here / "ws", files)
-    (here / "elsewhere").mkdir()
-    monkeypatch.chdir(here / "elsewhere")
+    robot_text = f'<robot name="r" {XACRO}><xacro:include filename="$(find yonder)/part.xacro"/></robot>'
+    files = {"a/b/here_by/package.xml": manifest.format("here_by"), "a/b/here_by/urdf/r.urdf.xacro": robot_text}
+    files |= {"c/yonder/package.xml": manifest.format("yonder"), "c/yonder/part.xacro": VALID_ROBOT}
+    write_files(working_directory / "ws", files)
+    (working_directory / "elsewhere").mkdir()
+    monkeypatch.chdir(working_directory / "elsewhere")
     main(["check", "../ws", "--select", "PKG,XAC,XML,URDF"])
     assert "PKG101" not in capsys.readouterr().err
 
 
-def test_webots_plugin_file_is_not_a_robot(here, capsys):
-    (here / "p").mkdir()
-    (here / "p" / "driver.urdf").write_text('<robot name="r"><webots><plugin type="p.Driver"/></webots></robot>')
-    (here / "p" / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+def test_webots_plugin_file_is_not_a_robot(working_directory, capsys):
+    (working_directory / "p").mkdir()
+    (working_directory / "p" / "driver.urdf").write_text(
+        '<robot name="r"><webots><plugin type="p.Driver"/></webots></robot>'
+    )
+    (working_directory / "p" / "robot.urdf").write_text('<robot name="r"><link name="a"/></robot>')
     assert main(["check", "p"]) == 0
     assert "driver.urdf" not in capsys.readouterr().out
 
 
-def test_same_problem_in_several_files_is_reported_once(here, capsys, monkeypatch):
-    """The problems are a package that two files need, and a mistake of a model that its world repeats."""
-    (here / "p" / "models" / "box").mkdir(parents=True)
+def test_same_problem_in_several_files_is_reported_once(working_directory, capsys, monkeypatch):
+    """A problem of several files is reported once.
+
+    The problems are a package that two files need, and a mistake of a model that its world repeats.
+    """
+    (working_directory / "p" / "models" / "box").mkdir(parents=True)
     box = '<model name="box"><link name="l"><pose>0 0 0 0 0</pose></link></model>'
-    (here / "p" / "models" / "box" / "model.sdf").write_text(f'<sdf version="1.6">{box}</sdf>')
+    (working_directory / "p" / "models" / "box" / "model.sdf").write_text(f'<sdf version="1.6">{box}</sdf>')
     world = '<world name="w"><include><uri>model://box</uri></include></world>'
-    (here / "p" / "w.world").write_text(f'<sdf version="1.6">{world}</sdf>')
-    (here / "p" / "package.xml").write_text("<package format='3'><name>p</name><depend>q</depend></package>")
+    (working_directory / "p" / "w.world").write_text(f'<sdf version="1.6">{world}</sdf>')
+    (working_directory / "p" / "package.xml").write_text(
+        "<package format='3'><name>p</name><depend>q</depend></package>"
+    )
     xacro = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
     for name in ("one", "two"):
         inside = '<xacro:include filename="$(find q)/q.xacro"/><link name="base"/>'
-        (here / "p" / f"{name}.urdf.xacro").write_text(f'<robot name="r" {xacro}>{inside}</robot>')
-    monkeypatch.chdir(here / "p")
+        (working_directory / "p" / f"{name}.urdf.xacro").write_text(f'<robot name="r" {xacro}>{inside}</robot>')
+    monkeypatch.chdir(working_directory / "p")
     main(["check", "--format", "concise", "."])
     lines = capsys.readouterr().out.splitlines()
     assert sum("SDF121" in line for line in lines) == 1
     assert sum("PKG101" in line for line in lines) == 1
 
 
-def test_fuel_models_are_reported_only_for_explicit_world(here, capsys):
-    (here / "p").mkdir()
+def test_fuel_models_are_reported_only_for_explicit_world(working_directory, capsys):
+    (working_directory / "p").mkdir()
     place = "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Table"
     include = f"<include><uri>{place}</uri></include>"
-    (here / "p" / "w.world").write_text(f'<sdf version="1.6"><world name="w">{include}</world></sdf>')
+    (working_directory / "p" / "w.world").write_text(f'<sdf version="1.6"><world name="w">{include}</world></sdf>')
     main(["check", "--format", "concise", "p"])
     assert "SDF160" not in capsys.readouterr().out
     main(["check", "--format", "concise", "p/w.world"])

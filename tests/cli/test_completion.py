@@ -1,4 +1,7 @@
-"""Completion of commands, options, packages, launch files and names of the graph, also in the shell."""
+"""Completion of commands, options, packages, launch files and names of the graph.
+
+It is also tested in the shells.
+"""
 
 from __future__ import annotations
 
@@ -49,74 +52,74 @@ def _workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("AMENT_PREFIX_PATH", raising=False)
 
 
-def candidates_after(line: str) -> list[str]:
+def complete_line(line: str) -> list[str]:
     return complete(split_line(line))
 
 
 def test_command_names_are_completed() -> None:
-    assert candidates_after("linkwright ")[: len(help_texts())] == list(help_texts())
-    assert candidates_after("linkwright la") == ["launch"]
-    assert "launch" in candidates_after("/some/bin/ros2 ")
-    assert "view" not in candidates_after("ros2 ")
-    assert candidates_after("linkwright topic e") == ["echo"]
-    assert candidates_after("linkwright nonsense ") == []
+    assert complete_line("linkwright ")[: len(help_texts())] == list(help_texts())
+    assert complete_line("linkwright la") == ["launch"]
+    assert "launch" in complete_line("/some/bin/ros2 ")
+    assert "view" not in complete_line("ros2 ")
+    assert complete_line("linkwright topic e") == ["echo"]
+    assert complete_line("linkwright nonsense ") == []
 
 
 def test_options_and_option_values_are_completed() -> None:
-    assert "--no-open" in candidates_after("linkwright launch arm a.launch.py --")
-    assert candidates_after("linkwright topic echo --qos-reliability best") == ["best_effort", "best_available"]
-    assert "--times" in candidates_after("ros2 topic pub /a std_msgs/msg/String '{}' --t")
-    assert candidates_after("linkwright topic pub --rate ") == []
-    assert candidates_after("linkwright topic pub --rate 5 /a std_msgs/msg/Str") == ["std_msgs/msg/String"]
-    assert candidates_after("linkwright completion ") == ["bash", "zsh", "fish"]
+    assert "--no-open" in complete_line("linkwright launch arm a.launch.py --")
+    assert complete_line("linkwright topic echo --qos-reliability best") == ["best_effort", "best_available"]
+    assert "--times" in complete_line("ros2 topic pub /a std_msgs/msg/String '{}' --t")
+    assert complete_line("linkwright topic pub --rate ") == []
+    assert complete_line("linkwright topic pub --rate 5 /a std_msgs/msg/Str") == ["std_msgs/msg/String"]
+    assert complete_line("linkwright completion ") == ["bash", "zsh", "fish"]
 
 
 def test_packages_and_executables_are_completed() -> None:
-    assert candidates_after("linkwright pkg prefix ar") == ["arm"]
-    assert candidates_after("ros2 run arm ") == ["move"]
-    assert candidates_after("ros2 run demo_nodes_cpp ta") == ["talker"]
-    assert {"arm", "hand", "demo_nodes_cpp"} <= set(candidates_after("ros2 run "))
+    assert complete_line("linkwright pkg prefix ar") == ["arm"]
+    assert complete_line("ros2 run arm ") == ["move"]
+    assert complete_line("ros2 run demo_nodes_cpp ta") == ["talker"]
+    assert {"arm", "hand", "demo_nodes_cpp"} <= set(complete_line("ros2 run "))
 
 
 def test_launch_files_and_launch_arguments_are_completed() -> None:
-    assert candidates_after("ros2 launch ar") == ["arm", FILES]
-    assert candidates_after("ros2 launch arm ") == ["a.launch.py", "b.launch.xml", "c_launch.yaml"]
+    assert complete_line("ros2 launch ar") == ["arm", FILES]
+    assert complete_line("ros2 launch arm ") == ["a.launch.py", "b.launch.xml", "c_launch.yaml"]
     for file in ("a.launch.py", "b.launch.xml", "c_launch.yaml"):
-        assert candidates_after(f"ros2 launch arm {file} ") == ["gui:=", "speed:="]
-        assert candidates_after(f"linkwright launch arm/launch/{file} gui:=1 s") == ["speed:="]
-    assert candidates_after("linkwright launch nowhere ") == []
+        assert complete_line(f"ros2 launch arm {file} ") == ["gui:=", "speed:="]
+        assert complete_line(f"linkwright launch arm/launch/{file} gui:=1 s") == ["speed:="]
+    assert complete_line("linkwright launch nowhere ") == []
 
 
 def test_interface_types_are_completed() -> None:
-    assert candidates_after("linkwright topic pub /a arm") == ["arm/msg/Grip"]
-    assert candidates_after("linkwright service call /a std_srvs/srv/T") == ["std_srvs/srv/Trigger"]
-    assert candidates_after("linkwright interface show action_tutorials_interfaces/action/F") == [
+    assert complete_line("linkwright topic pub /a arm") == ["arm/msg/Grip"]
+    assert complete_line("linkwright service call /a std_srvs/srv/T") == ["std_srvs/srv/Trigger"]
+    assert complete_line("linkwright interface show action_tutorials_interfaces/action/F") == [
         "action_tutorials_interfaces/action/Fibonacci"
     ]
 
 
 def test_description_files_and_arguments_are_completed() -> None:
-    assert candidates_after("linkwright view ") == [FILES]
-    assert candidates_after("linkwright view arm/arm.urdf.xacro ") == ["side:=", FILES]  # or a second description
+    assert complete_line("linkwright view ") == [FILES]
+    assert complete_line("linkwright view arm/arm.urdf.xacro ") == ["side:=", FILES]  # or a second description
 
 
 def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -> None:
     started: list[object] = []
     monkeypatch.setattr(subprocess, "Popen", lambda *words, **_: started.append(words))
-    assert candidates_after("linkwright topic echo /") == []
+    assert complete_line("linkwright topic echo /") == []
     assert len(started) == 1
-    assert candidates_after("linkwright topic echo /") == []
+    assert complete_line("linkwright topic echo /") == []
     assert len(started) == 1  # the first process still runs
     path = graph_names._path()
     path.write_text(json.dumps({"topics": ["/tf"], "nodes": ["/talker"], "services": ["/go"], "actions": ["/turn"]}))
-    assert candidates_after("ros2 topic echo /t") == ["/tf"]
-    assert candidates_after("ros2 node info ") == ["/talker"]
-    assert candidates_after("ros2 service call ") == ["/go"]
-    assert candidates_after("ros2 action info ") == ["/turn"]
+    assert complete_line("ros2 topic echo /t") == ["/tf"]
+    assert complete_line("ros2 node info ") == ["/talker"]
+    assert complete_line("ros2 service call ") == ["/go"]
+    assert complete_line("ros2 action info ") == ["/turn"]
     assert len(started) == 1  # the file is fresh
     os.utime(path, (1.0, 1.0))
     path.with_suffix(".begun").unlink()
-    assert candidates_after("ros2 topic echo /t") == []
+    assert complete_line("ros2 topic echo /t") == []
     assert len(started) == 2
 
 
@@ -141,13 +144,21 @@ def test_completion_imports_no_slow_modules() -> None:
         f"complete(split_line({line!r})); print(*sorted(sys.modules), sep='\\n')"
     )
     loaded = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.split()
-    heavy = ("argparse", "asyncio", "linkwright.graph", "linkwright.launch", "linkwright.messages", "numpy", "yaml")
-    assert [name for name in heavy if name in loaded] == []
+    slow_modules = (
+        "argparse",
+        "asyncio",
+        "linkwright.graph",
+        "linkwright.launch",
+        "linkwright.messages",
+        "numpy",
+        "yaml",
+    )
+    assert [name for name in slow_modules if name in loaded] == []
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
 @pytest.mark.parametrize(
-    ("line", "offered"),
+    ("line", "candidates"),
     [
         ("linkwright lau", ["launch"]),
         ("linkwright launch arm a.launch.py s", ["speed:="]),
@@ -155,14 +166,14 @@ def test_completion_imports_no_slow_modules() -> None:
         ("linkwright 'open quote", []),
     ],
 )
-def test_completion_in_bash(line: str, offered: list[str]) -> None:
+def test_completion_in_bash(line: str, candidates: list[str]) -> None:
     program = (
         script("bash", sys.executable, ["linkwright"])
         + f'COMP_LINE="{line}"; COMP_POINT=${{#COMP_LINE}}; _linkwright_complete 2>/dev/null\n'
         + "printf '%s\\n' \"${COMPREPLY[@]}\"; complete -p linkwright >&2"
     )
     result = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=True)
-    assert result.stdout.split() == offered
+    assert result.stdout.split() == candidates
     assert "_linkwright_complete" in result.stderr
 
 
@@ -177,15 +188,15 @@ SHELL_LINES = [
 """The words that shells pass, the one at the cursor last, and the expected candidates."""
 
 
-@pytest.mark.parametrize(("words", "offered"), SHELL_LINES)
-def test_completion_of_words_from_any_shell(words: list[str], offered: list[str]) -> None:
-    assert complete(words) == offered
+@pytest.mark.parametrize(("words", "candidates"), SHELL_LINES)
+def test_completion_of_words_from_any_shell(words: list[str], candidates: list[str]) -> None:
+    assert complete(words) == candidates
 
 
 @pytest.mark.parametrize("quote", ["'", '"'])
 def test_completion_inside_open_quote(quote: str) -> None:
     assert complete(["linkwright", "topic", "pub", "/a", f"{quote}arm/msg/"]) == ["arm/msg/Grip"]
-    assert candidates_after(f"linkwright topic pub /a {quote}arm/msg/") == ["arm/msg/Grip"]
+    assert complete_line(f"linkwright topic pub /a {quote}arm/msg/") == ["arm/msg/Grip"]
 
 
 ZSH_WITHOUT_ITS_COMPLETION = """
@@ -197,8 +208,8 @@ _files() { print -r -- FILES }
 
 
 @pytest.mark.skipif(shutil.which("zsh") is None, reason="zsh is not installed")
-@pytest.mark.parametrize(("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "ar"], ["FILES"])])
-def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
+@pytest.mark.parametrize(("words", "candidates"), [*SHELL_LINES, (["linkwright", "check", "ar"], ["FILES"])])
+def test_completion_in_zsh(words: list[str], candidates: list[str]) -> None:
     typed = " ".join(f"'{word}'" for word in [*words[:-1], words[-1] + "after-the-cursor"])
     program = (
         ZSH_WITHOUT_ITS_COMPLETION
@@ -207,21 +218,21 @@ def test_completion_in_zsh(words: list[str], offered: list[str]) -> None:
         + f"PREFIX={shlex.quote(words[-1])}; _linkwright_complete"
     )
     result = subprocess.run(["zsh", "-f", "-c", program], capture_output=True, text=True, check=False)
-    assert result.stdout.split() == offered
+    assert result.stdout.split() == candidates
     assert "compdef _linkwright_complete linkwright" in result.stderr
 
 
 @pytest.mark.skipif(shutil.which("fish") is None, reason="fish is not installed")
 @pytest.mark.parametrize(
-    ("words", "offered"), [*SHELL_LINES, (["linkwright", "check", "arm/a"], ["arm/arm.urdf.xacro"])]
+    ("words", "candidates"), [*SHELL_LINES, (["linkwright", "check", "arm/a"], ["arm/arm.urdf.xacro"])]
 )
-def test_completion_in_fish(words: list[str], offered: list[str], tmp_path: Path) -> None:
+def test_completion_in_fish(words: list[str], candidates: list[str], tmp_path: Path) -> None:
     program = script("fish", sys.executable, ["linkwright"]) + f"complete -C {shlex.quote(' '.join(words))}"
     environment = {**os.environ, "HOME": str(tmp_path)}
     result = subprocess.run(
         ["fish", "--no-config", "-c", program], capture_output=True, text=True, check=True, env=environment
     )
-    assert sorted(line.partition("\t")[0] for line in result.stdout.splitlines()) == sorted(offered)
+    assert sorted(line.partition("\t")[0] for line in result.stdout.splitlines()) == sorted(candidates)
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
@@ -230,8 +241,8 @@ def test_shell_accepts_generated_script(shell: str, capsys: pytest.CaptureFixtur
     text = capsys.readouterr().out
     assert text == script(shell, sys.executable, ["linkwright"])
     if shutil.which(shell):
-        whole = shell_script(shell, sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "rqt"])
-        subprocess.run([shell, "-n"], input=text + whole, text=True, check=True)
+        generated = shell_script(shell, sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "rqt"])
+        subprocess.run([shell, "-n"], input=text + generated, text=True, check=True)
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")

@@ -41,7 +41,7 @@ def manager(in_graph, tmp_path):
     return use
 
 
-def run(capsys, *words: str, status: int = 0) -> str:
+def run_command(capsys, *words: str, status: int = 0) -> str:
     assert main(["control", *words]) == status
     captured = capsys.readouterr()
     return captured.err if status else captured.out
@@ -49,23 +49,23 @@ def run(capsys, *words: str, status: int = 0) -> str:
 
 def test_list_controllers_prints_states(manager, capsys):
     manager()
-    assert run(capsys, "list_controllers") == "No controllers are currently loaded!\n"
+    assert run_command(capsys, "list_controllers") == "No controllers are currently loaded!\n"
     manager("active")
-    assert run(capsys, "list_controllers").splitlines() == [
+    assert run_command(capsys, "list_controllers").splitlines() == [
         "positions   forward_command_controller/ForwardCommandController  active",
         "broadcaster joint_state_broadcaster/JointStateBroadcaster        active",
     ]
-    lines = run(capsys, "list_controllers", "--claimed-interfaces").splitlines()
+    lines = run_command(capsys, "list_controllers", "--claimed-interfaces").splitlines()
     assert lines[1:3] == ["\tclaimed interfaces:", "\t\thip/position"]
-    assert "\texported reference interfaces:" in run(capsys, "list_controllers", "-v").splitlines()
+    assert "\texported reference interfaces:" in run_command(capsys, "list_controllers", "-v").splitlines()
 
 
 def test_controller_types_and_hardware_are_listed(manager, capsys):
     manager("active")
-    types = run(capsys, "list_controller_types")
+    types = run_command(capsys, "list_controller_types")
     name = "joint_state_broadcaster/JointStateBroadcaster"
     assert f"{name:70s} controller_interface::ControllerInterface" in types.splitlines()
-    assert run(capsys, "list_hardware_components").splitlines() == [
+    assert run_command(capsys, "list_hardware_components").splitlines() == [
         "Hardware Component 1",
         "\tname: arm",
         "\ttype: system",
@@ -74,7 +74,7 @@ def test_controller_types_and_hardware_are_listed(manager, capsys):
         "\tcommand interfaces",
         "\t\thip/position [available] [claimed]",
     ]
-    assert run(capsys, "list_hardware_interfaces").splitlines() == [
+    assert run_command(capsys, "list_hardware_interfaces").splitlines() == [
         "command interfaces",
         "\thip/position [available] [claimed]",
         "state interfaces",
@@ -85,58 +85,60 @@ def test_controller_types_and_hardware_are_listed(manager, capsys):
 
 def test_load_and_unload_controller_report_result(manager, capsys):
     manager()
-    assert run(capsys, "load_controller", "positions") == "Successfully loaded controller positions\n"
-    assert run(capsys, "load_controller", "positions", "--set-state", "active").endswith("into state active\n")
-    assert run(capsys, "load_controller", "nobody", status=1).endswith("check controller_manager logs\n")
+    assert run_command(capsys, "load_controller", "positions") == "Successfully loaded controller positions\n"
+    assert run_command(capsys, "load_controller", "positions", "--set-state", "active").endswith("into state active\n")
+    assert run_command(capsys, "load_controller", "nobody", status=1).endswith("check controller_manager logs\n")
     manager("inactive")
-    assert run(capsys, "unload_controller", "positions") == "Successfully unloaded controller positions\n"
-    assert run(capsys, "reload_controller_libraries") == "Reload successful\n"
+    assert run_command(capsys, "unload_controller", "positions") == "Successfully unloaded controller positions\n"
+    assert run_command(capsys, "reload_controller_libraries") == "Reload successful\n"
     manager("active")
-    assert "Error unloading controller positions" in run(capsys, "unload_controller", "positions", status=1)
-    assert "Error reloading" in run(capsys, "reload_controller_libraries", status=1)
+    assert "Error unloading controller positions" in run_command(capsys, "unload_controller", "positions", status=1)
+    assert "Error reloading" in run_command(capsys, "reload_controller_libraries", status=1)
 
 
 def test_controller_state_names_before_humble_are_accepted(manager, capsys):
     manager()
-    assert run(capsys, "load_controller", "positions", "--set-state", "start").endswith("into state active\n")
+    assert run_command(capsys, "load_controller", "positions", "--set-state", "start").endswith("into state active\n")
     manager("active")
-    assert run(capsys, "set_controller_state", "positions", "stop") == "Successfully deactivated positions\n"
+    assert run_command(capsys, "set_controller_state", "positions", "stop") == "Successfully deactivated positions\n"
 
 
 def test_set_controller_state_changes_state(manager, capsys):
     manager("unconfigured")
-    assert run(capsys, "set_controller_state", "positions", "inactive") == "Successfully configured positions\n"
-    output = run(capsys, "set_controller_state", "positions", "active", status=1)
+    assert run_command(capsys, "set_controller_state", "positions", "inactive") == "Successfully configured positions\n"
+    output = run_command(capsys, "set_controller_state", "positions", "active", status=1)
     assert output.endswith("cannot activate positions from its current state unconfigured\n")
     manager("inactive")
-    assert run(capsys, "set_controller_state", "positions", "active") == "Successfully activated positions\n"
-    assert run(capsys, "cleanup_controller", "positions") == "Successfully cleaned up positions\n"
+    assert run_command(capsys, "set_controller_state", "positions", "active") == "Successfully activated positions\n"
+    assert run_command(capsys, "cleanup_controller", "positions") == "Successfully cleaned up positions\n"
     manager("active")
-    assert run(capsys, "set_controller_state", "positions", "inactive") == "Successfully deactivated positions\n"
-    output = run(capsys, "set_controller_state", "nobody", "inactive", status=1)
+    assert (
+        run_command(capsys, "set_controller_state", "positions", "inactive") == "Successfully deactivated positions\n"
+    )
+    output = run_command(capsys, "set_controller_state", "nobody", "inactive", status=1)
     assert output.endswith("controller nobody does not seem to be loaded\n")
 
 
 def test_switch_controllers_reports_result(manager, capsys):
     manager("active")
     words = ("switch_controllers", "--deactivate", "positions", "--strict")
-    assert run(capsys, *words) == "Successfully switched controllers\n"
-    output = run(capsys, "switch_controllers", "--activate", "nobody", "--strict", status=1)
+    assert run_command(capsys, *words) == "Successfully switched controllers\n"
+    output = run_command(capsys, "switch_controllers", "--activate", "nobody", "--strict", status=1)
     assert output.endswith("Error switching controllers, check controller_manager logs\n")
 
 
 def test_set_hardware_component_state_changes_state(manager, capsys):
     manager("active")
-    output = run(capsys, "set_hardware_component_state", "arm", "inactive")
+    output = run_command(capsys, "set_hardware_component_state", "arm", "inactive")
     assert output.startswith("Successfully set arm to state lifecycle_msgs.msg.State(id=2, label='inactive')")
-    output = run(capsys, "set_hardware_component_state", "leg", "inactive", status=1)
+    output = run_command(capsys, "set_hardware_component_state", "leg", "inactive", status=1)
     assert output.endswith("component leg does not seem to be loaded\n")
 
 
 def test_view_controller_chains_writes_diagram(manager, capsys, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     manager("active")
-    assert run(capsys, "view_controller_chains").startswith("Saved controller diagram to")
+    assert run_command(capsys, "view_controller_chains").startswith("Saved controller diagram to")
     text = (tmp_path / "controller_diagram.gv").read_text()
     assert '"positions" -> "hw command_interfaces" [label="hip/position"];' in text
 
@@ -149,14 +151,14 @@ def test_list_controllers_waits_for_late_controller_manager(in_graph, capsys, mo
         asyncio.get_running_loop().call_later(0.2, lambda: Ros2ControlNode(graph, NodeOptions(parameters=parameters)))
 
     in_graph(later)
-    assert run(capsys, "list_controllers") == "No controllers are currently loaded!\n"
+    assert run_command(capsys, "list_controllers") == "No controllers are currently loaded!\n"
 
 
 def test_controller_manager_option_selects_manager(manager, capsys, monkeypatch):
     monkeypatch.setattr(calls, "APPEARS_TIMEOUT_S", 0.3)
     monkeypatch.setattr(control, "MANAGER_EXTRA_WAIT_S", 0.2)
     manager()
-    output = run(capsys, "list_controllers", "-c", "/robot/controller_manager", status=1)
+    output = run_command(capsys, "list_controllers", "-c", "/robot/controller_manager", status=1)
     service = "/robot/controller_manager/list_controllers"
     waiting, found = f"waiting for service '{service}' to become available...", f"there is no service '{service}'"
     assert 0 <= output.find(waiting) < output.find(found)

@@ -10,7 +10,7 @@ from linkwright.cli import main
 from linkwright.process.interruption import INTERRUPTED
 from linkwright.vision.datasets.folder import DatasetFolder
 from tests.full_disk import full_disk, needs_limits
-from tests.vision.datasets.places import yard
+from tests.vision.datasets.places import write_yard
 
 SMALL = ["--size", "64x48", "--workers", "1", "--copies", "1", "--distractors", "0"]
 
@@ -18,7 +18,7 @@ SMALL = ["--size", "64x48", "--workers", "1", "--copies", "1", "--distractors", 
 @pytest.fixture
 def words(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    return ["dataset", str(yard(tmp_path)), "-o", "set", *SMALL]
+    return ["dataset", str(write_yard(tmp_path)), "-o", "set", *SMALL]
 
 
 def test_dataset_is_written_and_counted(words, tmp_path, capsys):

@@ -49,27 +49,31 @@ def package(tmp_path, monkeypatch) -> Path:
     return tmp_path / "arm"
 
 
-def git(folder: Path, *words: str) -> None:
+def run_git(folder: Path, *words: str) -> None:
     environment = {name: value for name, value in os.environ.items() if not name.startswith("GIT_")}
     identity = {
         f"GIT_{role}_{field}": "test@example.org" for role in ("AUTHOR", "COMMITTER") for field in ("NAME", "EMAIL")
     }
-    nobody = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
+    without_user_config = {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_SYSTEM": os.devnull}
     subprocess.run(
-        ["git", *words], cwd=folder, env={**environment, **identity, **nobody}, check=True, capture_output=True
+        ["git", *words],
+        cwd=folder,
+        env={**environment, **identity, **without_user_config},
+        check=True,
+        capture_output=True,
     )
 
 
 @pytest.fixture
 def committed(package) -> Path:
     """Create the package, and commit it."""
-    git(package, "init")
-    git(package, "add", "--all")
-    git(package, "commit", "--message", "first")
+    run_git(package, "init")
+    run_git(package, "add", "--all")
+    run_git(package, "commit", "--message", "first")
     return package
 
 
-def edit(path: Path, old: str, new: str) -> None:
+def replace_in_file(path: Path, old: str, new: str) -> None:
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new))
@@ -106,7 +110,7 @@ def test_meshes_at_same_uri_are_compared_by_content(package, tmp_path, monkeypat
         for difference in json.loads(capsys.readouterr().out)["differences"]
         if difference["subject"] == "link"
     ] == []
-    edit(package / "meshes/body.stl", "solid", "solid body")
+    replace_in_file(package / "meshes/body.stl", "solid", "solid body")
     assert main(words) == 1
     (mesh,) = (
         difference
@@ -115,7 +119,7 @@ def test_meshes_at_same_uri_are_compared_by_content(package, tmp_path, monkeypat
     )
     assert mesh["property"] == "visual mesh package://arm/meshes/body.stl"
     assert (mesh["old"], mesh["new"], mesh["unit"]) == ("5", "10", "bytes")
-    edit(package / "meshes/body.stl", "solid body", "dilos")
+    replace_in_file(package / "meshes/body.stl", "solid body", "dilos")
     main(words)
     (mesh,) = (
         difference
@@ -134,8 +138,8 @@ def test_unchanged_file_has_no_differences_against_commit(committed, capsys):
 
 @needs_git
 def test_against_uses_includes_and_meshes_of_commit(committed, capsys):
-    edit(committed / "urdf/body.xacro", 'mass value="${mass}"', 'mass value="${2 * mass}"')
-    edit(committed / "meshes/body.stl", "solid", "solid body")
+    replace_in_file(committed / "urdf/body.xacro", 'mass value="${mass}"', 'mass value="${2 * mass}"')
+    replace_in_file(committed / "meshes/body.stl", "solid", "solid body")
     assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD", "--format", "json"]) == 1
     output = json.loads(capsys.readouterr().out)
     assert (output["old"], output["new"]) == ("HEAD:urdf/arm.urdf.xacro", "urdf/arm.urdf.xacro")
@@ -165,9 +169,9 @@ def test_against_leaves_repository_and_temporary_folder_unchanged(committed, mon
 
 @needs_git
 def test_errors_in_commit_are_reported_with_commit_name(committed, capsys):
-    edit(committed / "urdf/body.xacro", "</link>", "</lnk>")
-    git(committed, "commit", "--all", "--message", "broken")
-    git(committed, "checkout", "HEAD~1", "--", ".")
+    replace_in_file(committed / "urdf/body.xacro", "</link>", "</lnk>")
+    run_git(committed, "commit", "--all", "--message", "broken")
+    run_git(committed, "checkout", "HEAD~1", "--", ".")
     assert main(["diff", "urdf/arm.urdf.xacro", "--against", "HEAD"]) == 2
     assert "--> HEAD:urdf/body.xacro:5:" in capsys.readouterr().err
 
@@ -177,10 +181,10 @@ def test_errors_in_commit_are_reported_with_commit_name(committed, capsys):
 def test_renamed_file_is_found_in_commit(committed, capsys, staged):
     before = (committed / ".git/index").read_bytes()
     if staged:
-        git(committed, "mv", "urdf/arm.urdf.xacro", "urdf/hand.urdf.xacro")
+        run_git(committed, "mv", "urdf/arm.urdf.xacro", "urdf/hand.urdf.xacro")
     else:
         (committed / "urdf/arm.urdf.xacro").rename(committed / "urdf/hand.urdf.xacro")
-    edit(committed / "urdf/body.xacro", 'mass value="${mass}"', 'mass value="${2 * mass}"')
+    replace_in_file(committed / "urdf/body.xacro", 'mass value="${mass}"', 'mass value="${2 * mass}"')
     assert main(["diff", "urdf/hand.urdf.xacro", "--against", "HEAD", "--format", "json"]) == 1
     output = json.loads(capsys.readouterr().out)
     assert (output["old"], output["new"]) == ("HEAD:urdf/arm.urdf.xacro", "urdf/hand.urdf.xacro")
@@ -193,8 +197,8 @@ def test_file_missing_from_commit_is_explained(committed, capsys):
     (committed / "urdf/new.urdf").write_text("<robot name='r'><link name='a'/></robot>")
     assert main(["diff", "urdf/new.urdf", "--against", "HEAD"]) == 2
     assert "no commit contains the file yet" in capsys.readouterr().err
-    git(committed, "add", "--all")
-    git(committed, "commit", "--all", "--message", "new")
+    run_git(committed, "add", "--all")
+    run_git(committed, "commit", "--all", "--message", "new")
     assert main(["diff", "urdf/new.urdf", "--against", "HEAD~1"]) == 2
     assert "run `git log -- urdf/new.urdf` to list the commits that contain the file" in capsys.readouterr().err
 

@@ -27,32 +27,32 @@ ROBOT = """\
 DESCRIBED: dict[str, Any] = {"robot_description": ROBOT}
 
 
-def robot(graph: Graph) -> None:
+def create_robot(graph: Graph) -> None:
     RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED))
     JointStatePublisher(graph, NodeOptions(parameters=DESCRIBED))
 
 
-def doctor(capsys, *words: str, status: int) -> str:
+def run_doctor(capsys, *words: str, status: int) -> str:
     assert main(["doctor", "--seconds", "1", *words]) == status
     captured = capsys.readouterr()
     return captured.out + captured.err
 
 
 def test_healthy_robot_has_no_problems(in_graph, capsys):
-    in_graph(robot)
-    assert "No problems found: 2 nodes, 6 topics, 3 frames" in doctor(capsys, status=0)
+    in_graph(create_robot)
+    assert "No problems found: 2 nodes, 6 topics, 3 frames" in run_doctor(capsys, status=0)
 
 
 def test_missing_joint_states_publisher_is_reported(in_graph, capsys):
     in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
-    output = doctor(capsys, status=1)
+    output = run_doctor(capsys, status=1)
     assert "[DOC401]: no node publishes joint states, so there is no transform of frame 'wheel'" in output
     assert "start joint_state_publisher" in output
 
 
 def test_doctor_output_is_translated_to_chinese(in_graph, capsys):
     in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
-    output = doctor(capsys, "--lang", "zh", status=1)
+    output = run_doctor(capsys, "--lang", "zh", status=1)
     assert "正在观察运行中的计算图，1 秒……\n" in output
     assert "没有节点发布关节状态，所以坐标系“wheel”没有变换" in output
     assert "1 个问题；1 个节点、" in output
@@ -71,12 +71,12 @@ def test_misspelled_joint_name_is_reported(in_graph, capsys):
         node.create_timer(0.05, publish)
 
     in_graph(make)
-    output = doctor(capsys, status=1)
+    output = run_doctor(capsys, status=1)
     assert "joint 'spin' is not in the joint states, so there is no transform of frame 'wheel'" in output
     assert "did you mean 'spinn'?" in output
 
 
-def transform(parent: str, child: str, stamp: Time | None = None) -> TransformStamped:
+def make_transform(parent: str, child: str, stamp: Time | None = None) -> TransformStamped:
     message = TransformStamped(child_frame_id=child)
     message.header.frame_id = parent
     message.transform.rotation.w = 1.0
@@ -85,32 +85,34 @@ def transform(parent: str, child: str, stamp: Time | None = None) -> TransformSt
     return message
 
 
-def second_publisher(graph: Graph) -> None:
-    robot(graph)
+def create_second_publisher(graph: Graph) -> None:
+    create_robot(graph)
     node = graph.create_node("odometry")
     publisher = node.create_publisher(TFMessage, "/tf", TF_QOS)
     node.create_timer(
         0.05,
-        lambda: publisher.publish(TFMessage(transforms=[transform("base", "wheel", node.get_clock().now().to_msg())])),
+        lambda: publisher.publish(
+            TFMessage(transforms=[make_transform("base", "wheel", node.get_clock().now().to_msg())])
+        ),
     )
 
 
 def test_two_publishers_of_same_transform_are_reported(in_graph, capsys):
-    in_graph(second_publisher)
-    output = doctor(capsys, status=1)
+    in_graph(create_second_publisher)
+    output = run_doctor(capsys, status=1)
     assert "2 nodes publish the transform of frame 'wheel': '/odometry', '/robot_state_publisher'" in output
 
 
 def test_disconnected_trees_and_missing_fixed_frame_are_reported(in_graph, capsys, tmp_path: Path):
     def make(graph: Graph) -> None:
-        robot(graph)
+        create_robot(graph)
         publisher = graph.create_node("camera").create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
-        publisher.publish(TFMessage(transforms=[transform("camera", "lens")]))
+        publisher.publish(TFMessage(transforms=[make_transform("camera", "lens")]))
 
     in_graph(make)
     rviz = tmp_path / "robot.rviz"
     rviz.write_text("Visualization Manager:\n  Global Options:\n    Fixed Frame: map\n", encoding="utf-8")
-    output = doctor(capsys, "--rviz", str(rviz), status=1)
+    output = run_doctor(capsys, "--rviz", str(rviz), status=1)
     assert "the frames form 2 separate trees" in output
     assert "the fixed frame 'map' of '" in output
     assert "robot.rviz' does not exist, so nothing is shown" in output
@@ -118,13 +120,13 @@ def test_disconnected_trees_and_missing_fixed_frame_are_reported(in_graph, capsy
 
 def test_fixed_frame_of_viewer_is_checked(in_graph, capsys):
     def make(graph: Graph) -> None:
-        robot(graph)
+        create_robot(graph)
         viewer = graph.create_node("rviz2", parameters={"fixed_frame": "odom"})
         viewer.declare_parameter("fixed_frame", "map")
         viewer.create_subscription(TFMessage, "/tf", print, TF_QOS)
 
     in_graph(make)
-    assert "the fixed frame 'odom' of '/rviz2' does not exist" in doctor(capsys, status=1)
+    assert "the fixed frame 'odom' of '/rviz2' does not exist" in run_doctor(capsys, status=1)
 
 
 def test_stamps_far_from_clock_are_reported(in_graph, capsys):
@@ -136,7 +138,7 @@ def test_stamps_far_from_clock_are_reported(in_graph, capsys):
         node.create_timer(0.05, lambda: publisher.publish(message))
 
     in_graph(make)
-    assert "the stamps of '/lidar' on '/scan' are" in doctor(capsys, status=1)
+    assert "the stamps of '/lidar' on '/scan' are" in run_doctor(capsys, status=1)
 
 
 def test_twist_type_qos_and_unserved_client_problems_are_reported(in_graph, capsys):
@@ -150,10 +152,10 @@ def test_twist_type_qos_and_unserved_client_problems_are_reported(in_graph, caps
         base.create_client("std_srvs/srv/Empty", "reset")
 
     in_graph(make)
-    output = doctor(capsys, status=1)
+    output = run_doctor(capsys, status=1)
     assert "topic '/cmd_vel' carries Twist for some nodes and TwistStamped for others" in output
-    apart = "reliability: '/lidar' offers BEST_EFFORT, '/base' requests RELIABLE" in output
-    assert apart is dds.is_available()  # over Zenoh, reliability does not prevent a connection
+    reports_mismatch = "reliability: '/lidar' offers BEST_EFFORT, '/base' requests RELIABLE" in output
+    assert reports_mismatch is dds.is_available()  # over Zenoh, reliability does not prevent a connection
     assert "no node provides service '/reset', which '/base' calls" in output
 
 
@@ -163,19 +165,19 @@ def test_mixed_use_sim_time_is_reported(in_graph, capsys):
         graph.create_node("two")
 
     in_graph(make)
-    output = doctor(capsys, status=1)
+    output = run_doctor(capsys, status=1)
     assert "use_sim_time is true for '/one', but no node publishes /clock" in output
     assert "use_sim_time is true for '/one', but false for '/two'" in output
 
 
 def test_empty_graph_is_reported(in_graph, capsys):
     in_graph(lambda graph: None)
-    assert "no running nodes were found" in doctor(capsys, status=1)
+    assert "no running nodes were found" in run_doctor(capsys, status=1)
 
 
 @pytest.mark.parametrize("form", ["json", "concise"])
 def test_json_and_other_formats_are_printed(in_graph, capsys, form):
-    in_graph(second_publisher)
+    in_graph(create_second_publisher)
     assert main(["doctor", "--seconds", "1", "--format", form]) == 1
     printed = capsys.readouterr().out
     if form == "json":
@@ -185,8 +187,8 @@ def test_json_and_other_formats_are_printed(in_graph, capsys, form):
 
 
 def test_report_has_sections_of_ros2_doctor(in_graph, capsys):
-    in_graph(robot)
-    output = doctor(capsys, "--report", status=0)
+    in_graph(create_robot)
+    output = run_doctor(capsys, "--report", status=0)
     for title in ("PLATFORM INFORMATION", "RMW MIDDLEWARE", "PACKAGE VERSIONS", "NETWORK CONFIGURATION"):
         assert f"\n   {title}\n" in output
     assert re.search(r"^topic \[type\] +: /joint_states \[sensor_msgs/msg/JointState\]$", output, re.MULTILINE)
@@ -195,16 +197,16 @@ def test_report_has_sections_of_ros2_doctor(in_graph, capsys):
 
 
 def test_report_failed_prints_only_with_problems(in_graph, capsys):
-    in_graph(robot)
-    assert "PLATFORM" not in doctor(capsys, "--report-failed", status=0)
+    in_graph(create_robot)
+    assert "PLATFORM" not in run_doctor(capsys, "--report-failed", status=0)
 
 
 def test_parameter_file_sections_without_nodes_are_reported(in_graph, capsys, tmp_path):
-    in_graph(robot)
+    in_graph(create_robot)
     path = tmp_path / "params.yaml"
     sections = ("/**", "robot_state_publisher", "joint_state_publsher", "/left/*")
     path.write_text("".join(f"{section}: {{ros__parameters: {{a: 1}}}}\n" for section in sections))
-    output = doctor(capsys, "--params-file", str(path), status=1)
+    output = run_doctor(capsys, "--params-file", str(path), status=1)
     assert output.count("DOC702") == 2
     assert "section '/joint_state_publsher' of" in output
     assert "did you mean '/joint_state_publisher'" in output

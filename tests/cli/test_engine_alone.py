@@ -1,4 +1,7 @@
-"""The engine without linkwright: the contents of linkwright-core, and the output of its commands."""
+"""The engine without linkwright.
+
+The tests cover the contents of linkwright-core, and the output of its commands.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from tests.toml_files import PROJECT, read_toml
 CONTRACT = "The engine imports nothing else; linkwright-core is made of its modules (core/engine_build.py)"
 
 
-def rooms() -> tuple[set[str], set[str]]:
+def read_rooms() -> tuple[set[str], set[str]]:
     """Return the modules of the engine, and the modules that it must not import."""
     contracts = read_toml((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
     (contract,) = (contract for contract in contracts["contracts"] if contract["name"] == CONTRACT)
@@ -22,10 +25,10 @@ def rooms() -> tuple[set[str], set[str]]:
 
 
 def test_every_package_is_in_engine_or_excluded() -> None:
-    engine, others = rooms()
+    engine, other_rooms = read_rooms()
     package = REPOSITORY / "src" / "linkwright"
     found_rooms = {f"linkwright.{folder.parent.name}" for folder in package.glob("*/__init__.py")} - {"linkwright.cli"}
-    assert found_rooms == {name for name in engine | others if not name.startswith("linkwright.cli.")}
+    assert found_rooms == {name for name in engine | other_rooms if not name.startswith("linkwright.cli.")}
 
 
 def test_linkwright_requires_same_version_of_linkwright_core() -> None:
@@ -34,7 +37,10 @@ def test_linkwright_requires_same_version_of_linkwright_core() -> None:
 
 @pytest.fixture
 def alone(monkeypatch):
-    """Simulate an installation of linkwright-core alone: modules that are None in this table cannot be imported."""
+    """Simulate an installation of linkwright-core alone.
+
+    Modules that are None in this table cannot be imported.
+    """
     for name in ("cli.workbench", "simulation", "viewer.notebook", "bag"):
         for loaded in [module for module in sys.modules if f"{module}.".startswith(f"linkwright.{name}.")]:
             monkeypatch.delitem(sys.modules, loaded)

@@ -1,4 +1,7 @@
-"""Commands on a full disk, or with full or closed standard streams: one message, and no loss."""
+"""Commands on a full disk, or with full or closed standard streams.
+
+The tests cover one message, and no loss.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +31,8 @@ ROBOT = """<robot name="r">
     <collision><geometry><box size="1 1 1"/></geometry></collision></link>
 </robot>
 """
-OLD = "what was there before"
-ROOM = 50  # less than any command writes here
+OLD_CONTENT = "what was there before"
+FREE_BYTES = 50  # less than any command writes here
 
 
 @pytest.fixture
@@ -40,11 +43,11 @@ def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
-def files(folder: Path) -> dict[str, bytes]:
+def list_files(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-WRITING = {
+WRITING_COMMANDS = {
     "xacro": ["xacro", "r.urdf", "-o", "out"],
     "export html": ["export", "out.html", "r.urdf"],
     "export glb": ["export", "out.glb", "r.urdf"],
@@ -57,19 +60,19 @@ WRITING = {
 
 
 @needs_limits
-@pytest.mark.parametrize("words", WRITING.values(), ids=WRITING)
+@pytest.mark.parametrize("words", WRITING_COMMANDS.values(), ids=WRITING_COMMANDS)
 def test_command_on_full_disk_leaves_files_unchanged(
     words: Sequence[str], robot: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     if words[0] == "check":  # give `check` something to fix
         robot.write_text(ROBOT.replace('name="a"', 'name="a" nmae="b"').replace("<robot ", "<robot version='1' "))
     for name in ("out", "out.html", "out.glb", "out.png", "out.gv", "out.pdf"):
-        (robot.parent / name).write_text(OLD)
-    before = files(robot.parent)
-    with full_disk(ROOM):
+        (robot.parent / name).write_text(OLD_CONTENT)
+    before = list_files(robot.parent)
+    with full_disk(FREE_BYTES):
         status = main(list(words))
     printed = capsys.readouterr().err
-    assert files(robot.parent) == before
+    assert list_files(robot.parent) == before
     if words[0] != "check" or "cannot write" in printed:
         assert status == 1
         assert "cannot write" in printed
@@ -158,7 +161,7 @@ def test_bag_record_reports_full_disk_once(
         list(bag.messages())
 
 
-QUICK = {
+QUICK_COMMANDS = {
     "version": ["--version"],
     "help": ["--help"],
     **{f"{verb} --help": [verb, "--help"] for verb in help_texts()},
@@ -172,7 +175,7 @@ QUICK = {
     "interface show": ["interface", "show", "std_msgs/msg/Header"],
 }
 
-_MANY = """
+_RUN_MANY = """
 import os, sys
 from linkwright.cli import main
 from linkwright.cli.command import help_texts, parser_for
@@ -194,9 +197,9 @@ sys.stderr.write(repr(failed))
 """
 
 
-def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: str) -> tuple[dict[str, int], str]:
+def run_commands(commands: Mapping[str, Sequence[str]], folder: Path, redirection: str) -> tuple[dict[str, int], str]:
     """Run commands with redirected streams, and return their exit statuses and output."""
-    program = _MANY.format(commands=[list(words) for words in commands.values()])
+    program = _RUN_MANY.format(commands=[list(words) for words in commands.values()])
     environment = {**os.environ, "PYTHONPATH": str(REPOSITORY / "src")}
     result = subprocess.run(
         ["sh", "-c", f'exec "$@" {redirection}', "sh", sys.executable, "-c", program],
@@ -215,14 +218,14 @@ def statuses(commands: Mapping[str, Sequence[str]], folder: Path, redirection: s
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux has /dev/full")
 @pytest.mark.parametrize(("redirection", "reason"), [(">/dev/full", "No space left"), (">&-", "Bad file descriptor")])
 def test_unwritable_standard_output_is_one_error(robot: Path, redirection: str, reason: str) -> None:
-    statuses_by_command, printed = statuses(QUICK, robot.parent, redirection)
-    assert statuses_by_command == dict.fromkeys(QUICK, 1)
-    assert printed.count(f"error[CLI202]: cannot write to standard output: {reason}") == len(QUICK)
+    statuses_by_command, printed = run_commands(QUICK_COMMANDS, robot.parent, redirection)
+    assert statuses_by_command == dict.fromkeys(QUICK_COMMANDS, 1)
+    assert printed.count(f"error[CLI202]: cannot write to standard output: {reason}") == len(QUICK_COMMANDS)
     assert "bug in Linkwright" not in printed
     assert "Exception ignored" not in printed
 
 
-LONG = {
+LONG_COMMANDS = {
     "help": ["--help"],
     "check": ["check", "r.urdf"],
     "xacro": ["xacro", "r.urdf"],
@@ -238,8 +241,8 @@ def test_output_truncated_by_full_disk_is_an_error(
 ) -> None:
     """The disk has space for only the first bytes of each output."""
     monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
-    for name, words in LONG.items():
-        with (robot.parent / "out").open("w") as out, full_disk(ROOM):
+    for name, words in LONG_COMMANDS.items():
+        with (robot.parent / "out").open("w") as out, full_disk(FREE_BYTES):
             result = subprocess.run(
                 [sys.executable, "-m", "linkwright", *words],
                 env={**os.environ, "PYTHONPATH": str(REPOSITORY / "src")},
@@ -248,15 +251,15 @@ def test_output_truncated_by_full_disk_is_an_error(
                 text=True,
                 check=False,
             )
-        assert (robot.parent / "out").stat().st_size == ROOM, name
+        assert (robot.parent / "out").stat().st_size == FREE_BYTES, name
         assert result.returncode == 1, name
         assert "error[CLI202]: cannot write to standard output: File too large" in result.stderr, name
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no fork")
 def test_closed_standard_input_is_treated_as_empty(robot: Path) -> None:
-    commands = {**QUICK, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
-    statuses_by_command, printed = statuses(commands, robot.parent, "<&-")
+    commands = {**QUICK_COMMANDS, "check -": ["xacro", "-"], "pub": ["interface", "show", "-"]}
+    statuses_by_command, printed = run_commands(commands, robot.parent, "<&-")
     assert {name for name, status in statuses_by_command.items() if status} == {"check -", "pub"}
     assert "bug in Linkwright" not in printed
 
@@ -282,7 +285,7 @@ def test_unwritable_standard_error_keeps_exit_status(robot: Path, redirection: s
 def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     robot = tmp_path / "r.urdf"
     robot.write_text(ROBOT)
-    here = Path.cwd()
+    working_directory = Path.cwd()
     for words in (
         ["check", str(robot)],
         ["check", "."],
@@ -294,10 +297,10 @@ def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytes
         ["pkg", "create", "some_robot"],
         ["launch", "a.launch.py", "--print"],
     ):
-        gone = tmp_path / "gone"
-        gone.mkdir()
-        os.chdir(gone)
-        shutil.rmtree(gone)
+        removed = tmp_path / "gone"
+        removed.mkdir()
+        os.chdir(removed)
+        shutil.rmtree(removed)
         try:
             result = subprocess.run(
                 [sys.executable, "-m", "linkwright", *words],
@@ -308,7 +311,7 @@ def test_removed_working_directory_is_handled(tmp_path: Path, monkeypatch: pytes
                 check=False,
             )
         finally:
-            os.chdir(here)
+            os.chdir(working_directory)
         assert "bug in Linkwright" not in result.stderr, words
         assert result.returncode in (0, 1), (words, result.stderr)
         assert result.returncode == 0 or "error[" in result.stderr, words

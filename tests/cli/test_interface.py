@@ -18,12 +18,12 @@ DEFINITIONS = {
 }
 
 
-def lines(name: str, **options: bool) -> list[str]:
+def interface_lines(name: str, **options: bool) -> list[str]:
     return list(definition_lines(name, DEFINITIONS.__getitem__, **options))
 
 
 def test_nested_definitions_are_indented_without_comments():
-    assert lines("p/msg/Nested") == [
+    assert interface_lines("p/msg/Nested") == [
         "# Nested",
         "Short short # inside",
         "\tbool BOOL_CONST=true",
@@ -35,7 +35,7 @@ def test_nested_definitions_are_indented_without_comments():
 
 
 def test_nested_comments_are_shown_with_option():
-    assert lines("p/msg/Nested", nested_comments=True) == [
+    assert interface_lines("p/msg/Nested", nested_comments=True) == [
         "# Nested",
         "Short short # inside",
         "\t# A short type",
@@ -50,7 +50,7 @@ def test_nested_comments_are_shown_with_option():
 
 
 def test_comments_can_be_omitted():
-    assert lines("p/msg/Nested", comments=False) == [
+    assert interface_lines("p/msg/Nested", comments=False) == [
         "Short short",
         "\tbool BOOL_CONST=true",
         "\tbool value",
@@ -60,7 +60,7 @@ def test_comments_can_be_omitted():
 
 
 def test_service_definition_expands_arrays_and_headers():
-    assert lines("p/srv/Ask", comments=False) == [
+    assert interface_lines("p/srv/Ask", comments=False) == [
         "Nested[] n",
         "\tShort short",
         "\t\tbool BOOL_CONST=true",
@@ -91,14 +91,14 @@ def test_nested_type_is_found_in_definition_line(line, found):
     assert nested_type(line, "p") == found
 
 
-def run(capsys, *words: str, status: int = 0) -> tuple[str, str]:
+def run_command(capsys, *words: str, status: int = 0) -> tuple[str, str]:
     assert main(["interface", *words]) == status
     captured = capsys.readouterr()
     return captured.out, captured.err
 
 
 def test_show_prints_definition(capsys):
-    assert run(capsys, "show", "geometry_msgs/msg/Twist", "--no-comments")[0].splitlines() == [
+    assert run_command(capsys, "show", "geometry_msgs/msg/Twist", "--no-comments")[0].splitlines() == [
         "Vector3 linear",
         "\tfloat64 x",
         "\tfloat64 y",
@@ -112,15 +112,15 @@ def test_show_prints_definition(capsys):
 
 def test_show_reads_type_from_standard_input(capsys, monkeypatch):
     monkeypatch.setattr("sys.stdin", io.StringIO("std_msgs/msg/String\n"))
-    assert run(capsys, "show", "-")[0] == "# A text.\nstring data\n"
+    assert run_command(capsys, "show", "-")[0] == "# A text.\nstring data\n"
 
 
 def test_show_of_unknown_type_suggests_nearest(capsys):
-    assert "did you mean" in run(capsys, "show", "std_msgs/msg/Strin", status=1)[1]
+    assert "did you mean" in run_command(capsys, "show", "std_msgs/msg/Strin", status=1)[1]
 
 
 def test_list_prints_interfaces_by_kind(capsys):
-    out, _ = run(capsys, "list")
+    out, _ = run_command(capsys, "list")
     text = out.splitlines()
     assert text[0] == "Messages:"
     assert "    sensor_msgs/msg/JointState" in text
@@ -129,33 +129,33 @@ def test_list_prints_interfaces_by_kind(capsys):
 
 
 def test_list_prints_only_actions(capsys):
-    out, _ = run(capsys, "list", "-a")
+    out, _ = run_command(capsys, "list", "-a")
     assert out.startswith("Actions:\n")
     assert "Messages:" not in out
 
 
 def test_package_lists_types(capsys):
-    out, _ = run(capsys, "package", "std_srvs")
+    out, _ = run_command(capsys, "package", "std_srvs")
     assert out.splitlines() == ["std_srvs/srv/Empty", "std_srvs/srv/SetBool", "std_srvs/srv/Trigger"]
-    assert run(capsys, "package", "std_srvs", "-m")[0] == ""
+    assert run_command(capsys, "package", "std_srvs", "-m")[0] == ""
 
 
 def test_unknown_package_suggests_nearest(capsys):
-    _, err = run(capsys, "package", "std_srv", status=1)
+    _, err = run_command(capsys, "package", "std_srv", status=1)
     assert "Unknown package 'std_srv'" in err
     assert "did you mean 'std_srvs'" in err
 
 
 def test_packages_lists_packages_with_interfaces(capsys):
-    packages = run(capsys, "packages")[0].splitlines()
+    packages = run_command(capsys, "packages")[0].splitlines()
     assert {"std_msgs", "std_srvs", "action_msgs"} <= set(packages)
     assert packages == sorted(packages)
-    assert "std_msgs" not in run(capsys, "packages", "-s")[0].splitlines()
+    assert "std_msgs" not in run_command(capsys, "packages", "-s")[0].splitlines()
 
 
 def test_proto_prints_prototype(capsys):
-    assert run(capsys, "proto", "std_msgs/msg/String")[0] == "\"data: ''\n\"\n"
-    assert run(capsys, "proto", "--no-quotes", "std_srvs/srv/SetBool")[0] == "data: false\n\n"
+    assert run_command(capsys, "proto", "std_msgs/msg/String")[0] == "\"data: ''\n\"\n"
+    assert run_command(capsys, "proto", "--no-quotes", "std_srvs/srv/SetBool")[0] == "data: false\n\n"
 
 
 def test_types_of_workspace_package_are_found(capsys, tmp_path: Path, monkeypatch):
@@ -168,5 +168,5 @@ def test_types_of_workspace_package_are_found(capsys, tmp_path: Path, monkeypatc
     )
     (package / "msg" / "Wheel.msg").write_text("# A wheel\nfloat64 speed  # rad/s\n", encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    assert run(capsys, "show", "my_interfaces/msg/Wheel")[0] == "# A wheel\nfloat64 speed  # rad/s\n"
-    assert run(capsys, "package", "my_interfaces")[0] == "my_interfaces/msg/Wheel\n"
+    assert run_command(capsys, "show", "my_interfaces/msg/Wheel")[0] == "# A wheel\nfloat64 speed  # rad/s\n"
+    assert run_command(capsys, "package", "my_interfaces")[0] == "my_interfaces/msg/Wheel\n"

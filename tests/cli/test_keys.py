@@ -48,7 +48,7 @@ async def test_reading_keys_ignores_terminal_in_background(keyboard: int, monkey
 
 
 async def test_reading_keys_requires_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    with Path(os.devnull).open() as nothing:  # noqa: ASYNC230  # which does not block
-        monkeypatch.setattr(sys, "stdin", nothing)
+    with Path(os.devnull).open() as null_device:  # noqa: ASYNC230  # which does not block
+        monkeypatch.setattr(sys, "stdin", null_device)
         with reading_keys({}) as listens:
             assert not listens

@@ -1,4 +1,7 @@
-"""The work and output of `check` grow linearly with its input, counted in calls and characters."""
+"""The work and output of `check` grow linearly with its input.
+
+The tests count calls and characters.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ from linkwright.xmltree import positions
 from tests.places import REPOSITORY
 
 
-def chain(count: int) -> str:
+def chain_robot(count: int) -> str:
     parts = "".join(
         f'<link name="l{i}"/><joint name="j{i}" type="fixed"><parent link="l{i - 1}"/><child link="l{i}"/></joint>\n'
         for i in range(1, count)
@@ -29,7 +32,7 @@ def chain(count: int) -> str:
     return f'<link name="l0"/>{parts}'
 
 
-def star(count: int) -> str:
+def star_robot(count: int) -> str:
     parts = "".join(
         f'<link name="l{i}"/><joint name="j{i}" type="fixed"><parent link="l0"/><child link="l{i}"/></joint>\n'
         for i in range(1, count)
@@ -37,40 +40,54 @@ def star(count: int) -> str:
     return f'<link name="l0"/>{parts}'
 
 
-def attributes(count: int) -> str:
+def robot_with_attributes(count: int) -> str:
     return f'<link name="l0" {" ".join(f"""a{i}="1" """ for i in range(count))}/>'
 
 
-def unknown_elements(count: int) -> str:
+def robot_with_unknown_elements(count: int) -> str:
     return f'<link name="l0">{"".join(f"<foo{i}/>" for i in range(count))}</link>'
 
 
-def wrong_numbers(count: int) -> str:
+def robot_with_wrong_numbers(count: int) -> str:
     box = '<visual><geometry><box size="1 x"/></geometry></visual>\n'
     return f'<link name="l0">{box * count}</link>'
 
 
-def properties(count: int) -> str:
+def robot_with_properties(count: int) -> str:
     parts = "".join(f'<xacro:property name="p{i}" value="{i}"/>\n' for i in range(count))
     return f'{parts}<link name="a${{p{count - 1}}}"/>'
 
 
-def macros(count: int) -> str:
+def robot_with_macros(count: int) -> str:
     return "".join(
         f'<xacro:macro name="m{i}" params="x"><link name="${{x}}"/></xacro:macro><xacro:m{i} x="l{i}"/>\n'
         for i in range(count)
     )
 
 
-def texts(count: int) -> str:
+def robot_with_texts(count: int) -> str:
     return '<link name="a"/>' + "text<!-- c -->" * count
 
 
-KINDS = [chain, star, attributes, unknown_elements, wrong_numbers, properties, macros, texts]
+ROBOT_MAKERS = [
+    chain_robot,
+    star_robot,
+    robot_with_attributes,
+    robot_with_unknown_elements,
+    robot_with_wrong_numbers,
+    robot_with_properties,
+    robot_with_macros,
+    robot_with_texts,
+]
 
 
-def work(make: Callable[[int], str], count: int, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, int]:
-    """Return the number of function calls and printed characters of `check` for an input of a size."""
+def measure_work(
+    make: Callable[[int], str], count: int, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> tuple[int, int]:
+    """Return the function calls and the printed characters of `check`.
+
+    The input has a given size.
+    """
     path = folder / f"{count}" / "r.xacro"
     path.parent.mkdir()
     path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{make(count)}</robot>')
@@ -90,12 +107,12 @@ def work(make: Callable[[int], str], count: int, folder: Path, capsys: pytest.Ca
     return calls, len(printed.out) + len(printed.err)
 
 
-@pytest.mark.parametrize("make", KINDS, ids=lambda make: make.__name__)
+@pytest.mark.parametrize("make", ROBOT_MAKERS, ids=lambda make: make.__name__)
 def test_check_work_is_linear_in_input_size(
     make: Callable[[int], str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    work(make, 20, tmp_path, capsys)  # imports modules and fills caches
-    few, many = (work(make, count, tmp_path, capsys) for count in (300, 1200))
+    measure_work(make, 20, tmp_path, capsys)  # imports modules and fills caches
+    few, many = (measure_work(make, count, tmp_path, capsys) for count in (300, 1200))
     assert many[0] < few[0] * 6
     assert many[1] < few[1] * 6 + 2000
 

@@ -39,7 +39,7 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
     return write_launch_file
 
 
-def launched(*words: object) -> subprocess.CompletedProcess[str]:
+def run_launch(*words: object) -> subprocess.CompletedProcess[str]:
     program = "import sys; from linkwright.cli import main; sys.exit(main())"
     return subprocess.run(
         [sys.executable, "-c", program, "launch", *map(str, words)],
@@ -52,29 +52,29 @@ def launched(*words: object) -> subprocess.CompletedProcess[str]:
 
 def test_process_output_goes_to_log_by_default(write: Write, tmp_path: Path) -> None:
     path = write(PRINTS)
-    quiet = launched(path)
-    assert quiet.returncode == 0
-    assert quiet.stdout == ""
+    output_by_default = run_launch(path)
+    assert output_by_default.returncode == 0
+    assert output_by_default.stdout == ""
     assert "[py-1] out" in (tmp_path / "logs" / "latest" / "launch.log").read_text()
-    assert launched("-a", path).stdout == "[py-1] out\n"
+    assert run_launch("-a", path).stdout == "[py-1] out\n"
 
 
 def test_debug_option_sets_log_level(write: Write) -> None:
-    result = launched("--debug", write(PRINTS))
+    result = run_launch("--debug", write(PRINTS))
     assert "[INFO] [launch]: Default logging verbosity is set to DEBUG" in result.stderr
     assert "[DEBUG] [launch]: processing event: 'launch.events.process.ProcessStarted'" in result.stderr
 
 
 def test_launch_prefix_applies_to_filtered_programs(write: Write) -> None:
     path = write("ExecuteProcess(cmd=['echo', 'a'])", "ExecuteProcess(cmd=['true', 'b'])")
-    result = launched("-a", "--launch-prefix", "echo before", "--launch-prefix-filter", "tr", path)
+    result = run_launch("-a", "--launch-prefix", "echo before", "--launch-prefix-filter", "tr", path)
     assert sorted(result.stdout.splitlines()) == ["[echo-1] a", "[true-2] before true b"]
 
 
 def test_isolate_starts_separate_process(write: Write) -> None:
     node = "Node(package='demo_nodes_py', executable='talker_qos', arguments=['-n', '1'])"
-    assert "[talker_qos-1]: started in the launcher's process" in launched(write(node)).stderr
-    assert "[talker_qos-1]: process started with pid [" in launched("--isolate", write(node)).stderr
+    assert "[talker_qos-1]: started in the launcher's process" in run_launch(write(node)).stderr
+    assert "[talker_qos-1]: process started with pid [" in run_launch("--isolate", write(node)).stderr
 
 
 def test_print_option_shows_launch_description(write: Write, capsys: pytest.CaptureFixture[str]) -> None:

@@ -38,7 +38,7 @@ def test_unknown_command_suggests_nearest(capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "meant"),
+    ("words", "suggestion"),
     [
         (["--vesion"], "--version"),
         (["check", "r.urdf", "--strct"], "--strict"),
@@ -47,9 +47,9 @@ def test_unknown_command_suggests_nearest(capsys):
         (["--lang", "zh", "check", "r.urdf", "--strct"], "--strict"),
     ],
 )
-def test_misspelled_option_suggests_nearest(words, meant, capsys):
+def test_misspelled_option_suggests_nearest(words, suggestion, capsys):
     assert main(words) == 2
-    assert meant in capsys.readouterr().err.splitlines()[-1].rpartition(";")[2]
+    assert suggestion in capsys.readouterr().err.splitlines()[-1].rpartition(";")[2]
 
 
 @pytest.mark.parametrize("verb", help_texts())

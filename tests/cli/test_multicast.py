@@ -13,10 +13,10 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.doctor.hello import Greetings, greeting
 from linkwright.wire import multicast
 from tests.domains import own_domain
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 
-def carries_multicast() -> bool:
+def can_multicast() -> bool:
     port = random.SystemRandom().randrange(16_000, 18_000)
     try:
         with multicast.open_receiver(port=port) as receiver, multicast.open_sender() as sender:
@@ -28,7 +28,7 @@ def carries_multicast() -> bool:
     return True
 
 
-with_multicast = pytest.mark.skipif(not carries_multicast(), reason="this machine has no interface with multicast")
+with_multicast = pytest.mark.skipif(not can_multicast(), reason="this machine has no interface with multicast")
 
 
 @pytest.fixture
@@ -45,7 +45,7 @@ def test_multicast_receive_gets_sent_datagram(address):
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as receiving:
         assert receiving.stdout.readline() == "Waiting for UDP multicast datagram...\n"
         assert main(["multicast", "send", *address, "--ttl", "1"]) == 0
-        output, _ = receiving.communicate(timeout=SECONDS)
+        output, _ = receiving.communicate(timeout=TIMEOUT_S)
     assert output.startswith("Received from ")
     assert output.endswith(": 'Hello World!'\n")
     assert receiving.returncode == 0

@@ -19,7 +19,7 @@ MODEL = """\
 ARM = urdf(
     link("base", '<box size="1 1 1"/>', RED),
     link("arm", '<box size="1 1 1"/>', RED, "0 0 2"),
-    joint("turn", "base", "arm", "continuous", rest='<axis xyz="1 0 0"/>'),
+    joint("turn", "base", "arm", "continuous", content='<axis xyz="1 0 0"/>'),
 )
 WORLD = """\
 <sdf version="1.9"><world name="w">
@@ -40,7 +40,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def size(path: Path) -> tuple[int, ...]:
+def image_size(path: Path) -> tuple[int, ...]:
     """Return the width and height of a PNG file."""
     data = path.read_bytes()
     assert data.startswith(b"\x89PNG")
@@ -50,7 +50,7 @@ def size(path: Path) -> tuple[int, ...]:
 def test_picture_applies_size_and_arguments(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["picture", "box.xacro", "size:=4", "-o", "out/a.png", "--size", "80x60"]) == 0
     assert capsys.readouterr().out == f"Created file {Path('out/a.png')}\n"
-    assert size(folder / "out" / "a.png") == (80, 60)
+    assert image_size(folder / "out" / "a.png") == (80, 60)
     assert main(["picture", "box.xacro", "-o", "b.png", "--size", "80x60"]) == 0
     assert (folder / "b.png").read_bytes() != (folder / "out" / "a.png").read_bytes()
     assert main(["picture", "box.xacro", "-o", "c.png", "--size", "80x60"]) == 0
@@ -77,7 +77,7 @@ def test_option_changes_image(words: list[str], folder: Path) -> None:
 
 def test_picture_draws_world(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["picture", "room.world", "-o", "room.png", *SMALL]) == 0
-    assert size(folder / "room.png") == (64, 48)
+    assert image_size(folder / "room.png") == (64, 48)
     assert main(["picture", "room.world", "-o", "room.png", "--joint", "a=1"]) == 1
     assert "error[PIC111]" in capsys.readouterr().err
 
@@ -111,7 +111,7 @@ def test_missing_mesh_is_reported_and_rest_is_drawn(folder: Path, capsys: pytest
     assert main(["picture", "broken.urdf", "-o", "broken.png", *SMALL]) == 1
     error = capsys.readouterr().err
     assert "warning[PIC101]: link 'base' is drawn without the mesh 'package://nowhere/arm.stl'" in error
-    assert size(folder / "broken.png") == (64, 48)
+    assert image_size(folder / "broken.png") == (64, 48)
 
 
 def test_unsupported_label_characters_are_reported(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,4 +1,7 @@
-"""``linkwright pkg create``: files, output, refusals, and packages for the real build tools."""
+"""``linkwright pkg create``.
+
+The tests cover files, output, refusals, and packages for the real build tools.
+"""
 
 from __future__ import annotations
 
@@ -31,14 +34,14 @@ def _in_an_empty_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.chdir(tmp_path)
 
 
-def files(package: str) -> list[str]:
+def list_files(package: str) -> list[str]:
     return sorted(str(path.relative_to(package)) for path in Path(package).rglob("*") if path.is_file())
 
 
 def test_pkg_create_matches_tutorial(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["my_robot", "--build-type", "ament_python", "--dependencies", "urdf", "xacro", "--license", "MIT", *ADA]
     assert main(["pkg", "create", *words]) == 0
-    assert files("my_robot") == [
+    assert list_files("my_robot") == [
         "LICENSE",
         "my_robot/__init__.py",
         "package.xml",
@@ -80,7 +83,7 @@ def test_pkg_create_matches_tutorial(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 def test_cmake_package_has_expected_files(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["pkg", "create", "arm", "--node-name", "mover", "--library-name", "chain", *ADA]) == 0
-    assert files("arm") == [
+    assert list_files("arm") == [
         "CMakeLists.txt",
         "include/arm/chain.hpp",
         "include/arm/visibility_control.h",
@@ -110,7 +113,7 @@ def test_cmake_package_has_expected_files(capsys: pytest.CaptureFixture[str]) ->
 
 def test_empty_cmake_package_keeps_folders() -> None:
     assert main(["pkg", "create", "arm", "--build-type", "cmake", *ADA]) == 0
-    assert files("arm") == ["CMakeLists.txt", "package.xml"]
+    assert list_files("arm") == ["CMakeLists.txt", "package.xml"]
     assert Path("arm/src").is_dir()
     assert Path("arm/include/arm").is_dir()
 
@@ -339,8 +342,8 @@ def test_invalid_usage_is_rejected(words: list[str], capsys: pytest.CaptureFixtu
 @pytest.mark.parametrize("options", [(), ("--symlink-install",)], ids=["copied", "symlinked"])
 def test_colcon_builds_created_package(options: tuple[str, ...], tmp_path: Path) -> None:
     words = ["my_robot", "--build-type", "ament_python", "--dependencies", "urdf", "xacro", "--license", "MIT"]
-    more = ["--node-name", "hello", "--destination-directory", "src"]
-    assert main(["pkg", "create", *words, *more, *ADA]) == 0
+    destination = ["--node-name", "hello", "--destination-directory", "src"]
+    assert main(["pkg", "create", *words, *destination, *ADA]) == 0
     colcon_build(tmp_path, "my_robot", *options)
     prefix = tmp_path / "install" / "my_robot"
     assert sourced(tmp_path, "AMENT_PREFIX_PATH") == str(prefix)
@@ -348,7 +351,7 @@ def test_colcon_builds_created_package(options: tuple[str, ...], tmp_path: Path)
     assert (prefix / "lib" / "my_robot" / "hello").is_file()
 
 
-def _setup_arguments(text: str) -> dict[str, str]:
+def _read_setup_arguments(text: str) -> dict[str, str]:
     calls = [node for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call)]
     (call,) = [call for call in calls if ast.unparse(call.func) == "setup"]
     return {str(keyword.arg): ast.unparse(keyword.value) for keyword in call.keywords}
@@ -356,17 +359,17 @@ def _setup_arguments(text: str) -> dict[str, str]:
 
 def test_bundled_packages_declare_tests_like_created_packages() -> None:
     request = PackageRequest(name="p", maintainer=Maintainer("Ada", "ada@example.org"), year=2026)
-    expected = _setup_arguments(package_templates.setup_py(request))
-    texts = {path: path.read_text(encoding="utf-8") for top in ("courses", "robots") for path in _setup_files(top)}
+    expected = _read_setup_arguments(package_templates.setup_py(request))
+    texts = {path: path.read_text(encoding="utf-8") for top in ("courses", "robots") for path in _find_setup_files(top)}
     for page in sorted((REPOSITORY / "docs").rglob("tutorial*.md")):
         blocks = re.findall(r"```python[^\n]*\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
         texts.update({page / str(index): text for index, text in enumerate(blocks) if "\nsetup(\n" in text})
     assert len(texts) > 40
     for path, text in texts.items():
-        arguments = _setup_arguments(text)
+        arguments = _read_setup_arguments(text)
         assert "tests_require" not in arguments, path
         assert arguments["extras_require"] == expected["extras_require"], path
 
 
-def _setup_files(top: str) -> list[Path]:
+def _find_setup_files(top: str) -> list[Path]:
     return sorted((REPOSITORY / top).rglob("setup.py"))

@@ -23,34 +23,36 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def output_of(capsys: pytest.CaptureFixture[str], *words: str, status: int = 0) -> str:
+def run_command(capsys: pytest.CaptureFixture[str], *words: str, status: int = 0) -> str:
     assert main(["pkg", *words]) == status
     captured = capsys.readouterr()
     return captured.err if status else captured.out
 
 
 def test_pkg_list_contains_workspace_and_built_in_packages(capsys: pytest.CaptureFixture[str]) -> None:
-    names = output_of(capsys, "list").splitlines()
+    names = run_command(capsys, "list").splitlines()
     assert names == sorted(names)
     assert {"arm", "robot_state_publisher"} <= set(names)
 
 
 def test_pkg_prefix_prints_package_location(capsys: pytest.CaptureFixture[str], package: Path) -> None:
-    assert output_of(capsys, "prefix", "--share", "arm") == f"{package}\n"
-    assert output_of(capsys, "prefix", "arm").strip()
-    assert "arm" in output_of(capsys, "prefix", "armm", status=1)
+    assert run_command(capsys, "prefix", "--share", "arm") == f"{package}\n"
+    assert run_command(capsys, "prefix", "arm").strip()
+    assert "arm" in run_command(capsys, "prefix", "armm", status=1)
 
 
 def test_pkg_executables_lists_one_package_or_all(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "demo_nodes_cpp talker" in output_of(capsys, "executables", "demo_nodes_cpp").splitlines()
-    assert "demo_nodes_cpp talker" in output_of(capsys, "executables").splitlines()
-    assert "demo_nodes_cpp talker" not in output_of(capsys, "executables", "--full-path", "demo_nodes_cpp").splitlines()
+    assert "demo_nodes_cpp talker" in run_command(capsys, "executables", "demo_nodes_cpp").splitlines()
+    assert "demo_nodes_cpp talker" in run_command(capsys, "executables").splitlines()
+    assert (
+        "demo_nodes_cpp talker" not in run_command(capsys, "executables", "--full-path", "demo_nodes_cpp").splitlines()
+    )
 
 
 def test_pkg_xml_prints_manifest_or_tag(capsys: pytest.CaptureFixture[str]) -> None:
-    assert output_of(capsys, "xml", "arm") == MANIFEST
-    assert output_of(capsys, "xml", "arm", "-t", "depend") == "xacro\nurdf\n"
-    error = output_of(capsys, "xml", "arm", "-t", "licens", status=1)
+    assert run_command(capsys, "xml", "arm") == MANIFEST
+    assert run_command(capsys, "xml", "arm", "-t", "depend") == "xacro\nurdf\n"
+    error = run_command(capsys, "xml", "arm", "-t", "licens", status=1)
     assert "package.xml of 'arm' has no element <licens>" in error
     assert "did you mean 'license'?" in error
-    assert "choose from depend" in output_of(capsys, "xml", "arm", "-t", "zzzzzz", status=1)
+    assert "choose from depend" in run_command(capsys, "xml", "arm", "-t", "zzzzzz", status=1)

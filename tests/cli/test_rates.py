@@ -6,13 +6,13 @@ import pytest
 
 from linkwright.cli.topic.rates import BandwidthWindow, DelayWindow, RateWindow, Spread, rate_table, rate_text
 
-MS = 1_000_000
+MILLISECOND_NS = 1_000_000
 
 
 def test_rate_window_measures_steady_rate():
     window = RateWindow(100)
     for tick in range(11):
-        assert not window.add(tick * 100 * MS)
+        assert not window.add(tick * 100 * MILLISECOND_NS)
     spread = window.spread()
     assert spread is not None
     assert rate_text(spread) == "average rate: 10.000\n\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 10"
@@ -22,30 +22,35 @@ def test_rate_window_returns_spread_once():
     window = RateWindow(100)
     window.add(0)
     assert window.spread() is None
-    window.add(MS)
+    window.add(MILLISECOND_NS)
     assert window.spread() is not None
     assert window.spread() is None
 
 
 def test_rate_window_drops_old_messages():
     window = RateWindow(2)
-    for now in (0, 10 * MS, 20 * MS, 120 * MS):
+    for now in (0, 10 * MILLISECOND_NS, 20 * MILLISECOND_NS, 120 * MILLISECOND_NS):
         window.add(now)
     spread = window.spread()
     assert spread is not None
-    assert (spread.count, spread.minimum, spread.maximum) == (2, 10 * MS, 100 * MS)
+    assert (spread.count, spread.minimum, spread.maximum) == (2, 10 * MILLISECOND_NS, 100 * MILLISECOND_NS)
 
 
 def test_rate_window_restarts_when_time_jumps_back():
     window = RateWindow(10)
-    window.add(100 * MS)
-    window.add(200 * MS)
-    assert window.add(50 * MS)
+    window.add(100 * MILLISECOND_NS)
+    window.add(200 * MILLISECOND_NS)
+    assert window.add(50 * MILLISECOND_NS)
     assert window.spread() is None
 
 
 def test_rate_table_lists_several_topics():
-    table = rate_table({"/a": Spread(100 * MS, 90 * MS, 110 * MS, MS, 7), "/longer": Spread(MS, MS, MS, 0, 1000)})
+    table = rate_table(
+        {
+            "/a": Spread(100 * MILLISECOND_NS, 90 * MILLISECOND_NS, 110 * MILLISECOND_NS, MILLISECOND_NS, 7),
+            "/longer": Spread(MILLISECOND_NS, MILLISECOND_NS, MILLISECOND_NS, 0, 1000),
+        }
+    )
     assert table.splitlines() == [
         "  topic        rate       min_delta     max_delta      stddev     window ",
         "=" * 61,
@@ -57,8 +62,8 @@ def test_rate_table_lists_several_topics():
 def test_delay_window_prints_average():
     window = DelayWindow(10)
     assert window.text() is None
-    window.add(1000 * MS, 900 * MS)
-    window.add(2000 * MS, 1700 * MS)
+    window.add(1000 * MILLISECOND_NS, 900 * MILLISECOND_NS)
+    window.add(2000 * MILLISECOND_NS, 1700 * MILLISECOND_NS)
     assert window.text() == "average delay: 0.200\n\tmin: 0.100s max: 0.300s std dev: 0.10000s window: 2"
     assert window.text() == "no new messages"
 
@@ -74,6 +79,6 @@ def test_delay_window_prints_average():
 def test_bandwidth_window_prints_rate(size, printed):
     window = BandwidthWindow(10)
     window.add(0, size)
-    assert window.text(500 * MS) is None
-    window.add(500 * MS, size)
-    assert window.text(1000 * MS) == printed
+    assert window.text(500 * MILLISECOND_NS) is None
+    window.add(500 * MILLISECOND_NS, size)
+    assert window.text(1000 * MILLISECOND_NS) == printed

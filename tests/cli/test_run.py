@@ -13,7 +13,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.cli.exit_status import FINDINGS, USAGE
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 COMMAND = [sys.executable, "-c", "import sys; from linkwright.cli import main; sys.exit(main())", "run"]
 NODE = """
@@ -104,7 +104,7 @@ def test_built_in_node_ends_on_sigint(run: Run) -> None:
     assert process.stderr is not None
     assert "Publishing" in process.stderr.readline()
     process.send_signal(signal.SIGINT)
-    assert process.wait(SECONDS) == 0
+    assert process.wait(TIMEOUT_S) == 0
 
 
 def test_run_opens_panel_of_rqt_program(run: Run) -> None:

@@ -17,7 +17,7 @@ import pytest
 from linkwright.wire import dds
 from tests.begun import BEGUN, command_that_reports
 from tests.domains import own_domain
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.skipif(not dds.is_available(), reason="cyclonedds is not installed")
 
@@ -62,7 +62,7 @@ def talker() -> Iterator[None]:
     process.stdout.close()
 
 
-def linkwright(*words: str, timeout: float = SECONDS, status: int = 0) -> str:
+def linkwright(*words: str, timeout: float = TIMEOUT_S, status: int = 0) -> str:
     result = subprocess.run(
         [sys.executable, "-m", "linkwright", *words],
         capture_output=True,
@@ -106,7 +106,7 @@ class TestTalkerGraph:
         assert process.stdout is not None
         assert process.stdout.readline().startswith("data: Hello")
         process.send_signal(signal.SIGINT)
-        _, err = process.communicate(timeout=SECONDS)
+        _, err = process.communicate(timeout=TIMEOUT_S)
         assert process.returncode == 130
         assert err == ""
 
@@ -117,7 +117,7 @@ class TestTalkerGraph:
             assert process.stdout.readline() == f"{BEGUN}\n"
             time.sleep(delay)
             process.send_signal(signal.SIGINT)
-            out, err = process.communicate(timeout=SECONDS)
+            out, err = process.communicate(timeout=TIMEOUT_S)
             assert process.returncode == 130, (delay, out, err)
             assert "Traceback" not in err, (delay, err)
 
@@ -126,7 +126,7 @@ class TestTalkerGraph:
         assert process.stdout is not None
         process.stdout.readline()
         process.terminate()
-        _, err = process.communicate(timeout=SECONDS)
+        _, err = process.communicate(timeout=TIMEOUT_S)
         assert process.returncode == 143
         assert err == ""
 
@@ -161,7 +161,7 @@ def test_latched_description_reaches_late_echo():
         assert linkwright("topic", "echo", "--once", "/robot_description") == "data: <robot/>\n---\n"
     finally:
         publisher.send_signal(signal.SIGINT)
-        publisher.communicate(timeout=SECONDS)
+        publisher.communicate(timeout=TIMEOUT_S)
 
 
 def test_recording_of_unknown_type_is_played_and_echoed_raw(tmp_path: Path):
@@ -187,10 +187,10 @@ def test_recording_of_unknown_type_is_played_and_echoed_raw(tmp_path: Path):
         assert rate.stdout is not None
         assert rate.stdout.readline().startswith("average rate: ")
         rate.send_signal(signal.SIGINT)
-        rate.communicate(timeout=SECONDS)
+        rate.communicate(timeout=TIMEOUT_S)
     finally:
         player.terminate()
-        _, err = player.communicate(timeout=SECONDS)
+        _, err = player.communicate(timeout=TIMEOUT_S)
     assert "is not played" not in err
     assert "Traceback" not in err
     assert player.returncode == 143
@@ -216,4 +216,4 @@ def test_doctor_finds_problems_of_other_processes():
     finally:
         for process in (publisher, other):
             process.send_signal(signal.SIGINT)
-            process.communicate(timeout=SECONDS)
+            process.communicate(timeout=TIMEOUT_S)

@@ -32,11 +32,11 @@ class ByLevel(SpeechEngine):
     def hear(self, samples):
         assert len(samples) <= BLOCK
         self.heard += len(samples)
-        now, loud = self.heard / RATE, int(samples.max())
-        if loud and not self.level:
-            self.level, self.began = loud, now - 0.1
-            return [Heard(TEXTS[loud], 0.6, False, self.began, now)]
-        self.quiet = 0 if loud else self.quiet + 1
+        now, peak = self.heard / RATE, int(samples.max())
+        if peak and not self.level:
+            self.level, self.began = peak, now - 0.1
+            return [Heard(TEXTS[peak], 0.6, False, self.began, now)]
+        self.quiet = 0 if peak else self.quiet + 1
         if self.level and self.quiet == 5:
             text, self.level = TEXTS[self.level], 0
             return [Heard(text, 0.9, True, self.began, now - 0.5)]
@@ -56,8 +56,8 @@ def home(tmp_path, monkeypatch):
 
 
 def recorded(name, level):
-    quiet = np.zeros(RATE // 2, np.int16)
-    Path(name).write_bytes(encode_wav(np.concatenate((quiet, np.full(RATE // 2, level, np.int16)))))
+    silence = np.zeros(RATE // 2, np.int16)
+    Path(name).write_bytes(encode_wav(np.concatenate((silence, np.full(RATE // 2, level, np.int16)))))
     return name
 
 

@@ -1,14 +1,16 @@
+"""Fixtures of the controller tests: a test bench, and the texts of the log."""
+
 from __future__ import annotations
 
 import pytest
 
 from linkwright.graph import LogLevel
-from tests.control.stand import TestBench
+from tests.control.bench import TestBench
 from tests.graph.conftest import clock, graph, log  # noqa: F401  # fixtures
 
 
 @pytest.fixture
-def stand(graph, log) -> TestBench:  # noqa: F811
+def bench(graph, log) -> TestBench:  # noqa: F811
     """Return a test bench whose controllers are stepped by hand."""
     return TestBench(graph, log)
 

@@ -36,12 +36,12 @@ def joint(
 def robot(control: str, *, parameters: str = "", mimic: str = "", joints: tuple[str, ...] = ("hip", "knee")) -> str:
     """Return a robot with joints in a row, and one system of mock hardware."""
     links = "<link name='base'/>" + "".join(f"<link name='{joint}_link'/>" for joint in joints)
-    above = ["base", *(f"{joint}_link" for joint in joints)]
+    parent_link = ["base", *(f"{joint}_link" for joint in joints)]
     links_and_joints = "".join(
         f"<joint name='{joint}' type='revolute'><parent link='{parent}'/><child link='{joint}_link'/>"
         "<axis xyz='0 0 1'/>"
         f"<limit lower='-3' upper='3' effort='10' velocity='5'/>{mimic if joint == joints[-1] else ''}</joint>"
-        for joint, parent in zip(joints, above, strict=False)
+        for joint, parent in zip(joints, parent_link, strict=False)
     )
     return (
         f"<robot name='r'>{links}{links_and_joints}<ros2_control name='arm' type='system'><hardware>"
@@ -51,16 +51,19 @@ def robot(control: str, *, parameters: str = "", mimic: str = "", joints: tuple[
 
 def read_hardware(text: str) -> tuple[list[HardwareDescription], list[str]]:
     """Return the hardware of a description, and the findings about it."""
-    reading = DescriptionLibrary().read(text)
-    assert reading.robot is not None
-    hardware, findings = hardware_from_robot(reading.robot)
+    description = DescriptionLibrary().read(text)
+    assert description.robot is not None
+    hardware, findings = hardware_from_robot(description.robot)
     return hardware, [f"{finding.code} {finding.message}" for finding in findings]
 
 
-def manager(
+def make_manager(
     graph: Graph, text: str, parameters: dict[str, Any] | None = None, **controller_parameters: dict[str, Any]
 ) -> Any:
-    """Return a manager of a robot; the parameters are for the manager's node and the nodes of its controllers."""
+    """Return a manager of a robot.
+
+    The parameters are for the manager's node and the nodes of its controllers.
+    """
     rules = ParameterRules()
     for name, values in controller_parameters.items():
         for key, value in values.items():

@@ -32,7 +32,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.packages.readers.entry_points import read_pyproject_group
-from tests.control.robots import joint, manager, robot
+from tests.control.robots import joint, make_manager, robot
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
 PAGES = [DOCS / "control.md", DOCS / "zh" / "control.md"]
@@ -51,7 +51,7 @@ def code_block(text: str, language: str, text_inside: str) -> str:
     return block
 
 
-def example(page: Path) -> Any:
+def load_example(page: Path) -> Any:
     """Return the example controller of a page."""
     code = code_block(page.read_text("utf-8"), "python", "class Swing(")
     module = ModuleType("my_controllers.swing")
@@ -60,21 +60,21 @@ def example(page: Path) -> Any:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])
-async def test_documented_example_swings_joint(stand, page):
-    stand.joint("elbow", commands=("position",), position=1.0)
-    controller = stand.start(example(page), "swing", joint="elbow", amplitude=0.3, frequency=1.0, speed=2.0)
-    angles = stand.record("std_msgs/msg/Float64", "/swing/angle")
-    await stand.step(controller, count=25)
-    assert stand.commands["elbow/position"].value == pytest.approx(1.3)
+async def test_documented_example_swings_joint(bench, page):
+    bench.joint("elbow", commands=("position",), position=1.0)
+    controller = bench.start(load_example(page), "swing", joint="elbow", amplitude=0.3, frequency=1.0, speed=2.0)
+    angles = bench.record("std_msgs/msg/Float64", "/swing/angle")
+    await bench.step(controller, count=25)
+    assert bench.commands["elbow/position"].value == pytest.approx(1.3)
     assert angles[-1].data == pytest.approx(0.3)
-    stand.publish("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
-    await stand.step(controller, count=50)
-    assert stand.commands["elbow/position"].value == pytest.approx(0.9)
-    assert "'speed' is not a parameter of this controller" in [str(record.text) for record in stand.log]
+    bench.publish("std_msgs/msg/Float64", "/swing/amplitude", get_message("std_msgs/msg/Float64")(data=0.1))
+    await bench.step(controller, count=50)
+    assert bench.commands["elbow/position"].value == pytest.approx(0.9)
+    assert "'speed' is not a parameter of this controller" in [str(record.text) for record in bench.log]
 
 
 @pytest.fixture
-def installed(tmp_path, monkeypatch):
+def installed_package(tmp_path, monkeypatch):
     """Install the package of the page's example."""
     text = PAGES[0].read_text("utf-8")
     code = code_block(text, "python", "class Swing(")
@@ -95,10 +95,10 @@ def installed(tmp_path, monkeypatch):
         sys.modules.pop(name, None)
 
 
-@pytest.mark.usefixtures("installed")
+@pytest.mark.usefixtures("installed_package")
 async def test_manager_runs_controller_of_package(graph):
     text = robot(joint("hip") + joint("knee"))
-    controller_manager = manager(
+    controller_manager = make_manager(
         graph, text, {"swing": {"type": "my_controllers/Swing"}}, swing={"joint": "hip", "frequency": 1.0}
     )
     assert controller_manager.load("swing")
@@ -109,7 +109,7 @@ async def test_manager_runs_controller_of_package(graph):
     assert controller_manager.resources.commands(["hip/position"])[0].value == pytest.approx(0.2)
 
 
-@pytest.mark.usefixtures("installed")
+@pytest.mark.usefixtures("installed_package")
 def test_package_with_import_error_is_reported_by_name():
     with pytest.raises(LinkwrightError) as error:
         controller_class("my/Broken")
@@ -118,13 +118,13 @@ def test_package_with_import_error_is_reported_by_name():
     assert "my_controllers" in str(diagnostic.hint)
 
 
-def names(table: Any) -> set[str]:
+def parameter_names(table: Any) -> set[str]:
     """Return the parameters of a table and of its nested tables."""
     hints = get_type_hints(table)
     found_names: set[str] = set()
     for field in fields(table):
         nested = field.metadata.get("table") or (hints[field.name] if is_dataclass(hints[field.name]) else None)
-        found_names |= {field.name} if nested is None else names(nested)
+        found_names |= {field.name} if nested is None else parameter_names(nested)
     return found_names
 
 
@@ -132,4 +132,4 @@ def names(table: Any) -> set[str]:
 def test_controller_parameters_are_documented(page):
     documented_names = set(re.findall(r"[a-z_]+", page.read_text("utf-8")))
     for controller in DOCUMENTED:
-        assert names(controller.PARAMETERS) - set("xyzw") <= documented_names, controller
+        assert parameter_names(controller.PARAMETERS) - set("xyzw") <= documented_names, controller

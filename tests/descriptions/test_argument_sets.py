@@ -14,7 +14,10 @@ MANIFEST = "<package format='3'><name>{name}</name><exec_depend>{needs}</exec_de
 
 @pytest.fixture
 def workspace(tmp_path: Path) -> Path:
-    """Create a workspace with the package ``arm``, whose robot has arguments, and ``user``, which depends on it."""
+    """Create a workspace with the packages ``arm`` and ``user``.
+
+    The robot of ``arm`` has arguments, and ``user`` depends on ``arm``.
+    """
     for name, needs in (("arm", "xacro"), ("user", "arm")):
         folder = tmp_path / "src" / name
         folder.mkdir(parents=True)
@@ -25,7 +28,7 @@ def workspace(tmp_path: Path) -> Path:
     return tmp_path / "src"
 
 
-def sets(workspace: Path, file: str, text: str) -> list[ArgumentSet]:
+def find_argument_sets(workspace: Path, file: str, text: str) -> list[ArgumentSet]:
     """Return the sets of values that one file passes to the robot of the workspace."""
     path = workspace / file
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -33,7 +36,7 @@ def sets(workspace: Path, file: str, text: str) -> list[ArgumentSet]:
     return list(argument_sets(workspace / "arm/urdf/arm.urdf.xacro"))
 
 
-def values(argument_sets: list[ArgumentSet]) -> list[dict[str, str]]:
+def certain_values(argument_sets: list[ArgumentSet]) -> list[dict[str, str]]:
     """Return the values of the sets that are certain to occur."""
     return [dict(argument_set.values) for argument_set in argument_sets if argument_set.is_complete]
 
@@ -53,50 +56,54 @@ COMMAND = """
 """
 
 
-def launch_file(of_argument: str = "") -> str:
+def launch_file_text(of_argument: str = "") -> str:
     """Write a launch file that passes its argument ``prefix`` to the robot."""
     declared = f"DeclareLaunchArgument('prefix', {of_argument})"
     return f"{HEAD}\ndef generate_launch_description():\n    {declared}\n{COMMAND}"
 
 
 def test_command_uses_default_of_launch_argument(workspace: Path) -> None:
-    text = launch_file("default_value='a_'")
-    assert values(sets(workspace, "arm/launch/view.launch.py", text)) == [{"name": "robot", "prefix": "a_"}]
+    text = launch_file_text("default_value='a_'")
+    assert certain_values(find_argument_sets(workspace, "arm/launch/view.launch.py", text)) == [
+        {"name": "robot", "prefix": "a_"}
+    ]
 
 
 def test_each_choice_of_launch_argument_is_a_set(workspace: Path) -> None:
-    text = launch_file("choices=['a_', 'b_']")
-    argument_sets = sets(workspace, "arm/launch/view.launch.py", text)
-    assert [value["prefix"] for value in values(argument_sets)] == ["a_", "b_"]
+    text = launch_file_text("choices=['a_', 'b_']")
+    argument_sets = find_argument_sets(workspace, "arm/launch/view.launch.py", text)
+    assert [value["prefix"] for value in certain_values(argument_sets)] == ["a_", "b_"]
     assert argument_sets[1].varied == ("prefix",)
     assert argument_sets[0].span is not None
     assert argument_sets[0].span.file.endswith("view.launch.py")
 
 
 def test_launch_argument_without_values_stays_open(workspace: Path) -> None:
-    text = launch_file()
-    (argument_set,) = sets(workspace, "arm/launch/view.launch.py", text)
+    text = launch_file_text()
+    (argument_set,) = find_argument_sets(workspace, "arm/launch/view.launch.py", text)
     assert argument_set.runtime_names == ("prefix",)
     assert not argument_set.is_complete
 
 
 def test_dependent_package_provides_values(workspace: Path) -> None:
-    text = launch_file("default_value='u_'")
-    assert values(sets(workspace, "user/launch/user.launch.py", text)) == [{"name": "robot", "prefix": "u_"}]
+    text = launch_file_text("default_value='u_'")
+    assert certain_values(find_argument_sets(workspace, "user/launch/user.launch.py", text)) == [
+        {"name": "robot", "prefix": "u_"}
+    ]
 
 
 def test_including_launch_file_provides_arguments(workspace: Path) -> None:
-    inner = launch_file("default_value='a_'")
+    included = launch_file_text("default_value='a_'")
     (workspace / "arm/launch").mkdir()
-    (workspace / "arm/launch/inner.launch.py").write_text(inner)
-    outer = f"""{HEAD}
+    (workspace / "arm/launch/inner.launch.py").write_text(included)
+    including = f"""{HEAD}
 def generate_launch_description():
     return LaunchDescription([IncludeLaunchDescription(
         PathJoinSubstitution([FindPackageShare('arm'), 'launch', 'inner.launch.py']),
         launch_arguments={{'prefix': 'outer_'}}.items(),
     )])
 """
-    prefixes = values(sets(workspace, "user/launch/outer.launch.py", outer))
+    prefixes = certain_values(find_argument_sets(workspace, "user/launch/outer.launch.py", including))
     assert [arguments["prefix"] for arguments in prefixes] == ["a_", "outer_"]
 
 
@@ -111,7 +118,7 @@ def test_expands(prefix, sim, gripper):
     path = os.path.join(get_package_share_directory('arm'), 'urdf', 'arm.urdf.xacro')
     xacro.process_file(path, mappings={'prefix': prefix, 'sim': sim, 'gripper': gripper})
 """
-    assert values(sets(workspace, "arm/test/test_arm.py", text)) == [
+    assert certain_values(find_argument_sets(workspace, "arm/test/test_arm.py", text)) == [
         {"prefix": "a_", "sim": "true", "gripper": "none"},
         {"prefix": "b_", "sim": "true", "gripper": "none"},
         {"prefix": "a_", "sim": "false", "gripper": "big"},
@@ -130,7 +137,7 @@ def test_expands():
         path = get_package_share_path('arm') / 'urdf' / 'arm.urdf.xacro'
         xacro.process_file(path, mappings=dict(prefix=prefix, dof=dof))
 """
-    argument_values = values(sets(workspace, "arm/test/test_arm.py", text))
+    argument_values = certain_values(find_argument_sets(workspace, "arm/test/test_arm.py", text))
     assert argument_values == [{"prefix": "a_", "dof": "1"}, {"prefix": "b_", "dof": "1"}, {"prefix": "a_", "dof": "2"}]
 
 
@@ -144,7 +151,7 @@ def test_expands():
     command = (f"{shutil.which('xacro')}" f" {path}" f" prefix:=a_" f" > /tmp/out.urdf")
     subprocess.run(command, shell=True)
 """
-    assert values(sets(workspace, "arm/test/test_arm.py", text)) == [{"prefix": "a_"}]
+    assert certain_values(find_argument_sets(workspace, "arm/test/test_arm.py", text)) == [{"prefix": "a_"}]
 
 
 def test_values_chosen_by_conditions_are_not_combined(workspace: Path) -> None:
@@ -159,7 +166,7 @@ def generate_launch_description():
     doc = xacro.parse(open(os.path.join(get_package_share_directory('arm'), 'urdf/arm.urdf.xacro')))
     xacro.process_doc(doc, mappings={'one': one})
 """
-    argument_sets = sets(workspace, "arm/launch/view.launch.py", text)
+    argument_sets = find_argument_sets(workspace, "arm/launch/view.launch.py", text)
     assert [dict(argument_set.values) for argument_set in argument_sets] == [{"one": "false"}, {"one": "true"}]
     assert not any(argument_set.is_complete for argument_set in argument_sets)
 
@@ -175,7 +182,7 @@ def generate_launch_description():
         .to_moveit_configs()
     )
 """
-    assert values(sets(workspace, "user/launch/move.launch.py", text)) == [{"prefix": "m_"}]
+    assert certain_values(find_argument_sets(workspace, "user/launch/move.launch.py", text)) == [{"prefix": "m_"}]
 
 
 @pytest.mark.parametrize(
@@ -220,26 +227,28 @@ launch:
     ],
 )
 def test_xml_and_yaml_launch_files_provide_values(workspace: Path, name: str, text: str) -> None:
-    assert values(sets(workspace, f"arm/launch/{name}", text)) == [{"prefix": "x_"}]
+    assert certain_values(find_argument_sets(workspace, f"arm/launch/{name}", text)) == [{"prefix": "x_"}]
 
 
 @pytest.mark.parametrize(
-    ("default", "known", "is_open"),
+    ("default", "environment", "is_open"),
     [("$(optenv EXTRAS)", {}, ("prefix",)), ("$(optenv EXTRAS none.urdf)", {"prefix": "none.urdf"}, ())],
 )
 def test_environment_variable_uses_written_default(
-    workspace: Path, default: str, known: dict[str, str], is_open: tuple[str, ...]
+    workspace: Path, default: str, environment: dict[str, str], is_open: tuple[str, ...]
 ) -> None:
     text = f"""<launch><arg name="prefix" default="{default}"/><param name="robot_description"
         command="$(find xacro)/xacro '$(find arm)/urdf/arm.urdf.xacro' prefix:=$(arg prefix)"/></launch>"""
-    (argument_set,) = sets(workspace, "arm/launch/view.launch", text)
-    assert (argument_set.values, argument_set.runtime_names) == (known, is_open)
+    (argument_set,) = find_argument_sets(workspace, "arm/launch/view.launch", text)
+    assert (argument_set.values, argument_set.runtime_names) == (environment, is_open)
 
 
 def test_share_folder_inside_path_is_uncertain(workspace: Path) -> None:
     text = """<launch><let name="file" value="./$(find-pkg-share arm)/urdf/arm.urdf.xacro"/><node pkg="p" exec="e">
         <param name="d" value="$(command 'xacro $(var file) prefix:=x_')"/></node></launch>"""
-    assert [argument_set.is_certain for argument_set in sets(workspace, "arm/launch/view.launch.xml", text)] == [False]
+    assert [
+        argument_set.is_certain for argument_set in find_argument_sets(workspace, "arm/launch/view.launch.xml", text)
+    ] == [False]
 
 
 @pytest.mark.parametrize(
@@ -250,7 +259,9 @@ def test_share_folder_inside_path_is_uncertain(workspace: Path) -> None:
     ],
 )
 def test_cmake_files_provide_values(workspace: Path, text: str) -> None:
-    assert values(sets(workspace, "arm/CMakeLists.txt", f"project(arm)\n{text}\n")) == [{"prefix": "c_"}]
+    assert certain_values(find_argument_sets(workspace, "arm/CMakeLists.txt", f"project(arm)\n{text}\n")) == [
+        {"prefix": "c_"}
+    ]
 
 
 JOINED = """
@@ -273,7 +284,7 @@ JOINED = """
 def test_absolute_path_component_restarts_joined_path(workspace: Path, default: str, expected: str) -> None:
     text = f"{HEAD}\ndef generate_launch_description():\n{JOINED.format(default=default)}"
     expected_text = expected.format(user=workspace / "user", arm=workspace / "arm")
-    assert values(sets(workspace, "user/launch/a.launch.py", text)) == [{"prefix": expected_text}]
+    assert certain_values(find_argument_sets(workspace, "user/launch/a.launch.py", text)) == [{"prefix": expected_text}]
 
 
 ROBOT_FILE = "PathJoinSubstitution([FindPackageShare('arm'), 'urdf', 'arm.urdf.xacro'])"
@@ -310,7 +321,7 @@ def content(urdf_arguments={{}}):
     ids=["extend", "append", "default", "stars", "or", "key", "update", "process_file"],
 )
 def test_helper_without_known_callers_is_incomplete(workspace: Path, text: str) -> None:
-    (argument_set,) = sets(workspace, "user/launch/helper.py", HEAD + text)
+    (argument_set,) = find_argument_sets(workspace, "user/launch/helper.py", HEAD + text)
     assert "" in argument_set.runtime_names
     assert not argument_set.is_complete
 
@@ -326,7 +337,9 @@ def test_helper_without_known_callers_is_incomplete(workspace: Path, text: str) 
     ids=["extend", "append", "update", "words"],
 )
 def test_values_added_later_to_list_or_mapping_are_used(workspace: Path, text: str) -> None:
-    assert values(sets(workspace, "user/launch/later.launch.py", HEAD + text)) == [{"prefix": "a_"}]
+    assert certain_values(find_argument_sets(workspace, "user/launch/later.launch.py", HEAD + text)) == [
+        {"prefix": "a_"}
+    ]
 
 
 def test_call_without_arguments_is_an_empty_set(workspace: Path) -> None:
@@ -337,7 +350,7 @@ from ament_index_python.packages import get_package_share_path
 def test_expands():
     xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro')
 """
-    assert values(sets(workspace, "arm/test/test_arm.py", text)) == [{}]
+    assert certain_values(find_argument_sets(workspace, "arm/test/test_arm.py", text)) == [{}]
 
 
 @pytest.mark.parametrize(
@@ -354,7 +367,7 @@ def test_expands():
     ],
 )
 def test_malformed_files_provide_no_values(workspace: Path, name: str, text: str) -> None:
-    assert sets(workspace, name, text) == []
+    assert find_argument_sets(workspace, name, text) == []
 
 
 def test_other_file_of_same_name_is_ignored(workspace: Path) -> None:
@@ -365,7 +378,7 @@ from ament_index_python.packages import get_package_share_path
 def test_expands():
     xacro.process_file(get_package_share_path('user') / 'urdf/arm.urdf.xacro', mappings={'prefix': 'no_'})
 """
-    assert sets(workspace, "user/test/test_user.py", text) == []
+    assert find_argument_sets(workspace, "user/test/test_user.py", text) == []
 
 
 def test_xml_file_in_test_folder_can_be_launch_file(workspace: Path) -> None:
@@ -376,15 +389,19 @@ def test_xml_file_in_test_folder_can_be_launch_file(workspace: Path) -> None:
     (workspace / "arm/test/roslaunch_arm.xml").write_text(include)
     text = "$(find xacro)/xacro $(find arm)/urdf/arm.urdf.xacro prefix:=$(arg side)_"
     load = f'<launch><arg name="side"/><param name="robot_description" command="{text}"/></launch>'
-    assert values(sets(workspace, "arm/launch/load.launch", load)) == [{"prefix": "left_"}]
+    assert certain_values(find_argument_sets(workspace, "arm/launch/load.launch", load)) == [{"prefix": "left_"}]
 
 
 def test_undeclared_dependency_provides_values_only_as_fallback(workspace: Path) -> None:
     (workspace / "user/package.xml").write_text(MANIFEST.format(name="user", needs="xacro"))
-    text = launch_file("default_value='far_'")
-    assert values(sets(workspace, "user/launch/far.launch.py", text)) == [{"name": "robot", "prefix": "far_"}]
-    text = launch_file("default_value='near_'")
-    assert values(sets(workspace, "arm/launch/near.launch.py", text)) == [{"name": "robot", "prefix": "near_"}]
+    text = launch_file_text("default_value='far_'")
+    assert certain_values(find_argument_sets(workspace, "user/launch/far.launch.py", text)) == [
+        {"name": "robot", "prefix": "far_"}
+    ]
+    text = launch_file_text("default_value='near_'")
+    assert certain_values(find_argument_sets(workspace, "arm/launch/near.launch.py", text)) == [
+        {"name": "robot", "prefix": "near_"}
+    ]
 
 
 @pytest.mark.parametrize(
@@ -409,20 +426,22 @@ def setup(context):
     side = {mapping}.get('side', 'right')
     xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': side}})
 """
-    assert values(sets(workspace, "arm/launch/look.launch.py", text)) == found
+    assert certain_values(find_argument_sets(workspace, "arm/launch/look.launch.py", text)) == found
 
 
 def test_repeatedly_combined_names_are_evaluated_once(workspace: Path) -> None:
-    again = "\n".join(f"    a{i} = a{i} or ask(a{i})\n    a{i} = str(a{i - 1}) + str(a{i - 1})" for i in range(1, 28))
+    assignments = "\n".join(
+        f"    a{i} = a{i} or ask(a{i})\n    a{i} = str(a{i - 1}) + str(a{i - 1})" for i in range(1, 28)
+    )
     text = f"""
 import xacro
 from ament_index_python.packages import get_package_share_path
 
 def setup(a0):
-{again}
+{assignments}
     xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': 'a', 'name': a27}})
 """
-    argument_sets = sets(workspace, "arm/launch/again.launch.py", text)
+    argument_sets = find_argument_sets(workspace, "arm/launch/again.launch.py", text)
     assert [(dict(argument_set.values), argument_set.runtime_names) for argument_set in argument_sets] == [
         ({"prefix": "a"}, ("name",))
     ]
@@ -436,4 +455,4 @@ from ament_index_python.packages import get_package_share_path
 def setup():
     {function}(get_package_share_path('arm') / 'urdf/arm.urdf.xacro', mappings={{'prefix': '"a b"'}})
 """
-    assert values(sets(workspace, "arm/launch/quoted.launch.py", text)) == [{"prefix": prefix}]
+    assert certain_values(find_argument_sets(workspace, "arm/launch/quoted.launch.py", text)) == [{"prefix": prefix}]

@@ -28,7 +28,7 @@ ROBOT = """\
 """
 
 
-def compared(old: str, new: str) -> Comparison:
+def compare_texts(old: str, new: str) -> Comparison:
     robots = [examine(text).robot for text in (old, new)]
     assert robots[0] is not None
     assert robots[1] is not None
@@ -36,7 +36,7 @@ def compared(old: str, new: str) -> Comparison:
 
 
 def differences_between(old: str, new: str) -> list[tuple[str, str, str, str, str | None, str | None]]:
-    differences = compared(old, new).differences
+    differences = compare_texts(old, new).differences
     return [
         (difference.subject, difference.name, difference.kind, difference.property, difference.old, difference.new)
         for difference in differences
@@ -100,10 +100,10 @@ def test_change_is_reported_with_old_and_new_value(written, instead, expected):
 
 
 def test_block_in_only_one_robot_is_one_difference():
-    without = ROBOT.replace('<limit lower="-1" upper="1" effort="10" velocity="2"/>', "").replace(
+    robot_without_limit = ROBOT.replace('<limit lower="-1" upper="1" effort="10" velocity="2"/>', "").replace(
         "revolute", "continuous"
     )
-    differences = {difference[3]: difference for difference in differences_between(ROBOT, without)}
+    differences = {difference[3]: difference for difference in differences_between(ROBOT, robot_without_limit)}
     assert sorted(differences) == ["limit", "type"]
     assert differences["limit"][4:] == ("lower -1 rad, upper 1 rad, effort 10 N m, velocity 2 rad/s", None)
 
@@ -131,7 +131,7 @@ def test_renamed_links_and_joints_are_recognized():
     new = ROBOT
     for name in ("base", "arm", "hand", "shoulder", "wrist"):
         new = new.replace(f'"{name}"', f'"left_{name}"')
-    comparison = compared(ROBOT, new)
+    comparison = compare_texts(ROBOT, new)
     assert {difference.kind for difference in comparison.differences if difference.subject != "extension"} == {
         "renamed"
     }
@@ -147,23 +147,23 @@ def test_changed_link_with_new_name_is_not_a_rename():
     assert kinds == {("boom", "added"), ("arm", "removed")}
 
 
-def renamed(old: str, new: str) -> dict[str, str]:
+def renamed_elements(old: str, new: str) -> dict[str, str]:
     """Return the new names of renamed links and joints, by old name."""
     return {
         str(difference.old): difference.name
-        for difference in compared(old, new).differences
+        for difference in compare_texts(old, new).differences
         if difference.kind == "renamed"
     }
 
 
-def body(name: str, shape: str = "", mass: float = 0.0) -> str:
+def link(name: str, shape: str = "", mass: float = 0.0) -> str:
     inertia = f'<inertia ixx="{mass}" iyy="{mass}" izz="{mass}" ixy="0" ixz="0" iyz="0"/>'
     inertial = f'<inertial><mass value="{mass}"/>{inertia}</inertial>'
     visual = f"<visual><geometry>{shape}</geometry></visual>" if shape else ""
     return f'<link name="{name}">{inertial if mass else ""}{visual}</link>'
 
 
-def below(parent: str, child: str, name: str = "", xyz: str = "0 0 0", kind: str = "fixed") -> str:
+def joint(parent: str, child: str, name: str = "", xyz: str = "0 0 0", kind: str = "fixed") -> str:
     axes = '<limit effort="1" velocity="1"/>' if kind == "prismatic" else ""
     return (
         f'<joint name="{name or child + "_joint"}" type="{kind}"><origin xyz="{xyz}"/><parent link="{parent}"/>'
@@ -171,8 +171,8 @@ def below(parent: str, child: str, name: str = "", xyz: str = "0 0 0", kind: str
     )
 
 
-def robot_of(*parts: str) -> str:
-    return f'<robot name="r">{body("base")}{"".join(parts)}</robot>'
+def robot_text(*parts: str) -> str:
+    return f'<robot name="r">{link("base")}{"".join(parts)}</robot>'
 
 
 MESH, OTHER_MESH, BOX = '<mesh filename="a.stl"/>', '<mesh filename="b.stl"/>', '<box size="1 2 3"/>'
@@ -182,47 +182,47 @@ MESH, OTHER_MESH, BOX = '<mesh filename="a.stl"/>', '<mesh filename="b.stl"/>', 
     ("old", "new", "expected"),
     [
         pytest.param(
-            (body("camera"), below("base", "camera")),
-            (body("camera_link"), below("base", "camera_link", xyz="0 0 1")),
+            (link("camera"), joint("base", "camera")),
+            (link("camera_link"), joint("base", "camera_link", xyz="0 0 1")),
             {"camera": "camera_link", "camera_joint": "camera_link_joint"},
             id="frame whose name has the same words",
         ),
         pytest.param(
-            (body("arm", MESH), below("base", "arm")),
-            (body("boom", MESH), below("base", "boom", xyz="0 0 1")),
+            (link("arm", MESH), joint("base", "arm")),
+            (link("boom", MESH), joint("base", "boom", xyz="0 0 1")),
             {"arm": "boom", "arm_joint": "boom_joint"},
             id="same mesh below the same link",
         ),
         pytest.param(
-            (body("mount"), below("base", "mount"), body("arm", MESH), below("mount", "arm")),
-            (body("riser"), below("base", "riser", xyz="0 0 1"), body("arm", MESH), below("riser", "arm", "arm_joint")),
+            (link("mount"), joint("base", "mount"), link("arm", MESH), joint("mount", "arm")),
+            (link("riser"), joint("base", "riser", xyz="0 0 1"), link("arm", MESH), joint("riser", "arm", "arm_joint")),
             {"mount": "riser", "mount_joint": "riser_joint"},
             id="same parent and same children",
         ),
         pytest.param(
-            (body("arm", MESH, 1), below("base", "arm", "shoulder")),
-            (body("boom", MESH, 2), below("base", "boom", "shoulder", "0 0 1")),
+            (link("arm", MESH, 1), joint("base", "arm", "shoulder")),
+            (link("boom", MESH, 2), joint("base", "boom", "shoulder", "0 0 1")),
             {"arm": "boom"},
             id="same joint, and another mass",
         ),
         pytest.param(
-            (body("pole"), below("base", "pole"), body("arm", MESH, 2), below("pole", "arm")),
-            (body("pole"), below("base", "pole"), body("boom", MESH, 2), below("base", "boom")),
+            (link("pole"), joint("base", "pole"), link("arm", MESH, 2), joint("pole", "arm")),
+            (link("pole"), joint("base", "pole"), link("boom", MESH, 2), joint("base", "boom")),
             {"arm": "boom"},
             id="same mesh and inertial below another link",
         ),
         pytest.param(
-            (body("arm", MESH), below("base", "arm"), body("tip"), below("arm", "tip")),
-            (body("boom", MESH), below("base", "boom", xyz="0 0 1"), body("tip_frame"),
-             below("boom", "tip_frame", xyz="1 0 0")),
+            (link("arm", MESH), joint("base", "arm"), link("tip"), joint("arm", "tip")),
+            (link("boom", MESH), joint("base", "boom", xyz="0 0 1"), link("tip_frame"),
+             joint("boom", "tip_frame", xyz="1 0 0")),
             {"arm": "boom", "arm_joint": "boom_joint", "tip": "tip_frame", "tip_joint": "tip_frame_joint"},
             id="a chain, from its start on",
         ),
         pytest.param(
-            (body("left_wheel", MESH), below("base", "left_wheel"),
-             body("right_wheel", MESH), below("base", "right_wheel")),
-            (body("wheel_left", MESH), below("base", "wheel_left", xyz="0 1 0"),
-             body("wheel_right", MESH), below("base", "wheel_right", xyz="0 -1 0")),
+            (link("left_wheel", MESH), joint("base", "left_wheel"),
+             link("right_wheel", MESH), joint("base", "right_wheel")),
+            (link("wheel_left", MESH), joint("base", "wheel_left", xyz="0 1 0"),
+             link("wheel_right", MESH), joint("base", "wheel_right", xyz="0 -1 0")),
             {"left_wheel": "wheel_left", "right_wheel": "wheel_right", "left_wheel_joint": "wheel_left_joint",
              "right_wheel_joint": "wheel_right_joint"},
             id="equal parts with words for their sides",
@@ -230,67 +230,67 @@ MESH, OTHER_MESH, BOX = '<mesh filename="a.stl"/>', '<mesh filename="b.stl"/>', 
     ],
 )  # fmt: skip
 def test_renamed_parts_that_moved_are_recognized(old, new, expected):
-    assert renamed(robot_of(*old), robot_of(*new)) == expected
+    assert renamed_elements(robot_text(*old), robot_text(*new)) == expected
 
 
 @pytest.mark.parametrize(
     ("old", "new"),
     [
         pytest.param(
-            (body("imu"), below("base", "imu")),
-            (body("gps"), below("base", "gps", xyz="0 0 1")),
+            (link("imu"), joint("base", "imu")),
+            (link("gps"), joint("base", "gps", xyz="0 0 1")),
             id="frames of other words",
         ),
         pytest.param(
-            (body("world"), below("world", "base")),
-            (body("foot"), below("foot", "base")),
+            (link("world"), joint("world", "base")),
+            (link("foot"), joint("foot", "base")),
             id="the world",
         ),
         pytest.param(
-            (body("foot"), below("foot", "pole"), body("pole"), below("pole", "base")),
-            (body("mast"), below("mast", "tower", xyz="1 0 0"), body("tower"), below("tower", "base", xyz="0 0 1")),
+            (link("foot"), joint("foot", "pole"), link("pole"), joint("pole", "base")),
+            (link("mast"), joint("mast", "tower", xyz="1 0 0"), link("tower"), joint("tower", "base", xyz="0 0 1")),
             id="a root without the same children",
         ),
         pytest.param(
-            (body("arm", MESH), below("base", "arm")),
-            (body("boom", OTHER_MESH), below("base", "boom", xyz="0 0 1")),
+            (link("arm", MESH), joint("base", "arm")),
+            (link("boom", OTHER_MESH), joint("base", "boom", xyz="0 0 1")),
             id="another mesh",
         ),
         pytest.param(
-            (body("a_box", BOX, 1), below("base", "a_box")),
-            (body("crate", BOX, 1), below("base", "crate", xyz="0 0 1")),
+            (link("a_box", BOX, 1), joint("base", "a_box")),
+            (link("crate", BOX, 1), joint("base", "crate", xyz="0 0 1")),
             id="a plain shape",
         ),
         pytest.param(
-            (body("arm", MESH), below("base", "arm")),
-            (body("boom", MESH), below("base", "boom", kind="floating")),
+            (link("arm", MESH), joint("base", "arm")),
+            (link("boom", MESH), joint("base", "boom", kind="floating")),
             id="another type of joint",
         ),
         pytest.param(
-            (body("camera_left", MESH, 1), below("base", "camera_left")),
-            (body("camera_right", MESH, 1), below("base", "camera_right", xyz="0 0 1")),
+            (link("camera_left", MESH, 1), joint("base", "camera_left")),
+            (link("camera_right", MESH, 1), joint("base", "camera_right", xyz="0 0 1")),
             id="the other side",
         ),
         pytest.param(
-            (body("leg1", MESH, 1), below("base", "leg1")),
-            (body("leg2", MESH, 1), below("base", "leg2", xyz="0 0 1")),
+            (link("leg1", MESH, 1), joint("base", "leg1")),
+            (link("leg2", MESH, 1), joint("base", "leg2", xyz="0 0 1")),
             id="another number",
         ),
         pytest.param(
-            (body("arm", MESH), below("base", "arm")),
-            (body("boom", MESH), below("base", "boom", xyz="0 0 1"),
-             body("jib", MESH), below("base", "jib", xyz="0 1 0")),
+            (link("arm", MESH), joint("base", "arm")),
+            (link("boom", MESH), joint("base", "boom", xyz="0 0 1"),
+             link("jib", MESH), joint("base", "jib", xyz="0 1 0")),
             id="two new candidates",
         ),
         pytest.param(
-            (body("arm", MESH), below("base", "arm"), body("leg", MESH), below("base", "leg")),
-            (body("boom", MESH), below("base", "boom", xyz="0 0 1")),
+            (link("arm", MESH), joint("base", "arm"), link("leg", MESH), joint("base", "leg")),
+            (link("boom", MESH), joint("base", "boom", xyz="0 0 1")),
             id="two old candidates",
         ),
     ],
 )  # fmt: skip
 def test_other_parts_in_the_place_of_removed_ones_are_not_renamed(old, new):
-    assert renamed(robot_of(*old), robot_of(*new)) == {}
+    assert renamed_elements(robot_text(*old), robot_text(*new)) == {}
 
 
 def test_renamed_joint_between_the_same_links_is_recognized():
@@ -305,19 +305,19 @@ def test_renamed_joint_between_the_same_links_is_recognized():
 
 def test_many_equal_parts_are_not_renamed():
     def many(prefix: str) -> str:
-        return robot_of(
+        return robot_text(
             *(
-                body(f"{prefix}{number}", MESH) + below("base", f"{prefix}{number}", xyz=f"0 {len(prefix)} {number}")
+                link(f"{prefix}{number}", MESH) + joint("base", f"{prefix}{number}", xyz=f"0 {len(prefix)} {number}")
                 for number in range(400)
             )
         )
 
-    assert renamed(many("a_"), many("wheel_b_")) == {}
+    assert renamed_elements(many("a_"), many("wheel_b_")) == {}
 
 
 def test_locations_are_attributes_in_both_files():
     new = ROBOT.replace('  <link name="hand"/>\n', '\n  <link name="hand"/>\n').replace('upper="1"', 'upper="2"')
-    [difference] = compared(ROBOT, new).differences
+    [difference] = compare_texts(ROBOT, new).differences
     assert difference.old_place is not None
     assert difference.new_place is not None
     assert (difference.old_place.span.line, difference.old_place.span.column) == (11, 49)
@@ -334,7 +334,7 @@ def test_locations_include_macro_calls():
   <xacro:body name="a" mass="1"/>
 </robot>
 """
-    comparison = compared(xacro, xacro.replace('mass="1"', 'mass="2"'))
+    comparison = compare_texts(xacro, xacro.replace('mass="1"', 'mass="2"'))
     text = as_text(comparison, lambda file: file.strip("<>"))
     assert text == (
         "link 'a': inertial mass 1 -> 2 kg\n"

@@ -9,10 +9,10 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.urdf import read
 from linkwright.xmltree import parse
 from tests.places import PACKAGE
-from tests.urdf.robots import chain, robot_text
+from tests.urdf.robots import chain_of_links, robot_text
 
 XACRO_PREFIX = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-GOOD = robot_text(chain("fixed"))
+GOOD = robot_text(chain_of_links("fixed"))
 XACRO = (
     '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="link" default="a"/>'
     '<link name="$(arg link)"/></robot>'
@@ -36,7 +36,7 @@ class TestLoad:
 
     def test_error_contains_all_findings(self):
         with pytest.raises(LinkwrightError) as caught:
-            load(robot_text(chain("revolut", "hinge")))
+            load(robot_text(chain_of_links("revolut", "hinge")))
         assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["URDF140", "URDF140"]
 
     def test_robot_accepted_by_urdfdom_is_loaded(self):
@@ -63,9 +63,9 @@ class TestTinyxmlTolerance:
         diagnostic = examine('\n<?xml version="1.0"?>\n<robot name="r"/>').diagnostics[0]
         assert (diagnostic.span.line, diagnostic.span.column) == (3, 1)
 
-    @pytest.mark.parametrize("rest", ["<robot/>", "\n<more>\n</more>", "\nwords"])
-    def test_text_after_root_is_ignored(self, rest):
-        assert load(GOOD + rest).name == "r"
+    @pytest.mark.parametrize("trailing_text", ["<robot/>", "\n<more>\n</more>", "\nwords"])
+    def test_text_after_root_is_ignored(self, trailing_text):
+        assert load(GOOD + trailing_text).name == "r"
 
     def test_text_after_root_must_be_well_formed(self):
         with pytest.raises(LinkwrightError):
@@ -73,14 +73,14 @@ class TestTinyxmlTolerance:
 
     @pytest.mark.parametrize("blank", ["\t", "\n", "\r\n"])
     def test_tabs_and_newlines_in_values_are_not_spaces(self, blank):
-        text = robot_text(chain(f'fixed:<origin xyz="0{blank}0 0"/>'))
+        text = robot_text(chain_of_links(f'fixed:<origin xyz="0{blank}0 0"/>'))
         assert examine(text).robot is None
 
     def test_leading_whitespace_in_numbers_is_accepted(self):
-        assert load(robot_text(chain('fixed:<origin xyz="\n1 \t2 3"/>'))).joints["j0"].origin.xyz == (1, 2, 3)
+        assert load(robot_text(chain_of_links('fixed:<origin xyz="\n1 \t2 3"/>'))).joints["j0"].origin.xyz == (1, 2, 3)
 
     def test_multi_line_tag_is_accepted(self):
-        assert load(robot_text(chain('fixed:<origin\n\txyz="0 0 0"\n\trpy="0 0 0"\n/>'))).root == "a"
+        assert load(robot_text(chain_of_links('fixed:<origin\n\txyz="0 0 0"\n\trpy="0 0 0"\n/>'))).root == "a"
 
     def test_tabs_and_newlines_are_spaces_in_xacro(self):
         text = XACRO.replace("<link", '<material name="m"><color rgba="0\n0\t0 1"/></material><link')

@@ -183,10 +183,10 @@ class TestUrdfdomTolerance:
             examine(path, partly=True)
         assert caught.value.diagnostics[0].code == "XML206"
 
-    @pytest.mark.parametrize("rest", ["<b>", "<b></c>", '<?xml version="1.0"?>', "<", "&"])
-    def test_rest_after_root_rejected_by_tinyxml2_is_an_error(self, tmp_path, rest):
+    @pytest.mark.parametrize("trailing_text", ["<b>", "<b></c>", '<?xml version="1.0"?>', "<", "&"])
+    def test_rest_after_root_rejected_by_tinyxml2_is_an_error(self, tmp_path, trailing_text):
         path = tmp_path / "r.urdf"
-        path.write_text(f'<robot name="r"><link name="a"/></robot>{rest}')
+        path.write_text(f'<robot name="r"><link name="a"/></robot>{trailing_text}')
         with pytest.raises(LinkwrightError, match=r"r\.urdf:1:4"):
             examine(path, partly=True)
 

@@ -55,7 +55,10 @@ def test_missing_library_is_named_with_install_hint(extra, use, without, tmp_pat
 
 
 def small_mesh(folder):
-    """Write a tetrahedron as an OBJ file with a continued line; usual OBJ and STL files need no extra."""
+    """Write a tetrahedron as an OBJ file with a continued line.
+
+    Usual OBJ and STL files need no extra.
+    """
     corners = ((0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1))
     faces = ((1, 3, 2), (1, 2, 4), (2, 3, 4), (1, 4, 3))
     lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a} {b} {c}" for a, b, c in faces]

@@ -48,7 +48,7 @@ XML_MISTAKES = {
 }
 
 
-def chinese(text: str) -> str:
+def translate(text: str) -> str:
     """Return the translation without the quoted parts."""
     return re.sub("“[^”]*”", "", translate_phrase(foreign(text), "zh"))
 
@@ -59,8 +59,14 @@ def test_yaml_errors_are_translated(text: str, loader: type) -> None:
     with pytest.raises(yaml.YAMLError) as raised:
         yaml.load(text, Loader=loader)
     error = raised.value
-    for said in (getattr(error, "problem", None) or getattr(error, "reason", None), getattr(error, "context", None)):
-        assert said is None or not re.search("[a-z]", chinese(said)), (said, chinese(said))
+    for foreign_text in (
+        getattr(error, "problem", None) or getattr(error, "reason", None),
+        getattr(error, "context", None),
+    ):
+        assert foreign_text is None or not re.search("[a-z]", translate(foreign_text)), (
+            foreign_text,
+            translate(foreign_text),
+        )
 
 
 @pytest.mark.parametrize("text", XML_MISTAKES.values(), ids=XML_MISTAKES)
@@ -68,8 +74,8 @@ def test_xml_errors_are_translated(text: str) -> None:
     parser = expat.ParserCreate(namespace_separator=" ")
     with pytest.raises(expat.ExpatError) as raised:
         parser.Parse(text, True)
-    said = expat.ErrorString(raised.value.code)
-    assert not re.search("[a-z]", chinese(said).replace("xml", "")), (said, chinese(said))
+    foreign_text = expat.ErrorString(raised.value.code)
+    assert not re.search("[a-z]", translate(foreign_text).replace("xml", "")), (foreign_text, translate(foreign_text))
 
 
 def test_quoted_parts_are_kept_and_unknown_texts_are_unchanged() -> None:

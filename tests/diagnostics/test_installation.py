@@ -21,9 +21,9 @@ def checkout(tmp_path: Path) -> Path:
     return folder
 
 
-def direct_url(path: Path, **more: object) -> dict[str, object]:
+def direct_url(path: Path, **fields: object) -> dict[str, object]:
     """Return the record of an installer for a local file or folder."""
-    return {"url": path.as_uri(), "dir_info": {}, **more}
+    return {"url": path.as_uri(), "dir_info": {}, **fields}
 
 
 def test_index_installation_is_extended_by_name() -> None:
@@ -79,8 +79,8 @@ def test_url_installation_is_extended_from_its_url(recorded: dict[str, object], 
 
 
 def test_missing_install_source_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    gone = Installation(Origin(str(tmp_path / "gone")), PIP)
-    monkeypatch.setattr("linkwright.diagnostics.installation.find_installation", lambda: gone)
+    installation = Installation(Origin(str(tmp_path / "gone")), PIP)
+    monkeypatch.setattr("linkwright.diagnostics.installation.find_installation", lambda: installation)
     assert str(install_hint("image")) == (
         "run pip install 'PATH_TO_LINKWRIGHT[image]', and replace PATH_TO_LINKWRIGHT with the path of a checkout or "
         f"wheel of Linkwright, because '{tmp_path / 'gone'}', from which it was installed, no longer exists"
@@ -143,13 +143,13 @@ def test_uv_is_used_without_pip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 
 def test_uv_of_checkout_is_used_without_other_uv(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    own = checkout / ".build" / "uv" / "bin" / "uv"
-    own.parent.mkdir(parents=True)
-    own.touch()
+    checkout_uv = checkout / ".build" / "uv" / "bin" / "uv"
+    checkout_uv.parent.mkdir(parents=True)
+    checkout_uv.touch()
     monkeypatch.setattr("linkwright.diagnostics.installation.find_spec", lambda _name: None)
     monkeypatch.setattr("shutil.which", lambda _name: None)
     command = installation_in(checkout / ".venv", Origin(str(checkout), editable=True)).command_for_extras("train")
-    assert command.startswith(f"'{own}' pip install --python ")
+    assert command.startswith(f"'{checkout_uv}' pip install --python ")
 
 
 def test_windows_commands_use_double_quotes(monkeypatch: pytest.MonkeyPatch) -> None:

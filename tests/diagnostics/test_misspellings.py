@@ -9,7 +9,7 @@ from linkwright.lint.extension_names import CHILDREN
 
 
 @pytest.mark.parametrize(
-    ("written", "meant"),
+    ("written", "intended"),
     [
         ("camera_lnk", "camera_link"),
         ("baselink", "base_link"),
@@ -19,8 +19,8 @@ from linkwright.lint.extension_names import CHILDREN
         ("positon", "position"),
     ],
 )
-def test_single_typo_is_a_misspelling(written, meant):
-    assert find_misspelled(written, [meant, "something_else"]) == meant
+def test_single_typo_is_a_misspelling(written, intended):
+    assert find_misspelled(written, [intended, "something_else"]) == intended
 
 
 @pytest.mark.parametrize(

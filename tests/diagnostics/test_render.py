@@ -18,15 +18,15 @@ from linkwright.diagnostics import (
 )
 
 
-def excerpt_of(text: str, marked: str, **more) -> list[str]:
+def render_excerpt(text: str, marked: str, **arguments) -> list[str]:
     source = SourceText("<test>", text)
     start = text.index(marked)
-    diagnostic = Diagnostic("URDF121", "message", source.span(start, start + len(marked)), source=source, **more)
+    diagnostic = Diagnostic("URDF121", "message", source.span(start, start + len(marked)), source=source, **arguments)
     return render(diagnostic).splitlines()
 
 
 def test_full_diagnostic_is_rendered():
-    assert excerpt_of('<a>\n  <mass value="1,5"/>\n</a>', "1,5", notes=(Note("a note"),), hint="a hint") == [
+    assert render_excerpt('<a>\n  <mass value="1,5"/>\n</a>', "1,5", notes=(Note("a note"),), hint="a hint") == [
         "error[URDF121]: message",
         "  --> <test>:2:16",
         "  |",
@@ -48,15 +48,15 @@ def test_full_diagnostic_is_rendered():
     ],
 )
 def test_carets_mark_the_span(line, marked, carets):
-    assert excerpt_of(line, marked)[-1] == f"  | {carets}"
+    assert render_excerpt(line, marked)[-1] == f"  | {carets}"
 
 
 def test_tabs_are_expanded():
-    assert excerpt_of("\t<a/>", "<a/>")[3] == "1 |     <a/>"
+    assert render_excerpt("\t<a/>", "<a/>")[3] == "1 |     <a/>"
 
 
 def test_multiline_span_is_marked_to_end_of_first_line():
-    assert excerpt_of("<a\n  b='c'\n/>", "<a\n  b")[-2:] == ["1 | <a", "  | ^^"]
+    assert render_excerpt("<a\n  b='c'\n/>", "<a\n  b")[-2:] == ["1 | <a", "  | ^^"]
 
 
 def test_empty_span_has_one_caret():
@@ -65,7 +65,7 @@ def test_empty_span_has_one_caret():
 
 
 def test_gutter_width_follows_line_number():
-    lines = excerpt_of("\n" * 99 + "x", "x")
+    lines = render_excerpt("\n" * 99 + "x", "x")
     assert lines[2:] == ["    |", "100 | x", "    | ^"]
 
 
@@ -157,7 +157,7 @@ def test_long_line_is_shortened_if_span_is_at_end() -> None:
 
 
 def test_control_characters_are_replaced():
-    head, place, _, excerpt, carets, note, hint, rest = excerpt_of(
+    head, place, _, excerpt, carets, note, hint, rest = render_excerpt(
         'a\x1b[2J\x07\x9b1m\u202e="x"', "x", notes=(Note("\x1b]0;title\x07"),), hint="two\nlines\x08"
     )
     assert excerpt == '1 | a␛[2J␇\ufffd1m\ufffd="x"'

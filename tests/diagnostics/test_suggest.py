@@ -84,7 +84,7 @@ def test_as_typed_keeps_path(path):
 
 
 @pytest.mark.parametrize(
-    ("name", "other", "meant"),
+    ("name", "other", "intended"),
     [
         ("ur_description", "ur_descriptions", True),
         ("ur_descripton", "ur_description", True),
@@ -105,8 +105,8 @@ def test_as_typed_keeps_path(path):
         ("diff_drive_controller", "tricycle_controller", False),
     ],
 )
-def test_nearest_rejects_names_that_share_only_a_common_word(name: str, other: str, meant: bool) -> None:
-    assert nearest(name, [other]) == ([other] if meant else [])
+def test_nearest_rejects_names_that_share_only_a_common_word(name: str, other: str, intended: bool) -> None:
+    assert nearest(name, [other]) == ([other] if intended else [])
 
 
 @pytest.mark.parametrize(

@@ -55,10 +55,10 @@ def test_environment_variables_choose_chinese(name: str, monkeypatch: pytest.Mon
     assert language() == "zh"
 
 
-@pytest.mark.parametrize("stronger", range(3))
-def test_environment_variable_of_higher_priority_wins(stronger: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(VARIABLES[stronger], "en_US.UTF-8")
-    for name in VARIABLES[stronger + 1 :]:
+@pytest.mark.parametrize("preferred_variable", range(3))
+def test_environment_variable_of_higher_priority_wins(preferred_variable: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLES[preferred_variable], "en_US.UTF-8")
+    for name in VARIABLES[preferred_variable + 1 :]:
         monkeypatch.setenv(name, "zh_CN.UTF-8")
     assert language() == "en"
 
@@ -99,8 +99,8 @@ def test_unknown_language_is_rejected() -> None:
 # diagnostics
 
 
-def in_chinese(message: Phrase, **more: object) -> Diagnostic:
-    return translate(Diagnostic("XAC401", message, **more), "zh")  # type: ignore[arg-type]
+def in_chinese(message: Phrase, **arguments: object) -> Diagnostic:
+    return translate(Diagnostic("XAC401", message, **arguments), "zh")  # type: ignore[arg-type]
 
 
 def test_message_notes_and_hint_are_translated() -> None:
@@ -177,10 +177,10 @@ def test_chinese_catalog_uses_chinese_punctuation() -> None:
 # output
 
 
-def finding() -> Diagnostic:
+def make_finding() -> Diagnostic:
     source = SourceText("a.xacro", '<link name="车轮_${prefx}"/>')
-    at = source.text.index("prefx")
-    span = source.span(at, at + 5)
+    offset = source.text.index("prefx")
+    span = source.span(offset, offset + 5)
     message = phrase("the property '{name}' is not defined", name="prefx")
     return Diagnostic(
         "XAC201",
@@ -195,7 +195,7 @@ def finding() -> Diagnostic:
 def test_diagnostics_are_printed_in_chinese(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LANG", "zh_CN.UTF-8")
     stream = io.StringIO()
-    print_diagnostics([finding()], stream)
+    print_diagnostics([make_finding()], stream)
     assert stream.getvalue() == (
         "错误[XAC201]：属性“prefx”没有定义\n"
         "  --> a.xacro:1:18\n"
@@ -208,7 +208,7 @@ def test_diagnostics_are_printed_in_chinese(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_carets_align_below_double_width_characters() -> None:
-    lines = render(finding()).splitlines()
+    lines = render(make_finding()).splitlines()
     cells = "".join(character * (2 if east_asian_width(character) == "W" else 1) for character in lines[3])
     assert cells[lines[4].index("^") : lines[4].rindex("^") + 1] == "prefx"
 
@@ -222,16 +222,16 @@ def test_severities_are_translated(severity: Severity, word: str) -> None:
 
 def test_machine_formats_stay_english_unless_language_is_set(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LANG", "zh_CN.UTF-8")
-    english = format_diagnostics([finding()], "json")
+    english = format_diagnostics([make_finding()], "json")
     assert "the property 'prefx' is not defined" in english
     set_language("zh")
-    chinese = json.loads(format_diagnostics([finding()], "json"))
+    chinese = json.loads(format_diagnostics([make_finding()], "json"))
     assert "属性“prefx”没有定义" in json.dumps(chinese, ensure_ascii=False)
     assert json.loads(english) != chinese
 
 
 def test_translated_returns_same_list_in_english() -> None:
-    diagnostics = [finding()]
+    diagnostics = [make_finding()]
     assert translated(diagnostics) is diagnostics
 
 

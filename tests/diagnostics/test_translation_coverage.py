@@ -105,9 +105,9 @@ def test_catalog_problems_are_reported(tmp_path: Path) -> None:
     assert [message.id for message in new if message.id] == [
         "'{tag}' is odd", "a new one", "{a} is {b}", ("{count} link", "{count} links")
     ]  # fmt: skip
-    once = tool.as_text(new)
-    (tmp_path / "zh.po").write_text(once, encoding="utf-8")
-    assert tool.as_text(tool.updated(tool.read(tmp_path / "zh.po"), source)) == once
+    catalog_text = tool.as_text(new)
+    (tmp_path / "zh.po").write_text(catalog_text, encoding="utf-8")
+    assert tool.as_text(tool.updated(tool.read(tmp_path / "zh.po"), source)) == catalog_text
 
 
 def test_untranslated_page_title_is_reported(tmp_path: Path) -> None:
@@ -200,7 +200,10 @@ def test_schema_meanings_and_units_are_translated(words: Recording) -> None:
 
 
 def assert_translated(diagnostics: Iterable[Diagnostic], words: Recording) -> None:
-    """Fail for a text that is not a phrase, and for a phrase or a part of one without a translation."""
+    """Fail for a text that is not a phrase, or has no translation.
+
+    The parts of a phrase need translations, too.
+    """
     for diagnostic in diagnostics:
         words.missing.clear()
         for text in (diagnostic.message, diagnostic.hint, *(note.message for note in diagnostic.notes)):

@@ -13,7 +13,10 @@ from tests.installed import install
 
 @pytest.fixture
 def follow(tmp_path_factory: pytest.TempPathFactory, tmp_path: Path) -> Callable[..., Path]:
-    """Return a function that follows a page with the known outcomes of some lines, and returns the home folder."""
+    """Return a function that follows a page and returns the home folder.
+
+    The outcomes of some lines are known.
+    """
     shared_folder = tmp_path_factory.getbasetemp().parent / "installed"
     environment = install(shared_folder, "pytest", "flake8", "pydocstyle")
 

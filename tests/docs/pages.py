@@ -25,20 +25,20 @@ class Block:
     text: str
 
 
-def pages() -> list[Path]:
+def find_pages() -> list[Path]:
     """Return all pages for users, including the READMEs, without the decision records."""
     pages = [path for path in sorted(DOCS.rglob("*.md")) if "decisions" not in path.parts]
     return [*READMES, *pages]
 
 
-def blocks(page: Path) -> list[Block]:
+def read_blocks(page: Path) -> list[Block]:
     """Return the page's code blocks in order."""
     matches = _BLOCK.finditer(page.read_text(encoding="utf-8"))
     return [Block(match["language"], match["title"] or "", match["text"]) for match in matches]
 
 
-def commands(page: Path) -> list[str]:
+def read_commands(page: Path) -> list[str]:
     """Return the ``linkwright`` lines of the page's shell blocks, without comments."""
-    lines = [line for block in blocks(page) if block.language == "bash" for line in block.text.splitlines()]
+    lines = [line for block in read_blocks(page) if block.language == "bash" for line in block.text.splitlines()]
     lines = [line.split(" #")[0].strip() for line in lines]
     return [line for line in lines if line.startswith("linkwright ")]

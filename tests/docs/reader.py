@@ -1,4 +1,6 @@
-"""A simulated reader of a page, with terminals, an empty home folder, and the installed wheel.
+"""A simulated reader of a page.
+
+The reader has terminals, an empty home folder, and the installed wheel.
 
 The reader types each line of the page's shell blocks and writes each file that has a title, in the order of the page.
 A line that opens a page of Linkwright keeps its terminal until the next such line; other lines are typed beside it.
@@ -18,7 +20,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from tests.docs.pages import Block, blocks
+from tests.docs.pages import Block, read_blocks
 from tests.domains import own_domain
 
 TIMEOUT_S = 90.0
@@ -27,7 +29,7 @@ TIMEOUT_S = 90.0
 _PROMPT = re.compile(r"\[status (\d+)\]\r?\n")
 _PAGE = re.compile(r"linkwright (launch|sim|view|drive(?!.* --(show|write)$)) |ros2 launch ")
 _ANY_PAGE = "Viewer: http://"
-_BAD = re.compile(r"Traceback|\[ERROR\]|\[FATAL\]|^error")
+_ERROR_PATTERN = re.compile(r"Traceback|\[ERROR\]|\[FATAL\]|^error")
 
 
 @dataclass(frozen=True)
@@ -165,9 +167,9 @@ class Reader:
     def follow(self, page: Path) -> None:
         """Type and write all blocks of the page."""
         try:
-            for block in blocks(page):
+            for block in read_blocks(page):
                 if block.title:
-                    write(block, self._folder())
+                    write_block(block, self._folder())
                 elif block.language == "bash":
                     for line in block.text.splitlines():
                         self._do(line)
@@ -210,7 +212,10 @@ class Reader:
             self._check(self._first)
 
     def _try_again(self, terminal: Terminal) -> bool:
-        """Type a line again if it ended before the launched program was ready, and return whether that happened."""
+        """Type a line again if it ended before the launched program was ready.
+
+        Return whether that happened.
+        """
         is_repeated = terminal.is_free and self._page is not None and time.monotonic() < self._launch_time + TIMEOUT_S
         if is_repeated:
             terminal.type(terminal.line)
@@ -251,15 +256,15 @@ class Reader:
 
     def _check(self, terminal: Terminal) -> None:
         outcome = self._outcomes.get(terminal.line, Outcome())
-        bad = [line for line in terminal.output.splitlines() if _BAD.search(line)]
+        error_lines = [line for line in terminal.output.splitlines() if _ERROR_PATTERN.search(line)]
         if outcome.error:
-            assert all(outcome.error in line for line in bad)
-            assert bad, f"{terminal.line!r} did not print {outcome.error!r}:\n{terminal.output}"
+            assert all(outcome.error in line for line in error_lines)
+            assert error_lines, f"{terminal.line!r} did not print {outcome.error!r}:\n{terminal.output}"
         else:
-            assert outcome.may_fail or not bad, f"{terminal.line!r}:\n{terminal.output}"
+            assert outcome.may_fail or not error_lines, f"{terminal.line!r}:\n{terminal.output}"
 
 
-def write(block: Block, folder: Path) -> None:
+def write_block(block: Block, folder: Path) -> None:
     """Write a block with a title into the page's file; ``FILE, more`` adds to a file."""
     path = folder / block.title.removesuffix(", more")
     if path == folder / block.title:
@@ -271,13 +276,16 @@ def write(block: Block, folder: Path) -> None:
         last = re.findall(r"^  <(?:depend|license)>.*\n", text, re.MULTILINE)[-1]
         new_text = text.replace(last, last + block.text)
     else:
-        new_text = text.replace("</robot>", block.text + _symmetric_elements(block.text) + "</robot>")
+        new_text = text.replace("</robot>", block.text + _make_symmetric_elements(block.text) + "</robot>")
     assert new_text != text
     path.write_text(new_text, encoding="utf-8")
 
 
-def _symmetric_elements(text: str) -> str:
-    """Return the elements that the reader must write by analogy: the right wheel and the back caster."""
+def _make_symmetric_elements(text: str) -> str:
+    """Return the elements that the reader must write by analogy.
+
+    These are the right wheel and the back caster.
+    """
     elements = "".join(re.findall(r"  <joint.*?</joint>\n|  <link.*?</link>\n", text, re.DOTALL))
     if "left_" in elements:
         return elements.replace("left", "right").replace("0.19", "-0.19")

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.bag.writing import BagWriter
 from linkwright.messages import String, serialize
-from tests.docs.pages import blocks
+from tests.docs.pages import read_blocks
 from tests.places import REPOSITORY
 
 PAGE = REPOSITORY / "docs" / "api.md"
@@ -22,7 +22,7 @@ def test_api_examples_run_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         writer.write("/chatter", 1, serialize(String(data="hello")))
     names: dict[str, object] = {}
     ran = 0
-    for block in blocks(PAGE):
+    for block in read_blocks(PAGE):
         if block.title:
             (tmp_path / block.title).write_text(block.text, encoding="utf-8")
         elif block.language == "python":

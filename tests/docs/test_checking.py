@@ -10,19 +10,19 @@ from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, SourceText
 from linkwright.diagnostics.render import to_data
 from linkwright.lint.configuration import read_settings
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 
 PAGES = [DOCS / "checking.md", DOCS / "zh" / "checking.md"]
 
 
-def block(page, title):
-    return next(block.text for block in blocks(page) if block.title == title)
+def block_with_title(page, title):
+    return next(block.text for block in read_blocks(page) if block.title == title)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
 def test_shown_settings_are_valid(page, tmp_path):
     file = tmp_path / "linkwright.toml"
-    file.write_text(block(page, "linkwright.toml"), encoding="utf-8")
+    file.write_text(block_with_title(page, "linkwright.toml"), encoding="utf-8")
     settings, found = read_settings(file)
     assert found == ()
     assert settings.ignore
@@ -32,7 +32,7 @@ def test_shown_settings_are_valid(page, tmp_path):
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.parent.name)
 def test_shown_suppressions_work_and_are_needed(page, tmp_path, capsys):
     file = tmp_path / "robot.urdf"
-    text = block(page, "robot.urdf")
+    text = block_with_title(page, "robot.urdf")
     file.write_text(text, encoding="utf-8")
     arguments = ["check", str(file), "--strict", "--format", "concise", "--select", "LW001,LW221"]
     assert main(arguments) == 1
@@ -46,6 +46,6 @@ def test_shown_suppressions_work_and_are_needed(page, tmp_path, capsys):
 
 
 def test_shown_json_has_current_fields():
-    documented = json.loads(next(block.text for block in blocks(PAGES[0]) if block.language == "json"))
+    documented = json.loads(next(block.text for block in read_blocks(PAGES[0]) if block.language == "json"))
     current = to_data(Diagnostic("LW221", "m", SourceText("f", "x").span(0, 1), hint="h"))
     assert list(documented["diagnostics"][0]) == list(current)

@@ -13,19 +13,19 @@ import pytest
 from linkwright.language.files import PATTERNS
 from linkwright.language.formats import FORMATS
 from linkwright.lint.targets import XML_FILES
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 
-SHOWN = {block.title: block.text for block in blocks(DOCS / "howto-editor.md") if block.title}
+SHOWN = {block.title: block.text for block in read_blocks(DOCS / "howto-editor.md") if block.title}
 ALL = {pattern for patterns in PATTERNS.values() for pattern in patterns}
 EXTENSION = DOCS.parent / "editors" / "vscode"
 
 
-def example(pattern: str) -> str:
+def example_path(pattern: str) -> str:
     """Return a path that a pattern covers."""
     return pattern.replace("*", "a")
 
 
-def globs(text: str) -> set[str]:
+def quoted_patterns(text: str) -> set[str]:
     """Return the patterns in quotes."""
     return set(re.findall(r'"([^"\s]*(?:\*[^"\s]*|package\.xml|model\.config|setup\.py|CMakeLists\.txt))"', text))
 
@@ -38,7 +38,7 @@ def test_editor_settings_start_language_server(title):
 
 def test_neovim_attaches_to_all_files():
     patterns = SHOWN["init.lua"].split("pattern = {", 1)[1].split("}", 1)[0]
-    assert globs(patterns) == ALL
+    assert quoted_patterns(patterns) == ALL
 
 
 def test_vim_assigns_file_types_to_server():
@@ -63,11 +63,11 @@ def test_emacs_assigns_modes_to_xml_yaml_and_interface_files():
     ]
     for kind in ("xml", "yaml", "interface"):
         for pattern in PATTERNS[kind]:
-            assert any(expression.search(example(pattern)) for expression in expressions), pattern
+            assert any(expression.search(example_path(pattern)) for expression in expressions), pattern
 
 
 def test_helix_lists_files_of_its_own_languages():
-    assert globs(SHOWN["languages.toml"]) == {*PATTERNS["xml"], *PATTERNS["interface"], "*.rviz"}
+    assert quoted_patterns(SHOWN["languages.toml"]) == {*PATTERNS["xml"], *PATTERNS["interface"], "*.rviz"}
     if sys.version_info >= (3, 11):
         import tomllib
 
@@ -91,7 +91,7 @@ def test_patterns_match_supported_formats():
     for suffix in XML_FILES:
         assert any(fnmatch.fnmatch(f"a{suffix}", pattern) or suffix == pattern for pattern in PATTERNS["xml"]), suffix
     for pattern in (*PATTERNS["yaml"], *PATTERNS["interface"], "package.xml", "*.srdf", "*launch.py", "*/launch/*.py"):
-        assert any(file_format.covers(Path(example(pattern))) for file_format in FORMATS) or pattern == "*launch.py", (
-            pattern
-        )
+        assert (
+            any(file_format.covers(Path(example_path(pattern))) for file_format in FORMATS) or pattern == "*launch.py"
+        ), pattern
     assert any(file_format.covers(Path("a.launch.py")) for file_format in FORMATS)

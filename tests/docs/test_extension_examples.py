@@ -17,7 +17,7 @@ from linkwright.perception.scans.scan import Scan
 from linkwright.standins import activate
 from linkwright.vision.detector import Limits
 from linkwright.vision.detectors.options import DetectorOptions
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 
 LANGUAGES = pytest.mark.parametrize("docs", [DOCS, DOCS / "zh"], ids=["en", "zh"])
 
@@ -27,7 +27,7 @@ def shown_class(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path, str], Any]:
     """Return a function that returns a class from a page."""
 
     def find(page: Path, name: str) -> Any:
-        (text,) = (block.text for block in blocks(page) if f"class {name}(" in block.text)
+        (text,) = (block.text for block in read_blocks(page) if f"class {name}(" in block.text)
         module = ModuleType("shown")
         monkeypatch.setitem(sys.modules, "shown", module)  # dataclasses look up the names of types there
         exec(compile(text, str(page), "exec"), module.__dict__)

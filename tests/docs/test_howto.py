@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 from tests.docs.reader import Outcome
 
 CHECK = "linkwright check --strict src"
@@ -18,7 +18,7 @@ PUBLISH = 'linkwright topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist "{linear:
 @pytest.mark.parametrize("page", sorted(DOCS.glob("howto-*.md")), ids=lambda page: page.stem)
 def test_both_languages_show_same_files(page: Path) -> None:
     english, chinese = (
-        [(block.title, block.text) for block in blocks(language_page) if block.title]
+        [(block.title, block.text) for block in read_blocks(language_page) if block.title]
         for language_page in (page, DOCS / "zh" / page.name)
     )
     assert english == chinese
@@ -27,7 +27,7 @@ def test_both_languages_show_same_files(page: Path) -> None:
 @pytest.mark.slow
 def test_drive_and_world_guides_complete_urdf_without_masses(follow: Callable[..., Path]) -> None:
     page = DOCS / "howto-drive.md"
-    first_line = next(block.text.splitlines()[0] for block in blocks(page) if block.language == "text")
+    first_line = next(block.text.splitlines()[0] for block in read_blocks(page) if block.language == "text")
     follow(
         page,
         {"linkwright drive cart.urdf": Outcome(output_text=first_line), PUBLISH: Outcome(output_text="publishing #1")},
@@ -73,11 +73,14 @@ def test_review_guide_shows_changes_before_merge(follow: Callable[..., Path]) ->
 def test_ci_workflow_and_hook_run_shown_commands() -> None:
     files = {
         block.title: yaml.safe_load(block.text)
-        for block in blocks(DOCS / "howto-ci.md")
+        for block in read_blocks(DOCS / "howto-ci.md")
         if "yaml" in block.title or "yml" in block.title
     }
     documented = [
-        line for block in blocks(DOCS / "howto-ci.md") if block.language == "bash" for line in block.text.splitlines()
+        line
+        for block in read_blocks(DOCS / "howto-ci.md")
+        if block.language == "bash"
+        for line in block.text.splitlines()
     ]
     steps = files[".github/workflows/check.yml"]["jobs"]["descriptions"]["steps"]
     assert [step["run"] for step in steps if "linkwright check" in step.get("run", "")] == [

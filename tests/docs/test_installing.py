@@ -1,4 +1,7 @@
-"""Installation commands on pages, in messages and in robots, while no version is on a package index."""
+"""Installation commands on pages, in messages and in robots.
+
+They apply while no version is on a package index.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ WRITTEN = ("docs", "frontend/src", "robots", "src", "README.md", "README.zh-CN.m
 COMMAND_KINDS = {".html", ".md", ".po", ".py", ".toml", ".ts", ".txt", ".xml", ".yaml"}
 RECORDS = REPOSITORY / "docs" / "decisions"
 INSTALLING = re.compile(r"\b(?:pip|pipx|uv tool) install (?P<what>(?:-e )?(?:'[^'\n]+'|[^\s`'）)]+))")
-OTHERS = {
+OTHER_COMMANDS = {
     "--no-index",
     "-e my_wind",
     "-e street_displays",
@@ -32,7 +35,7 @@ OTHERS = {
 
 
 @cache
-def install_commands() -> list[tuple[Path, str]]:
+def find_install_commands() -> list[tuple[Path, str]]:
     """Return each command of pip, pipx and uv for users: its location, and what it installs."""
     paths = [path for name in WRITTEN for path in sorted([REPOSITORY / name, *(REPOSITORY / name).rglob("*")])]
     return [
@@ -44,17 +47,19 @@ def install_commands() -> list[tuple[Path, str]]:
 
 
 def test_readmes_show_install_commands() -> None:
-    assert {"README.md", "README.zh-CN.md"} <= {path.name for path, _ in install_commands()}
+    assert {"README.md", "README.zh-CN.md"} <= {path.name for path, _ in find_install_commands()}
 
 
 def test_source_and_frontend_contain_no_install_commands() -> None:
-    assert [command for command in install_commands() if command[0].parts[0] in ("frontend", "robots", "src")] == []
+    assert [
+        command for command in find_install_commands() if command[0].parts[0] in ("frontend", "robots", "src")
+    ] == []
 
 
 def test_install_commands_match_a_checkout(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    for path, command in install_commands():
-        if command not in OTHERS:
+    for path, command in find_install_commands():
+        if command not in OTHER_COMMANDS:
             extras = [
                 extra
                 for extras_of_command in re.findall(r"\[([\w,]+)\]", command)

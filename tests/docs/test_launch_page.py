@@ -8,19 +8,19 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from tests.docs.pages import DOCS, Block, blocks, commands
+from tests.docs.pages import DOCS, Block, read_blocks, read_commands
 from tests.repository_tools import load_tool
 
 TOOL = load_tool("documented_output")
 PAGES = {"en": DOCS / "launch.md", "zh": DOCS / "zh" / "launch.md"}
 
 
-def files(page: Path) -> list[Block]:
-    return [block for block in blocks(page) if block.title]
+def read_files(page: Path) -> list[Block]:
+    return [block for block in read_blocks(page) if block.title]
 
 
 def write_files(page: Path, folder: Path) -> None:
-    for block in files(page):
+    for block in read_files(page):
         path = folder / block.title
         path.parent.mkdir(exist_ok=True)
         path.write_text(block.text, encoding="utf-8")
@@ -49,6 +49,6 @@ def test_composed_launch_file_loads(tmp_path: Path, capsys) -> None:
 @pytest.mark.parametrize("language", PAGES)
 def test_shown_error_matches_output(language: str) -> None:
     page = PAGES[language]
-    arguments = next(shlex.split(line) for line in commands(page) if "bringup" in line)
-    output = TOOL.output_of(arguments[1:], [(file.title, file.text) for file in files(page)], language)
-    assert output in [block.text for block in blocks(page) if block.language == "text"]
+    arguments = next(shlex.split(line) for line in read_commands(page) if "bringup" in line)
+    output = TOOL.output_of(arguments[1:], [(file.title, file.text) for file in read_files(page)], language)
+    assert output in [block.text for block in read_blocks(page) if block.language == "text"]

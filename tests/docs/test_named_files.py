@@ -35,7 +35,10 @@ _MODULE = re.compile(r"linkwright(?:\.\w+)+")
 
 
 def named_paths(page: Path) -> Iterator[str]:
-    """Return the paths and modules in a page's inline code, without placeholders like NAME.py and results of make."""
+    """Return the paths and modules in a page's inline code.
+
+    Placeholders like NAME.py and results of make are left out.
+    """
     for words in _WORDS.findall(_FENCE.sub("", page.read_text(encoding="utf-8"))):
         for word in words.split():
             is_ignored = word.split("/")[0] in IGNORED or any(
@@ -47,7 +50,7 @@ def named_paths(page: Path) -> Iterator[str]:
 
 
 @functools.cache
-def tree() -> list[Path]:
+def tracked_paths() -> list[Path]:
     """Return all tracked files and folders of the repository."""
     paths = [
         path
@@ -60,26 +63,32 @@ def tree() -> list[Path]:
 
 @functools.cache
 def other_names() -> str:
-    """Return names that look like files or modules but are declared elsewhere: entry point groups, npm packages."""
+    """Return names that look like files or modules but are declared elsewhere.
+
+    These are entry point groups and npm packages.
+    """
     names = ("pyproject.toml", "core/pyproject.toml", "frontend/package.json")
     return "".join((REPOSITORY / name).read_text(encoding="utf-8") for name in names)
 
 
-def exists(word: str) -> bool:
-    """Return whether a module exists, or a path that ends with this text; the text before it may give the folder."""
+def path_or_module_exists(word: str) -> bool:
+    """Return whether a module exists, or a path that ends with this text.
+
+    The text before it may give the folder.
+    """
     if f'"{word}"' in other_names() or f'"{word.split("/")[0]}":' in other_names():
         return True
     if _MODULE.fullmatch(word):
         folder = REPOSITORY / "src" / Path(*word.split("."))
         return any(path.exists() for path in (folder, folder.with_suffix(".py"), folder.parent.with_suffix(".py")))
-    return any(path.match(word.rstrip("/")) for path in tree())
+    return any(path.match(word.rstrip("/")) for path in tracked_paths())
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(REPOSITORY)))
 def test_named_files_and_modules_exist(page: Path) -> None:
     words = list(named_paths(page))
     assert words
-    assert [word for word in words if not exists(word)] == []
+    assert [word for word in words if not path_or_module_exists(word)] == []
 
 
 @pytest.mark.parametrize("page", [DOCS / "architecture.md"], ids=lambda page: page.name)

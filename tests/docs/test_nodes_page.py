@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.standins import process
-from tests.docs.pages import DOCS, blocks, commands
+from tests.docs.pages import DOCS, read_blocks, read_commands
 
 PAGE = DOCS / "nodes.md"
 
@@ -22,11 +22,11 @@ def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder ``src`` after all steps of the page."""
     folder = tmp_path_factory.mktemp("ros2_ws") / "src"
     folder.mkdir()
-    for line in commands(PAGE):
+    for line in read_commands(PAGE):
         arguments = shlex.split(line)[1:]
         if arguments[:2] == ["pkg", "create"]:
             assert main([*arguments, "--destination-directory", str(folder)]) == 0
-    for block in blocks(PAGE):
+    for block in read_blocks(PAGE):
         if block.title:
             path = folder / block.title
             path.parent.mkdir(exist_ok=True)

@@ -13,7 +13,7 @@ from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays import catalog
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 from tests.toml_files import read_toml
 from tests.viewer.contents import shown_markers
 from tests.viewer.scene import open_world, page
@@ -32,14 +32,14 @@ Visualization Manager:
 """
 
 
-def files(language: Path) -> dict[str, str]:
-    return {block.title: block.text for block in blocks(language) if block.title}
+def read_files(language: Path) -> dict[str, str]:
+    return {block.title: block.text for block in read_blocks(language) if block.title}
 
 
 @pytest.fixture(params=PAGES, ids=["en", "zh"])
-def street(request, tmp_path, monkeypatch):
+def installed_display(request, tmp_path, monkeypatch):
     """Install the package of the page, and return its workspace."""
-    texts = files(request.param)
+    texts = read_files(request.param)
     for name, text in texts.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
@@ -61,7 +61,7 @@ def street(request, tmp_path, monkeypatch):
     catalog._display_class.cache_clear()
 
 
-def car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: int = 0) -> Any:
+def make_car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: int = 0) -> Any:
     car = get_message("street_msgs/msg/TrackedObject")(id=number, label=label, speed=speed)
     car.pose.position.x = x
     car.size.x, car.size.y, car.size.z = 4.0, 2.0, 1.5
@@ -69,23 +69,23 @@ def car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: 
     return car
 
 
-def detections(*objects: Any) -> Any:
+def make_detections(*objects: Any) -> Any:
     cars = get_message("street_msgs/msg/TrackedObjects")(objects=list(objects))
     cars.header.frame_id = "street"
     return cars
 
 
 def test_both_languages_have_same_example():
-    first, second = map(files, PAGES)
+    first, second = map(read_files, PAGES)
     assert first == second
 
 
 def test_example_display_has_at_most_60_lines():
-    lines = files(PAGES[0])["street_displays/street_displays.py"].splitlines()
+    lines = read_files(PAGES[0])["street_displays/street_displays.py"].splitlines()
     assert len([line for line in lines if line.strip()]) <= 60
 
 
-async def test_example_display_draws_and_removes_tracked_objects(street):
+async def test_example_display_draws_and_removes_tracked_objects(installed_display):
     async with open_world(RvizConfig.parse(CONFIG)) as world, page(world.viewer) as client:
         await client.opened()
         await client.send("request_display_choices")
@@ -94,7 +94,7 @@ async def test_example_display_draws_and_removes_tracked_objects(street):
         node = world.graph.create_node("perception")
         publisher = node.create_publisher("street_msgs/msg/TrackedObjects", "/objects", 10)
         await world.settle()
-        publisher.publish(detections(car(1, 5.0, path=3), car(2, -5.0, label="bicycle")))
+        publisher.publish(make_detections(make_car(1, 5.0, path=3), make_car(2, -5.0, label="bicycle")))
         await world.settle()
         (display,) = world.viewer.displays
         assert display.row().drawing == "rviz_default_plugins/MarkerArray"
@@ -116,11 +116,11 @@ async def test_example_display_draws_and_removes_tracked_objects(street):
         markers = shown_markers(display)
         assert sorted(markers) == ["boxes/1", "boxes/2", "paths/1"]
         assert markers["boxes/2"]["color"] == pytest.approx([1, 0.6, 0, 0.25])
-        publisher.publish(detections(car(2, -4.0, speed=math.inf)))
+        publisher.publish(make_detections(make_car(2, -4.0, speed=math.inf)))
         await world.settle()
         assert list(shown_markers(display)) == ["boxes/2"]
         assert world.status("TrackedObjects")["Speed"] == ("warn", "The speed of object 2 is impossible")
-        publisher.publish(detections(car(3, math.nan)))
+        publisher.publish(make_detections(make_car(3, math.nan)))
         await world.settle()
         status = world.status("TrackedObjects")
         assert status["boxes/3"] == ("error", "Contains invalid floating point values (nans or infs)")
@@ -129,20 +129,20 @@ async def test_example_display_draws_and_removes_tracked_objects(street):
         display.set_property(("Show Names",), True)
 
 
-async def test_configuration_with_example_display_is_saved_unchanged(street):
+async def test_configuration_with_example_display_is_saved_unchanged(installed_display):
     async with open_world(RvizConfig.parse(CONFIG)) as world:
         assert world.viewer.displays[0].SUPPORTED
         assert world.viewer.config.text() == CONFIG
 
 
-async def test_the_objects_are_drawn_as_points_with_a_channel(street):
+async def test_the_objects_are_drawn_as_points_with_a_channel(installed_display):
     async with open_world(RvizConfig.parse(CONFIG.replace(CLASS, POINTS_CLASS))) as world:
         publisher = world.graph.create_node("perception").create_publisher(
             "street_msgs/msg/TrackedObjects", "/objects", 10
         )
         world.move({("base", "street"): (0, 0, 1, 0, 0, 0, 1)}, static=True)
         await world.settle()
-        publisher.publish(detections(car(1, 5.0), car(2, -5.0)))
+        publisher.publish(make_detections(make_car(1, 5.0), make_car(2, -5.0)))
         await world.settle()
         (display,) = world.viewer.displays
         assert display.row().drawing == "rviz_default_plugins/PointCloud2"

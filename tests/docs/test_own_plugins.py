@@ -10,7 +10,7 @@ import pytest
 from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.simulation.plugins import registry
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 from tests.toml_files import read_toml
 
 pytestmark = pytest.mark.extra("sim")
@@ -19,9 +19,9 @@ PAGES = (DOCS / "own-plugins.md", DOCS / "zh" / "own-plugins.md")
 
 
 @pytest.fixture(params=PAGES, ids=["en", "zh"])
-def wind(request, tmp_path, monkeypatch):
+def installed_plugin(request, tmp_path, monkeypatch):
     """Install the package of the page, and return its folder."""
-    for block in blocks(request.param):
+    for block in read_blocks(request.param):
         if block.title:
             (tmp_path / block.title).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / block.title).write_text(block.text, encoding="utf-8")
@@ -47,15 +47,15 @@ def _forget() -> None:
 
 
 def test_both_languages_have_same_example():
-    first, second = ({block.title: block.text for block in blocks(page) if block.title} for page in PAGES)
+    first, second = ({block.title: block.text for block in read_blocks(page) if block.title} for page in PAGES)
     assert first == second
 
 
-def test_shown_test_passes(wind):
-    runpy.run_path(str(wind / "test_my_wind.py"))["test_the_wind_moves_the_buoy"]()
+def test_shown_test_passes(installed_plugin):
+    runpy.run_path(str(installed_plugin / "test_my_wind.py"))["test_the_wind_moves_the_buoy"]()
 
 
-def test_wind_follows_topic_and_is_restored_on_reset(wind):
+def test_wind_follows_topic_and_is_restored_on_reset(installed_plugin):
     from linkwright.testing import SteppedSimulation
 
     with SteppedSimulation("empty", "buoy.sdf") as test:

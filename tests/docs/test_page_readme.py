@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from tests.docs.pages import Block, blocks
+from tests.docs.pages import Block, read_blocks
 from tests.places import REPOSITORY
 
 README = REPOSITORY / "frontend" / "README.md"
-SHOWN = [block for block in blocks(README) if block.title]
+SHOWN = [block for block in read_blocks(README) if block.title]
 
 
 def test_readme_shows_four_code_blocks() -> None:

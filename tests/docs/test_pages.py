@@ -11,25 +11,25 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli.command import help_texts, parser_for
-from tests.docs.pages import DOCS, READMES, Block, blocks, commands, pages
+from tests.docs.pages import DOCS, READMES, Block, find_pages, read_blocks, read_commands
 from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
 
 ENGLISH = sorted(path.name for path in DOCS.glob("*.md"))
 
 
-def identifier(page: Path) -> str:
+def page_name(page: Path) -> str:
     return str(page.relative_to(REPOSITORY))
 
 
-def leaf_parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
+def find_leaf_parsers(parser: argparse.ArgumentParser) -> Iterator[argparse.ArgumentParser]:
     """Return the parser, or the parsers of its subcommands."""
     subparser_actions = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     if not subparser_actions:
         yield parser
     for action in subparser_actions:
         for subparser in action.choices.values():
-            yield from leaf_parsers(subparser)
+            yield from find_leaf_parsers(subparser)
 
 
 def test_command_reference_is_current() -> None:
@@ -46,11 +46,11 @@ def test_stale_command_reference_is_found_and_fixed(tmp_path: Path, monkeypatch:
     assert tool.main(["--check"]) == 0
 
 
-@pytest.mark.parametrize("page", [DOCS / "commands.md", DOCS / "zh" / "commands.md"], ids=identifier)
+@pytest.mark.parametrize("page", [DOCS / "commands.md", DOCS / "zh" / "commands.md"], ids=page_name)
 @pytest.mark.parametrize("verb", help_texts())
 def test_all_options_are_documented(page: Path, verb: str) -> None:
     sections = dict(re.findall(r"^## (.+?)\n(.*?)(?=^## |\Z)", page.read_text("utf-8"), re.MULTILINE | re.DOTALL))
-    for parser in leaf_parsers(parser_for(verb)):
+    for parser in find_leaf_parsers(parser_for(verb)):
         section = sections[parser.prog]
         for action in parser._actions:
             if action.dest != "help":
@@ -58,15 +58,15 @@ def test_all_options_are_documented(page: Path, verb: str) -> None:
                     assert name in section, f"{parser.prog} {name}"
 
 
-@pytest.mark.parametrize("page", pages(), ids=identifier)
+@pytest.mark.parametrize("page", find_pages(), ids=page_name)
 def test_documented_commands_are_accepted(page: Path) -> None:
-    for line in commands(page):
+    for line in read_commands(page):
         arguments = shlex.split(line)
         assert arguments[1] in help_texts(), line
         parser_for(arguments[1]).parse_args(arguments[2:])
 
 
-@pytest.mark.parametrize("page", pages(), ids=identifier)
+@pytest.mark.parametrize("page", find_pages(), ids=page_name)
 def test_links_have_existing_targets(page: Path) -> None:
     for target in re.findall(r"\]\(([^)#\s]+)", page.read_text(encoding="utf-8")):
         if not target.startswith("https://"):
@@ -75,18 +75,18 @@ def test_links_have_existing_targets(page: Path) -> None:
 
 @pytest.mark.parametrize("name", ENGLISH)
 def test_pages_have_chinese_translation_with_same_blocks(name: str) -> None:
-    english, chinese = blocks(DOCS / name), blocks(DOCS / "zh" / name)
+    english, chinese = read_blocks(DOCS / name), read_blocks(DOCS / "zh" / name)
     if name != "commands.md":
         assert list(map(_common_text, chinese)) == list(map(_common_text, english))
 
 
 def test_readmes_show_same_commands() -> None:
-    assert commands(READMES[0]) == commands(READMES[1])
+    assert read_commands(READMES[0]) == read_commands(READMES[1])
 
 
-@pytest.mark.parametrize("page", pages(), ids=identifier)
+@pytest.mark.parametrize("page", find_pages(), ids=page_name)
 def test_ros_programs_are_not_run_with_plain_python(page: Path) -> None:
-    page_blocks = blocks(page)
+    page_blocks = read_blocks(page)
     nodes = {
         block.title for block in page_blocks if "import rclpy" in block.text or "nav2_simple_commander" in block.text
     }
@@ -101,7 +101,10 @@ def _documented_names(action: argparse.Action) -> list[str]:
 
 
 def _common_text(block: Block) -> tuple[str, list[str]]:
-    """Return the language-independent part of a block; the program's output is in the language of the page."""
+    """Return the language-independent part of a block.
+
+    The program's output is in the language of the page.
+    """
     return block.language, [] if block.language == "text" else _without_comments(block.text)
 
 

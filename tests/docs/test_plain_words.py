@@ -1,4 +1,7 @@
-"""Words that Linkwright does not use: the glossary matches the list of refused patterns, and the tool finds them."""
+"""Words that Linkwright does not use.
+
+The glossary matches the list of refused patterns, and the tool finds them.
+"""
 
 from __future__ import annotations
 

@@ -76,7 +76,7 @@ def test_package_readme_installs_from_index():
     ]
 
 
-def script(path, text):
+def write_script(path, text):
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(f"#!/bin/sh\n{text}\n", encoding="utf-8")
     path.chmod(0o755)
@@ -103,12 +103,12 @@ def make_demo(folder, *variables):
 
 def pretend_installed(folder, linkwright):
     """Return the variables and options with which make considers the program installed."""
-    script(folder / "bin" / "linkwright", linkwright)
+    write_script(folder / "bin" / "linkwright", linkwright)
     return [f"BIN={folder / 'bin'}", "VENV=.", "-o", "./.ready", f"PYTHON={sys.executable}"]
 
 
 def test_make_reports_unsupported_python_in_one_line(tmp_path):
-    old = script(tmp_path / "old", 'echo "is 3.8"')
+    old = write_script(tmp_path / "old", 'echo "is 3.8"')
     result = make_demo(tmp_path, f"PYTHON={old}")
     assert result.returncode == 2
     assert result.stdout == ""

@@ -36,18 +36,21 @@ NAVIGATION = [
 ]
 
 
-def entries(items: list[Any]) -> Iterator[tuple[str, str]]:
-    """Return each title and page of a navigation; sections have no page, and pages may have no title."""
+def navigation_entries(items: list[Any]) -> Iterator[tuple[str, str]]:
+    """Return each title and page of a navigation.
+
+    Sections have no page, and pages may have no title.
+    """
     for item in items:
         title, below = next(iter(item.items())) if isinstance(item, dict) else ("", item)
         if isinstance(below, list):
             yield title, ""
-            yield from entries(below)
+            yield from navigation_entries(below)
         else:
             yield title, below
 
 
-def build(settings: Path, site: Path) -> subprocess.CompletedProcess[str]:
+def build_site(settings: Path, site: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "mkdocs", "build", "--strict", "--config-file", settings, "--site-dir", site],
         env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},
@@ -57,8 +60,11 @@ def build(settings: Path, site: Path) -> subprocess.CompletedProcess[str]:
     )
 
 
-def build_small(folder: Path, **changed_pages: str) -> tuple[Path, subprocess.CompletedProcess[str]]:
-    """Build a site of a few pages with our settings and some changed pages; return its folder and the result."""
+def build_small_site(folder: Path, **changed_pages: str) -> tuple[Path, subprocess.CompletedProcess[str]]:
+    """Build a site of a few pages, and return its folder and the result.
+
+    It uses Linkwright's settings and some changed pages.
+    """
     for name, text in {**PAGES, **{f"{name}.md": text for name, text in changed_pages.items()}}.items():
         (folder / "docs" / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / "docs" / name).write_text(text, encoding="utf-8")
@@ -69,18 +75,18 @@ def build_small(folder: Path, **changed_pages: str) -> tuple[Path, subprocess.Co
     }
     file = folder / "mkdocs.yml"
     file.write_text(yaml.safe_dump(settings), encoding="utf-8")
-    return folder / "site", build(file, folder / "site")
+    return folder / "site", build_site(file, folder / "site")
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Build a site of the pages above."""
-    folder, result = build_small(tmp_path_factory.mktemp("small"))
+    folder, result = build_small_site(tmp_path_factory.mktemp("small"))
     assert result.returncode == 0, result.stderr
     return folder
 
 
-def tabs(page: Path) -> list[str]:
+def tab_titles(page: Path) -> list[str]:
     match = re.search(r'<nav class="md-tabs".*?</nav>', page.read_text(encoding="utf-8"), re.DOTALL)
     assert match is not None
     return [text.strip() for text in re.findall(r'class="md-tabs__link">\s*(.*?)\s*</a>', match[0], re.DOTALL)]
@@ -104,18 +110,18 @@ def test_navigation_has_tutorials_guides_reference_and_explanation() -> None:
 
 
 def test_english_pages_are_listed_once() -> None:
-    pages = Counter(page for _, page in entries(SETTINGS["nav"]) if page)
+    pages = Counter(page for _, page in navigation_entries(SETTINGS["nav"]) if page)
     existing = {path.relative_to(DOCS).as_posix() for path in DOCS.rglob("*.md") if "zh" not in path.parts}
     assert dict(pages) == dict.fromkeys((name for name in existing if not name.startswith("decisions/0")), 1)
 
 
 def test_navigation_titles_have_chinese_translation() -> None:
-    assert {title for title, _ in entries(SETTINGS["nav"]) if title} == set(SETTINGS["extra"]["chinese"])
+    assert {title for title, _ in navigation_entries(SETTINGS["nav"]) if title} == set(SETTINGS["extra"]["chinese"])
 
 
 def test_page_links_to_its_translation(site: Path) -> None:
-    assert tabs(site / "more.html") == ["Home", "Tutorials", "Reference"]
-    assert tabs(site / "zh" / "more.html") == ["首页", "教程", "参考"]
+    assert tab_titles(site / "more.html") == ["Home", "Tutorials", "Reference"]
+    assert tab_titles(site / "zh" / "more.html") == ["首页", "教程", "参考"]
     assert languages(site / "zh" / "more.html") == {"en": "more.html", "zh": "zh/more.html"}
     assert {link.rpartition("site/")[2] for link in languages(site / "more.html").values()} == {
         "more.html",
@@ -161,12 +167,12 @@ def test_search_index_is_separate_per_language(site: Path) -> None:
     ids=["anchor", "page", "page in Chinese", "page not listed"],
 )
 def test_broken_links_and_unlisted_pages_fail_build(tmp_path: Path, changed: dict[str, str], reason: str) -> None:
-    _, result = build_small(tmp_path, **changed)
+    _, result = build_small_site(tmp_path, **changed)
     assert result.returncode == 1
     assert reason in result.stderr
 
 
 def test_full_site_builds(tmp_path: Path) -> None:
-    result = build(REPOSITORY / "mkdocs.yml", tmp_path / "site")
+    result = build_site(REPOSITORY / "mkdocs.yml", tmp_path / "site")
     assert result.returncode == 0, result.stderr
     assert len(list((tmp_path / "site").rglob("*.html"))) > 100

@@ -7,13 +7,13 @@ import pytest
 from linkwright.sweep.plan import plan_runs
 from linkwright.sweep.running import run_once
 from linkwright.sweep.scenario import load_scenario
-from tests.docs.pages import blocks
+from tests.docs.pages import read_blocks
 from tests.places import REPOSITORY
 
 
 @pytest.mark.parametrize("page", ["docs/sweeps.md", "docs/zh/sweeps.md"])
 def test_sweep_scenario_runs_and_friction_decides_arrival(page, tmp_path):
-    (block,) = (block for block in blocks(REPOSITORY / page) if block.title)
+    (block,) = (block for block in read_blocks(REPOSITORY / page) if block.title)
     path = tmp_path / block.title
     path.write_text(block.text, encoding="utf-8")
     scenario = load_scenario(path)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.docs.pages import blocks
+from tests.docs.pages import read_blocks
 from tests.repository_tools import load_tool
 
 TOOL = load_tool("documented_output")
@@ -22,18 +22,21 @@ def test_shown_output_is_current(page: Path) -> None:
 
 
 def test_both_languages_show_same_cases() -> None:
-    english, chinese = map(blocks, TOOL.PAGES)
+    english, chinese = map(read_blocks, TOOL.PAGES)
     assert [block.language for block in english].count("text") >= 6
-    for ours, theirs in zip(english, chinese, strict=True):
-        if ours.language == "text":
-            assert language_independent(theirs.text) == language_independent(ours.text)
-            assert theirs.text.startswith("错误[")
+    for english_block, chinese_block in zip(english, chinese, strict=True):
+        if english_block.language == "text":
+            assert language_independent(chinese_block.text) == language_independent(english_block.text)
+            assert chinese_block.text.startswith("错误[")
         else:
-            assert theirs == ours
+            assert chinese_block == english_block
 
 
 def language_independent(output: str) -> list[str]:
-    """Return the language-independent part: codes, locations, excerpts with carets, the number of notes and hints."""
+    """Return the language-independent part of an output.
+
+    This part has codes, locations, excerpts with carets, and the number of notes and hints.
+    """
     output = re.sub(r"^(\d+) (?:errors?, |个错误，)(\d+) (?:warnings?|个警告)$", r"\1 \2", output, flags=re.MULTILINE)
     lines = [re.sub(r"^\S+(\[\w+\]).*", r"\1", line) for line in output.splitlines()]
     return [re.sub(r"^   = .*?( \(\S+\))?$", r"=\1", line) for line in lines]

@@ -11,8 +11,8 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.descriptions import load
-from tests.docs.pages import DOCS, blocks
-from tests.docs.reader import write
+from tests.docs.pages import DOCS, read_blocks
+from tests.docs.reader import write_block
 from tests.robots.workspaces import colcon_build
 
 LANGUAGES = {"en": DOCS / "tutorial.md", "zh": DOCS / "zh" / "tutorial.md"}
@@ -30,9 +30,9 @@ def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.
     create = next(line for line in page.splitlines() if line.startswith("linkwright pkg create "))
     assert main([*shlex.split(create)[1:], "--destination-directory", "src"]) == 0
     package = tmp_path / "src" / "my_robot_description"
-    for block in blocks(LANGUAGES[request.param]):
+    for block in read_blocks(LANGUAGES[request.param]):
         if block.title:
-            write(block, package)
+            write_block(block, package)
     return package
 
 
@@ -53,7 +53,7 @@ def test_check_prints_tree_of_page(package: Path, capsys: pytest.CaptureFixture[
     assert main(["check", str(package / "urdf" / "mbot_base.xacro")]) == 0
     captured = capsys.readouterr().out
     for page in LANGUAGES.values():
-        assert captured in [block.text for block in blocks(page) if block.language == "text"]
+        assert captured in [block.text for block in read_blocks(page) if block.language == "text"]
 
 
 def test_check_of_package_finds_nothing(package: Path, capsys: pytest.CaptureFixture[str]) -> None:

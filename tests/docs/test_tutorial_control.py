@@ -1,4 +1,7 @@
-"""The third chapter of the tutorial, followed by a reader: nodes that drive mbot, and their tests."""
+"""The third chapter of the tutorial, followed by a reader.
+
+It covers nodes that drive mbot, and their tests.
+"""
 
 from __future__ import annotations
 
@@ -19,8 +22,8 @@ from linkwright import standins
 from linkwright.cli import main
 from linkwright.standins import process
 from linkwright.testing import SteppedSimulation
-from tests.docs.pages import DOCS, blocks, commands
-from tests.docs.reader import Outcome, write
+from tests.docs.pages import DOCS, read_blocks, read_commands
+from tests.docs.reader import Outcome, write_block
 
 pytest.importorskip("mujoco")
 
@@ -33,12 +36,12 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the package after the last step."""
     folder = tmp_path_factory.mktemp("control_ws")
     page = LANGUAGES["en"]
-    create = next(line for line in commands(page) if line.startswith("linkwright pkg create "))
+    create = next(line for line in read_commands(page) if line.startswith("linkwright pkg create "))
     assert main([*shlex.split(create)[1:], "--destination-directory", str(folder / "src")]) == 0
     package = folder / "src" / "my_control"
-    for block in blocks(page):
+    for block in read_blocks(page):
         if block.title:
-            write(block, package)
+            write_block(block, package)
     return package
 
 
@@ -53,7 +56,7 @@ def load(package: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
 
 
 def test_first_node_has_at_most_twenty_lines() -> None:
-    (node,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "my_control/first_move.py"]
+    (node,) = [block for block in read_blocks(LANGUAGES["en"]) if block.title == "my_control/first_move.py"]
     code_lines = [line for line in node.text.splitlines() if line]
     assert len(code_lines) <= 20
 
@@ -93,8 +96,8 @@ def test_stop_ahead_node_stops_before_block(load: Any) -> None:
         load("stop_ahead").StopAhead()
         scans = test.record("/scan")
         test.advance(20.0)
-        ahead = [distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) < 30]
-        assert 0.4 < min(ahead) <= 0.62
+        distances_ahead = [distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) < 30]
+        assert 0.4 < min(distances_ahead) <= 0.62
 
 
 def test_check_of_package_finds_nothing(package: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -134,7 +137,7 @@ def test_tests_of_page_pass(package: Path) -> None:
 
 
 def test_both_languages_show_same_files_and_commands() -> None:
-    english, chinese = ([(block.title, block.text) for block in blocks(page)] for page in LANGUAGES.values())
+    english, chinese = ([(block.title, block.text) for block in read_blocks(page)] for page in LANGUAGES.values())
     assert english == chinese
 
 

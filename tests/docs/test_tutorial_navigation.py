@@ -1,4 +1,7 @@
-"""The chapter about navigation; its program is tested in tests/standins/test_simple_commander.py."""
+"""The chapter about navigation.
+
+Its program is tested in tests/standins/test_simple_commander.py.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from tests.docs.pages import DOCS, commands
+from tests.docs.pages import DOCS, read_commands
 from tests.docs.reader import Outcome
 
 LANGUAGES = {"en": DOCS / "tutorial-navigation.md", "zh": DOCS / "zh" / "tutorial-navigation.md"}
@@ -23,7 +26,7 @@ def test_launch_file_has_arguments_of_page(capsys):
 
 @pytest.mark.slow
 def test_tutorial_commands_run_with_installed_wheel(follow: Callable[..., Path]) -> None:
-    bedroom_goal, wall_goal = (line for line in commands(LANGUAGES["en"]) if "send_goal" in line)
+    bedroom_goal, wall_goal = (line for line in read_commands(LANGUAGES["en"]) if "send_goal" in line)
     home = follow(
         LANGUAGES["en"],
         {

@@ -11,7 +11,7 @@ import pytest
 from linkwright import standins
 from linkwright.cli import main
 from linkwright.nodes import EXECUTABLES
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 from tests.docs.reader import Outcome
 from tests.vision.nodes.seeking_robot import SeekingRobot
 
@@ -38,7 +38,7 @@ def test_nodes_of_page_exist(page: Path):
 def test_program_of_page_drives_to_red_object(tmp_path: Path):
     pytest.importorskip("mujoco")
     standins.activate()
-    (program,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "follow_color.py"]
+    (program,) = [block for block in read_blocks(LANGUAGES["en"]) if block.title == "follow_color.py"]
     names: dict[str, Any] = {"__name__": "follow_color"}
     exec(compile(program.text, "follow_color.py", "exec"), names)
     with SeekingRobot(tmp_path, (2.0, 0.6), object_name="red") as test:

@@ -17,7 +17,7 @@ from linkwright.nodes import NodeOptions
 from linkwright.speech.commands.command_file import parse_commands, read_command_file
 from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.testing import AsyncSteppedSimulation
-from tests.docs.pages import DOCS, blocks, commands
+from tests.docs.pages import DOCS, read_blocks, read_commands
 from tests.docs.reader import Outcome
 from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
 
@@ -30,7 +30,7 @@ STRING = get_message("std_msgs/msg/String")
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_shown_utterances_are_understood(language: str) -> None:
     page = LANGUAGES[language].read_text(encoding="utf-8")
-    ours = read_command_file(VOICE_PACKAGE / "config" / "commands.yaml")
+    robot_commands = read_command_file(VOICE_PACKAGE / "config" / "commands.yaml")
     table = [cell for row in re.findall(r"^\| (`.+?) \| (.+?) \|$", page, re.MULTILINE) for cell in row]
     utterances = [text for cell in table[:8] for text in re.findall(r"`([^`]+)`", cell) or cell.split("、")]
     utterances += [
@@ -55,12 +55,12 @@ def test_shown_utterances_are_understood(language: str) -> None:
         "前进",
     ]
     assert len(utterances) > 22
-    assert [text for text in utterances if ours.match_command(text) is None] == []
+    assert [text for text in utterances if robot_commands.match_command(text) is None] == []
 
 
 def test_launch_file_has_arguments_of_page(capsys: pytest.CaptureFixture[str]) -> None:
     documented = {
-        word.partition(":=")[0] for line in commands(LANGUAGES["en"]) for word in line.split() if ":=" in word
+        word.partition(":=")[0] for line in read_commands(LANGUAGES["en"]) for word in line.split() if ":=" in word
     }
     assert documented >= {"commands_file", "engine", "language", "navigation", "open_listening", "wav"}
     assert main(["launch", "my_robot_voice", "voice.launch.py", "--show-args"]) == 0
@@ -71,7 +71,7 @@ def test_launch_file_has_arguments_of_page(capsys: pytest.CaptureFixture[str]) -
 
 async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
     pytest.importorskip("mujoco")
-    (block,) = [block for block in blocks(LANGUAGES["en"]) if block.title == "my_commands.yaml"]
+    (block,) = [block for block in read_blocks(LANGUAGES["en"]) if block.title == "my_commands.yaml"]
     file = tmp_path / block.title
     file.write_text(block.text, encoding="utf-8")
     async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
@@ -100,7 +100,7 @@ async def test_custom_command_file_moves_mbot(tmp_path: Path) -> None:
 
 
 def test_command_file_of_voice_page_is_valid() -> None:
-    (block,) = [block for block in blocks(DOCS / "voice.md") if block.title == "my_commands.yaml"]
+    (block,) = [block for block in read_blocks(DOCS / "voice.md") if block.title == "my_commands.yaml"]
     found = parse_commands(SourceText(block.title, block.text))
     assert found.match_command("please go forward seven meters") is None
     for text in (

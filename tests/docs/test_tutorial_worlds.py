@@ -1,4 +1,7 @@
-"""The second chapter of the tutorial, followed by a reader: a world, and a package that loads mbot into it."""
+"""The second chapter of the tutorial, followed by a reader.
+
+It covers a world, and a package that loads mbot into it.
+"""
 
 from __future__ import annotations
 
@@ -10,8 +13,8 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from tests.docs.pages import DOCS, blocks
-from tests.docs.reader import write
+from tests.docs.pages import DOCS, read_blocks
+from tests.docs.reader import write_block
 from tests.robots.workspaces import colcon_build
 
 LANGUAGES = {"en": DOCS / "tutorial-worlds.md", "zh": DOCS / "zh" / "tutorial-worlds.md"}
@@ -28,9 +31,9 @@ def package(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.
     create = next(line for line in page.read_text("utf-8").splitlines() if line.startswith("linkwright pkg create "))
     assert main([*shlex.split(create)[1:], "--destination-directory", "src"]) == 0
     package = tmp_path / "src" / "my_worlds"
-    for block in blocks(page):
+    for block in read_blocks(page):
         if block.title:
-            write(block, package)
+            write_block(block, package)
     return package
 
 
@@ -48,7 +51,7 @@ def test_launch_file_includes_simulation(package: Path, capsys: pytest.CaptureFi
 
 
 def test_both_languages_show_same_files() -> None:
-    english, chinese = ([(block.title, block.text) for block in blocks(page)] for page in LANGUAGES.values())
+    english, chinese = ([(block.title, block.text) for block in read_blocks(page)] for page in LANGUAGES.values())
     assert english == chinese
 
 

@@ -1,4 +1,7 @@
-"""The examination of a record: each problem is found, and a graph without problems has no findings."""
+"""The examination of a record.
+
+Each problem is found, and a graph without problems has no findings.
+"""
 
 from __future__ import annotations
 
@@ -37,8 +40,8 @@ JOINT_STATE, TF = "sensor_msgs/msg/JointState", "tf2_msgs/msg/TFMessage"
 
 
 def endpoint(kind: str, node: str, name: str, type_name: str, qos: QoSProfile | None = None) -> EndpointInfo:
-    namespace, _, bare = node.rpartition("/")
-    identity = NodeIdentity(bare, namespace or "/")
+    namespace, _, base_name = node.rpartition("/")
+    identity = NodeIdentity(base_name, namespace or "/")
     return EndpointInfo(EndpointKind(kind), identity, name, type_name, qos or QoSProfile(10), bytes(16))
 
 
@@ -195,8 +198,8 @@ def test_frame_with_two_parents_is_reported():
 
 
 def test_disconnected_frame_tree_is_reported():
-    apart = ObservedTransform("camera", "lens", ("/camera_driver",))
-    diagnostic = only_diagnostic(replace(WELL, transforms=(*WELL.transforms, apart)), "DOC308")
+    disconnected = ObservedTransform("camera", "lens", ("/camera_driver",))
+    diagnostic = only_diagnostic(replace(WELL, transforms=(*WELL.transforms, disconnected)), "DOC308")
     assert "--frame-id base --child-frame-id camera" in diagnostic.hint
 
 
@@ -218,8 +221,8 @@ def test_missing_fixed_frame_is_reported():
     mapped = (*WELL.transforms, ObservedTransform("map", "base", ("/localization",), is_static=True))
     diagnostic = only_diagnostic(replace(WELL, transforms=mapped, fixed_frames=(FixedFrame("odom", "x"),)), "DOC309")
     assert diagnostic.hint == "choose another Fixed Frame; the root of all frames is 'map'"
-    near = only_diagnostic(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
-    assert near.hint == "did you mean 'base'?"
+    diagnostic = only_diagnostic(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
+    assert diagnostic.hint == "did you mean 'base'?"
 
 
 def test_message_in_missing_frame_is_reported():
@@ -227,16 +230,16 @@ def test_message_in_missing_frame_is_reported():
     diagnostic = only_diagnostic(replace(WELL, frames=(lost,)), "DOC310")
     assert diagnostic.message == "'/laser' publishes '/scan' in frame 'lazer', which does not exist"
     assert "static_transform_publisher" in diagnostic.hint
-    near = only_diagnostic(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
+    diagnostic = only_diagnostic(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
     rays = [ObservedFrame(topic, "/laser", "mbot::laser::lidar") for topic in ("/world_rays", "/world_rays/others")]
     assert not codes(replace(WELL, frames=tuple(rays))), "frames of the simulated world are not reported"
-    assert near.hint == "did you mean 'wheel'?"
+    assert diagnostic.hint == "did you mean 'wheel'?"
     assert codes(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "base"),))) == []
 
 
 def test_message_frame_is_not_reported_without_transforms():
-    alone = Observation(seconds=3.0, nodes=("/laser",), frames=(ObservedFrame("/scan", "/laser", "laser"),))
-    assert "DOC310" not in codes(alone)
+    observation = Observation(seconds=3.0, nodes=("/laser",), frames=(ObservedFrame("/scan", "/laser", "laser"),))
+    assert "DOC310" not in codes(observation)
 
 
 def test_simulation_world_is_accepted_as_fixed_frame():
@@ -247,16 +250,16 @@ def test_simulation_world_is_accepted_as_fixed_frame():
 
 
 def test_root_of_single_link_robot_is_accepted_as_fixed_frame():
-    lonely = ObservedDescription("/robot_description", RSP, '<robot name="r"><link name="only"/></robot>')
+    description = ObservedDescription("/robot_description", RSP, '<robot name="r"><link name="only"/></robot>')
     observation = replace(
-        WELL, transforms=(), joints=(), descriptions=(lonely,), fixed_frames=(FixedFrame("only", "x"),)
+        WELL, transforms=(), joints=(), descriptions=(description,), fixed_frames=(FixedFrame("only", "x"),)
     )
     assert examine(observation) == []
 
 
 def test_missing_fixed_frame_hint_names_all_tree_roots():
-    apart = (*WELL.transforms, ObservedTransform("camera", "lens", ("/camera",)))
-    diagnostics = examine(replace(WELL, transforms=apart, fixed_frames=(FixedFrame("odom", "x"),)))
+    disconnected = (*WELL.transforms, ObservedTransform("camera", "lens", ("/camera",)))
+    diagnostics = examine(replace(WELL, transforms=disconnected, fixed_frames=(FixedFrame("odom", "x"),)))
     (hint,) = [diagnostic.hint for diagnostic in diagnostics if diagnostic.code == "DOC309"]
     assert hint == "choose another Fixed Frame; the roots of the trees of frames are 'base', 'camera'"
 
@@ -277,8 +280,8 @@ def test_frame_list_has_chinese_quotes_in_chinese():
 
 
 def test_file_name_as_description_is_reported():
-    wrong = ObservedDescription("/robot_description", RSP, "mbot.urdf")
-    diagnostic = only_diagnostic(replace(WELL, descriptions=(wrong,), joints=()), "DOC501")
+    description = ObservedDescription("/robot_description", RSP, "mbot.urdf")
+    diagnostic = only_diagnostic(replace(WELL, descriptions=(description,), joints=()), "DOC501")
     assert "not the name of a file" in diagnostic.hint
 
 

@@ -82,8 +82,8 @@ async def test_unnamed_endpoint_is_waited_for_one_second_at_most(joined: Graph) 
 async def test_contradictory_velocity_publishers_are_recorded(joined: Graph) -> None:
     """Silent publishers and publishers of equal commands do not contradict each other."""
     node, other, alike = (joined.create_node(name) for name in ("keys", "planner", "alike"))
-    idle = joined.create_node("idle")
-    idle.create_publisher(TWIST, "/cmd_vel", 10)
+    idle_node = joined.create_node("idle")
+    idle_node.create_publisher(TWIST, "/cmd_vel", 10)
     publishers = [
         sender.create_publisher(kind, topic, 10)
         for sender, kind, topic in (
@@ -130,17 +130,17 @@ async def test_velocities_but_no_stamps_of_commands_are_recorded(joined: Graph) 
 async def test_bridged_transforms_have_one_sender_and_no_delay(joined: Graph) -> None:
     simulator, bridge = joined.create_node("gazebo"), joined.create_node("ros_gz_bridge")
     clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
-    own = simulator.create_publisher(TRANSFORMS, "/model/vehicle/tf", 10)
+    model_publisher = simulator.create_publisher(TRANSFORMS, "/model/vehicle/tf", 10)
     other = simulator.create_publisher(TRANSFORMS, "/robot1/tf", 10)
     handed_on = bridge.create_publisher(TRANSFORMS, "/tf", 10)
     watched = asyncio.ensure_future(observe_graph(joined, RemoteTransport(), seconds=0.5))
-    message = own.msg_type()
+    message = model_publisher.msg_type()
     message.transforms = [TransformStamped(child_frame_id="base")]
     message.transforms[0].header.frame_id = "odom"
     message.transforms[0].header.stamp.sec = 5
     while not watched.done():
         clock.publish(Clock(clock=message.transforms[0].header.stamp))
-        for publisher in (own, other, handed_on):
+        for publisher in (model_publisher, other, handed_on):
             publisher.publish(message)
         await asyncio.sleep(0.01)
     (transform,) = watched.result().transforms
@@ -150,7 +150,10 @@ async def test_bridged_transforms_have_one_sender_and_no_delay(joined: Graph) ->
 
 
 async def test_simulator_stamps_have_no_delay_and_world_poses_are_not_frames(joined: Graph) -> None:
-    """The simulator publishes the time of its stamps, and the world's poses on a topic of transforms are not frames."""
+    """The simulator's stamps have no delay, and world poses are not frames.
+
+    The simulator publishes the time of its stamps, and the world's poses on a topic of transforms.
+    """
     simulator = joined.create_node("gazebo")
     clock = simulator.create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
     poses, frames = (simulator.create_publisher(TRANSFORMS, topic, 10) for topic in ("/world_poses", "/robot1/tf"))

@@ -37,11 +37,11 @@ def pipe(tmp_path: Path) -> Path:
 @pytest.fixture
 def piped() -> Iterator[str]:
     """Return the path of a pipe with a xacro file, as from ``<(command)`` in a shell."""
-    outer, inner = os.pipe()
-    os.write(inner, XACRO.encode())
-    os.close(inner)
-    yield f"/dev/fd/{outer}"
-    os.close(outer)
+    read_end, write_end = os.pipe()
+    os.write(write_end, XACRO.encode())
+    os.close(write_end)
+    yield f"/dev/fd/{read_end}"
+    os.close(read_end)
 
 
 @pytest.mark.parametrize("at_most", [0, 10, 1 << 17, len(LONG) - 1, len(LONG), len(LONG) + 1])
@@ -72,8 +72,8 @@ def test_pipe_without_writer_is_rejected(pipe: Path) -> None:
 def test_pipe_is_read_until_closed_and_can_be_reread(pipe: Path) -> None:
     # The writer can open the pipe only with a reader. This reader is closed before the pipe is read.
     first = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    inner = os.open(pipe, os.O_WRONLY)
-    writer = threading.Thread(target=lambda: (os.write(inner, LONG), os.close(inner)))
+    write_end = os.open(pipe, os.O_WRONLY)
+    writer = threading.Thread(target=lambda: (os.write(write_end, LONG), os.close(write_end)))
     writer.start()
     assert read_file(pipe, 10 * len(LONG)) == LONG
     writer.join()
@@ -83,8 +83,8 @@ def test_pipe_is_read_until_closed_and_can_be_reread(pipe: Path) -> None:
 
 def test_pipe_waits_for_slow_writer(pipe: Path) -> None:
     first = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
-    inner = os.open(pipe, os.O_WRONLY)
-    writer = threading.Timer(0.05, lambda: (os.write(inner, b"late"), os.close(inner)))
+    write_end = os.open(pipe, os.O_WRONLY)
+    writer = threading.Timer(0.05, lambda: (os.write(write_end, b"late"), os.close(write_end)))
     writer.start()
     assert read_text(pipe) == "late"
     os.close(first)

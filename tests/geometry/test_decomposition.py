@@ -43,8 +43,8 @@ def test_concave_face_is_triangulated():
     outline = [(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)]
     triangles = triangulate(outline)
     assert len(triangles) == 4
-    flat = np.array([[x, y, 0.0] for x, y in outline])
-    assert len(convex_pieces(flat, np.array(triangles), 100)) == 4
+    flat_points = np.array([[x, y, 0.0] for x, y in outline])
+    assert len(convex_pieces(flat_points, np.array(triangles), 100)) == 4
 
 
 def test_flat_surface_is_thickened():

@@ -1,3 +1,5 @@
+"""Mass properties of bodies: sums, equivalent boxes and principal axes."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -28,11 +30,11 @@ def test_box_is_sum_of_its_parts(a, b, c, part, xyz, rpy):
     pose = Pose(xyz, rpy)
     left = shape_properties(Box((a * part, b, c))).moved(Pose((-a * (1 - part) / 2, 0, 0)))
     right = shape_properties(Box((a * (1 - part), b, c))).moved(Pose((a * part / 2, 0, 0)))
-    whole = shape_properties(Box((a, b, c))).moved(pose)
-    both = combine([left.moved(pose), right.moved(pose)])
-    assert both.mass == pytest.approx(whole.mass)
-    assert np.allclose(both.center, whole.center)
-    assert np.allclose(both.inertia, whole.inertia, rtol=1e-8, atol=1e-10)
+    box = shape_properties(Box((a, b, c))).moved(pose)
+    combined = combine([left.moved(pose), right.moved(pose)])
+    assert combined.mass == pytest.approx(box.mass)
+    assert np.allclose(combined.center, box.center)
+    assert np.allclose(combined.inertia, box.inertia, rtol=1e-8, atol=1e-10)
 
 
 @given(lengths, lengths, lengths, places, angles)
@@ -52,10 +54,10 @@ def test_impossible_moments_have_no_equivalent_box():
 def test_parallel_axis_theorem(radius, center, point):
     body = shape_properties(Sphere(radius), 500.0).moved(Pose(center))
     arm = np.array(center) - np.array(point)
-    about = body.inertia_about(point)
+    inertia = body.inertia_about(point)
     expected = 2 / 5 * body.mass * radius**2 + body.mass * (arm[1] ** 2 + arm[2] ** 2)
-    assert about[0, 0] == pytest.approx(expected)
-    assert about[0, 1] == pytest.approx(-body.mass * arm[0] * arm[1])
+    assert inertia[0, 0] == pytest.approx(expected)
+    assert inertia[0, 1] == pytest.approx(-body.mass * arm[0] * arm[1])
 
 
 def test_principal_axes_diagonalize_inertia_tensor():

@@ -47,7 +47,7 @@ COLLADA = """<?xml version="1.0"?>
 """
 
 
-def stl(triangles: list[list[list[float]]]) -> bytes:
+def make_stl(triangles: list[list[list[float]]]) -> bytes:
     rows = np.zeros(len(triangles), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
     rows["corners"] = triangles
     return bytes(80) + struct.pack("<I", len(triangles)) + rows.tobytes()
@@ -72,7 +72,7 @@ def gltf_document() -> dict[str, Any]:
     }
 
 
-def glb(
+def make_glb(
     modify: Callable[[dict[str, Any]], object] = lambda contents: None,
     corners: list[list[float]] = CORNERS,
     indices: tuple[int, int, int] = (0, 1, 2),
@@ -98,9 +98,9 @@ CASES = {
     "pointer.stl": (b"version https://git-lfs.github.com/spec/v1\n", "it is a Git LFS pointer"),
     "page.stl": (b"<!DOCTYPE html><html>404: Not Found</html>", "it is a web page, not a mesh"),
     "tiny.stl": (b"abc", "it ends after 3 bytes, but the header of an STL has 84"),
-    "cut.stl": (stl([CORNERS, CORNERS])[:-20], "its header declares 2 triangles, but the file has 1"),
-    "nan.stl": (stl([[[0, 0, NAN], *CORNERS[1:]]]), "a coordinate is not a finite number"),
-    "infinite.stl": (stl([[[0, 0, 1e999], *CORNERS[1:]]]), "a coordinate is not a finite number"),
+    "cut.stl": (make_stl([CORNERS, CORNERS])[:-20], "its header declares 2 triangles, but the file has 1"),
+    "nan.stl": (make_stl([[[0, 0, NAN], *CORNERS[1:]]]), "a coordinate is not a finite number"),
+    "infinite.stl": (make_stl([[[0, 0, 1e999], *CORNERS[1:]]]), "a coordinate is not a finite number"),
     "word.stl": (TEXT_STL.replace("vertex 1 0 0", "vertex 1 0 O"), "line 5: 'O' is not a finite number"),
     "nan_in_text.stl": (TEXT_STL.replace("vertex 1 0 0", "vertex 1 0 nan"), "line 5: 'nan' is not a finite number"),
     "few.stl": (TEXT_STL.replace("vertex 1 0 0\n", ""), "line 6: a facet has 2 corners, not 3"),
@@ -127,29 +127,29 @@ CASES = {
     "url.dae": (COLLADA.replace('url="#g"', 'url="#h"'), "line 11: <instance_geometry> refers to '#h'"),
     "scene.dae": (COLLADA.replace('url="#s"', 'url="#t"'), "line 13: <instance_visual_scene> refers to '#t'"),
     "offset.dae": (COLLADA.replace(' offset="0"', ""), "line 9: <input> has no attribute 'offset'"),
-    "cut.glb": (glb()[:-20], "its header declares "),
+    "cut.glb": (make_glb()[:-20], "its header declares "),
     "tiny.glb": (b"glTF", "it ends after 4 bytes, but the header of a .glb has 20"),
-    "letters.glb": (glb().replace(b"glTF", b"glTX", 1), "it does not begin with the letters glTF"),
-    "old.glb": (b"glTF\x01" + glb()[5:], "it is glTF 1, but only glTF 2 is supported"),
-    "json.glb": (glb(text=b'{"asset": '), "its JSON cannot be read: "),
+    "letters.glb": (make_glb().replace(b"glTF", b"glTX", 1), "it does not begin with the letters glTF"),
+    "old.glb": (b"glTF\x01" + make_glb()[5:], "it is glTF 1, but only glTF 2 is supported"),
+    "json.glb": (make_glb(text=b'{"asset": '), "its JSON cannot be read: "),
     "list.gltf": ("[]", "its JSON is not an object"),
     "form.gltf": ('{"asset": {"version": "2.0"}, "meshes": [{}]}', "its JSON does not have the structure of glTF"),
-    "nan.glb": (glb(corners=[[0, 0, NAN], *CORNERS[1:]]), "a coordinate is not a finite number"),
-    "corner.glb": (glb(indices=(0, 1, 70)), "a triangle refers to vertex 70, but there are 3"),
+    "nan.glb": (make_glb(corners=[[0, 0, NAN], *CORNERS[1:]]), "a coordinate is not a finite number"),
+    "corner.glb": (make_glb(indices=(0, 1, 70)), "a triangle refers to vertex 70, but there are 3"),
     "accessor.glb": (
-        glb(lambda contents: attributes_of(contents).update(POSITION=9)),
+        make_glb(lambda contents: attributes_of(contents).update(POSITION=9)),
         "attributes.POSITION is 9, but the number of",
     ),
     "position.glb": (
-        glb(lambda contents: attributes_of(contents).clear()),
+        make_glb(lambda contents: attributes_of(contents).clear()),
         "primitives[0] has no attribute 'POSITION'",
     ),
     "type.glb": (
-        glb(lambda contents: contents["accessors"][0].update(componentType=1)),
+        make_glb(lambda contents: contents["accessors"][0].update(componentType=1)),
         "accessors[0].componentType is 1, which glTF does not define",
     ),
     "long.glb": (
-        glb(lambda contents: contents["bufferViews"][0].update(byteLength=999)),
+        make_glb(lambda contents: contents["bufferViews"][0].update(byteLength=999)),
         "bufferViews[0] reaches beyond the 44 bytes of its buffer",
     ),
     "beside.gltf": (
@@ -174,7 +174,7 @@ def test_malformed_mesh_is_rejected_with_specific_error(name: str, tmp_path: Pat
 
 @pytest.mark.parametrize(
     ("name", "data"),
-    [("a.stl", stl([CORNERS])), ("b.stl", TEXT_STL), ("a.obj", OBJ), ("a.dae", COLLADA), ("a.glb", glb())],
+    [("a.stl", make_stl([CORNERS])), ("b.stl", TEXT_STL), ("a.obj", OBJ), ("a.dae", COLLADA), ("a.glb", make_glb())],
 )
 def test_unmodified_base_files_are_readable(name: str, data: bytes | str, tmp_path: Path) -> None:
     path = tmp_path / name

@@ -43,15 +43,15 @@ def test_collada_keeps_mesh_with_unreadable_material(materials: str) -> None:
         '<bind_material><technique_common><instance_material symbol="m" target="#red"/></technique_common>'
         "</bind_material></instance_geometry>"
     )
-    plain = '<node id="n"><instance_geometry url="#g"/></node>'
-    worn = plain.replace('"n"', '"worn"').replace('"#g"/>', '"#g">' + bound)
-    text = COLLADA.replace(plain, plain + worn).replace("<library_visual", materials + "<library_visual", 1)
+    node_text = '<node id="n"><instance_geometry url="#g"/></node>'
+    worn = node_text.replace('"n"', '"worn"').replace('"#g"/>', '"#g">' + bound)
+    text = COLLADA.replace(node_text, node_text + worn).replace("<library_visual", materials + "<library_visual", 1)
     assert len(placed_meshes(text.encode(), "dae")) == 2
 
 
 @pytest.mark.extra("mesh")
 @pytest.mark.parametrize(
-    ("proper", "loose"),
+    ("proper", "malformed"),
     [
         ('<node id="n"', '<node id="<STL_BINARY>" name="n"'),
         ("<asset>", "<asset><!-- made -- by hand -->"),
@@ -60,9 +60,9 @@ def test_collada_keeps_mesh_with_unreadable_material(materials: str) -> None:
     ids=["< in a value", "hyphens in a comment", "no blank between attributes, and &"],
 )
 @pytest.mark.parametrize("is_plain", [True, False])
-def test_collada_tolerates_same_xml_errors_as_gazebo(proper: str, loose: str, is_plain: bool) -> None:
+def test_collada_tolerates_same_xml_errors_as_gazebo(proper: str, malformed: str, is_plain: bool) -> None:
     assert proper in COLLADA
     (expected,) = placed_meshes(COLLADA.encode(), "dae", is_plain=is_plain)
-    (placed_mesh,) = placed_meshes(COLLADA.replace(proper, loose).encode(), "dae", is_plain=is_plain)
+    (placed_mesh,) = placed_meshes(COLLADA.replace(proper, malformed).encode(), "dae", is_plain=is_plain)
     assert placed_mesh.faces.tolist() == expected.faces.tolist()
     assert placed_mesh.mesh.vertices.tolist() == expected.mesh.vertices.tolist()

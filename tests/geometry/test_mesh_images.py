@@ -17,13 +17,13 @@ pytestmark = pytest.mark.extra("image")
 OBJ = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n"
 
 
-def encoded(kind: str) -> bytes:
+def encode_image(kind: str) -> bytes:
     file = BytesIO()
     Image.fromarray(np.full((8, 8, 3), (200, 30, 60), dtype=np.uint8)).save(file, kind)
     return file.getvalue()
 
 
-def image_of(folder: Path, name: str, data: bytes) -> bytes | None:
+def read_mesh_image(folder: Path, name: str, data: bytes) -> bytes | None:
     """Return the image of a mesh with one triangle."""
     (folder / "m.obj").write_text(OBJ)
     (folder / "m.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")
@@ -34,12 +34,12 @@ def image_of(folder: Path, name: str, data: bytes) -> bytes | None:
 
 
 def test_png_is_not_reencoded(tmp_path: Path) -> None:
-    data = encoded("PNG")
-    assert image_of(tmp_path, "i.png", data) == data
+    data = encode_image("PNG")
+    assert read_mesh_image(tmp_path, "i.png", data) == data
 
 
 def test_jpeg_is_converted_to_png_of_same_color(tmp_path: Path) -> None:
-    image = image_of(tmp_path, "i.jpg", encoded("JPEG"))
+    image = read_mesh_image(tmp_path, "i.jpg", encode_image("JPEG"))
     assert image is not None
     with Image.open(BytesIO(image)) as opened_image:
         assert opened_image.format == "PNG"
@@ -48,4 +48,4 @@ def test_jpeg_is_converted_to_png_of_same_color(tmp_path: Path) -> None:
 
 def test_truncated_png_is_rejected(tmp_path: Path) -> None:
     with pytest.raises(BadMeshError):
-        image_of(tmp_path, "i.png", encoded("PNG")[:-20])
+        read_mesh_image(tmp_path, "i.png", encode_image("PNG")[:-20])

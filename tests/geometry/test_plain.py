@@ -38,8 +38,11 @@ def collada_with_library(parts: str) -> str:
     return COLLADA.replace(NODE, f"<node>{KEPT}{KEPT}</node>").replace("<library_visual_scenes>", library)
 
 
-def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
-    """Return the sorted corners of all triangles in meters, each from its lowest corner; shape (n, 9)."""
+def triangle_corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
+    """Return the sorted corners of all triangles in meters; shape (n, 9).
+
+    Each triangle begins with its lowest corner.
+    """
     vertices_by_mesh = []
     for mesh, matrix, unit, _ in (placed := placed_meshes(data, kind, is_plain=is_plain)):
         assert isinstance(mesh, PlainMesh) is is_plain
@@ -88,13 +91,15 @@ def corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
 )
 def test_collada_triangles_match_trimesh(text: str, tmp_path: Path) -> None:
     data = text.encode()
-    assert np.allclose(corners(data, "dae", is_plain=True), corners(data, "dae", is_plain=False), atol=2e-5)
+    assert np.allclose(
+        triangle_corners(data, "dae", is_plain=True), triangle_corners(data, "dae", is_plain=False), atol=2e-5
+    )
     (tmp_path / "mesh.dae").write_bytes(data)
-    small, whole = read_small(data, "dae"), read_mesh(tmp_path / "mesh.dae")
-    assert small is not None
-    assert small.count == whole.count
-    assert small.is_watertight == whole.is_watertight
-    assert np.allclose(small.bounds, whole.bounds, rtol=0, atol=1e-15)
+    plain_mesh, mesh = read_small(data, "dae"), read_mesh(tmp_path / "mesh.dae")
+    assert plain_mesh is not None
+    assert plain_mesh.count == mesh.count
+    assert plain_mesh.is_watertight == mesh.is_watertight
+    assert np.allclose(plain_mesh.bounds, mesh.bounds, rtol=0, atol=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -149,9 +154,9 @@ def test_mirrored_solid_is_watertight_without_arrays() -> None:
     solid = COLLADA.replace('count="9"', 'count="12"').replace("0 0 0 1 0 0 0 1 0", "0 0 0 1 0 0 0 1 0 0 0 1")
     solid = solid.replace('count="3" stride', 'count="4" stride').replace("<p>0 1 2", "<p>0 2 1 0 1 3 0 3 2 1 2 3")
     for text in (solid, solid.replace(NODE, f"<node><scale>1 -1 1</scale>{NODE}</node>")):
-        small = read_small(text.encode(), "dae")
-        assert small is not None
-        assert small.is_watertight
+        plain_mesh = read_small(text.encode(), "dae")
+        assert plain_mesh is not None
+        assert plain_mesh.is_watertight
     cut = read_small(solid.replace("0 2 1 0 1 3", "0 1 3").encode(), "dae")
     assert cut is not None
     assert not cut.is_watertight
@@ -180,7 +185,7 @@ OBJ = "mtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nvn 0 0 1\nvt 0 0
 )
 def test_obj_triangles_match_trimesh(text: str) -> None:
     data = text.encode()
-    assert np.allclose(corners(data, "obj", is_plain=True), corners(data, "obj", is_plain=False))
+    assert np.allclose(triangle_corners(data, "obj", is_plain=True), triangle_corners(data, "obj", is_plain=False))
 
 
 @pytest.mark.parametrize(
@@ -217,4 +222,4 @@ def test_unusual_obj_is_left_to_trimesh(text: str) -> None:
 def test_stl_colors_do_not_change_triangles(header: bytes) -> None:
     facet = np.array([0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0], dtype="<f4").tobytes() + b"\xff\x83"
     data = header.ljust(80) + (1).to_bytes(4, "little") + facet
-    assert np.array_equal(corners(data, "stl", is_plain=True), corners(data, "stl", is_plain=False))
+    assert np.array_equal(triangle_corners(data, "stl", is_plain=True), triangle_corners(data, "stl", is_plain=False))

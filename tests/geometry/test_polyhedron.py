@@ -1,3 +1,5 @@
+"""Volume, mass properties and closedness of triangle surfaces."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -51,8 +53,8 @@ def test_flat_surface_has_no_mass():
 
 def test_coincident_corners_are_merged():
     mesh = trimesh.creation.icosphere(1)
-    loose = mesh.vertices[mesh.faces].reshape(-1, 3)
-    vertices, faces = merge_corners(loose, np.arange(len(loose)).reshape(-1, 3))
+    unmerged = mesh.vertices[mesh.faces].reshape(-1, 3)
+    vertices, faces = merge_corners(unmerged, np.arange(len(unmerged)).reshape(-1, 3))
     assert len(vertices) == len(mesh.vertices)
     assert is_closed(faces)
 

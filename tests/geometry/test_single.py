@@ -97,8 +97,8 @@ def test_zero_quaternion_normalizes_to_identity():
 @given(angles, angles, st.floats(0, 1))
 def test_slerp_interpolates_along_shorter_arc(first, last, ratio):
     begin, end = quaternion_from_rpy((0, 0, first)), quaternion_from_rpy((0, 0, last))
-    (between,) = arrays.slerp(begin, end, [ratio])
+    (interpolated,) = arrays.slerp(begin, end, [ratio])
     difference = (last - first + pi) % (2 * pi) - pi
     if abs(abs(difference) - pi) > 1e-3:  # the arcs of half a turn have equal lengths
         expected = quaternion_from_rpy((0, 0, first + ratio * difference))
-        assert abs(between @ expected) == pytest.approx(1, abs=1e-6)
+        assert abs(interpolated @ expected) == pytest.approx(1, abs=1e-6)

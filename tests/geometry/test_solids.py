@@ -24,40 +24,42 @@ def integrate_discs(radius_at, half_height, steps=20_000):
     z = -half_height + dz * (np.arange(steps) + 0.5)
     r2 = radius_at(z) ** 2
     mass = np.pi * r2 * dz
-    along = (mass * r2 / 2).sum()
-    across = (mass * (r2 / 4 + z**2)).sum()
-    return mass.sum(), across, along
+    axial_inertia = (mass * r2 / 2).sum()
+    transverse_inertia = (mass * (r2 / 4 + z**2)).sum()
+    return mass.sum(), transverse_inertia, axial_inertia
 
 
 @given(sizes, sizes)
 @settings(max_examples=30)
 def test_capsule_matches_numeric_integration(radius, length):
     def radius_at(z):
-        beyond = np.maximum(np.abs(z) - length / 2, 0.0)
-        return np.sqrt(np.maximum(radius**2 - beyond**2, 0.0))
+        distance_beyond_cylinder = np.maximum(np.abs(z) - length / 2, 0.0)
+        return np.sqrt(np.maximum(radius**2 - distance_beyond_cylinder**2, 0.0))
 
-    volume, across, along = integrate_discs(radius_at, length / 2 + radius)
+    volume, transverse_inertia, axial_inertia = integrate_discs(radius_at, length / 2 + radius)
     body = shape_properties(Capsule(radius, length))
     assert body.mass == pytest.approx(volume, rel=1e-4)
-    assert np.allclose(np.diag(body.inertia), (across, across, along), rtol=1e-4)
+    assert np.allclose(np.diag(body.inertia), (transverse_inertia, transverse_inertia, axial_inertia), rtol=1e-4)
 
 
 @given(sizes)
 @settings(max_examples=30)
 def test_sphere_matches_numeric_integration(radius):
-    volume, across, along = integrate_discs(lambda z: np.sqrt(np.maximum(radius**2 - z**2, 0.0)), radius)
+    volume, transverse_inertia, axial_inertia = integrate_discs(
+        lambda z: np.sqrt(np.maximum(radius**2 - z**2, 0.0)), radius
+    )
     body = shape_properties(Sphere(radius))
     assert body.mass == pytest.approx(volume, rel=1e-4)
-    assert np.allclose(np.diag(body.inertia), (across, across, along), rtol=1e-4)
+    assert np.allclose(np.diag(body.inertia), (transverse_inertia, transverse_inertia, axial_inertia), rtol=1e-4)
 
 
 @given(sizes, sizes)
 @settings(max_examples=30)
 def test_cylinder_matches_numeric_integration(radius, length):
-    volume, across, along = integrate_discs(lambda z: np.full_like(z, radius), length / 2)
+    volume, transverse_inertia, axial_inertia = integrate_discs(lambda z: np.full_like(z, radius), length / 2)
     body = shape_properties(Cylinder(radius, length))
     assert body.mass == pytest.approx(volume, rel=1e-6)
-    assert np.allclose(np.diag(body.inertia), (across, across, along), rtol=1e-4)
+    assert np.allclose(np.diag(body.inertia), (transverse_inertia, transverse_inertia, axial_inertia), rtol=1e-4)
 
 
 @given(sizes, sizes, sizes)

@@ -11,35 +11,35 @@ from linkwright.geometry.stl import read_stl
 pytestmark = pytest.mark.extra("mesh")
 
 
-def _bytes(kind: str = "stl") -> bytes:
+def _stl_bytes(kind: str = "stl") -> bytes:
     data = trimesh.creation.icosphere(subdivisions=2, radius=0.3).export(file_type=kind)
     return data if isinstance(data, bytes) else data.encode()
 
 
-TEXT = _bytes("stl_ascii")
+TEXT = _stl_bytes("stl_ascii")
 
 
 @pytest.mark.parametrize(
     "data",
-    [_bytes(), TEXT, TEXT.replace(b"\n", b"\r\n"), b"solid a ball\n" + TEXT.partition(b"\n")[2]],
+    [_stl_bytes(), TEXT, TEXT.replace(b"\n", b"\r\n"), b"solid a ball\n" + TEXT.partition(b"\n")[2]],
     ids=["binary", "text", "text of Windows", "text with a name"],
 )
 def test_stl_triangles_match_trimesh(data):
-    (ours,) = placed_meshes(data, "stl")
-    assert isinstance(ours.mesh, PlainMesh)
+    (actual,) = placed_meshes(data, "stl")
+    assert isinstance(actual.mesh, PlainMesh)
     scene = trimesh.load_scene(trimesh.util.wrap_as_stream(data), file_type="stl", process=False)
-    ((name, theirs),) = scene.geometry.items()
-    assert np.array_equal(ours.mesh.vertices[ours.faces], theirs.vertices[theirs.faces])
-    assert not ours.mesh.name or ours.names == {name}
+    ((name, expected),) = scene.geometry.items()
+    assert np.array_equal(actual.mesh.vertices[actual.faces], expected.vertices[expected.faces])
+    assert not actual.mesh.name or actual.names == {name}
 
 
 @pytest.mark.parametrize(
     "data",
     [
-        _bytes()[:-1],
-        _bytes() + b"x",
-        b"COLOR=" + _bytes()[6:],
-        _bytes()[:-2] + b"\1\0",
+        _stl_bytes()[:-1],
+        _stl_bytes() + b"x",
+        b"COLOR=" + _stl_bytes()[6:],
+        _stl_bytes()[:-2] + b"\1\0",
         bytes(84),
         TEXT + TEXT,
         TEXT.replace(b"endloop", b"endlop", 1),

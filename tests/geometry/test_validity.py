@@ -1,3 +1,5 @@
+"""Which inertia tensors a body can have."""
+
 from __future__ import annotations
 
 import numpy as np

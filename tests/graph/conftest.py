@@ -1,3 +1,5 @@
+"""Fixtures of the graph tests: a graph with a clock that the test advances, and its log."""
+
 from __future__ import annotations
 
 import asyncio

@@ -11,14 +11,14 @@ from linkwright.graph.executors import MultiThreadedExecutor
 from linkwright.messages import String, get_service
 
 Trigger = get_service("std_srvs/srv/Trigger")
-NODES = 500
+NODE_COUNT = 500
 
 
 async def test_five_hundred_nodes_exchange_messages():
     clock = JumpClock()
     graph = Graph(clock=clock, on_log=print)
-    counts = [0] * NODES
-    for number in range(NODES):
+    counts = [0] * NODE_COUNT
+    for number in range(NODE_COUNT):
         node = graph.create_node(f"node_{number}", namespace=f"robot_{number % 10}")
 
         def on_message(_message, number=number):
@@ -28,11 +28,11 @@ async def test_five_hundred_nodes_exchange_messages():
         node.create_subscription(String, "ours", on_message, 10)
         publisher = node.create_publisher(String, "ours", 10)
         node.create_timer(1.0, lambda publisher=publisher: publisher.publish(String()))
-    everybody = graph.create_node("everybody").create_publisher(String, "/all", 10)
-    assert len(graph.node_names()) == NODES + 1
-    everybody.publish(String())
+    broadcaster = graph.create_node("everybody").create_publisher(String, "/all", 10)
+    assert len(graph.node_names()) == NODE_COUNT + 1
+    broadcaster.publish(String())
     await graph.settle()
-    assert counts == [1] * NODES
+    assert counts == [1] * NODE_COUNT
     await clock.advance(1.0)
     # There are ten topics with fifty nodes each, and a queue of ten messages for each subscription.
     assert min(counts) > 10

@@ -1,4 +1,7 @@
-"""Driving a robot without physics: the simulator with the inferred physics, in this process."""
+"""Driving a robot without physics.
+
+The simulator with the inferred physics runs in this process.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +54,7 @@ MBOT = """<robot name="mbot">
 """
 """The dimensions of the tutorial's first robot: only visuals, without the elements that a simulator needs."""
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 SHARED = Path(__file__).parents[3] / "shared" / "tutorial" / "my_robot_description" / "urdf" / "mbot_base.urdf"
 
 
@@ -73,7 +76,7 @@ class Driven:
         twist.linear.x, twist.angular.z = forward, turning
         self._publisher.publish(twist)
         await self._graph.settle()
-        self._server.advance(round(seconds * SECOND))
+        self._server.advance(round(seconds * SECOND_NS))
         await self._graph.settle()
 
     @property

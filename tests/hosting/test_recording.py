@@ -24,7 +24,7 @@ pytestmark = needs_rosbags
 
 MBOT = Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro"
 OPTIONS = HostOptions(port=0, open_browser=False, network=False)
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 
 
 @pytest.fixture(autouse=True)
@@ -71,7 +71,7 @@ async def test_all_topics_are_recorded_with_simulated_time(tmp_path: Path) -> No
     }
     stamps = [stamp for _, stamp in topics_and_stamps]
     assert stamps == sorted(stamps)
-    assert 0 < stamps[0] <= stamps[-1] <= 2 * SECOND
+    assert 0 < stamps[0] <= stamps[-1] <= 2 * SECOND_NS
 
 
 async def test_recording_is_complete_when_user_ends_simulation(tmp_path: Path) -> None:

@@ -1,3 +1,5 @@
+"""The command-line options of `rviz2`."""
+
 from __future__ import annotations
 
 from pathlib import Path

@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.hosting import signals
 from linkwright.hosting.signals import SignalWatch
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 
 class Dropping:
@@ -31,7 +31,7 @@ def test_signal_during_destructor_is_not_lost(
     number: int, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # After the deadline, the watch would end the process of pytest.
-    monkeypatch.setattr(signals, "_DEADLINE_S", SECONDS)
+    monkeypatch.setattr(signals, "_DEADLINE_S", TIMEOUT_S)
     hook = sys.unraisablehook
     watch = SignalWatch()
 

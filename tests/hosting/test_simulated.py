@@ -65,8 +65,8 @@ async def test_viewer_uses_world_frame_and_simulated_time():
     assert displays == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "Odometry": False}
     listener = view.host.graph.create_node("listener")
     client = listener.create_client(get_service("rcl_interfaces/srv/GetParameters"), "/viewer/get_parameters")
-    answer = await client.call_async(client.srv_type.Request(names=["use_sim_time"]))
-    assert answer.values[0].bool_value, "without simulated time, later messages would seem old after a reset"
+    response = await client.call_async(client.srv_type.Request(names=["use_sim_time"]))
+    assert response.values[0].bool_value, "without simulated time, later messages would seem old after a reset"
     view.interrupt("the test is over")
     assert await running
 
@@ -138,12 +138,12 @@ async def test_scans_and_first_camera_are_shown():
 
 
 def test_image_topics_are_read_from_description():
-    classic = "<sensor name='eye' type='camera'><plugin filename='libgazebo_ros_camera.so'>{}</plugin></sensor>"
-    assert image_topics(classic.format("")) == ["/eye/image_raw"]
+    classic = "<sensor name='camera' type='camera'><plugin filename='libgazebo_ros_camera.so'>{}</plugin></sensor>"
+    assert image_topics(classic.format("")) == ["/camera/image_raw"]
     assert image_topics(classic.format("<cameraName>left</cameraName><imageTopicName>rgb</imageTopicName>")) == [
         "/left/rgb"
     ]
-    remapping = "<ros><namespace>mbot</namespace><remapping>eye/image_raw:={}</remapping></ros>"
+    remapping = "<ros><namespace>mbot</namespace><remapping>camera/image_raw:={}</remapping></ros>"
     assert image_topics(classic.format(remapping.format("seen"))) == ["/mbot/seen"]
     assert image_topics(classic.format(remapping.format("/seen"))) == ["/seen"]
     newer = '<sensor type="{}" name="b">{}</sensor>'

@@ -47,9 +47,9 @@ def world(*parts: str) -> str:
 class RunningSimulation:
     """A simulation with its output."""
 
-    def __init__(self, view: SimulatedView, err: io.StringIO, until: Callable[[str], object]) -> None:
+    def __init__(self, view: SimulatedView, err: io.StringIO, wait_until_printed: Callable[[str], object]) -> None:
         self.view = view
-        self.until = until
+        self.until = wait_until_printed
         self.err = err
 
     @property
@@ -169,8 +169,8 @@ async def test_broken_world_is_reported_and_simulation_continues(tmp_path):
 async def test_world_that_cannot_be_simulated_is_reported(tmp_path):
     (tmp_path / "a.world").write_text(world(FALLING))
     async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
-        never = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
-        (tmp_path / "a.world").write_text(world(FALLING, never))
+        invalid_physics = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
+        (tmp_path / "a.world").write_text(world(FALLING, invalid_physics))
         await running.until("; the simulation continues unchanged")
         assert "the changed world was not loaded: " in running.err.getvalue()
         assert "a time step of -1.0 s" in running.err.getvalue()

@@ -37,20 +37,23 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 async def opened_view(
     path: Path, foxglove: int | None = None
 ) -> AsyncIterator[tuple[ModelView, Callable[[str], object]]]:
-    """Start a view, and return a function that waits for a printed text; the view must end without a failure."""
+    """Start a view, and return a function that waits for a printed text.
+
+    The view must end without a failure.
+    """
     out, err = io.StringIO(), io.StringIO()
     finder = PackageFinder(start=path.parent, environment={})
     options = HostOptions(port=0, open_browser=False, network=False)
     view = ModelView(XacroCall(path), finder, options, LaunchLog(out, err))
     running = asyncio.create_task(view.run(foxglove))
 
-    async def until(text: str) -> str:
+    async def wait_until_printed(text: str) -> str:
         await eventually(lambda: text in err.getvalue() or running.done(), what=err.getvalue)
         assert not running.done(), err.getvalue()
         return err.getvalue()
 
     try:
-        yield view, until
+        yield view, wait_until_printed
     finally:
         view.interrupt("the test is over")
         succeeded = await running
@@ -63,9 +66,9 @@ def names_started(printed: str) -> list[str]:
 
 async def test_viewer_starts_before_nodes(tmp_path: Path) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
-    async with opened_view(tmp_path / "m.urdf") as (_, until):
-        await until("Robot initialized")
-        printed = await until("joint_state_publisher_gui-2]: started")
+    async with opened_view(tmp_path / "m.urdf") as (_, wait_until_printed):
+        await wait_until_printed("Robot initialized")
+        printed = await wait_until_printed("joint_state_publisher_gui-2]: started")
         assert names_started(printed) == ["viewer-3", "robot_state_publisher-1", "joint_state_publisher_gui-2"]
 
 
@@ -129,19 +132,19 @@ async def test_interrupt_while_viewer_loads_starts_nothing(tmp_path: Path, monke
 
 async def test_foxglove_option_starts_bridge(tmp_path: Path) -> None:
     (tmp_path / "m.urdf").write_text(GOOD)
-    async with opened_view(tmp_path / "m.urdf", foxglove=0) as (_, until):
-        assert names_started(await until("foxglove_bridge-4]: started"))[-1] == "foxglove_bridge-4"
+    async with opened_view(tmp_path / "m.urdf", foxglove=0) as (_, wait_until_printed):
+        assert names_started(await wait_until_printed("foxglove_bridge-4]: started"))[-1] == "foxglove_bridge-4"
 
 
 async def test_broken_model_is_published_once_fixed(tmp_path: Path) -> None:
     path = tmp_path / "m.urdf"
     path.write_text(BROKEN)
-    async with opened_view(path) as (view, until):
-        printed = await until("joint_state_publisher_gui-1]: started")
+    async with opened_view(path) as (view, wait_until_printed):
+        printed = await wait_until_printed("joint_state_publisher_gui-1]: started")
         assert "error[XML" in printed
         assert names_started(printed) == ["viewer-2", "joint_state_publisher_gui-1"]
         path.write_text(GOOD)
-        printed = await until("Robot initialized")
+        printed = await wait_until_printed("Robot initialized")
         assert f"repaired {path}" in printed
         assert names_started(printed)[-1] == "robot_state_publisher-3"
         assert view.reload.findings() == []
@@ -150,14 +153,14 @@ async def test_broken_model_is_published_once_fixed(tmp_path: Path) -> None:
 async def test_errors_are_not_repeated_when_other_files_change(tmp_path: Path) -> None:
     path = tmp_path / "m.urdf"
     path.write_text(BROKEN)
-    async with opened_view(path) as (view, until):
-        await until("joint_state_publisher_gui-1]: started")
+    async with opened_view(path) as (view, wait_until_printed):
+        await wait_until_printed("joint_state_publisher_gui-1]: started")
         for changed, times in ((tmp_path / "log.txt", 1), (path, 2)):
             view.reload._on_change({changed})
             await eventually(lambda: not view.reload._running)
-            assert (await until("error[XML")).count("error[XML") == times
+            assert (await wait_until_printed("error[XML")).count("error[XML") == times
         path.write_text(GOOD)
-        await until("Robot initialized")
+        await wait_until_printed("Robot initialized")
 
 
 def test_missing_model_is_one_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -184,10 +187,10 @@ async def test_sdf_model_is_shown(tmp_path: Path) -> None:
     box = "<geometry><box><size>1 1 1</size></box></geometry>"
     link = f'<link name="base"><visual name="v">{box}</visual></link>'
     (tmp_path / "crate.sdf").write_text(f'<sdf version="1.9"><model name="crate">{link}</model></sdf>')
-    async with opened_view(tmp_path / "crate.sdf") as (view, until):
-        assert "Unable to initialize" not in await until("Robot initialized")
-        known = view.descriptions.expand(XacroCall(tmp_path / "crate.sdf"))
-        robot = view.descriptions.library.read(known).robot
+    async with opened_view(tmp_path / "crate.sdf") as (view, wait_until_printed):
+        assert "Unable to initialize" not in await wait_until_printed("Robot initialized")
+        expansion = view.descriptions.expand(XacroCall(tmp_path / "crate.sdf"))
+        robot = view.descriptions.library.read(expansion).robot
         assert robot is not None
         assert list(robot.links) == ["base"]
 
@@ -197,9 +200,9 @@ async def test_arguments_from_page_complete_the_robot(tmp_path: Path) -> None:
     path.write_text(
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="a"><link name="$(arg side)_link"/></robot>'
     )
-    async with opened_view(path) as (view, until):
-        await until("the argument 'side' is not declared")
-        await until("[viewer-2]: started")
+    async with opened_view(path) as (view, wait_until_printed):
+        await wait_until_printed("the argument 'side' is not declared")
+        await wait_until_printed("[viewer-2]: started")
         viewer = view._viewer
         assert viewer is not None
         feature = viewer.add_feature(ArgumentsFeature)
@@ -208,6 +211,6 @@ async def test_arguments_from_page_complete_the_robot(tmp_path: Path) -> None:
         assert isinstance(form, ArgumentForm)
         assert form.names == ["side"]
         feature.receive(None, SetArguments({"side": "left", "other": "x"}))  # type: ignore[arg-type]
-        await until("[robot_state_publisher-3]: started")
+        await wait_until_printed("[robot_state_publisher-3]: started")
         assert feature.opening_messages() == [NO_ARGUMENT_FORM]
         assert viewer.manager.fixed_frame == "left_link"

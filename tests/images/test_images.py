@@ -96,8 +96,8 @@ def test_bayer_mosaics_decode_to_colors(pattern):
     mosaic = np.tile(tile, (3, 3))
     expected = [[[200, 100, 50]] * 6] * 6
     assert pixels(image(f"bayer_{pattern}8", 6, 6, mosaic.tobytes())) == expected
-    deep = (mosaic.astype("<u2") << 8).tobytes()
-    assert pixels(image(f"bayer_{pattern}16", 6, 6, deep)) == expected
+    mosaic_16_bit = (mosaic.astype("<u2") << 8).tobytes()
+    assert pixels(image(f"bayer_{pattern}16", 6, 6, mosaic_16_bit)) == expected
 
 
 def test_yuv_images_decode_to_rgb():
@@ -135,8 +135,8 @@ def test_large_image_is_subsampled():
     thinned = decode_rvl.subsample(30)
     assert (thinned.width, thinned.height) == (5, 5)
     assert thinned.pixels[1].tolist() == [20, 22, 24, 26, 28]
-    odd = DecodedImage(np.zeros((5, 5), np.uint8)).subsample(4)
-    assert (odd.width, odd.height) == (2, 2)
+    subsampled = DecodedImage(np.zeros((5, 5), np.uint8)).subsample(4)
+    assert (subsampled.width, subsampled.height) == (2, 2)
 
 
 @pytest.mark.parametrize("step", [2, 3, 16, 99])

@@ -1,3 +1,5 @@
+"""Solids from mesh files, for estimates of inertia."""
+
 from __future__ import annotations
 
 import gc
@@ -155,10 +157,10 @@ def test_unreadable_mesh_error_names_cause(name, data, code, tmp_path):
 
 
 def test_gltf_reads_no_file_outside_its_folder(tmp_path):
-    inner = tmp_path / "inner"
-    inner.mkdir()
-    path = write(inner, "gltf")
-    buffer = next(inner.glob("*.bin"))
+    inner_folder = tmp_path / "inner"
+    inner_folder.mkdir()
+    path = write(inner_folder, "gltf")
+    buffer = next(inner_folder.glob("*.bin"))
     buffer.rename(tmp_path / "secret.bin")
     path.write_text(path.read_text().replace(buffer.name, "../secret.bin"))
     with pytest.raises(LinkwrightError):

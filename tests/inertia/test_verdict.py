@@ -14,11 +14,11 @@ from linkwright.xmltree import parse
 BALL = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
 
 
-def verdict_on(tmp_path, inertial, shapes=BALL, more=""):
+def verdict_on(tmp_path, inertial, shapes=BALL, content=""):
     """Return the verdict on a link 'a' with a revolute joint."""
     text = (
         f'<robot name="r"><link name="world"/><link name="a">{inertial}{shapes}</link>'
-        '<joint name="j" type="continuous"><parent link="world"/><child link="a"/></joint>' + more + "</robot>"
+        '<joint name="j" type="continuous"><parent link="world"/><child link="a"/></joint>' + content + "</robot>"
     )
     robot = read(parse(text, "r.urdf")).robot
     inertia_estimate = estimate(robot.links["a"], MeshLibrary(PackageFinder(start=[tmp_path]), tmp_path))
@@ -45,13 +45,21 @@ def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
             "it is denser than any solid: osmium has 22 600 kg/m3",
         ),
         (inertial(mass=0.004, moment=0.000016), Grade.DOUBTFUL, "it is lighter than air"),
-        (inertial(moment=16), Grade.DOUBTFUL, "its moments are 1 000 times the moments of a solid with its shapes"),
+        (
+            inertial(moment=16),
+            Grade.DOUBTFUL,
+            "its moments are 1 000 times the moments of a solid with its shapes",
+        ),
         (
             inertial(moment=0.00016),
             Grade.DOUBTFUL,
             "its moments are 1/100 of the moments of a solid with its shapes",
         ),
-        (inertial(moment=0.064), Grade.ROUGH, "its moments are 4 times the moments of a solid with its shapes"),
+        (
+            inertial(moment=0.064),
+            Grade.ROUGH,
+            "its moments are 4 times the moments of a solid with its shapes",
+        ),
         (inertial(origin="0 0.5 0"), Grade.DOUBTFUL, "its center of mass is 500 mm from the center of its shapes"),
         (inertial(origin="0 0.05 0"), Grade.ROUGH, "its center of mass is 50 mm from the center of its shapes"),
         ("", Grade.MISSING, "it has no <inertial>"),
@@ -66,9 +74,14 @@ def test_worst_grade_is_reported_and_sorts_first(tmp_path):
     verdict = verdict_on(tmp_path, inertial(mass=-1, moment=16))
     assert verdict.grade is Grade.IMPOSSIBLE
     worse = verdict_on(tmp_path, inertial(moment=16))
-    bad = verdict_on(tmp_path, inertial(moment=1.6))
-    fine = verdict_on(tmp_path, inertial())
-    assert sorted([fine, bad, worse, verdict], key=lambda verdict: verdict.sort_key) == [verdict, worse, bad, fine]
+    bad_verdict = verdict_on(tmp_path, inertial(moment=1.6))
+    good_verdict = verdict_on(tmp_path, inertial())
+    assert sorted([good_verdict, bad_verdict, worse, verdict], key=lambda verdict: verdict.sort_key) == [
+        verdict,
+        worse,
+        bad_verdict,
+        good_verdict,
+    ]
 
 
 def test_tiny_mass_in_large_shape_has_zero_density(tmp_path):
@@ -89,12 +102,12 @@ def test_mass_is_unjudged_if_fixed_neighbor_has_no_mass(tmp_path):
     through_a_frame = joint.format("a", "frame", "frame", "") + joint.format("frame", "cover", "cover", BALL).replace(
         '"f"', '"g"'
     )
-    assert verdict_on(tmp_path, inertial(mass=400), more=through_a_frame).grade is Grade.UNJUDGED
-    heavy = joint.format("a", "cover", "cover", BALL + inertial())
-    assert verdict_on(tmp_path, inertial(mass=400), more=heavy).grade is Grade.IMPOSSIBLE
+    assert verdict_on(tmp_path, inertial(mass=400), content=through_a_frame).grade is Grade.UNJUDGED
+    robot_text = joint.format("a", "cover", "cover", BALL + inertial())
+    assert verdict_on(tmp_path, inertial(mass=400), content=robot_text).grade is Grade.IMPOSSIBLE
 
 
 def test_link_fixed_to_link_with_mass_needs_no_inertial(tmp_path):
     joint = '<joint name="f" type="fixed"><parent link="a"/><child link="b"/></joint><link name="b">{}</link>'
-    verdict = verdict_on(tmp_path, "", more=joint.format(inertial()))
+    verdict = verdict_on(tmp_path, "", content=joint.format(inertial()))
     assert verdict.reason == "it is fixed to 'b', which has a mass"

@@ -24,7 +24,10 @@ XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 @pytest.fixture
 def write(tmp_path):
-    """Write the inertia of the cube to links of a description, and return the result and the new text."""
+    """Write the inertia of the cube to links of a description.
+
+    Return the result and the new text.
+    """
 
     def run(text, *links, name="r.urdf"):
         path = tmp_path / name
@@ -160,11 +163,11 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("why", REFUSED, ids=["macro", "shape", "inertial", "part"])
-def test_link_generated_by_xacro_is_refused(write, why):
-    before = f"{XACRO}{REFUSED[why]}</robot>"
+@pytest.mark.parametrize("reason", REFUSED, ids=["macro", "shape", "inertial", "part"])
+def test_link_generated_by_xacro_is_refused(write, reason):
+    before = f"{XACRO}{REFUSED[reason]}</robot>"
     result, text = write(before, name="r.xacro")
-    assert result.refusals == {"a": why}
+    assert result.refusals == {"a": reason}
     assert result.links == ()
     assert text == before
 

@@ -18,7 +18,7 @@ from tests.simulation.worlds import GROUND, make_simulation
 
 pytestmark = pytest.mark.extra("sim")
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 ROBOTS = {case[0]: case[1] for case in CASES}
 MOTOR = (20.0, 1.5)
 """The gain in N m s/rad, and the maximum torque in N m."""
@@ -46,13 +46,16 @@ def motors(simulation: Simulation, drive: Drive) -> tuple[list[Motor], list[Moto
 
 
 def drive_straight(simulation: Simulation, sides: tuple[list[Motor], list[Motor]], left: float, right: float) -> None:
-    """Accelerate the wheels to velocities in rad/s within a second, slowly enough to avoid slip."""
+    """Accelerate the wheels to velocities in rad/s within a second.
+
+    This is slow enough to avoid slip.
+    """
     for hundredth in range(1, 101):
         for motor in sides[0]:
             motor.target = left * hundredth / 100
         for motor in sides[1]:
             motor.target = right * hundredth / 100
-        simulation.advance(SECOND // 100)
+        simulation.advance(SECOND_NS // 100)
 
 
 def yaw(pose: Transform) -> float:
@@ -69,7 +72,7 @@ def test_robot_with_visuals_only_drives_one_meter_straight():
     sides = motors(simulation, drive)
     drive_straight(simulation, sides, 0.5 / drive.radius, 0.5 / drive.radius)
     start = simulation.model_pose("r")
-    simulation.advance(2 * SECOND)
+    simulation.advance(2 * SECOND_NS)
     end = simulation.model_pose("r")
     assert end[0] - start[0] == pytest.approx(1.0, abs=1e-3)
     assert end[1] == pytest.approx(0.0, abs=1e-3)
@@ -82,7 +85,7 @@ def test_turn_in_place_follows_wheel_separation():
     rate = 1.0 * drive.separation / 2 / drive.radius
     drive_straight(simulation, sides, -rate, rate)
     start = yaw(simulation.model_pose("r"))
-    simulation.advance(SECOND)
+    simulation.advance(SECOND_NS)
     assert (yaw(simulation.model_pose("r")) - start) % (2 * pi) == pytest.approx(1.0, abs=0.01)
 
 
@@ -98,7 +101,7 @@ def test_equal_wheel_velocities_drive_forward(title):
 
 def test_robot_stands_still_on_inferred_wheels():
     simulation, _ = standing(TWO_WHEELS)
-    simulation.advance(2 * SECOND)
+    simulation.advance(2 * SECOND_NS)
     x, y, z = simulation.model_pose("r")[:3]
     assert (x, y) == pytest.approx((0.0, 0.0), abs=1e-4)
     assert z == pytest.approx(0.11, abs=1e-3)

@@ -58,8 +58,8 @@ def test_requested_drive_kind_is_inferred():
 
 def test_requested_drive_kind_overrides_plugin_of_file():
     plugin = '<gazebo><plugin name="d" filename="libgazebo_ros_planar_move.so"/></gazebo>'
-    own = inferred(robot(*FOUR, plugin))
-    assert own.drive is None
+    by_default = inferred(robot(*FOUR, plugin))
+    assert by_default.drive is None
     skid_steered = inferred(robot(*FOUR, plugin), kind="skid")
     assert skid_steered.drive is not None
     assert skid_steered.drive.kind == "skid"
@@ -157,7 +157,7 @@ def test_inferred_mass_is_limited():
     box = (
         '<robot name="r"><link name="a"><visual><geometry><box size="{0} {0} {0}"/></geometry></visual></link></robot>'
     )
-    tiny = load(box.format(1e-3))
-    huge = load(box.format(90))
-    assert inferred(tiny).masses["a"] == pytest.approx(0.01)
-    assert inferred(huge).masses["a"] == pytest.approx(1000.0)
+    tiny_robot = load(box.format(1e-3))
+    huge_robot = load(box.format(90))
+    assert inferred(tiny_robot).masses["a"] == pytest.approx(0.01)
+    assert inferred(huge_robot).masses["a"] == pytest.approx(1000.0)

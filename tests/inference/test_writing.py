@@ -1,4 +1,7 @@
-"""Writing inferred elements: the file describes the completed robot, and other text is unchanged."""
+"""Writing inferred elements.
+
+The file describes the completed robot, and other text is unchanged.
+"""
 
 from __future__ import annotations
 

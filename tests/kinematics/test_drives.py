@@ -34,11 +34,16 @@ def test_mecanum_drive_round_trip_keeps_motion(forward, sideways, turning):
 
 @given(SPEEDS, SPEEDS, SPEEDS)
 def test_mecanum_wheel_speeds_match_roller_geometry(forward, sideways, turning):
-    """A wheel at (x, y) moves with (forward - turning y, sideways + turning x); its roller absorbs the rest."""
+    """A wheel at (x, y) moves with (forward - turning y, sideways + turning x).
+
+    Its roller absorbs the rest.
+    """
     speeds = MecanumDrive(0.3 + 0.2, 0.1).wheel_speeds(forward, sideways, turning)
     for (x, y), speed in zip(((0.3, 0.2), (0.3, -0.2), (-0.3, 0.2), (-0.3, -0.2)), speeds, strict=True):
-        along, across = forward - turning * y, sideways + turning * x
-        assert speed * 0.1 == pytest.approx(along - across if x * y > 0 else along + across, abs=1e-9)
+        speed_along, speed_across = forward - turning * y, sideways + turning * x
+        assert speed * 0.1 == pytest.approx(
+            speed_along - speed_across if x * y > 0 else speed_along + speed_across, abs=1e-9
+        )
 
 
 CAR = CarDrive(wheelbase=1.2, traction_track=0.8, steering_track=0.7, radius=0.15)

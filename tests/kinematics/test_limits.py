@@ -10,27 +10,27 @@ from hypothesis import strategies as some
 
 from linkwright.kinematics.limits import SpeedLimiter
 
-STEP = 0.01
+STEP_S = 0.01
 WANTED = some.lists(some.floats(-5.0, 5.0), min_size=1, max_size=60)
 
 
 def limited_speeds(limiter: SpeedLimiter, targets: list[float]) -> list[float]:
-    return [limiter.approach(speed, STEP) for speed in targets]
+    return [limiter.approach(speed, STEP_S) for speed in targets]
 
 
 @given(WANTED)
-def test_speed_and_acceleration_stay_within_limits(wanted):
-    speeds = [0.0, *limited_speeds(SpeedLimiter((-1.0, 2.0), (-4.0, 3.0)), wanted)]
+def test_speed_and_acceleration_stay_within_limits(commands):
+    speeds = [0.0, *limited_speeds(SpeedLimiter((-1.0, 2.0), (-4.0, 3.0)), commands)]
     assert all(-1.0 <= speed <= 2.0 for speed in speeds)
-    changes = [(after - before) / STEP for before, after in pairwise(speeds)]
+    changes = [(after - before) / STEP_S for before, after in pairwise(speeds)]
     assert all(-4.0 - 1e-9 <= change <= 3.0 + 1e-9 for change in changes)
 
 
 @given(WANTED)
-def test_jerk_stays_within_limits(wanted):
-    speeds = [0.0, 0.0, *limited_speeds(SpeedLimiter(jerk=(-50.0, 40.0)), wanted)]
-    changes = [(after - before) / STEP for before, after in pairwise(speeds)]
-    jerks = [(after - before) / STEP for before, after in pairwise(changes)]
+def test_jerk_stays_within_limits(commands):
+    speeds = [0.0, 0.0, *limited_speeds(SpeedLimiter(jerk=(-50.0, 40.0)), commands)]
+    changes = [(after - before) / STEP_S for before, after in pairwise(speeds)]
+    jerks = [(after - before) / STEP_S for before, after in pairwise(changes)]
     assert all(-50.0 - 1e-6 <= jerk <= 40.0 + 1e-6 for jerk in jerks)
 
 
@@ -49,11 +49,11 @@ def test_braking_can_ignore_jerk_limit():
     free = SpeedLimiter(jerk=(-1.0, 1.0), brakes_freely=True)
     for limiter in (bound, free):
         for _ in range(100):
-            limiter.approach(9.0, STEP)
+            limiter.approach(9.0, STEP_S)
     assert free.speed == bound.speed
     speed = free.speed
-    assert free.approach(speed, STEP) == speed
-    assert bound.approach(speed, STEP) > speed
+    assert free.approach(speed, STEP_S) == speed
+    assert bound.approach(speed, STEP_S) > speed
 
 
 def test_velocity_is_reached_at_once_without_limits():

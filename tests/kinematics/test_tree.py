@@ -15,11 +15,14 @@ from linkwright.geometry.arrays import matrix_from_pose, quaternion_from_rpy
 from linkwright.kinematics import KinematicTree, UnknownNameError
 from linkwright.urdf import Robot, parent_joints
 from tests.geometry.rotations import quaternion_about
-from tests.urdf.robots import chain, robot_text, robots
+from tests.urdf.robots import chain_of_links, robot_text, robots
 
 
 def frame_of(robot: Robot, link: str, values: dict[str, float]) -> np.ndarray:
-    """Return the frame of a link in the root, by the definition: the product of all frames up to the root."""
+    """Return the frame of a link in the root, by the definition.
+
+    It is the product of all frames up to the root.
+    """
     if link == robot.root:
         return np.eye(4)
     joint = parent_joints(robot)[link]
@@ -69,7 +72,7 @@ def test_frames_are_product_of_parent_joint_transforms(robot, seed):
 
 ARM = load(
     robot_text(
-        chain(
+        chain_of_links(
             'revolute:<origin xyz="0 0 1"/><axis xyz="0 0 1"/>',
             'prismatic:<origin xyz="1 0 0"/><axis xyz="0 2 0"/>',
             'fixed:<origin xyz="0 0 0.5" rpy="0 0 1"/>',
@@ -138,7 +141,7 @@ class TestArm:
 
 class TestMimic:
     CHAIN = robot_text(
-        chain(
+        chain_of_links(
             "continuous",
             'continuous:<mimic joint="j0" multiplier="2" offset="0.5"/>',
             'prismatic:<mimic joint="j1" multiplier="-1" offset="0.1"/>',
@@ -160,20 +163,20 @@ class TestMimic:
 
     @pytest.mark.parametrize("joint", ["j0", "nowhere"])
     def test_mimic_joint_without_valid_source_moves_independently(self, joint):
-        robot = load(robot_text(chain(f'continuous:<mimic joint="{joint}"/>')))
+        robot = load(robot_text(chain_of_links(f'continuous:<mimic joint="{joint}"/>')))
         assert KinematicTree(robot).joint_names == ("j0",)
 
     def test_circular_mimic_joints_move_independently(self):
-        robot = load(robot_text(chain('continuous:<mimic joint="j1"/>', 'continuous:<mimic joint="j0"/>')))
+        robot = load(robot_text(chain_of_links('continuous:<mimic joint="j1"/>', 'continuous:<mimic joint="j0"/>')))
         assert KinematicTree(robot).joint_names == ("j0", "j1")
 
-    @pytest.mark.parametrize("others", [(), ("continuous",)])
-    def test_mimic_of_fixed_joint_stays_at_offset(self, others):
+    @pytest.mark.parametrize("other_joints", [(), ("continuous",)])
+    def test_mimic_of_fixed_joint_stays_at_offset(self, other_joints):
         follower = 'continuous:<axis xyz="0 0 1"/><mimic joint="j0" multiplier="3" offset="0.5"/>'
-        robot = load(robot_text(chain("fixed", follower, *others)))
+        robot = load(robot_text(chain_of_links("fixed", follower, *other_joints)))
         tree = KinematicTree(robot)
-        assert len(tree.joint_names) == len(others)
-        for frames in (tree.forward([7.0] * len(others)), tree.forward(np.full((2, len(others)), 7.0))[1]):
+        assert len(tree.joint_names) == len(other_joints)
+        for frames in (tree.forward([7.0] * len(other_joints)), tree.forward(np.full((2, len(other_joints)), 7.0))[1]):
             np.testing.assert_allclose(np.arccos(frames[2, 0, 0]), 0.5)
 
 
@@ -182,13 +185,13 @@ class TestJointsWithoutPosition:
 
     @pytest.mark.parametrize("kind", ["fixed", "floating", "planar"])
     def test_fixed_floating_and_planar_joints_have_no_position(self, kind):
-        tree = KinematicTree(load(robot_text(chain(f'{kind}:<origin xyz="1 2 3"/>'))))
+        tree = KinematicTree(load(robot_text(chain_of_links(f'{kind}:<origin xyz="1 2 3"/>'))))
         assert tree.joint_names == ()
         np.testing.assert_array_equal(tree.forward([])[1][:3, 3], [1, 2, 3])
         assert tree.forward(np.empty((4, 0))).shape == (4, 2, 4, 4)
 
     def test_joint_without_axis_direction_has_no_position(self):
-        tree = KinematicTree(load(robot_text(chain("continuous:<axis/>"))))
+        tree = KinematicTree(load(robot_text(chain_of_links("continuous:<axis/>"))))
         assert tree.joint_names == ()
 
     def test_forward_of_single_link_robot(self):
@@ -213,6 +216,6 @@ def test_deep_chain_is_supported():
     )
     tree = KinematicTree(load(robot_text(links, joints)))
     circle = np.full(count, 2 * pi / count)
-    tips = [tree.forward(circle)[-1], tree.forward(circle[None])[0, -1]]
-    for tip in tips:
+    tip_frames = [tree.forward(circle)[-1], tree.forward(circle[None])[0, -1]]
+    for tip in tip_frames:
         np.testing.assert_allclose(tip, np.eye(4), atol=1e-9)

@@ -38,7 +38,10 @@ PARTS_PY = """def generate_launch_description():
 
 
 def make_packages(folder: Path) -> Path:
-    """Make two packages with launch files, programs and configurations, and return the folder of the first."""
+    """Make two packages, and return the folder of the first.
+
+    They have launch files, programs and configurations.
+    """
     files = {
         "lamp_bringup/package.xml": MANIFEST.format(
             name="lamp_bringup", about="Starts a lamp.", more="<exec_depend>lamp_nodes</exec_depend>"
@@ -94,7 +97,9 @@ class Place:
     def targets(self) -> list[str]:
         """Return the definitions, each as the name of the file and the text at the location."""
         targets = self.format.define(self.document, self.offset)
-        return [f"{to.file.name}:{self.document.other(to.file)[to.start : to.end]}" for to in targets]
+        return [
+            f"{target.file.name}:{self.document.other(target.file)[target.start : target.end]}" for target in targets
+        ]
 
     def links(self) -> list[str]:
         """Return the names of the files that the text refers to."""

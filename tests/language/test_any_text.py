@@ -139,23 +139,23 @@ ACTIONS = """launch:
       - name: gz_args
         value: 'b'
 """
-OWN = [
+OWN_FORMATS = [
     ("launch/a.launch.xml", LAUNCH),
     ("launch/a.launch.py", PYTHON),
     ("srv/A.srv", MESSAGE),
     ("a.launch.yaml", ACTIONS),
 ]
-OWN += [("config/a.srdf", SEMANTICS), ("config/a.srdf.xacro", SEMANTICS), ("package.xml", PACKAGE)]
-OWN += [("a.launch.yaml", ACTIONS), ("config/a.yaml", PARAMETERS), ("rviz/a.rviz", VIEWER)]
+OWN_FORMATS += [("config/a.srdf", SEMANTICS), ("config/a.srdf.xacro", SEMANTICS), ("package.xml", PACKAGE)]
+OWN_FORMATS += [("a.launch.yaml", ACTIONS), ("config/a.yaml", PARAMETERS), ("rviz/a.rviz", VIEWER)]
 MARKS = st.text("<>/=\"' ${}()[],.:#\\n\n机a-@", max_size=8)
 
 
 @given(st.data())
 def test_requests_survive_any_incomplete_text_of_own_formats(data):
-    name, whole = data.draw(st.sampled_from(OWN))
-    start, length = data.draw(st.integers(0, len(whole))), data.draw(st.integers(0, 60))
+    name, complete_text = data.draw(st.sampled_from(OWN_FORMATS))
+    start, length = data.draw(st.integers(0, len(complete_text))), data.draw(st.integers(0, 60))
     typed = data.draw(MARKS)
-    text = whole[:start] + typed + whole[start + length :]
+    text = complete_text[:start] + typed + complete_text[start + length :]
     offset = start + len(typed)
     file = Path(__file__).parents[2] / "robots/my_robot_description" / name
     document = Document(WORKSPACE, {file: text}, file, text)

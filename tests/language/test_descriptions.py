@@ -70,7 +70,10 @@ def package(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def offered(package: Path):
-    """Return the labels that match the typed text after a replacement; the bar marks the cursor."""
+    """Return the labels that match the typed text after a replacement.
+
+    The bar marks the cursor.
+    """
 
     def labels(old: str, new: str, name: str = "urdf/arm.urdf.xacro", text: str = ROBOT) -> list[str]:
         text = text.replace(old, new, 1) if old else text

@@ -19,18 +19,22 @@ NUMBERS = st.sampled_from(["1", "2.5", "-3", "0.1"])
 SIGNS = st.sampled_from([" + ", " - ", "*", " / ", " ** ", " &lt; ", " and ", " or ", " == "])
 
 
-def combined(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
+def combine_expressions(inner_expressions: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
     return st.one_of(
-        st.tuples(inner, SIGNS, inner).map("".join),
-        inner.map(lambda text: f"({text})"),
-        inner.map(lambda text: f"-{text}"),
-        inner.map(lambda text: f"abs({text})"),
-        st.tuples(inner, inner, inner).map(lambda texts: f"{texts[0]} if {texts[1]} else {texts[2]}"),
+        st.tuples(inner_expressions, SIGNS, inner_expressions).map("".join),
+        inner_expressions.map(lambda text: f"({text})"),
+        inner_expressions.map(lambda text: f"-{text}"),
+        inner_expressions.map(lambda text: f"abs({text})"),
+        st.tuples(inner_expressions, inner_expressions, inner_expressions).map(
+            lambda texts: f"{texts[0]} if {texts[1]} else {texts[2]}"
+        ),
     )
 
 
-VALUES = st.recursive(NUMBERS, combined, max_leaves=4)
-USES = st.recursive(st.one_of(NUMBERS, st.just("name")), combined, max_leaves=4).filter(lambda text: "name" in text)
+VALUES = st.recursive(NUMBERS, combine_expressions, max_leaves=4)
+USES = st.recursive(st.one_of(NUMBERS, st.just("name")), combine_expressions, max_leaves=4).filter(
+    lambda text: "name" in text
+)
 
 
 def tree(text: str) -> str:

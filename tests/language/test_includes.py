@@ -12,7 +12,7 @@ from linkwright.lint.inclusions import Inclusion, inclusions_in
 WHEEL = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="wheel"/></robot>'
 
 
-def write(folder: Path, **files: str) -> None:
+def write_package(folder: Path, **files: str) -> None:
     """Write a package with files in its folder ``urdf``."""
     (folder / "urdf").mkdir(parents=True)
     (folder / "package.xml").write_text(f"<package><name>{folder.name}</name></package>")
@@ -20,15 +20,15 @@ def write(folder: Path, **files: str) -> None:
         (folder / "urdf" / f"{name}.xacro").write_text(text)
 
 
-def including(filename: str) -> str:
+def include_element(filename: str) -> str:
     return f'<robot name="r"><xacro:include filename="{filename}"/><link name="base"/></robot>'
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    write(tmp_path / "rover", robot=including("$(find rover)/urdf/wheel.xacro"), wheel=WHEEL)
-    write(tmp_path / "cart", robot=including("wheel.xacro"), wheel=WHEEL)
-    write(tmp_path / "tool", robot=including("$(find other)/urdf/wheel.xacro"))
+    write_package(tmp_path / "rover", robot=include_element("$(find rover)/urdf/wheel.xacro"), wheel=WHEEL)
+    write_package(tmp_path / "cart", robot=include_element("wheel.xacro"), wheel=WHEEL)
+    write_package(tmp_path / "tool", robot=include_element("$(find other)/urdf/wheel.xacro"))
     return real_path(tmp_path)
 
 
@@ -39,15 +39,15 @@ def index(folder: Path) -> IncludeIndex:
     return index
 
 
-def names(folder: Path, files: list[Path]) -> list[str]:
+def file_names(folder: Path, files: list[Path]) -> list[str]:
     return sorted(str(file.relative_to(folder)) for file in files)
 
 
 @pytest.mark.parametrize("package", ["rover", "cart"])
 def test_include_is_resolved_within_its_own_package(folder, index, package):
     file = folder / package / "urdf" / "wheel.xacro"
-    assert names(folder, index.entries(file, {})) == [f"{package}/urdf/robot.xacro"]
-    assert names(folder, index.related_files(file, {})) == [
+    assert file_names(folder, index.entries(file, {})) == [f"{package}/urdf/robot.xacro"]
+    assert file_names(folder, index.related_files(file, {})) == [
         f"{package}/urdf/robot.xacro",
         f"{package}/urdf/wheel.xacro",
     ]
@@ -55,7 +55,7 @@ def test_include_is_resolved_within_its_own_package(folder, index, package):
 
 def test_related_files_start_with_the_file_and_its_includes(tmp_path):
     arms = "".join(f'<xacro:include filename="{name}.xacro"/>' for name in ("left", "right", "middle"))
-    write(
+    write_package(
         tmp_path / "arms",
         left=WHEEL,
         right=WHEEL,
@@ -79,7 +79,7 @@ def test_unknown_package_does_not_match_known_files(folder, index):
 
 
 def test_include_installed_elsewhere_is_matched_by_name(folder, index):
-    text = including("$(find rover)/description/wheel.xacro")  # CMakeLists.txt may install urdf/ in description/
+    text = include_element("$(find rover)/description/wheel.xacro")  # CMakeLists.txt may install urdf/ in description/
     main = folder / "rover" / "urdf" / "robot.xacro"
     wheel = folder / "rover" / "urdf" / "wheel.xacro"
     assert index.entries(wheel, {main: text}) == [main]

@@ -1,4 +1,7 @@
-"""Python launch files: completion, hover and definition in strings, without running the file."""
+"""Python launch files.
+
+The tests cover completion, hover and definition in strings, without running the file.
+"""
 
 from __future__ import annotations
 

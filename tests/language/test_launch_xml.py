@@ -33,8 +33,10 @@ VALUES = {"true or false": "true", "number": "1.0", "integer": "1", "level of a 
 
 def element_text(rule: ElementRule) -> str:
     """Return an element with the attributes that it needs."""
-    needed = [attribute for attribute in rule.attributes if attribute.required]
-    attributes = "".join(f' {attribute.name}="{VALUES.get(attribute.type.name, "a")}"' for attribute in needed)
+    required_attributes = [attribute for attribute in rule.attributes if attribute.required]
+    attributes = "".join(
+        f' {attribute.name}="{VALUES.get(attribute.type.name, "a")}"' for attribute in required_attributes
+    )
     return f"<{rule.tag}{attributes}/>"
 
 
@@ -141,8 +143,8 @@ def test_remapping_completion_offers_topics_of_the_node(position_at):
         .startswith("**joint_states** `sensor_msgs/msg/Joint")
     )
     assert position_at(node.format('from="/tf" to="|"')).labels() == ["tf"]
-    two = node.format('from="joint_states" to="a"/><remap from="jo|"')
-    assert position_at(two).labels() == []
+    node_with_remappings = node.format('from="joint_states" to="a"/><remap from="jo|"')
+    assert position_at(node_with_remappings).labels() == []
 
 
 def test_hover_of_executable_shows_topics(position_at):

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from linkwright.language.outline import Outline
 
 
-def tree(text: str) -> list[object]:
+def outline_tree(text: str) -> list[object]:
     def of(element) -> object:
         label = (element.label, text[element.tag.start : element.end])
         return (*label, [of(child) for child in element.children]) if element.children else label
@@ -28,7 +28,7 @@ def tree(text: str) -> list[object]:
     ],
 )
 def test_unclosed_elements_end_at_parent_or_next_tag(text, expected):
-    assert tree(text) == expected
+    assert outline_tree(text) == expected
 
 
 @given(st.text(alphabet='<>/ab="c -!', max_size=40))

@@ -1,4 +1,7 @@
-"""Renaming from any file: computed names, mentions, launch arguments, SDF, and descriptions that lack a package."""
+"""Renaming from any file.
+
+The tests cover computed names, mentions, launch arguments, SDF, and descriptions that lack a package.
+"""
 
 from __future__ import annotations
 
@@ -107,7 +110,10 @@ class Files:
         self.workspace.index.refresh()
 
     def rename(self, file: str, before: str, new: str) -> tuple[Renaming, dict[str, str]]:
-        """Rename the symbol after a text in a file, and return the renaming with the new texts of all changed files."""
+        """Rename the symbol after a text in a file.
+
+        Return the renaming with the new texts of all changed files.
+        """
         path = self.folder / file
         text = path.read_text(encoding="utf-8")
         place = renamable_name_at(self.workspace, {}, path, text.index(before) + len(before))

@@ -1,4 +1,7 @@
-"""SRDF: completion, hover and definition of groups, and of links and joints of the description."""
+"""SRDF.
+
+The tests cover completion, hover and definition of groups, and of links and joints of the description.
+"""
 
 from __future__ import annotations
 

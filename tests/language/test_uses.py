@@ -1,4 +1,7 @@
-"""Uses of names in launch files and SRDF: in their file, and in the launch files that include it."""
+"""Uses of names in launch files and SRDF.
+
+They are found in their file, and in the launch files that include it.
+"""
 
 from __future__ import annotations
 

@@ -1,3 +1,5 @@
+"""Fixtures of the launch tests: a launch in this process, and its log."""
+
 from __future__ import annotations
 
 import io

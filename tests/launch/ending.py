@@ -9,31 +9,34 @@ from typing import Any
 from launch.actions import OpaqueFunction, Shutdown, TimerAction
 
 from launch import LaunchContext
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
-_PAUSE = 0.02
+_PAUSE_S = 0.02
 
 Condition = Callable[[LaunchContext], object]
 
 
-def when(condition: Condition, *actions: Any) -> OpaqueFunction:
-    """Run actions when a condition holds, or after a minute, so that the test reports what is missing."""
-    limit = time.monotonic() + SECONDS
+def run_when(condition: Condition, *actions: Any) -> OpaqueFunction:
+    """Run actions when a condition holds, or after a minute.
+
+    In the second case the test reports what is missing.
+    """
+    limit = time.monotonic() + TIMEOUT_S
 
     def look(context: LaunchContext) -> list[Any]:
         if condition(context) or time.monotonic() > limit:
             return list(actions)
-        return [TimerAction(period=_PAUSE, actions=[OpaqueFunction(function=look)])]
+        return [TimerAction(period=_PAUSE_S, actions=[OpaqueFunction(function=look)])]
 
     return OpaqueFunction(function=look)
 
 
-def ends_when(condition: Condition) -> OpaqueFunction:
+def end_when(condition: Condition) -> OpaqueFunction:
     """End the launch when a condition holds."""
-    return when(condition, Shutdown())
+    return run_when(condition, Shutdown())
 
 
-def printed(*texts: str, times: int = 1) -> Condition:
+def has_printed(*texts: str, times: int = 1) -> Condition:
     """Return the condition that the launch has printed each of some texts a number of times."""
 
     def holds(context: LaunchContext) -> bool:

@@ -11,9 +11,9 @@ import sys
 import time
 from pathlib import Path
 
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
-DRIVER = """
+LAUNCHER_PROGRAM = """
 from linkwright.process.interruption import end_on_interrupt
 end_on_interrupt()
 print("begun", flush=True)
@@ -47,7 +47,7 @@ class Running:
         self._files = [folder / f"{len(list(folder.glob('*-out')))}-{name}" for name in ("out", "err")]
         streams = [path.open("w") for path in self._files]
         self.process = subprocess.Popen(
-            [sys.executable, "-c", DRIVER, *words], stdout=streams[0], stderr=streams[1], cwd=cwd
+            [sys.executable, "-c", LAUNCHER_PROGRAM, *words], stdout=streams[0], stderr=streams[1], cwd=cwd
         )
         for stream in streams:
             stream.close()
@@ -65,7 +65,7 @@ class Running:
     def err(self) -> str:
         return self._files[1].read_text()
 
-    def until(self, text: str, seconds: float = SECONDS) -> None:
+    def until(self, text: str, seconds: float = TIMEOUT_S) -> None:
         deadline = time.monotonic() + seconds
         while text not in self.out and text not in self.err:
             assert self.process.poll() is None, f"the launch ended:\n{self.out}\n{self.err}"
@@ -74,9 +74,9 @@ class Running:
 
     def end(self, number: int = signal.SIGINT) -> tuple[int, float]:
         """Send a signal, and return the exit status and the time in seconds until the end."""
-        began = time.monotonic()
+        start_s = time.monotonic()
         self.process.send_signal(number)
-        return self.process.wait(SECONDS), time.monotonic() - began
+        return self.process.wait(TIMEOUT_S), time.monotonic() - start_s
 
     @property
     def url(self) -> str:

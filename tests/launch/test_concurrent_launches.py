@@ -12,9 +12,9 @@ import pytest
 
 from tests.domains import own_domain
 from tests.launch.launcher import Running, launch_file
-from tests.waiting import SECONDS, eventually, wait_until
+from tests.waiting import TIMEOUT_S, eventually, wait_until
 
-SHARED = "another launch or program on ROS_DOMAIN_ID"
+SHARED_NAMES_TEXT = "another launch or program on ROS_DOMAIN_ID"
 
 
 @pytest.fixture(autouse=True)
@@ -38,7 +38,7 @@ def is_on_network(running: Running) -> bool:
     return bool(psutil.Process(running.process.pid).net_connections("udp"))
 
 
-class Page:
+class LaunchPage:
     """The last messages that a page of a launch received, by type."""
 
     def __init__(self) -> None:
@@ -51,7 +51,7 @@ class Page:
             session.ws_connect(running.url.replace("/?", "/ws?"), max_msg_size=0) as socket,
         ):
             while not condition():
-                message = await socket.receive(timeout=SECONDS)
+                message = await socket.receive(timeout=TIMEOUT_S)
                 if message.type is aiohttp.WSMsgType.TEXT:
                     decoded = json.loads(message.data)
                     for view_message in decoded if isinstance(decoded, list) else [decoded]:
@@ -71,7 +71,7 @@ async def test_views_are_isolated_unless_joined(start: Callable[..., Running], t
         launcher.until("Robot initialized")
     await eventually(lambda: is_on_network(joined))
     for name, view in views.items():
-        page = Page()
+        page = LaunchPage()
         await page.follow(view, page.frames)
         assert page.frames() == [f"{name}_base", f"{name}_arm"]
         assert not is_on_network(view), "the view had more time to join than the one with --join"
@@ -95,10 +95,10 @@ async def test_launches_with_shared_node_names_are_reported_once(
             )
     for launcher in (first, second):
         assert _shared_lines(launcher).count("/robot_state_publisher") == 1
-        assert f"{SHARED} {domain} " in _shared_lines(launcher)
+        assert f"{SHARED_NAMES_TEXT} {domain} " in _shared_lines(launcher)
         assert f"for example with ROS_DOMAIN_ID={domain + 1} linkwright launch ..." in _shared_lines(launcher)
         assert "Another process has a node" not in launcher.err
-    page = Page()
+    page = LaunchPage()
     await page.follow(second, lambda: page.codes() == ["LAUNCH148"])
     assert first.end()[0] == 130
     await page.follow(second, lambda: page.codes() == [])
@@ -106,4 +106,4 @@ async def test_launches_with_shared_node_names_are_reported_once(
 
 
 def _shared_lines(running: Running) -> str:
-    return "\n".join(line for line in running.err.splitlines() if SHARED in line)
+    return "\n".join(line for line in running.err.splitlines() if SHARED_NAMES_TEXT in line)

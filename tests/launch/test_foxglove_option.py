@@ -11,7 +11,7 @@ from linkwright.launch.ros import Node
 from linkwright.packages import PackageFinder
 
 
-def launched(monkeypatch, options: LaunchOptions) -> list[Node]:
+def load_launch_entities(monkeypatch, options: LaunchOptions) -> list[Node]:
     descriptions: list[LaunchDescription] = []
 
     async def run(description, *_, noninteractive):
@@ -25,12 +25,12 @@ def launched(monkeypatch, options: LaunchOptions) -> list[Node]:
 
 
 def test_foxglove_option_adds_bridge(monkeypatch):
-    (node,) = launched(monkeypatch, LaunchOptions(foxglove=8765))
+    (node,) = load_launch_entities(monkeypatch, LaunchOptions(foxglove=8765))
     assert (node.node_package, node.node_executable) == ("foxglove_bridge", "foxglove_bridge")
 
 
 def test_bridge_is_not_added_without_option(monkeypatch):
-    assert launched(monkeypatch, LaunchOptions()) == []
+    assert load_launch_entities(monkeypatch, LaunchOptions()) == []
 
 
 @pytest.mark.parametrize("words", [["view", "robot.urdf"], ["launch", "a.launch.py"], ["run", "package", "talker"]])

@@ -60,17 +60,17 @@ class TestBuilder:
         assert configs.package_path == tmp_path / "src" / "arm_moveit_config"
         assert '<link name="tool_none"/>' in configs.robot_description["robot_description"]
         assert 'name="v"' in configs.robot_description_semantic["robot_description_semantic"]
-        everything = configs.to_dict()
-        assert everything["robot_description_kinematics"] == {"arm": {"kinematics_solver": "kdl"}}
-        assert everything["robot_description_planning"] == {
+        parameters = configs.to_dict()
+        assert parameters["robot_description_kinematics"] == {"arm": {"kinematics_solver": "kdl"}}
+        assert parameters["robot_description_planning"] == {
             "joint_limits": {"j": {"max_velocity": 1.0}},
             "cartesian_limits": {"max_trans_vel": 1.0},
         }
-        assert everything["planning_pipelines"] == ["ompl"]
-        assert everything["default_planning_pipeline"] == "ompl"
-        assert everything["ompl"] == {"planning_plugins": ["ompl"]}
-        assert everything["moveit_manage_controllers"] is True
-        assert everything["publish_robot_description"] is False
+        assert parameters["planning_pipelines"] == ["ompl"]
+        assert parameters["default_planning_pipeline"] == "ompl"
+        assert parameters["ompl"] == {"planning_plugins": ["ompl"]}
+        assert parameters["moveit_manage_controllers"] is True
+        assert parameters["publish_robot_description"] is False
 
     def test_xacro_arguments_of_setup_assistant_are_used(self, write: Any) -> None:
         urdf = "{package: arm_description, relative_path: urdf/arm.urdf.xacro, xacro_args: 'tool:=noted  odd'}"

@@ -37,16 +37,16 @@ MANAGER = ("nav2_lifecycle_manager", "lifecycle_manager")
 SLAM = [(f"slam_toolbox/{kind}_slam_toolbox_node").split("/") for kind in ("async", "sync", "localization")]
 
 
-def share(package: str) -> Path:
+def share_folder(package: str) -> Path:
     # Without sources: a checkout of nav2 or slam_toolbox near the start folder would take precedence.
     return PackageFinder(start=Path("/no/such/folder"), environment={}).share(package)
 
 
-def include(package: str, name: str, **arguments: str) -> IncludeLaunchDescription:
-    return IncludeLaunchDescription(str(share(package) / "launch" / name), launch_arguments=arguments.items())
+def make_include(package: str, name: str, **arguments: str) -> IncludeLaunchDescription:
+    return IncludeLaunchDescription(str(share_folder(package) / "launch" / name), launch_arguments=arguments.items())
 
 
-class Started:
+class StartedNodes:
     """The nodes that a launch started: executable -> name, parameters and remappings of each."""
 
     def __init__(self) -> None:
@@ -75,8 +75,8 @@ class Started:
 
 
 @pytest.fixture
-def started(monkeypatch: pytest.MonkeyPatch) -> Started:
-    started = Started()
+def started(monkeypatch: pytest.MonkeyPatch) -> StartedNodes:
+    started = StartedNodes()
     for package, executable in (*LOCALIZATION, *NAVIGATION, MANAGER, *SLAM, ("nav2_map_server", "map_saver_server")):
         monkeypatch.setitem(EXECUTABLES.entry_points, (package, executable), started.entry_point(executable))
     monkeypatch.delitem(EXECUTABLES.entry_points, ("nav2_collision_monitor", "collision_monitor"), raising=False)
@@ -85,15 +85,17 @@ def started(monkeypatch: pytest.MonkeyPatch) -> Started:
 
 @pytest.mark.parametrize("package", ["nav2_bringup", "slam_toolbox", "nav2_map_server"])
 def test_package_in_workspace_takes_precedence_over_substitute(package: str, tmp_path: Path) -> None:
-    assert is_substitute(share(package))
+    assert is_substitute(share_folder(package))
     (tmp_path / "src" / package).mkdir(parents=True)
     (tmp_path / "src" / package / "package.xml").write_text(f"<package><name>{package}</name></package>")
     assert PackageFinder(start=tmp_path, environment={}).share(package) == tmp_path / "src" / package
 
 
-async def test_localization_launch_starts_map_server_and_amcl(launch: Launch, started: Started, tmp_path: Path) -> None:
+async def test_localization_launch_starts_map_server_and_amcl(
+    launch: Launch, started: StartedNodes, tmp_path: Path
+) -> None:
     place = tmp_path / "house.yaml"
-    launched = await launch(include("nav2_bringup", "localization_launch.py", map=str(place), use_sim_time="True"))
+    launched = await launch(make_include("nav2_bringup", "localization_launch.py", map=str(place), use_sim_time="True"))
     assert launched.succeeded, launched.err
     assert started.names == {"/map_server", "/amcl", "/lifecycle_manager_localization"}
     _, parameters, remappings = started.node("map_server")
@@ -108,8 +110,8 @@ async def test_localization_launch_starts_map_server_and_amcl(launch: Launch, st
     }
 
 
-async def test_navigation_launch_starts_all_servers(launch: Launch, started: Started) -> None:
-    launched = await launch(include("nav2_bringup", "navigation_launch.py", autostart="false"))
+async def test_navigation_launch_starts_all_servers(launch: Launch, started: StartedNodes) -> None:
+    launched = await launch(make_include("nav2_bringup", "navigation_launch.py", autostart="false"))
     assert launched.succeeded, launched.err
     assert started.names == {*(f"/{name}" for _, name in NAVIGATION), "/lifecycle_manager_navigation"}
     manager = started.node("lifecycle_manager")[1]
@@ -124,19 +126,21 @@ async def test_navigation_launch_starts_all_servers(launch: Launch, started: Sta
 
 
 async def test_missing_server_is_skipped_and_not_managed(
-    launch: Launch, started: Started, monkeypatch: pytest.MonkeyPatch
+    launch: Launch, started: StartedNodes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delitem(EXECUTABLES.entry_points, ("nav2_smoother", "smoother_server"))
-    launched = await launch(include("nav2_bringup", "navigation_launch.py"))
+    launched = await launch(make_include("nav2_bringup", "navigation_launch.py"))
     assert launched.succeeded
     assert "one part of the launch is skipped" in launched.err
     assert "smoother_server" in launched.err
     assert "smoother_server" not in started.node("lifecycle_manager")[1]["node_names"]
 
 
-async def test_bringup_launch_applies_namespace(launch: Launch, started: Started) -> None:
+async def test_bringup_launch_applies_namespace(launch: Launch, started: StartedNodes) -> None:
     launched = await launch(
-        include("nav2_bringup", "bringup_launch.py", namespace="red", use_namespace="true", use_composition="False")
+        make_include(
+            "nav2_bringup", "bringup_launch.py", namespace="red", use_namespace="true", use_composition="False"
+        )
     )
     assert launched.succeeded, launched.err
     assert {f"/red/{name}" for _, name in (*LOCALIZATION, *NAVIGATION)} <= started.names
@@ -144,11 +148,11 @@ async def test_bringup_launch_applies_namespace(launch: Launch, started: Started
     assert started.node("planner_server")[1]["planner_plugins"] == ["GridBased"]
 
 
-async def test_bringup_launch_with_slam_builds_map(launch: Launch, started: Started, tmp_path: Path) -> None:
+async def test_bringup_launch_with_slam_builds_map(launch: Launch, started: StartedNodes, tmp_path: Path) -> None:
     file = tmp_path / "params.yaml"
     file.write_text("slam_toolbox:\n  ros__parameters:\n    resolution: 0.02\n")
     launched = await launch(
-        include("nav2_bringup", "bringup_launch.py", slam="True", use_composition="False", params_file=str(file))
+        make_include("nav2_bringup", "bringup_launch.py", slam="True", use_composition="False", params_file=str(file))
     )
     assert launched.succeeded, launched.err
     assert "/map_saver" in started.names
@@ -158,11 +162,11 @@ async def test_bringup_launch_with_slam_builds_map(launch: Launch, started: Star
 
 
 async def test_slam_toolbox_uses_own_defaults_without_section_in_file(
-    launch: Launch, started: Started, tmp_path: Path
+    launch: Launch, started: StartedNodes, tmp_path: Path
 ) -> None:
     file = tmp_path / "params.yaml"
     file.write_text("amcl:\n  ros__parameters:\n    max_beams: 30\n")
-    launched = await launch(include("nav2_bringup", "slam_launch.py", params_file=str(file)))
+    launched = await launch(make_include("nav2_bringup", "slam_launch.py", params_file=str(file)))
     assert launched.succeeded, launched.err
     parameters = started.node("sync_slam_toolbox_node")[1]
     assert (parameters["resolution"], parameters["use_sim_time"]) == (0.05, True)
@@ -178,9 +182,9 @@ async def test_slam_toolbox_uses_own_defaults_without_section_in_file(
     ],
 )
 async def test_slam_toolbox_launch_files_start_node(
-    launch: Launch, started: Started, file: str, executable: str
+    launch: Launch, started: StartedNodes, file: str, executable: str
 ) -> None:
-    launched = await launch(include("slam_toolbox", file, use_sim_time="false"))
+    launched = await launch(make_include("slam_toolbox", file, use_sim_time="false"))
     assert launched.succeeded, launched.err
     name, parameters, _ = started.node(executable)
     assert name == "/slam_toolbox"
@@ -188,8 +192,8 @@ async def test_slam_toolbox_launch_files_start_node(
     assert parameters["base_frame"] == "base_footprint"
 
 
-async def test_map_saver_launch_starts_managed_node(launch: Launch, started: Started) -> None:
-    launched = await launch(include("nav2_map_server", "map_saver_server.launch.py"))
+async def test_map_saver_launch_starts_managed_node(launch: Launch, started: StartedNodes) -> None:
+    launched = await launch(make_include("nav2_map_server", "map_saver_server.launch.py"))
     assert launched.succeeded, launched.err
     assert started.node("lifecycle_manager")[1]["node_names"] == ["map_saver"]
 
@@ -204,7 +208,9 @@ async def test_composed_servers_receive_parameters(launch: Launch, monkeypatch: 
         return Node(executable="true")
 
     monkeypatch.setattr(servers, "LoadComposableNodes", load)
-    launched = await launch(include("nav2_bringup", "localization_launch.py", use_composition="True", namespace="red"))
+    launched = await launch(
+        make_include("nav2_bringup", "localization_launch.py", use_composition="True", namespace="red")
+    )
     assert launched.succeeded, launched.err
     (words,) = composed
     assert words["target_container"] == "red/nav2_container"
@@ -218,18 +224,18 @@ def test_server_node_name_follows_executable() -> None:
 
 
 def test_default_view_loads_without_warnings() -> None:
-    config = RvizConfig.load(share("nav2_bringup") / "rviz" / "nav2_default_view.rviz")
+    config = RvizConfig.load(share_folder("nav2_bringup") / "rviz" / "nav2_default_view.rviz")
     assert not config.warnings
 
 
 def test_default_parameters_cover_started_nodes() -> None:
-    content = yaml.safe_load((share("nav2_bringup") / "params" / "nav2_params.yaml").read_text())
+    content = yaml.safe_load((share_folder("nav2_bringup") / "params" / "nav2_params.yaml").read_text())
     nodes = {name for _, name in (*LOCALIZATION, *NAVIGATION)}
     assert nodes <= {*content}
     assert {*content} - nodes == {"map_saver", "local_costmap", "global_costmap"}
 
 
-async def test_lifecycle_manager_skips_missing_nodes_of_user_launch_file(launch: Launch, started: Started) -> None:
+async def test_lifecycle_manager_skips_missing_nodes_of_user_launch_file(launch: Launch, started: StartedNodes) -> None:
     names = ["planner_server", "docking_server", "red/route_server"]
     launched = await launch(
         Node(package="opennav_docking", executable="opennav_docking", name="docking_server"),

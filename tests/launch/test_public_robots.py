@@ -1,4 +1,7 @@
-"""Constructs in the launch files of public robots that launch and launch_ros do not document."""
+"""Undocumented constructs in the launch files of public robots.
+
+The documentation of launch and launch_ros does not mention them.
+"""
 
 from __future__ import annotations
 
@@ -59,7 +62,7 @@ def messages(launch: Any, tmp_path: Path) -> Any:
 
 
 @pytest.fixture(autouse=True)
-def _modules_of_this_test_alone() -> Any:
+def _isolated_modules() -> Any:
     before = set(sys.modules)
     yield
     for name in set(sys.modules) - before:
@@ -341,11 +344,11 @@ class TestPrograms:
         assert result.messages[0].endswith("/ros2")
 
     def test_ros_variables_are_set_unless_sourced(self) -> None:
-        bare, sourced = {"A": "b"}, {"ROS_DISTRO": "jazzy"}
-        set_ros_variables(bare)
+        unsourced, sourced = {"A": "b"}, {"ROS_DISTRO": "jazzy"}
+        set_ros_variables(unsourced)
         set_ros_variables(sourced)
         of_ros = {"ROS_DISTRO": "humble", "ROS_VERSION": "2", "ROS_PYTHON_VERSION": "3"}
-        assert bare == {"A": "b", **of_ros, ASSUMED: "1", "GZ_SIM_RESOURCE_PATH": "", "LD_LIBRARY_PATH": ""}
+        assert unsourced == {"A": "b", **of_ros, ASSUMED: "1", "GZ_SIM_RESOURCE_PATH": "", "LD_LIBRARY_PATH": ""}
         assert sourced == {"ROS_DISTRO": "jazzy"}
         models = {"GZ_SIM_RESOURCE_PATH": "/models"}
         set_ros_variables(models)

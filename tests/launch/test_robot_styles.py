@@ -51,7 +51,7 @@ def robot(write: Any, tmp_path: Path) -> Path:
     return tmp_path / "src" / "bot"
 
 
-def check(folder: Path) -> PackageFinder:
+def check_folder(folder: Path) -> PackageFinder:
     return PackageFinder(start=folder, environment={})
 
 
@@ -168,7 +168,7 @@ SYSTEM_YAML = """
 
 async def test_navigation_launch_file_runs(launch: Any, write: Any, robot: Path) -> None:
     path = write("src/bot/launch/nav.launch.py", NAVIGATION)
-    finder = check(robot)
+    finder = check_folder(robot)
     with use_finder(finder):
         result = await launch(load_launch_file(path), finder=finder)
     assert result.succeeded, result.err
@@ -177,7 +177,7 @@ async def test_navigation_launch_file_runs(launch: Any, write: Any, robot: Path)
 
 async def test_manipulation_launch_file_runs(launch: Any, write: Any, robot: Path) -> None:
     path = write("src/bot/launch/move_group.launch.py", MOVEIT)
-    finder = check(robot)
+    finder = check_folder(robot)
     with use_finder(finder):
         result = await launch(load_launch_file(path), finder=finder)
     assert result.messages[0] == "sim false ['amcl', 'controller']"
@@ -205,11 +205,11 @@ async def test_yaml_file_includes_xml_file(launch: Any, write: Any, robot: Path)
     description = load_launch_file(path)
     result = await launch(description, namespace="ns", current="x")
     assert "the launch description was not read from a file" in result.err  # $(dirname) needs a launch file
-    result = await launch(_file(path), namespace="ns")
+    result = await launch(_launch_file(path), namespace="ns")
     assert result.messages == ["ns yamlbot at 0.75", "nowhere else"], result.err
 
 
-def _file(path: Path) -> Any:
+def _launch_file(path: Path) -> Any:
     from launch.actions import IncludeLaunchDescription
 
     return IncludeLaunchDescription(path)
@@ -247,7 +247,7 @@ async def test_error_in_nested_include_names_all_files(launch: Any, write: Any) 
         HEAD + "def generate_launch_description():\n    here = os.path.dirname(__file__)\n"
         "    return LaunchDescription([IncludeLaunchDescription(here + '/b.launch.yaml')])\n",
     )
-    result = await launch(_file(path))
+    result = await launch(_launch_file(path))
     assert not result.succeeded
     assert "error[LAUNCH121]: launch configuration 'y' is not set" in result.err
     lines = result.err.splitlines()
@@ -264,7 +264,7 @@ async def test_missing_include_argument_has_hint(launch: Any, write: Any) -> Non
         "a.launch.xml",
         '<launch><include file="$(dirname)/b.launch.xml"><arg name="modle" value="1"/></include></launch>',
     )
-    result = await launch(_file(path))
+    result = await launch(_launch_file(path))
     assert "requires argument 'model', which is not given" in result.err
     assert "did you mean 'model' instead of 'modle'?" in result.err
 
@@ -275,7 +275,7 @@ async def test_missing_package_is_reported(launch: Any, write: Any) -> None:
     )
     path = write("a.launch.xml", text)
     assert "'a':" in format_arguments(load_launch_file(path))
-    result = await launch(_file(path))
+    result = await launch(_launch_file(path))
     assert "no_such_bot" in result.err
     assert not result.succeeded
 
@@ -316,8 +316,8 @@ class TestNavigationSubstitutions:
                 "new": {"ros__parameters": {"deep": {"x": "text"}}},
             }
         }
-        plain = RewrittenYaml(source, {"v": "7"}).perform(context)
-        assert yaml.safe_load(Path(plain).read_text())["ctl"]["ros__parameters"]["list"] == [{"v": "7"}]
+        rewritten = RewrittenYaml(source, {"v": "7"}).perform(context)
+        assert yaml.safe_load(Path(rewritten).read_text())["ctl"]["ros__parameters"]["list"] == [{"v": "7"}]
 
     def test_rewritten_yaml_of_missing_file_is_rejected(self) -> None:
         with pytest.raises(LinkwrightError) as raised:

@@ -107,9 +107,9 @@ TAIL = (
 )
 
 
-@pytest.mark.parametrize(("given", "message"), [("'I give up'", "I give up"), ("3", "3"), ("", ""), ("0", "0")])
-async def test_sys_exit_in_running_launch_is_an_error(launch, write: Write, given: str, message: str) -> None:
-    path = write("a.launch.py", (ENDED + TAIL).format(given=given, first="pass"))
+@pytest.mark.parametrize(("exit_argument", "message"), [("'I give up'", "I give up"), ("3", "3"), ("", ""), ("0", "0")])
+async def test_sys_exit_in_running_launch_is_an_error(launch, write: Write, exit_argument: str, message: str) -> None:
+    path = write("a.launch.py", (ENDED + TAIL).format(given=exit_argument, first="pass"))
     result = await launch(IncludeLaunchDescription(str(path)))
     assert not result.succeeded
     assert f"raised SystemExit{': ' * bool(message)}{message}\n" in result.err

@@ -14,16 +14,16 @@ from launch_ros.actions import Node
 
 from launch import LaunchContext
 from linkwright.panels.requested_panels import RequestedPanelsFeature
-from tests.launch.ending import ends_when, printed, when
+from tests.launch.ending import end_when, has_printed, run_when
 
 Write = Callable[[str, str], Path]
 
 
-def rqt(name: str, *arguments: str, **options: Any) -> Node:
+def make_rqt_node(name: str, *arguments: str, **options: Any) -> Node:
     return Node(package=name, executable=name, arguments=list(arguments), **options)
 
 
-def end_of(node: Node) -> OpaqueFunction:
+def end_node(node: Node) -> OpaqueFunction:
     """Return the action that ends a node."""
     event = ShutdownProcess(process_matcher=lambda action: action is node)
     return OpaqueFunction(function=lambda context: context.emit_event_sync(event))
@@ -44,16 +44,16 @@ class Panels:
 
     @property
     def ends_launch(self) -> OpaqueFunction:
-        return ends_when(self.look)
+        return end_when(self.look)
 
 
 async def test_all_programs_open_panels_of_one_page(launch) -> None:
     panels = Panels(3)
     programs = [
-        rqt("rqt_plot", "/odom/twist/twist/linear/x:y"),
-        rqt("rqt_gui"),
-        rqt("rqt_image_view", "/camera/image_raw"),
-        rqt("rqt_graph"),
+        make_rqt_node("rqt_plot", "/odom/twist/twist/linear/x:y"),
+        make_rqt_node("rqt_gui"),
+        make_rqt_node("rqt_image_view", "/camera/image_raw"),
+        make_rqt_node("rqt_graph"),
     ]
     result = await launch(*programs, panels.ends_launch)
     assert result.succeeded, result.err
@@ -64,7 +64,7 @@ async def test_all_programs_open_panels_of_one_page(launch) -> None:
 @pytest.mark.parametrize("is_first", [True, False])
 async def test_programs_use_the_page_of_rviz(launch, is_first: bool) -> None:
     panels = Panels(2)
-    programs = [Node(package="rviz2", executable="rviz2"), rqt("rqt_topic"), rqt("rqt_console")]
+    programs = [Node(package="rviz2", executable="rviz2"), make_rqt_node("rqt_topic"), make_rqt_node("rqt_console")]
     result = await launch(*(programs if is_first else reversed(programs)), panels.ends_launch)
     assert result.succeeded, result.err
     assert sorted(panels.opened[0]) == ["log", "topics"]
@@ -86,7 +86,7 @@ async def test_xml_and_yaml_files_open_panels(launch, write: Write, name: str, t
 
 
 async def test_unknown_argument_is_named_and_launch_continues(launch) -> None:
-    result = await launch(rqt("rqt_graph", "--fast"), ends_when(printed("has no argument")))
+    result = await launch(make_rqt_node("rqt_graph", "--fast"), end_when(has_printed("has no argument")))
     assert result.succeeded, result.err
     assert "warning[LAUNCH144]: rqt_graph has no argument '--fast'" in result.err
 
@@ -97,7 +97,7 @@ async def test_programs_report_start_and_end(launch) -> None:
         RegisterEventHandler(OnProcessStart(on_start=lambda event, _: LogInfo(msg=f"started {event.process_name}"))),
         RegisterEventHandler(OnProcessExit(on_exit=lambda event, _: LogInfo(msg=f"ended {event.process_name}"))),
     ]
-    result = await launch(*handlers, rqt("rqt_graph"), rqt("rqt_topic"), panels.ends_launch)
+    result = await launch(*handlers, make_rqt_node("rqt_graph"), make_rqt_node("rqt_topic"), panels.ends_launch)
     assert sorted(result.messages) == [
         "ended rqt_graph-1",
         "ended rqt_topic-2",
@@ -109,10 +109,10 @@ async def test_programs_report_start_and_end(launch) -> None:
 async def test_launch_ends_with_its_last_program(launch) -> None:
     """The page serves the programs that remain, and ends with the last one."""
     panels = Panels(2)
-    graph, topic = rqt("rqt_graph"), rqt("rqt_topic")
+    graph, topic = make_rqt_node("rqt_graph"), make_rqt_node("rqt_topic")
 
-    one_ended = printed("[rqt_graph-1]: has finished cleanly")
-    result = await launch(graph, topic, when(panels.look, end_of(graph)), when(one_ended, end_of(topic)))
+    one_ended = has_printed("[rqt_graph-1]: has finished cleanly")
+    result = await launch(graph, topic, run_when(panels.look, end_node(graph)), run_when(one_ended, end_node(topic)))
     assert result.succeeded, result.err
     lines = [line for line in result.err.splitlines() if "has finished cleanly" in line]
     assert ["rqt_graph-1]" in lines[0], "rqt_topic-2]" in lines[1], "rqt_graph-1-page]" in lines[2]] == [True] * 3
@@ -121,7 +121,7 @@ async def test_launch_ends_with_its_last_program(launch) -> None:
 async def test_programs_end_with_the_page_of_rviz(launch) -> None:
     panels = Panels(1)
     rviz = Node(package="rviz2", executable="rviz2")
-    result = await launch(rviz, rqt("rqt_topic"), when(panels.look, end_of(rviz)))
+    result = await launch(rviz, make_rqt_node("rqt_topic"), run_when(panels.look, end_node(rviz)))
     assert result.succeeded, result.err
     assert "[rqt_topic-2]: has finished cleanly" in result.err
 
@@ -137,7 +137,7 @@ async def test_programs_end_with_the_page_of_rviz(launch) -> None:
 )
 async def test_program_without_panel_is_skipped_with_its_replacement(launch, name: str, replacement: str) -> None:
     talker = Node(package="demo_nodes_cpp", executable="talker")
-    result = await launch(rqt(name), talker, ends_when(printed("Publishing", replacement)))
+    result = await launch(make_rqt_node(name), talker, end_when(has_printed("Publishing", replacement)))
     assert result.succeeded, result.err
     (line,) = [line for line in result.err.splitlines() if replacement in line]
     assert f"the page has no panel that replaces '{name}'" in line
@@ -145,6 +145,6 @@ async def test_program_without_panel_is_skipped_with_its_replacement(launch, nam
 
 async def test_isolated_launch_opens_panels_in_its_page(launch) -> None:
     panels = Panels(1)
-    result = await launch(rqt("rqt_graph"), panels.ends_launch, session_options={"isolate": True})
+    result = await launch(make_rqt_node("rqt_graph"), panels.ends_launch, session_options={"isolate": True})
     assert result.succeeded, result.err
     assert panels.opened == [["graph"]]

@@ -1,3 +1,5 @@
+"""`linkwright launch` from start to end: views, signals and errors."""
+
 from __future__ import annotations
 
 import os
@@ -16,7 +18,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.launch import LaunchOptions, LaunchTarget, run_launch
 from tests.launch.launcher import Running, is_gone, launch_file
 from tests.places import TUTORIAL_PACKAGES
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 Write = Callable[[str, str], Path]
 
@@ -128,7 +130,7 @@ class TestSignals:
         running.until("Default logging verbosity")
         running.process.send_signal(signal.SIGINT)
         running.until("hangs")
-        assert running.process.wait(SECONDS) == 130
+        assert running.process.wait(TIMEOUT_S) == 130
 
     def test_process_receives_sigint_first(self, start: Callable[..., Running], write: Write) -> None:
         program = (
@@ -185,12 +187,12 @@ class TestBadInput:
         assert "LW_X" not in os.environ
 
     @pytest.mark.parametrize(
-        "inner", ["DeclareLaunchArgument('model')", "IncludeLaunchDescription(LaunchConfiguration('x'))"]
+        "inner_file", ["DeclareLaunchArgument('model')", "IncludeLaunchDescription(LaunchConfiguration('x'))"]
     )
     def test_argument_of_included_file_is_not_reported_as_undeclared(
-        self, write: Write, capsys: pytest.CaptureFixture[str], inner: str
+        self, write: Write, capsys: pytest.CaptureFixture[str], inner_file: str
     ) -> None:
-        included = write("inner.launch.py", launch_file(inner))
+        included = write("inner.launch.py", launch_file(inner_file))
         include_options = "launch_arguments={'model': 'm'}.items(), condition=UnlessCondition('true')"
         path = write(
             "a.launch.py",

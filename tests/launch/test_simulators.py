@@ -87,17 +87,17 @@ FINDER = PackageFinder(start=Path(__file__).parent, environment={})
 """A finder without Gazebo's packages, which finds only Linkwright's substitutes."""
 
 
-def share(package: str) -> Path:
+def share_folder(package: str) -> Path:
     return FINDER.share(package)
 
 
-def include(package: str, name: str, **arguments: str) -> IncludeLaunchDescription:
-    return IncludeLaunchDescription(str(share(package) / "launch" / name), launch_arguments=arguments.items())
+def make_include(package: str, name: str, **arguments: str) -> IncludeLaunchDescription:
+    return IncludeLaunchDescription(str(share_folder(package) / "launch" / name), launch_arguments=arguments.items())
 
 
 @pytest.mark.parametrize("package", ["gazebo_ros", "ros_gz_sim", "ros_ign_gazebo", "ros_gz_bridge"])
 def test_package_in_workspace_takes_precedence_over_substitute(package: str, write: Write, tmp_path: Path) -> None:
-    assert is_substitute(share(package))
+    assert is_substitute(share_folder(package))
     write(f"ws/src/{package}/package.xml", f"<package><name>{package}</name></package>")
     finder = PackageFinder(start=tmp_path / "ws", environment={})
     assert finder.share(package) == finder.packages()[package] == tmp_path / "ws" / "src" / package
@@ -122,7 +122,10 @@ async def test_launch_files_missing_in_unbuilt_sources_are_substituted(
     write: Write,
     tmp_path: Path,
 ) -> None:
-    """The build of ros_gz generates gz_sim.launch.py, so a clone lacks it. The clone's own files take precedence."""
+    """The build of ros_gz generates gz_sim.launch.py, so a clone lacks it.
+
+    The clone's own files take precedence.
+    """
     folder = write("ws/src/ros_gz/ros_gz_sim/package.xml", "<package><name>ros_gz_sim</name></package>").parent
     write("ws/src/ros_gz/ros_gz_sim/CMakeLists.txt", COMPILED)
     write("ws/src/ros_gz/ros_gz_sim/launch/gz_sim.launch.py.in", "@GZ_SIM_VER@")
@@ -143,7 +146,7 @@ async def test_launch_files_missing_in_unbuilt_sources_are_substituted(
 
 async def test_gazebo_launch_starts_server(launch: Callable[..., Any], simulators: Simulators) -> None:
     arguments = {"world": str(WORLD), "pause": "true", "verbose": "true", "gui": "false", "seed": "3"}
-    launched = await launch(include("gazebo_ros", "gazebo.launch.py", **arguments))
+    launched = await launch(make_include("gazebo_ros", "gazebo.launch.py", **arguments))
     assert launched.succeeded, launched.err
     assert simulators.started == [("gazebo_ros", {"world": str(WORLD), "pause": True, "seed": 3}, [])]
 
@@ -151,14 +154,14 @@ async def test_gazebo_launch_starts_server(launch: Callable[..., Any], simulator
 async def test_world_argument_is_inherited_or_defaults_to_empty_world(
     launch: Callable[..., Any], simulators: Simulators
 ) -> None:
-    await launch(include("gazebo_ros", "gzserver.launch.py"), world=str(WORLD))
-    await launch(include("gazebo_ros", "gazebo.launch.py", gui="false"))
+    await launch(make_include("gazebo_ros", "gzserver.launch.py"), world=str(WORLD))
+    await launch(make_include("gazebo_ros", "gazebo.launch.py", gui="false"))
     worlds = [parameters["world"] for _, parameters, _ in simulators.started]
-    assert worlds == [str(WORLD), str(share("gazebo_ros") / "worlds" / "empty.world")]
+    assert worlds == [str(WORLD), str(share_folder("gazebo_ros") / "worlds" / "empty.world")]
 
 
 async def test_server_false_starts_no_server(launch: Callable[..., Any], simulators: Simulators) -> None:
-    launched = await launch(include("gazebo_ros", "gazebo.launch.py", server="false", gui="false"))
+    launched = await launch(make_include("gazebo_ros", "gazebo.launch.py", server="false", gui="false"))
     assert launched.succeeded
     assert simulators.started == []
 
@@ -168,16 +171,16 @@ async def test_extra_arguments_and_parameter_files_are_passed(
 ) -> None:
     path = write("gazebo.yaml", "gazebo:\n  ros__parameters:\n    publish_rate: 50.0\n")
     extra = f"--ros-args --params-file {path}"
-    await launch(include("gazebo_ros", "gzserver.launch.py", extra_gazebo_args=extra))
-    await launch(include("gazebo_ros", "gzserver.launch.py", params_file=str(path)))
+    await launch(make_include("gazebo_ros", "gzserver.launch.py", extra_gazebo_args=extra))
+    await launch(make_include("gazebo_ros", "gzserver.launch.py", params_file=str(path)))
     (_, _, words), (_, parameters, _) = simulators.started
     assert words == ["--ros-args", "--params-file", str(path)]
     assert parameters["publish_rate"] == 50.0
 
 
 async def test_required_server_ends_launch(launch: Callable[..., Any], simulators: Simulators) -> None:
-    window = include("gazebo_ros", "gzclient.launch.py")
-    launched = await launch(include("gazebo_ros", "gzserver.launch.py", server_required="true"), window)
+    window = make_include("gazebo_ros", "gzclient.launch.py")
+    launched = await launch(make_include("gazebo_ros", "gzserver.launch.py", server_required="true"), window)
     assert launched.succeeded
     assert "the page in the browser shows the world" in launched.err
     assert len(simulators.started) == 1
@@ -194,7 +197,7 @@ async def test_required_server_ends_launch(launch: Callable[..., Any], simulator
 async def test_gz_sim_launch_starts_server(
     launch: Callable[..., Any], simulators: Simulators, package: str, name: str, arguments: dict[str, str]
 ) -> None:
-    launched = await launch(include(package, name, **arguments))
+    launched = await launch(make_include(package, name, **arguments))
     assert launched.succeeded, launched.err
     assert simulators.started == [("ros_gz_sim", {"world": str(WORLD), "pause": False, "gui": True}, [])]
 
@@ -202,8 +205,8 @@ async def test_gz_sim_launch_starts_server(
 async def test_second_include_for_gui_starts_no_second_server(
     launch: Callable[..., Any], simulators: Simulators
 ) -> None:
-    server = include("ros_gz_sim", "gz_sim.launch.py", gz_args=f"-r -s {WORLD}", on_exit_shutdown="true")
-    launched = await launch(include("ros_gz_sim", "gz_sim.launch.py", gz_args="-g"), server)
+    server = make_include("ros_gz_sim", "gz_sim.launch.py", gz_args=f"-r -s {WORLD}", on_exit_shutdown="true")
+    launched = await launch(make_include("ros_gz_sim", "gz_sim.launch.py", gz_args="-g"), server)
     assert launched.succeeded
     assert len(simulators.started) == 1
 
@@ -240,19 +243,22 @@ async def test_gz_sim_command_starts_server(
 @pytest.mark.parametrize(
     ("entities", "pages"),
     [
-        ([include("gazebo_ros", "gzclient.launch.py")], 1),
-        ([include("ros_gz_sim", "gz_sim.launch.py", gz_args=str(WORLD))], 1),
-        ([include("ros_gz_sim", "gz_sim.launch.py", gz_args=f"-s {WORLD}")], 0),
+        ([make_include("gazebo_ros", "gzclient.launch.py")], 1),
+        ([make_include("ros_gz_sim", "gz_sim.launch.py", gz_args=str(WORLD))], 1),
+        ([make_include("ros_gz_sim", "gz_sim.launch.py", gz_args=f"-s {WORLD}")], 0),
         ([ExecuteProcess(cmd=["gazebo", str(WORLD)])], 1),
         ([ExecuteProcess(cmd=["gzserver", str(WORLD)])], 0),
-        ([include("gazebo_ros", "gzclient.launch.py"), ExecuteProcess(cmd=["gz", "sim", "-g"])], 1),
-        ([include("gazebo_ros", "gzclient.launch.py"), Node(package="rviz2", executable="rviz2")], 1),
+        ([make_include("gazebo_ros", "gzclient.launch.py"), ExecuteProcess(cmd=["gz", "sim", "-g"])], 1),
+        ([make_include("gazebo_ros", "gzclient.launch.py"), Node(package="rviz2", executable="rviz2")], 1),
     ],
 )
 async def test_gazebo_gui_opens_one_viewer(
     launch: Callable[..., Any], simulators: Simulators, entities: list[LaunchDescriptionEntity], pages: int
 ) -> None:
-    """RViz's viewer is reused; otherwise a viewer runs as long as the program that opens the window."""
+    """RViz's viewer is reused.
+
+    Otherwise a viewer runs as long as the program that opens the window.
+    """
     simulators.spawned = []  # the server does not end
 
     def look(context: LaunchContext) -> None:
@@ -274,7 +280,7 @@ async def test_used_port_ends_gazebo_launch_with_one_error(launch: Callable[...,
         other.bind(("127.0.0.1", 0))
         other.listen()
         options = {"port": other.getsockname()[1]}
-        launched = await launch(include("gazebo_ros", "gazebo.launch.py", gui="true"), session_options=options)
+        launched = await launch(make_include("gazebo_ros", "gazebo.launch.py", gui="true"), session_options=options)
     assert not launched.succeeded
     assert [line for line in launched.err.splitlines() if line.startswith("error")] == [
         f"error[VIEW101]: port {options['port']} of '127.0.0.1' is in use"
@@ -282,7 +288,7 @@ async def test_used_port_ends_gazebo_launch_with_one_error(launch: Callable[...,
 
 
 async def test_simulation_inherits_environment_of_group(launch: Callable[..., Any], simulators: Simulators) -> None:
-    server = include("ros_gz_sim", "gz_sim.launch.py", gz_args="-r -s a.sdf")
+    server = make_include("ros_gz_sim", "gz_sim.launch.py", gz_args="-r -s a.sdf")
     await launch(GroupAction([SetEnvironmentVariable("GZ_SIM_RESOURCE_PATH", "/worlds"), server]))
     assert [environment["GZ_SIM_RESOURCE_PATH"] for environment in simulators.environments] == ["/worlds"]
 
@@ -342,6 +348,6 @@ async def test_shutdown_on_server_exit_is_decided_within_include_scope(
         ("ros_gz_sim", "gz_sim.launch.py", {"gz_args": str(WORLD)}),
         ("gazebo_ros", "gzserver.launch.py", {"world": str(WORLD)}),
     ):
-        launched = await launch(GroupAction([include(package, name, **argument)], scoped=True, forwarding=False))
+        launched = await launch(GroupAction([make_include(package, name, **argument)], scoped=True, forwarding=False))
         assert launched.succeeded, launched.err
         assert "error" not in launched.err

@@ -1,3 +1,5 @@
+"""The stand-ins of `launch` and `launch_ros`: their names and imports."""
+
 from __future__ import annotations
 
 import importlib

@@ -1,3 +1,5 @@
+"""The launch file that the words of a command line name."""
+
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -59,9 +61,9 @@ def test_ambiguous_launch_file_name_is_rejected(package: Path) -> None:
 
 
 def test_path_determines_package(package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    elsewhere = tmp_path / "elsewhere"
-    elsewhere.mkdir()
-    monkeypatch.chdir(elsewhere)
+    other_folder = tmp_path / "elsewhere"
+    other_folder.mkdir()
+    monkeypatch.chdir(other_folder)
     target = LaunchTarget(str(package / "launch" / "display.launch.py"))
     assert target.finder().share("arm") == package
 

@@ -1,3 +1,5 @@
+"""The functions of xacro that launch files in Python call."""
+
 from __future__ import annotations
 
 from collections.abc import Callable

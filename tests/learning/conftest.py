@@ -1,4 +1,7 @@
-"""Fixtures for check processes and sandbox supervisors, which count for coverage; confined programs do not."""
+"""Fixtures for check processes and sandbox supervisors, which count for coverage.
+
+Confined programs do not.
+"""
 
 import sys
 

@@ -9,8 +9,11 @@ from pathlib import Path
 from linkwright.learning.course import Lesson
 
 
-def finish(lessons: Iterable[Lesson], workspace: Path) -> None:
-    """Copy the initial files and the solutions of lessons in the order in which a learner gets them."""
+def finish_lessons(lessons: Iterable[Lesson], workspace: Path) -> None:
+    """Copy the initial files and the solutions of lessons.
+
+    Their order is that in which a learner gets them.
+    """
     for lesson in lessons:
         for source in (lesson.start, *(step.solution for step in lesson.steps)):
             if source.is_dir():

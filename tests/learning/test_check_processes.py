@@ -90,7 +90,10 @@ def test_processes_that_hinder_one_another_are_ended(check_server, tmp_path):
 
 
 def test_call_of_launch_waits_without_load_only(monkeypatch):
-    """The launch's event loop is blocked for longer than the wait, during which the clock stops."""
+    """The launch's event loop is blocked for longer than the wait.
+
+    The clock stops during this time.
+    """
     check = launched.LaunchCheck("package", "file", {}, None)
     loop = check._loop
     thread = threading.Thread(target=loop.run_forever)

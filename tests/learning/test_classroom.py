@@ -1,4 +1,7 @@
-"""A learner's progress through a course: files, checks, hints, solutions, and the stored progress."""
+"""A learner's progress through a course.
+
+The tests cover files, checks, hints, solutions, and the stored progress.
+"""
 
 import importlib.util
 import json
@@ -21,7 +24,7 @@ from linkwright.learning.classroom import open_classroom
 from linkwright.learning.course import find_course, load_course
 from linkwright.learning.lesson_tests import test_lesson as run_lesson_tests
 from linkwright.process.forked import IS_POSSIBLE
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 SOLUTION = "01-one-link/solution/one-link/robot.urdf"
 
@@ -33,33 +36,33 @@ def workspace(tmp_path, monkeypatch):
     return tmp_path / "ws"
 
 
-def learn(capsys, *words):
+def run_learn(capsys, *words):
     status = main(["learn", *words])
     output = capsys.readouterr()
     return status, output.out, output.err
 
 
 def test_step_passes_when_work_is_done(workspace, capsys):
-    status, out, _ = learn(capsys, "check", "--course", "example")
+    status, out, _ = run_learn(capsys, "check", "--course", "example")
     assert status == 1
     assert "✗ The robot has the link box.\n      'ws' has no file 'robot.urdf'\n  ✗ It looks like" in out
     (workspace / "robot.urdf").write_text((find_course("example") / SOLUTION).read_text())
-    status, out, _ = learn(capsys, "check", "--course", "example")
+    status, out, _ = run_learn(capsys, "check", "--course", "example")
     assert (status, out.splitlines()[-1]) == (0, "passed; the next step is 01-one-link/mass")
-    status, out, _ = learn(capsys, "answer", "mass", "25")
+    status, out, _ = run_learn(capsys, "answer", "mass", "25")
     assert status == 1
     assert "the area of a side" in out
-    assert learn(capsys, "answer", "mass", "12.5")[0] == 0
-    _, out, _ = learn(capsys, "list")
+    assert run_learn(capsys, "answer", "mass", "12.5")[0] == 0
+    _, out, _ = run_learn(capsys, "list")
     assert out.count("✓") == 2
 
 
 def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(workspace, capsys):
     (workspace / "robot.urdf").write_text("mine")
-    learn(capsys, "show", "--course", "example")
-    assert "### How" not in learn(capsys, "hint")[1]
-    assert "### How" in learn(capsys, "hint")[1]
-    status, out, _ = learn(capsys, "solution")
+    run_learn(capsys, "show", "--course", "example")
+    assert "### How" not in run_learn(capsys, "hint")[1]
+    assert "### How" in run_learn(capsys, "hint")[1]
+    status, out, _ = run_learn(capsys, "solution")
     assert (status, out) == (0, "robot.urdf\n")
     (backup,) = (workspace / "replaced").rglob("robot.urdf")
     assert backup.read_text() == "mine"
@@ -70,12 +73,12 @@ def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(workspace, ca
 
 
 def test_solution_of_number_step_is_the_number(workspace, capsys, tmp_path):
-    status, out, _ = learn(capsys, "solution", "mass", "--course", "example")
+    status, out, _ = run_learn(capsys, "solution", "mass", "--course", "example")
     assert (status, out) == (0, "the answer is 12.5 kg\n")
     assert "solution: true" in (workspace / "learn.yaml").read_text()
-    learn(capsys, "new", str(tmp_path / "mine"))
+    run_learn(capsys, "new", str(tmp_path / "mine"))
     (tmp_path / "mine/01-one-link/solution/mass.answer").unlink()
-    status, _, err = learn(
+    status, _, err = run_learn(
         capsys, "solution", "mass", "--course", str(tmp_path / "mine"), "-C", str(tmp_path / "other")
     )
     assert (status, "LEARN113" in err) == (1, True)
@@ -83,7 +86,10 @@ def test_solution_of_number_step_is_the_number(workspace, capsys, tmp_path):
 
 @pytest.fixture
 def grown_course(tmp_path, long_course):
-    """Return the same course, in which each step writes a file, and lesson b another one at its start."""
+    """Return the same course, in which each step writes a file.
+
+    Lesson b writes another one at its start.
+    """
     for step in ("a/one", "a/two", "b/one"):
         lesson, name = step.split("/")
         folder = tmp_path / "long" / lesson / "solution" / name
@@ -95,29 +101,29 @@ def grown_course(tmp_path, long_course):
 
 def test_catch_up_takes_over_earlier_steps(workspace, capsys, grown_course):
     (workspace / "all.txt").write_text("mine")
-    learn(capsys, "check", "a/one", "--course", grown_course)
+    run_learn(capsys, "check", "a/one", "--course", grown_course)
     before = (workspace / "learn.yaml").read_text()
-    status, out, err = learn(capsys, "catch-up", "b/two")
+    status, out, err = run_learn(capsys, "catch-up", "b/two")
     assert (status, out) == (1, "new: a-one.txt\nnew: a-two.txt\nnew: b-one.txt\nreplaced: all.txt\n")
     assert "nothing was written" in err
     assert [path.name for path in sorted(workspace.iterdir())] == ["all.txt", "learn.yaml"]
     assert (workspace / "learn.yaml").read_text() == before
 
-    assert learn(capsys, "catch-up", "b/two", "--yes")[0] == 0
+    assert run_learn(capsys, "catch-up", "b/two", "--yes")[0] == 0
     assert (workspace / "all.txt").read_text() == "b/one"
     (backup,) = (workspace / "replaced").rglob("all.txt")
     assert backup.read_text() == "mine"
-    _, out, _ = learn(capsys, "list")
+    _, out, _ = run_learn(capsys, "list")
     assert "  ✓ one: One\n  → two: Two\n\nb: L\n  → one: One\n    two: Two\n" in out
     assert "solution copied from the course" in out
-    status, out, err = learn(capsys, "catch-up", "b/two")
+    status, out, err = run_learn(capsys, "catch-up", "b/two")
     assert (status, out, "nothing to write" in err) == (1, "", True)
 
 
 def test_files_replaced_twice_in_one_second_are_both_kept(workspace, capsys, grown_course):
     for text in ("first", "second"):
         (workspace / "all.txt").write_text(text)
-        assert learn(capsys, "catch-up", "b/two", "--course", grown_course, "--yes")[0] == 0
+        assert run_learn(capsys, "catch-up", "b/two", "--course", grown_course, "--yes")[0] == 0
     backups = {path.read_text() for path in (workspace / "replaced").rglob("all.txt")}
     assert backups == {"first", "second"}
 
@@ -125,17 +131,17 @@ def test_files_replaced_twice_in_one_second_are_both_kept(workspace, capsys, gro
 def test_failed_check_names_unfinished_earlier_steps(workspace, capsys, grown_course, tmp_path):
     checks = tmp_path / "long" / "b" / "checks.py"
     checks.write_text(checks.read_text().replace("pass", "work.package('x')"))
-    status, out, _ = learn(capsys, "check", "b/one", "--course", grown_course)
+    status, out, _ = run_learn(capsys, "check", "b/one", "--course", grown_course)
     assert (status, out.splitlines()[-1]) == (
         1,
         "unfinished steps before this one: 2; `linkwright learn catch-up b/one` copies their solutions from the course",
     )
-    learn(capsys, "catch-up", "b/one", "--yes")
-    assert "catch-up" not in learn(capsys, "check", "b/one")[1]
+    run_learn(capsys, "catch-up", "b/one", "--yes")
+    assert "catch-up" not in run_learn(capsys, "check", "b/one")[1]
 
 
 def test_json_result_has_all_languages(workspace, capsys):
-    _, out, _ = learn(capsys, "check", "one-link", "--course", "example", "--json")
+    _, out, _ = run_learn(capsys, "check", "one-link", "--course", "example", "--json")
     result = json.loads(out)
     assert result["passed"] is False
     assert result["checks"][0]["title"]["zh"] == "机器人有名为 box 的连杆。"
@@ -145,7 +151,7 @@ def test_json_result_has_all_languages(workspace, capsys):
 def test_malformed_progress_file_is_rejected_and_kept(workspace, capsys):
     for text in ("a: [", "course: example\nsteps: {a: {nonsense: 1}}", "3", "course: example\nsteps: {a: {passed: 3}}"):
         (workspace / "learn.yaml").write_text(text)
-        status, _, err = learn(capsys, "check", "one-link")
+        status, _, err = run_learn(capsys, "check", "one-link")
         assert status == 1
         assert "LEARN110" in err
         assert (workspace / "learn.yaml").read_text() == text
@@ -166,10 +172,10 @@ def long_course(tmp_path):
 
 
 def test_course_continues_after_last_started_or_passed_step(workspace, capsys, long_course):
-    learn(capsys, "show", "b/one", "--course", long_course)
-    status, out, _ = learn(capsys, "check")
+    run_learn(capsys, "show", "b/one", "--course", long_course)
+    status, out, _ = run_learn(capsys, "check")
     assert (status, out.splitlines()[0], out.splitlines()[-1]) == (0, "b/one: One", "passed; the next step is b/two")
-    _, out, _ = learn(capsys, "check")
+    _, out, _ = run_learn(capsys, "check")
     assert (out.splitlines()[0], out.splitlines()[-1]) == ("b/two: Two", "passed; the next step is a/one")
 
 
@@ -179,30 +185,30 @@ def test_course_continues_in_earlier_lesson_that_was_opened_last(workspace, caps
         "  b/one: {started: 2026-11-01 10:00:00+00:00, passed: 2026-11-01 10:10:00+00:00}\n"
         "  a/one: {started: 2026-11-02 10:00:00+00:00, passed: 2026-11-02 10:10:00+00:00}\n"
     )
-    assert learn(capsys, "show")[1].startswith("## Two")
+    assert run_learn(capsys, "show")[1].startswith("## Two")
     assert "a/two" in (workspace / "learn.yaml").read_text()
 
 
 def test_workspace_belongs_to_one_course(workspace, capsys):
-    learn(capsys, "show", "--course", "example")
-    status, _, err = learn(capsys, "list", "--course", "robot")
+    run_learn(capsys, "show", "--course", "example")
+    status, _, err = run_learn(capsys, "list", "--course", "robot")
     assert status == 1
     assert "LEARN114" in err
-    assert learn(capsys, "list", "--course", "example")[0] == 0
+    assert run_learn(capsys, "list", "--course", "example")[0] == 0
 
 
 def test_new_course_passes_its_tests_and_never_overwrites_files(tmp_path, capsys):
     folder = tmp_path / "mine"
-    assert learn(capsys, "new", str(folder))[0] == 0
-    status, out, err = learn(capsys, "test", str(folder))
+    assert run_learn(capsys, "new", str(folder))[0] == 0
+    status, out, err = run_learn(capsys, "test", str(folder))
     assert (status, "FAIL" in out) == (0, False), out
     assert "0 failed" in err
-    status, _, err = learn(capsys, "new", str(folder))
+    status, _, err = run_learn(capsys, "new", str(folder))
     assert status == 1
     assert "LEARN115" in err
 
 
-def edit(path: Path, old: str, new: str) -> None:
+def replace_in_file(path: Path, old: str, new: str) -> None:
     text = path.read_text(encoding="utf-8")
     assert old in text
     path.write_text(text.replace(old, new), encoding="utf-8")
@@ -221,10 +227,10 @@ def edit(path: Path, old: str, new: str) -> None:
 )
 def test_lesson_tests_report_mistakes(tmp_path, capsys, file, old, new, problem):
     folder = tmp_path / "mine"
-    learn(capsys, "new", str(folder))
-    edit(folder / "01-one-link" / file, old, new)
+    run_learn(capsys, "new", str(folder))
+    replace_in_file(folder / "01-one-link" / file, old, new)
     if problem == "without its solution":
-        edit(folder / "01-one-link" / "checks.py", "def is_cube(work):", "def is_cube(work):\n    return")
+        replace_in_file(folder / "01-one-link" / "checks.py", "def is_cube(work):", "def is_cube(work):\n    return")
     course = load_course(folder)
     problems = [str(result.problem) for result in run_lesson_tests(course, course.lessons[0]) if result.problem]
     assert any(problem in text for text in problems), problems
@@ -243,7 +249,7 @@ def check_server(request):
 
 def test_hanging_or_crashing_check_fails_and_leaves_no_process(tmp_path, capsys, check_server):
     folder = tmp_path / "mine"
-    learn(capsys, "new", str(folder))
+    run_learn(capsys, "new", str(folder))
     checks = folder / "01-one-link" / "checks.py"
     marker = tmp_path / "pid"
     start = (
@@ -257,7 +263,7 @@ def test_hanging_or_crashing_check_fails_and_leaves_no_process(tmp_path, capsys,
     result = check_in_process(step, tmp_path, time_limit=3.0, server=check_server)
     assert "took longer than 3 s" in str(result.checks[0].message)
     if sys.platform != "win32":
-        wait_until(lambda: not is_running(int(marker.read_text())), SECONDS)
+        wait_until(lambda: not is_running(int(marker.read_text())), TIMEOUT_S)
     checks.write_text("import os\nos._exit(7)\n")
     result = check_in_process(step, tmp_path, server=check_server)
     assert "ended early" in str(result.checks[0].message)
@@ -271,7 +277,7 @@ def test_hanging_or_crashing_check_fails_and_leaves_no_process(tmp_path, capsys,
 
 def test_checks_have_separate_domain_folder_environment_and_seed(tmp_path, capsys, check_server, monkeypatch):
     folder = tmp_path / "mine"
-    learn(capsys, "new", str(folder))
+    run_learn(capsys, "new", str(folder))
     (folder / "01-one-link" / "checks.py").write_text(
         "import json, os, time\nimport numpy\nfrom linkwright.learning import NotYet, check\n\n"
         '@check("mass", en="It is said.", zh="说。")\n'
@@ -299,15 +305,15 @@ def test_checks_have_separate_domain_folder_environment_and_seed(tmp_path, capsy
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected_text"),
     [
         ("x: 1\n", "robot.yaml, line 1, column 4: "),
         ("a:\n\tx: 1\n", "robot.yaml, line 2, column 1: "),
     ],
 )
-def test_finding_in_file_has_location_code_and_hint(tmp_path, capsys, text, said):
+def test_finding_in_file_has_location_code_and_hint(tmp_path, capsys, text, expected_text):
     folder = tmp_path / "mine"
-    learn(capsys, "new", str(folder))
+    run_learn(capsys, "new", str(folder))
     (folder / "01-one-link" / "checks.py").write_text(
         "from linkwright.graph.parameters.files import read_parameter_file\nfrom linkwright.learning import check\n\n"
         '@check("mass", en="It can be read.", zh="可以读取。")\n'
@@ -319,7 +325,7 @@ def test_finding_in_file_has_location_code_and_hint(tmp_path, capsys, text, said
         read_parameter_file(tmp_path / "robot.yaml")
     finding = raised.value.diagnostics[0]
     message = str(result.message)
-    assert message.startswith(said)
+    assert message.startswith(expected_text)
     assert f"{finding.message} [{finding.code}]" in message
     assert finding.hint is None or message.endswith(f"; {finding.hint}")
     assert re.match(r"robot\.yaml 第 \d+ 行第 \d+ 列：", result.message.get("zh"))

@@ -1,4 +1,7 @@
-"""Courses are read with all their texts, and each mistake in their files is one error with its location."""
+"""Courses are read with all their texts.
+
+Each mistake in their files is one error with its location.
+"""
 
 from pathlib import Path
 

@@ -1,4 +1,7 @@
-"""The workspace of a learner at the end of the course is an ordinary one, which colcon builds and tests."""
+"""The workspace of a learner at the end of the course.
+
+It is an ordinary workspace, which colcon builds and tests.
+"""
 
 import os
 import subprocess
@@ -9,7 +12,7 @@ import pytest
 
 from linkwright.learning.course import find_course, load_course
 from tests.domains import own_domain
-from tests.learning.finished import finish
+from tests.learning.finished import finish_lessons
 
 pytestmark = [pytest.mark.slow, pytest.mark.extra("colcon")]
 
@@ -25,7 +28,7 @@ INSTALLED = (
 )
 
 
-def colcon(workspace: Path, *words: str) -> str:
+def run_colcon(workspace: Path, *words: str) -> str:
     """Run colcon in the environment of ``linkwright shell``, and return its output."""
     result = subprocess.run(
         [sys.executable, "-m", "linkwright", "shell", "--", "colcon", *words],
@@ -41,10 +44,10 @@ def colcon(workspace: Path, *words: str) -> str:
 
 
 def test_colcon_builds_and_tests_all_packages_of_course(tmp_path: Path) -> None:
-    finish(load_course(find_course("robot")).lessons, tmp_path)
-    colcon(tmp_path, "build")
+    finish_lessons(load_course(find_course("robot")).lessons, tmp_path)
+    run_colcon(tmp_path, "build")
     missing = [name for name in INSTALLED if not (tmp_path / "install" / name).is_file()]
     assert not missing
-    colcon(tmp_path, "test", "--packages-select", "my_mission")
-    summary = colcon(tmp_path, "test-result")
+    run_colcon(tmp_path, "test", "--packages-select", "my_mission")
+    summary = run_colcon(tmp_path, "test-result")
     assert "9 tests, 0 errors, 0 failures" in summary

@@ -1,4 +1,7 @@
-"""An exercise in pages: its text, the state of the judge in the running world, and the scores of the program."""
+"""An exercise in pages.
+
+The tests cover its text, the state of the judge in the running world, and the scores of the program.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +31,7 @@ STATE = {
 
 
 @asynccontextmanager
-async def exercise_page(program: Path, name: str = "follow_line") -> AsyncIterator[tuple[Any, Any]]:
+async def open_exercise_page(program: Path, name: str = "follow_line") -> AsyncIterator[tuple[Any, Any]]:
     async with open_world() as world:
         context = world.viewer.context
         guide = ExerciseGuide(find_exercise(name), program, context.pages.publish, context.node)
@@ -38,7 +41,7 @@ async def exercise_page(program: Path, name: str = "follow_line") -> AsyncIterat
 
 
 async def test_exercise_page_shows_text_and_judge_status(tmp_path):
-    async with exercise_page(tmp_path / "mine.py") as (world, client):
+    async with open_exercise_page(tmp_path / "mine.py") as (world, client):
         opened = await client.opened()
         assert opened["course"]["folder"] == str(tmp_path)
         assert opened["course"]["file"] == str(tmp_path / "mine.py")
@@ -55,7 +58,7 @@ async def test_exercise_page_shows_text_and_judge_status(tmp_path):
 
 
 async def test_missing_program_is_not_judged(tmp_path):
-    async with exercise_page(tmp_path / "mine.py") as (_, client):
+    async with open_exercise_page(tmp_path / "mine.py") as (_, client):
         await client.send("check_step")
         assert "there is no program" in (await client.until("course_problem"))["message"]
         await client.send("take_hint")
@@ -67,7 +70,7 @@ async def test_missing_program_is_not_judged(tmp_path):
 async def test_program_is_judged_with_several_seeds(tmp_path):
     program = tmp_path / "balance.py"
     shutil.copy(find_exercise("balance").solution("reference"), program)
-    async with exercise_page(program, "balance") as (_, client):
+    async with open_exercise_page(program, "balance") as (_, client):
         await client.send("check_step")
         assert (await client.until("step_checks", is_running=True))["checked_at"] is None
         checks = (await client.until("step_checks", is_running=False))["checks"]
@@ -81,7 +84,7 @@ async def test_judge_failure_is_reported_and_world_pauses_while_judging(tmp_path
     program = tmp_path / "mine.py"
     program.touch()
     monkeypatch.setattr("linkwright.learning.page.exercise_guide.sys.executable", "/bin/false")
-    async with exercise_page(program) as (world, client):
+    async with open_exercise_page(program) as (world, client):
         simulator = FakeSimulator(world.graph)
         await world.settle()
         await client.send("check_step")

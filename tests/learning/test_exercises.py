@@ -1,4 +1,7 @@
-"""Exercises: their judges are fair, their solutions score as they should, and results repeat."""
+"""Exercises.
+
+Their judges are fair, their solutions score as they should, and results repeat.
+"""
 
 import json
 import os
@@ -26,7 +29,7 @@ pytestmark = pytest.mark.extra("sim")
 
 NAMES = exercise_names()
 SEEDS = (0, 1, 2)
-FAST = "avoid_obstacles"
+FAST_EXERCISES = "avoid_obstacles"
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -40,7 +43,7 @@ def test_exercise_texts_exist_in_both_languages(name):
 
 
 @cache
-def reference_result(name: str, seed: int) -> RunResult:
+def run_reference(name: str, seed: int) -> RunResult:
     """Return the result of the reference solution, which several tests use."""
     exercise = find_exercise(name)
     return next(judge_program(exercise, exercise.solution("reference"), [seed]))
@@ -49,7 +52,7 @@ def reference_result(name: str, seed: int) -> RunResult:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.slow
 def test_reference_solution_scores_over_90_with_every_seed(name):
-    results = [reference_result(name, seed) for seed in SEEDS]
+    results = [run_reference(name, seed) for seed in SEEDS]
     assert [result.error for result in results] == [None] * len(SEEDS)
     assert min(result.score for result in results) > 90.0, [result.data for result in results]
 
@@ -76,7 +79,7 @@ def test_template_runs_and_scores_below_10(name):
 @pytest.mark.slow
 def test_two_runs_are_bit_identical(name):
     exercise = find_exercise(name)
-    first, second = reference_result(name, 2), next(judge_program(exercise, exercise.solution("reference"), [2]))
+    first, second = run_reference(name, 2), next(judge_program(exercise, exercise.solution("reference"), [2]))
     assert first is not second
     assert first == second
 
@@ -84,7 +87,7 @@ def test_two_runs_are_bit_identical(name):
 def test_failing_program_gets_traceback(tmp_path):
     program = tmp_path / "program.py"
     program.write_text("import rclpy\nrclpy.init()\nunknown\n", encoding="utf-8")
-    (result,) = judge_program(find_exercise(FAST), program, [0])
+    (result,) = judge_program(find_exercise(FAST_EXERCISES), program, [0])
     assert result.score == 0.0
     assert "program.py" in result.error
     assert "line 3" in result.error
@@ -101,7 +104,7 @@ def test_program_has_no_access_to_simulator(tmp_path):
         "assert not [n for n, _ in node.get_topic_names_and_types() if 'states' in n and 'joint' not in n]\n",
         encoding="utf-8",
     )
-    (result,) = judge_program(find_exercise(FAST), program, [0])
+    (result,) = judge_program(find_exercise(FAST_EXERCISES), program, [0])
     assert result.error is None
     with SteppedSimulation(services=False) as test, pytest.raises(LookupError):
         test.call("/get_entity_state", None)
@@ -116,12 +119,12 @@ def test_an_exercise_uses_its_own_robot_in_a_workspace_with_a_package_of_the_sam
     own_base = "<robot><joint/></robot>"
     (package / "urdf" / "base" / "mbot_base_gazebo.xacro").write_text(own_base, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    exercise = find_exercise(FAST)
+    exercise = find_exercise(FAST_EXERCISES)
     (result,) = judge_program(exercise, exercise.template, [0])
     assert result.error is None
 
 
-MEDDLER = """
+MEDDLING_PROGRAM = """
 import rclpy
 from geometry_msgs.msg import Twist
 from rclpy.node import Node
@@ -137,7 +140,7 @@ rclpy.spin(node)
 @pytest.mark.parametrize(("namespace", "topic"), [("", "/rival/cmd_vel"), ("rival", "cmd_vel")])
 def test_a_program_that_commands_the_rival_gets_no_points(tmp_path, namespace, topic):
     program = tmp_path / "program.py"
-    program.write_text(MEDDLER.format(namespace=namespace, topic=topic), encoding="utf-8")
+    program.write_text(MEDDLING_PROGRAM.format(namespace=namespace, topic=topic), encoding="utf-8")
     (result,) = judge_program(find_exercise("race"), program, [0])
     assert result.score == 0.0
     assert result.data["time"] < 1.0
@@ -167,7 +170,7 @@ def test_a_program_with_absolute_names_drives_the_rival(tmp_path):
 def test_the_rival_option_is_checked(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("mine.py").touch()
-    assert main(["learn", "judge", FAST, "mine.py", "--rival", "mine.py"]) != 0
+    assert main(["learn", "judge", FAST_EXERCISES, "mine.py", "--rival", "mine.py"]) != 0
     assert "LEARN145" in capsys.readouterr().err
     assert main(["learn", "judge", "race", "mine.py", "--rival", "missing.py"]) != 0
     assert "LEARN142" in capsys.readouterr().err
@@ -211,22 +214,22 @@ def test_the_rival_drives_in_real_time(tmp_path):
 
 def test_judge_command_prints_table_or_json(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    assert main(["learn", "judge", FAST, "--start"]) == 0
-    assert (tmp_path / f"{FAST}.py").read_text(encoding="utf-8") == find_exercise(FAST).template.read_text(
-        encoding="utf-8"
-    )
-    assert main(["learn", "judge", FAST, "--start"]) != 0, "the user's file is not overwritten"
+    assert main(["learn", "judge", FAST_EXERCISES, "--start"]) == 0
+    assert (tmp_path / f"{FAST_EXERCISES}.py").read_text(encoding="utf-8") == find_exercise(
+        FAST_EXERCISES
+    ).template.read_text(encoding="utf-8")
+    assert main(["learn", "judge", FAST_EXERCISES, "--start"]) != 0, "the user's file is not overwritten"
     capsys.readouterr()
     (tmp_path / "done.py").write_text("import sys\nprint('hello')\nsys.exit(0)\n", encoding="utf-8")
-    assert main(["learn", "judge", FAST, "done.py", "--seeds", "1", "--json"]) == 1
+    assert main(["learn", "judge", FAST_EXERCISES, "done.py", "--seeds", "1", "--json"]) == 1
     data = json.loads(capsys.readouterr().out)
-    assert data["exercise"] == FAST
+    assert data["exercise"] == FAST_EXERCISES
     assert data["runs"][0]["seed"] == 0
     assert set(data["runs"][0]["reasons"][0]) == {"en", "zh"}
-    assert main(["learn", "judge", FAST, "missing.py"]) != 0
+    assert main(["learn", "judge", FAST_EXERCISES, "missing.py"]) != 0
     assert "LEARN142" in capsys.readouterr().err
     assert main(["learn", "exercises"]) == 0
-    assert FAST in capsys.readouterr().out
+    assert FAST_EXERCISES in capsys.readouterr().out
 
 
 def test_mistakes_in_exercise_are_reported(tmp_path):
@@ -241,12 +244,12 @@ def test_mistakes_in_exercise_are_reported(tmp_path):
 
 
 def test_real_time_world_publishes_judge_status(tmp_path):
-    arrangement = write_world(find_exercise(FAST), 1, tmp_path, publishes=True)
-    with SteppedSimulation(arrangement.world, find_exercise(FAST).robot, pose=arrangement.pose) as test:
+    arrangement = write_world(find_exercise(FAST_EXERCISES), 1, tmp_path, publishes=True)
+    with SteppedSimulation(arrangement.world, find_exercise(FAST_EXERCISES).robot, pose=arrangement.pose) as test:
         status = test.record("/judge/status")
         test.advance(1.0)
         data = json.loads(status.last.data)
-        assert data["exercise"] == FAST
+        assert data["exercise"] == FAST_EXERCISES
         assert data["time"] == pytest.approx(1.0, abs=0.1)
         test.reset()
         test.advance(0.4)
@@ -264,10 +267,10 @@ def test_localization_progress_grows_with_better_estimate(monkeypatch):
     judge = create_judge(find_exercise("localize"), 0)
     monkeypatch.setattr(judge, "pose", lambda: (1.0, 1.0, 0.0))
     judge.start()
-    seen = []
+    progress_values = []
     for x in (None, 3.0, 1.5, 1.0):
         if x is not None:
             judge.on_message("/estimate", SimpleNamespace(pose=SimpleNamespace(position=SimpleNamespace(x=x, y=1.0))))
         judge.update()
-        seen.append((judge.figure, round(judge.progress, 3)))
-    assert seen == [(3.0, 0.0), (2.0, 0.333), (0.5, 0.833), (0.0, 1.0)]
+        progress_values.append((judge.figure, round(judge.progress, 3)))
+    assert progress_values == [(3.0, 0.0), (2.0, 0.333), (0.5, 0.833), (0.0, 1.0)]

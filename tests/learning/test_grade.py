@@ -22,15 +22,15 @@ from linkwright.learning.grading import grading, workers
 from linkwright.learning.grading import running as grading_running
 from linkwright.sweep.ray_cluster import LostTask
 from tests.learning.sandbox.conftest import class_folder, processes_with  # noqa: F401
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the sandbox needs Linux")
 
 ENDLESS = "while True: pass"
 FORK_BOMB = "import os, time\nwhile True:\n    try:\n        os.fork()\n    except OSError:\n        time.sleep(0.01)"
 LARGE_FILE = "with open('big', 'wb') as file:\n    while True: file.write(bytes(1 << 20))"
-KILL = "import os, signal\nos.kill(-1, signal.SIGKILL)"
-SPY = """
+KILLING_PROGRAM = "import os, signal\nos.kill(-1, signal.SIGKILL)"
+SPYING_PROGRAM = """
 import pathlib, sys
 for path in pathlib.Path({folder!r}).glob('good*/program.py'):
     pathlib.Path('program.py').write_text(path.read_text())
@@ -78,7 +78,7 @@ def write_student(folder, name, program):
     return place
 
 
-def grade(folder, *words):
+def grade_folder(folder, *words):
     folders = sorted(map(str, (folder / "students").iterdir()))
     status = main(["learn", "grade", "--course", str(folder / "course"), "--json", "out.json", *words, *folders])
     data = json.loads((folder / "out.json").read_text())
@@ -88,10 +88,10 @@ def grade(folder, *words):
 def test_malicious_students_affect_only_themselves(folder):
     for number in range(8):
         write_student(folder, f"good{number}", "print(42)")
-    attacks = [ENDLESS, FORK_BOMB, LARGE_FILE, KILL, SPY.format(folder=str(folder / "students"))]
+    attacks = [ENDLESS, FORK_BOMB, LARGE_FILE, KILLING_PROGRAM, SPYING_PROGRAM.format(folder=str(folder / "students"))]
     for number, attack in enumerate(attacks):
         write_student(folder, f"malicious{number}", attack)
-    status, students, data = grade(folder, *LIMITS)
+    status, students, data = grade_folder(folder, *LIMITS)
     assert status == 0
     assert [students[f"good{number}"]["points"] for number in range(8)] == [4] * 8
     assert [students[f"malicious{number}"]["points"] for number in range(5)] == [1] * 5
@@ -99,7 +99,7 @@ def test_malicious_students_affect_only_themselves(folder):
     assert reasons[0]["en"] == "the program used more than 3 s of processor time"
     assert "limits" in data["protections"]
     assert all((folder / f"students/good{number}/program.py").read_text() == "print(42)" for number in range(8))
-    wait_until(lambda: not processes_with("linkwright_grade_"), SECONDS)
+    wait_until(lambda: not processes_with("linkwright_grade_"), TIMEOUT_S)
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGKILL, signal.SIGHUP])
@@ -107,16 +107,16 @@ def test_runs_end_with_grader(folder, number):
     write_student(folder, "endless", ENDLESS)
     words = ["learn", "grade", "--course", "course", "--cpu-seconds", "300", "students/endless"]
     grader = subprocess.Popen([sys.executable, "-m", "linkwright", *words], cwd=folder, start_new_session=True)
-    wait_until(lambda: processes_with("program.py"), SECONDS)
+    wait_until(lambda: processes_with("program.py"), TIMEOUT_S)
     grader.send_signal(number)
-    assert grader.wait(SECONDS) != 0
-    wait_until(lambda: not processes_with("program.py") and not processes_with("linkwright_grade_"), SECONDS)
+    assert grader.wait(TIMEOUT_S) != 0
+    wait_until(lambda: not processes_with("program.py") and not processes_with("linkwright_grade_"), TIMEOUT_S)
 
 
 def test_grade_report_has_points_claims_and_all_formats(folder):
     write_student(folder, "=odd, name", "print(41)")
     words = ["--csv", "out.csv", "--nbgrader", "nb.csv", "--html", "out.html"]
-    status, students, _ = grade(folder, *words)
+    status, students, _ = grade_folder(folder, *words)
     assert status == 0
     step = students["=odd, name"]["steps"][0]
     assert (step["points"], step["max_points"], step["claims"]["hints"], step["claims"]["solution"]) == (0, 3, 2, True)
@@ -157,7 +157,7 @@ def test_cluster_receives_folders_and_lost_check_is_repeated(folder, monkeypatch
     tool.touch(mode=0o755)
     cluster = FakeCluster()
     monkeypatch.setattr(workers, "connect_to_ray", lambda address: nullcontext(cluster))
-    status, students, _ = grade(folder, "--ray", "auto")
+    status, students, _ = grade_folder(folder, "--ray", "auto")
     assert status == 0
     assert {name: student["points"] for name, student in students.items()} == {"good": 4, "bad": 1}
     assert cluster.calls > 4
@@ -192,7 +192,7 @@ def test_error_of_one_run_leaves_other_students_graded(folder, monkeypatch):
 
     monkeypatch.setattr(grading_running, "run_in_sandbox", fail_for_one)
     monkeypatch.setattr(workers, "connect_to_ray", lambda address: nullcontext(FakeCluster()))
-    status, students, _ = grade(folder, "--ray", "auto", "--csv", "out.csv", "--nbgrader", "nb.csv")
+    status, students, _ = grade_folder(folder, "--ray", "auto", "--csv", "out.csv", "--nbgrader", "nb.csv")
     assert status == 1
     assert {name: (student["points"], student["graded"]) for name, student in students.items()} == {
         "good": (4, True),
@@ -208,28 +208,28 @@ def test_error_of_one_run_leaves_other_students_graded(folder, monkeypatch):
     assert scores == {"good": "4", "unlucky": ""}
     assert Path("out.csv.unfinished").exists()
     monkeypatch.setattr(grading_running, "run_in_sandbox", run_in_sandbox)
-    status, students, _ = grade(folder, "--ray", "auto", "--csv", "out.csv")
+    status, students, _ = grade_folder(folder, "--ray", "auto", "--csv", "out.csv")
     assert status == 0
     assert students["unlucky"]["points"] == 4
     assert not Path("out.csv.unfinished").exists()
 
 
-LACKS = {
+MISSING_MODULE_TEXTS = {
     "raise ImportError('a mistake of the teacher')": "the file cannot be run",
     "import os; os._exit(3)": "the process of the checks ended with status 3",
 }
 
 
-@pytest.mark.parametrize("mistake", LACKS)
+@pytest.mark.parametrize("mistake", MISSING_MODULE_TEXTS)
 def test_unloadable_checks_leave_students_ungraded(folder, mistake):
     write_student(folder, "good", "print(42)")
     (folder / "course/01-program/checks.py").write_text(mistake)
-    status, students, _ = grade(folder, "--html", "out.html")
+    status, students, _ = grade_folder(folder, "--html", "out.html")
     assert (status, students["good"]["graded"]) == (1, False)
     for step in students["good"]["steps"]:
         assert (step["graded"], step["repeated"]) == (False, True)
         message = step["reason"] or step["checks"][0]["message"]
-        assert LACKS[mistake] in message["en"]
+        assert MISSING_MODULE_TEXTS[mistake] in message["en"]
     assert "not complete" in Path("out.html").read_text(encoding="utf-8")
 
 
@@ -240,7 +240,7 @@ def test_check_without_memory_or_library_is_not_graded(folder):
     source = checks.read_text().replace("def run(work):\n", "def run(work):\n    raise MemoryError\n")
     source = source.replace("def read(work):\n", f"def read(work):\n    {missing}\n")
     checks.write_text(source)
-    status, students, _ = grade(folder)
+    status, students, _ = grade_folder(folder)
     assert status == 1
     assert [step["graded"] for step in students["good"]["steps"]] == [False, False]
 
@@ -257,7 +257,7 @@ def test_check_without_memory_or_library_is_not_graded(folder):
 def test_lessons_and_steps_are_selected(folder, words, addresses):
     add_lesson(folder)
     write_student(folder, "good", "print(42)")
-    _, students, _ = grade(folder, *words)
+    _, students, _ = grade_folder(folder, *words)
     assert [step["step"] for step in students["good"]["steps"]] == addresses
 
 
@@ -299,7 +299,7 @@ def test_marks_do_not_depend_on_the_umask(folder):
     (folder / "course/01-program/checks.py").chmod(0o600)
     before = os.umask(0o077)
     try:
-        status, students, _ = grade(folder)
+        status, students, _ = grade_folder(folder)
     finally:
         os.umask(before)
     assert (status, students["good"]["points"]) == (0, 4)
@@ -311,7 +311,7 @@ def test_marks_do_not_depend_on_the_umask(folder):
 def test_malicious_students_on_cluster_affect_only_themselves(folder):
     for number in range(2):
         write_student(folder, f"good{number}", "print(42)")
-    for number, attack in enumerate([KILL, SPY.format(folder=str(folder / "students"))]):
+    for number, attack in enumerate([KILLING_PROGRAM, SPYING_PROGRAM.format(folder=str(folder / "students"))]):
         write_student(folder, f"malicious{number}", attack)
     folders = sorted(map(str, (folder / "students").iterdir()))
     words = ["learn", "grade", "--course", "course", "--ray", "local", "--json", "out.json", *LIMITS, *folders]
@@ -344,7 +344,7 @@ def test_unusual_folders_have_notes(folder, capsys):
     (students / "file.zip").write_text("")
     (students / "packed").mkdir()
     (students / "packed/workspace.tar.gz").write_text("")
-    status, report, _ = grade(folder, "--html", "out.html")
+    status, report, _ = grade_folder(folder, "--html", "out.html")
     assert status == 1
     assert Path("out.html").read_text(encoding="utf-8").count("not graded") == 6
     notes = {name: " / ".join(note["en"] for note in student["notes"]) for name, student in report.items()}
@@ -378,7 +378,7 @@ def test_interrupted_grading_continues(folder, monkeypatch):
                  "students/good2"]) == 130  # fmt: skip
     counted = []
     monkeypatch.setattr(grading, "_run_all", lambda jobs, run_jobs: run_all(counted.extend(jobs) or jobs, run_jobs))
-    status, students, _ = grade(folder)
+    status, students, _ = grade_folder(folder)
     assert status == 0
     assert len(counted) == 2
     assert [student["points"] for student in students.values()] == [4] * 3

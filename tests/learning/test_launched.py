@@ -1,4 +1,7 @@
-"""Checks of a launch: they find nodes, messages and transforms, and report missing ones after a short wait."""
+"""Checks of a launch.
+
+They find nodes, messages and transforms, and report missing ones after a short wait.
+"""
 
 import shutil
 import time

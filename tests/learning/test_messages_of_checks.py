@@ -1,4 +1,7 @@
-"""Messages of checks name the place of a mistake and its fix: files, links, programs, and topics without messages."""
+"""Messages of checks name the place of a mistake and its fix.
+
+The tests cover files, links, programs, and topics without messages.
+"""
 
 import sys
 

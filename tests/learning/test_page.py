@@ -1,4 +1,7 @@
-"""A course in pages: steps, checks after changes, hints, answers, solutions, and hostile requests."""
+"""A course in pages.
+
+The tests cover steps, checks after changes, hints, answers, solutions, and hostile requests.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,7 @@ ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
 WRONG = '<robot name="r"><link name="bux"/></robot>'
 
 
-class Shown:
+class ShownFiles:
     """The files that the feature shows beside its steps."""
 
     def __init__(self) -> None:
@@ -41,39 +44,39 @@ def show_course(
 
 
 @asynccontextmanager
-async def classroom(workspace: Path, shown: Shown | None = None) -> AsyncIterator[Any]:
+async def classroom(workspace: Path, shown: ShownFiles | None = None) -> AsyncIterator[Any]:
     workspace.mkdir(exist_ok=True)  # noqa: ASYNC240 - nothing else runs
     async with open_world() as world:
         room = open_classroom(workspace, "example")
-        show_course(world, room, (shown or Shown()).paths.append)
+        show_course(world, room, (shown or ShownFiles()).paths.append)
         async with page(world.viewer) as client:
             yield client
 
 
-async def results(client: Any, *, step: str = "01-one-link/one-link") -> dict[str, Any]:
+async def wait_for_results(client: Any, *, step: str = "01-one-link/one-link") -> dict[str, Any]:
     """Return the next results of a step."""
     message: dict[str, Any] = await client.until("step_checks", address=step, is_running=False)
     return message
 
 
-async def until_passed(client: Any) -> dict[str, Any]:
+async def wait_until_passed(client: Any) -> dict[str, Any]:
     while True:
-        message = await results(client)
+        message = await wait_for_results(client)
         if message["checks"] and all(check["is_passed"] for check in message["checks"]):
             return message
 
 
 async def test_saved_file_is_checked_and_progress_is_shown(tmp_path):
-    shown = Shown()
+    shown = ShownFiles()
     async with classroom(tmp_path / "ws", shown) as client:
-        first = await results(client)
+        first = await wait_for_results(client)
         assert [check["is_passed"] for check in first["checks"]] == [False, False]
         assert first["checks"][0]["message"] == {
             "en": "'ws' has no file 'robot.urdf'",
             "zh": "“ws”中没有文件“robot.urdf”",
         }
         shutil.copy(ROBOT, tmp_path / "ws")
-        await until_passed(client)
+        await wait_until_passed(client)
         course = await client.until("course")
         assert [step["is_passed"] for step in course["lessons"][0]["steps"]] == [True, False]
     assert set(shown.paths) == {tmp_path / "ws" / "robot.urdf"}
@@ -86,7 +89,7 @@ async def test_opened_page_receives_course_step_and_last_results(tmp_path):
         room = open_classroom(workspace, "example")
         show_course(world, room, lambda _: None)
         async with page(world.viewer) as client:
-            await results(client)
+            await wait_for_results(client)
         async with page(world.viewer) as client:
             opened = await client.opened()
     assert opened["course"]["folder"] == str(workspace)
@@ -100,7 +103,7 @@ async def test_newest_check_result_is_shown(tmp_path):
         await client.send("check_step")
         (tmp_path / "ws" / "robot.urdf").write_text(WRONG)
         shutil.copy(ROBOT, tmp_path / "ws")
-        await until_passed(client)
+        await wait_until_passed(client)
 
 
 SLOW_CHECK = """
@@ -128,7 +131,7 @@ async def test_slow_checks_pause_worlds_and_quick_checks_do_not(tmp_path, monkey
     async with open_world() as world:
         show_course(world, open_classroom(workspace, str(course)), lambda _: None, programs)
         async with page(world.viewer) as client:
-            while not (await results(client))["checks"]:
+            while not (await wait_for_results(client))["checks"]:
                 pass
         while_open = list(paused)
     assert [value for value in while_open if value or expected] == expected
@@ -145,7 +148,7 @@ async def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(tmp_pat
         await client.send("take_hint")
         assert len((await client.until("course_step"))["hints"]) == 2
         await client.send("take_solution")
-        await until_passed(client)
+        await wait_until_passed(client)
     (backup,) = (workspace / "replaced").rglob("robot.urdf")
     assert backup.read_text() == WRONG
     assert "solution: true" in (workspace / "learn.yaml").read_text()
@@ -156,7 +159,9 @@ async def test_answer_is_checked(tmp_path):
         await client.send("open_step", address="01-one-link/mass")
         assert (await client.until("course_step", address="01-one-link/mass"))["unit"] == "kg"
         await client.send("answer_step", answer=" 12.5 ")
-        while not all(check["is_passed"] for check in (await results(client, step="01-one-link/mass"))["checks"]):
+        while not all(
+            check["is_passed"] for check in (await wait_for_results(client, step="01-one-link/mass"))["checks"]
+        ):
             pass
 
 
@@ -172,7 +177,7 @@ async def test_solution_of_number_step_is_the_number(tmp_path):
 
 async def test_progress_from_another_process_is_shown(tmp_path):
     async with classroom(tmp_path / "ws") as client:
-        await results(client)
+        await wait_for_results(client)
         other = open_classroom(tmp_path / "ws")
         other.answer(other.course.find_step("mass"), "3")
         other.take_hint(other.course.find_step("one-link"))

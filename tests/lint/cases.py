@@ -52,8 +52,10 @@ class Case:
             (folder / name).write_text(text, encoding="utf-8")
         main = folder / next(iter(self.files))
         findings = examine(main, settings=self._settings(main)).diagnostics
-        wanted = [finding for finding in findings if finding.code.startswith(self.selectors)]
-        return "".join(f"{line}\n" for finding in wanted for line in _lines(finding, folder, main))
+        selected_findings = [finding for finding in findings if finding.code.startswith(self.selectors)]
+        return "".join(
+            f"{line}\n" for finding in selected_findings for line in _format_diagnostic(finding, folder, main)
+        )
 
     def fixed_text(self, folder: Path) -> str:
         """Return the checked file, written by `run`, after all its fixes."""
@@ -70,18 +72,18 @@ class Case:
 
 def load_cases() -> list[Case]:
     """Return the cases of all pages in this folder."""
-    return [case for page in sorted(FOLDER.glob("*.md")) for case in _cases(page)]
+    return [case for page in sorted(FOLDER.glob("*.md")) for case in _read_cases(page)]
 
 
-def _cases(page: Path) -> list[Case]:
+def _read_cases(page: Path) -> list[Case]:
     text = page.read_text(encoding="utf-8")
     rules = _RULES.search(text)
     assert rules, f"{page.name} does not select rules"
     selectors = tuple(rules[1].split())
-    return [_case(page.stem, title, selectors, blocks) for title, blocks in read_sections(page)]
+    return [_read_case(page.stem, title, selectors, blocks) for title, blocks in read_sections(page)]
 
 
-def _case(page: str, title: str, selectors: tuple[str, ...], blocks: list[Block]) -> Case:
+def _read_case(page: str, title: str, selectors: tuple[str, ...], blocks: list[Block]) -> Case:
     files: dict[str, str] = {}
     result = fixed = None
     for language, label, text in blocks:
@@ -96,17 +98,19 @@ def _case(page: str, title: str, selectors: tuple[str, ...], blocks: list[Block]
     return Case(page, title, selectors, files, result, fixed)
 
 
-def _lines(diagnostic: Diagnostic, root: Path, main: Path) -> list[str]:
-    lines = [f"{_place(diagnostic.span, root, main)} {diagnostic.code} {_flat(diagnostic.message, root)}"]
+def _format_diagnostic(diagnostic: Diagnostic, root: Path, main: Path) -> list[str]:
+    lines = [
+        f"{_format_place(diagnostic.span, root, main)} {diagnostic.code} {_to_relative_text(diagnostic.message, root)}"
+    ]
     for note in diagnostic.notes:
-        place = f" ({_place(note.span, root, main)})" if note.span else ""
-        lines.append(f"  note: {_flat(note.message, root)}{place}")
+        place = f" ({_format_place(note.span, root, main)})" if note.span else ""
+        lines.append(f"  note: {_to_relative_text(note.message, root)}{place}")
     if diagnostic.hint:
-        lines.append(f"  hint: {_flat(diagnostic.hint, root)}")
+        lines.append(f"  hint: {_to_relative_text(diagnostic.hint, root)}")
     return lines
 
 
-def _place(span: Span | None, root: Path, main: Path) -> str:
+def _format_place(span: Span | None, root: Path, main: Path) -> str:
     if span is None:
         return "-"
     path = Path(span.file)
@@ -114,5 +118,5 @@ def _place(span: Span | None, root: Path, main: Path) -> str:
     return f"{span.line}:{span.column}" if path == main else f"{shown}:{span.line}:{span.column}"
 
 
-def _flat(text: str, root: Path) -> str:
+def _to_relative_text(text: str, root: Path) -> str:
     return text.replace(f"{root}/", "").replace("\n", "\\n")

@@ -26,57 +26,60 @@ def codes_of(tmp_path):
     return check
 
 
-def robot(inside, attributes=""):
+def robot_text(inside, attributes=""):
     return f'<robot name="r" {attributes}>{inside}</robot>'
 
 
-def moving(name, inside, parent="base", axis="0 0 1"):
+def moving_link(name, inside, parent="base", axis="0 0 1"):
     joint = f'<joint name="j_{name}" type="continuous"><parent link="{parent}"/><child link="{name}"/>'
     return f'{joint}<axis xyz="{axis}"/></joint><link name="{name}">{inside}</link>'
 
 
-def inertial(mass, moment, origin='<origin xyz="0 0 0"/>'):
+def inertial_text(mass, moment, origin='<origin xyz="0 0 0"/>'):
     moments = f'ixx="{moment}" iyy="{moment}" izz="{moment}" ixy="0" ixz="0" iyz="0"'
     return f'<inertial>{origin}<mass value="{mass}"/><inertia {moments}/></inertial>'
 
 
-@pytest.mark.parametrize(("inside", "codes"), [("", ["LW102"]), (inertial(1, 1), [])])
+@pytest.mark.parametrize(("inside", "codes"), [("", ["LW102"]), (inertial_text(1, 1), [])])
 def test_model_with_inertials_needs_no_shapes(codes_of, inside, codes):
-    assert codes_of(robot(f'<link name="base"/>{moving("a", inside)}'), "LW102") == codes
+    assert codes_of(robot_text(f'<link name="base"/>{moving_link("a", inside)}'), "LW102") == codes
 
 
 @pytest.mark.parametrize(
     ("axis", "codes"), [("1.2e-16 0 -1", []), ("1.2e-7 0 -1.0000002", []), ("0.0001 0 -1", ["LW224"])]
 )
 def test_axis_tilted_by_rounding_is_accepted(codes_of, axis, codes):
-    assert codes_of(robot(f'<link name="base"/>{moving("a", "", axis=axis)}'), "LW224") == codes
+    assert codes_of(robot_text(f'<link name="base"/>{moving_link("a", "", axis=axis)}'), "LW224") == codes
 
 
 @pytest.mark.parametrize(("mass", "codes"), [(0.1, []), (300, ["LW320"])])
 def test_small_mass_on_small_frame_is_accepted(codes_of, mass, codes):
     shape = BOX.format(0.0063) + '<collision><geometry><box size="0.0063 0.0063 0.0063"/></geometry></collision>'
-    assert codes_of(robot(f'<link name="base"/>{moving("tool", shape + inertial(mass, 1e-6))}'), "LW320") == codes
+    assert (
+        codes_of(robot_text(f'<link name="base"/>{moving_link("tool", shape + inertial_text(mass, 1e-6))}'), "LW320")
+        == codes
+    )
 
 
 @pytest.mark.parametrize(("origin", "codes"), [("", ["LW323"]), ('<origin xyz="0 0 0"/>', ["LW322"])])
 def test_center_of_mass_far_from_shapes_is_reported_once(codes_of, origin, codes):
     shape = '<visual><origin xyz="0 0 0.5"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
-    inside = shape + inertial(1, 0.002, origin)
-    assert codes_of(robot(f'<link name="base"/>{moving("a", inside)}'), "LW322", "LW323") == codes
+    inside = shape + inertial_text(1, 0.002, origin)
+    assert codes_of(robot_text(f'<link name="base"/>{moving_link("a", inside)}'), "LW322", "LW323") == codes
 
 
 @pytest.mark.parametrize(("moment", "codes"), [("0.002", ["LW315"]), ("0.00{}", ["LW322"] * 3)])
 def test_center_of_mass_is_not_reported_beside_copied_inertia(codes_of, moment, codes):
     shape = '<visual><origin xyz="0 0 0.{0}"/><geometry><box size="0.1 0.1 0.{0}"/></geometry></visual>'
-    links = (moving(f"l{n}", shape.format(n) + inertial(1, moment.format(n))) for n in (4, 5, 6))
-    assert codes_of(robot(f'<link name="base"/>{"".join(links)}'), "LW315", "LW322") == codes
+    links = (moving_link(f"l{n}", shape.format(n) + inertial_text(1, moment.format(n))) for n in (4, 5, 6))
+    assert codes_of(robot_text(f'<link name="base"/>{"".join(links)}'), "LW315", "LW322") == codes
 
 
 @pytest.mark.parametrize(("root", "codes"), [("world", []), ("floor", ["LW325"])])
 def test_inertia_of_link_fixed_to_world_is_accepted(codes_of, root, codes):
-    stand = f'<link name="stand">{BOX.format(1)}{inertial(1000, 0.01)}</link>'
+    stand = f'<link name="stand">{BOX.format(1)}{inertial_text(1000, 0.01)}</link>'
     joint = f'<joint name="j" type="fixed"><parent link="{root}"/><child link="stand"/></joint>'
-    assert codes_of(robot(f'<link name="{root}"/>{stand}{joint}'), "LW325") == codes
+    assert codes_of(robot_text(f'<link name="{root}"/>{stand}{joint}'), "LW325") == codes
 
 
 @pytest.mark.parametrize(("ignored", "codes"), [("*.obj", ["LW424"]), ("meshes/", []), ("*.stl\n!wheel.stl", [])])
@@ -84,7 +87,7 @@ def test_missing_mesh_that_git_ignores_is_accepted(codes_of, ignored, codes):
     manifest = "<package format='3'><name>p</name></package>"
     mesh = '<visual><geometry><mesh filename="package://p/meshes/body.stl"/></geometry></visual>'
     files = {"package_dot_xml": manifest, "_dot_gitignore": ignored}
-    assert codes_of(robot(f'<link name="base">{mesh}</link>'), "LW424", **files) == codes
+    assert codes_of(robot_text(f'<link name="base">{mesh}</link>'), "LW424", **files) == codes
 
 
 _HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
@@ -101,10 +104,10 @@ _HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
 )
 def test_conditional_hardware_plugin_is_accepted(codes_of, inside, codes):
     control = f'<ros2_control name="c" type="system">{inside}</ros2_control>'
-    assert codes_of(robot(f'<link name="base"/>{control}', PREFIX), "LW124", name="r.urdf.xacro") == codes
+    assert codes_of(robot_text(f'<link name="base"/>{control}', PREFIX), "LW124", name="r.urdf.xacro") == codes
 
 
-_TRANSMISSION = f'<link name="base"/>{moving("a", "")}<transmission name="t"><joint name="j_a"/></transmission>'
+_TRANSMISSION = f'<link name="base"/>{moving_link("a", "")}<transmission name="t"><joint name="j_a"/></transmission>'
 _PACKAGE = "<package format='3'><name>arm</name><version>0.1.0</version></package>"
 
 
@@ -112,17 +115,17 @@ _PACKAGE = "<package format='3'><name>arm</name><version>0.1.0</version></packag
     ("control", "codes"), [("", ["LW127"]), (f'<ros2_control name="c" type="system">{_HARDWARE}</ros2_control>', [])]
 )
 def test_transmissions_beside_ros2_control_are_accepted(codes_of, control, codes):
-    assert codes_of(robot(_TRANSMISSION + control), "LW127", package_dot_xml=_PACKAGE) == codes
+    assert codes_of(robot_text(_TRANSMISSION + control), "LW127", package_dot_xml=_PACKAGE) == codes
 
 
 def test_transmissions_outside_package_are_accepted(codes_of):
-    assert codes_of(robot(_TRANSMISSION), "LW127") == []
+    assert codes_of(robot_text(_TRANSMISSION), "LW127") == []
 
 
 @pytest.mark.parametrize(("files", "severity"), [({}, "info"), ({"package.xml": _PACKAGE}, "warning")])
 def test_relative_mesh_path_is_a_warning_in_package(tmp_path, files, severity):
     path = tmp_path / "r.urdf"
-    path.write_text(robot('<link name="a"><visual><geometry><mesh filename="a.stl"/></geometry></visual></link>'))
+    path.write_text(robot_text('<link name="a"><visual><geometry><mesh filename="a.stl"/></geometry></visual></link>'))
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     findings = examine(path, settings=Settings(select=("LW421",))).diagnostics
@@ -133,14 +136,14 @@ def test_relative_mesh_path_is_a_warning_in_package(tmp_path, files, severity):
     ("included", "codes"), [("", []), ('<xacro:macro name="laser"><link name="laser"/></xacro:macro>', ["LW704"])]
 )
 def test_include_of_empty_file_is_accepted(codes_of, included, codes):
-    text = robot('<xacro:include filename="more.xacro"/><link name="base"/>', PREFIX)
+    text = robot_text('<xacro:include filename="more.xacro"/><link name="base"/>', PREFIX)
     files = {"more_dot_xacro": f"<robot {PREFIX}>{included}</robot>"}
     assert codes_of(text, "LW704", name="r.urdf.xacro", **files) == codes
 
 
 @pytest.mark.parametrize(("name", "codes"), [("map", ["LW624"]), ("$(arg parent)", [])])
 def test_fixed_frame_from_argument_is_accepted(codes_of, name, codes):
-    text = robot(f'<xacro:arg name="parent" default="map"/><link name="{name}"/>', PREFIX)
+    text = robot_text(f'<xacro:arg name="parent" default="map"/><link name="{name}"/>', PREFIX)
     assert codes_of(text, "LW624", name="r.urdf.xacro") == codes
 
 
@@ -148,9 +151,9 @@ _WHEEL = '<xacro:macro name="wheel" params="name prefix"><link name="${name}"/><
 _ARM = '<xacro:macro name="arm" params="prefix"><link name="${prefix}arm"/></xacro:macro>'
 
 
-@pytest.mark.parametrize(("more", "codes"), [("", ["LW705"]), (_ARM + '<xacro:arm prefix="l_"/>', [])])
-def test_unused_parameter_shared_with_other_macros_is_accepted(codes_of, more, codes):
-    text = robot(f'{_WHEEL}<xacro:wheel name="w" prefix=""/>{more}', PREFIX)
+@pytest.mark.parametrize(("extra_text", "codes"), [("", ["LW705"]), (_ARM + '<xacro:arm prefix="l_"/>', [])])
+def test_unused_parameter_shared_with_other_macros_is_accepted(codes_of, extra_text, codes):
+    text = robot_text(f'{_WHEEL}<xacro:wheel name="w" prefix=""/>{extra_text}', PREFIX)
     assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
 
 
@@ -160,7 +163,7 @@ def test_unused_parameter_shared_with_other_macros_is_accepted(codes_of, more, c
 )
 def test_sibling_name_is_not_suggested_for_unused_property(tmp_path, unused, hint):
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in (unused, "image_pz"))
-    (tmp_path / "r.urdf.xacro").write_text(robot(properties + '<link name="l${image_pz}"/>', PREFIX))
+    (tmp_path / "r.urdf.xacro").write_text(robot_text(properties + '<link name="l${image_pz}"/>', PREFIX))
     (finding,) = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
     assert str(finding.hint).startswith(hint)
 
@@ -168,7 +171,7 @@ def test_sibling_name_is_not_suggested_for_unused_property(tmp_path, unused, hin
 @pytest.mark.parametrize(("frame", "codes"), [("link", []), ("base_lnk", ["LW849"])])
 def test_fixed_frame_of_another_robot_is_accepted(tmp_path, frame, codes):
     (tmp_path / "package.xml").write_text("<package format='3'><name>p</name></package>")
-    (tmp_path / "r.urdf").write_text(robot('<link name="base_link"/><link name="link3"/>'))
+    (tmp_path / "r.urdf").write_text(robot_text('<link name="base_link"/><link name="link3"/>'))
     (tmp_path / "r.rviz").write_text(f"Visualization Manager:\n  Global Options:\n    Fixed Frame: {frame}\n")
     findings = examine_package(tmp_path, Settings(select=("LW849",))).diagnostics
     assert [finding.code for finding in findings] == codes
@@ -177,13 +180,15 @@ def test_fixed_frame_of_another_robot_is_accepted(tmp_path, frame, codes):
 @pytest.mark.parametrize(("shape", "codes"), [("", []), ("c", ["LW410"])])
 def test_link_between_colliding_links_needs_no_collision(codes_of, shape, codes):
     body = BOX.format(0.2) + '<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>'
-    leg = moving("hip", BOX.format(0.1)) + (moving("thigh", body, "hip") if not shape else moving("thigh", body))
-    assert codes_of(robot(f'<link name="base">{body}</link>{leg}'), "LW410") == codes
+    leg = moving_link("hip", BOX.format(0.1)) + (
+        moving_link("thigh", body, "hip") if not shape else moving_link("thigh", body)
+    )
+    assert codes_of(robot_text(f'<link name="base">{body}</link>{leg}'), "LW410") == codes
 
 
 def test_visual_with_zero_size_is_an_info(tmp_path):
-    flat = '<visual><geometry><box size="0.1 0 0.1"/></geometry></visual>'
-    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{BOX.format(0)}{flat}</link>'))
+    flat_visual = '<visual><geometry><box size="0.1 0 0.1"/></geometry></visual>'
+    (tmp_path / "r.urdf").write_text(robot_text(f'<link name="a">{BOX.format(0)}{flat_visual}</link>'))
     findings = examine(tmp_path / "r.urdf", settings=Settings(select=("LW401",))).diagnostics
     assert [finding.severity.name for finding in findings if finding.code == "LW401"] == ["INFO", "WARNING"]
 
@@ -192,41 +197,44 @@ def test_dont_collapse_attribute_of_isaac_gym_is_recognized(codes_of):
     joint = (
         '<joint name="j" type="fixed" dont_collapse="true" origin="0 0 0"><parent link="a"/><child link="b"/></joint>'
     )
-    assert codes_of(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW108") == ["LW108"]
+    assert codes_of(robot_text(f'<link name="a"/><link name="b"/>{joint}'), "LW108") == ["LW108"]
 
 
 @pytest.mark.parametrize(("kind", "codes"), [("fixed", ["LW230"]), ("$(arg kind)", [])])
 def test_mimic_on_joint_with_type_from_argument_is_accepted(codes_of, kind, codes):
     joint = f'<joint name="r" type="{kind}"><parent link="a"/><child link="c"/><mimic joint="j_b"/></joint>'
-    text = f'<xacro:arg name="kind" default="fixed"/><link name="a"/>{moving("b", "", "a")}<link name="c"/>{joint}'
-    assert codes_of(robot(text, PREFIX), "LW230", name="r.urdf.xacro") == codes
+    text = f'<xacro:arg name="kind" default="fixed"/><link name="a"/>{moving_link("b", "", "a")}<link name="c"/>{joint}'
+    assert codes_of(robot_text(text, PREFIX), "LW230", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(("size", "codes"), [(0.2, []), (8, ["LW321"])])
 def test_density_follows_collision_beside_large_visual(codes_of, size, codes):
     shape = BOX.format(8) + f'<collision><geometry><box size="{size} {size} {size}"/></geometry></collision>'
-    assert codes_of(robot(f'<link name="base"/>{moving("a", shape + inertial(1, 0.0067))}'), "LW321") == codes
+    assert (
+        codes_of(robot_text(f'<link name="base"/>{moving_link("a", shape + inertial_text(1, 0.0067))}'), "LW321")
+        == codes
+    )
 
 
 @pytest.mark.parametrize(("upper", "codes"), [("0", ["LW202"]), ("1", ["LW205", "LW206", "LW222"])])
 def test_joint_without_range_is_reported_once(codes_of, upper, codes):
     joint = '<joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
     joint += f'<limit lower="0" upper="{upper}" effort="0" velocity="0"/></joint><gazebo/>'
-    assert sorted(codes_of(robot(f'<link name="a"/><link name="b"/>{joint}'), "LW2")) == codes
+    assert sorted(codes_of(robot_text(f'<link name="a"/><link name="b"/>{joint}'), "LW2")) == codes
 
 
 @pytest.mark.parametrize(("tag", "codes"), [("insert_block", ["LW720"]), ("visual", ["LW705"])])
 def test_parameter_of_tag_without_prefix_is_not_reported_as_unused(codes_of, tag, codes):
     inside = f'<xacro:macro name="m" params="*origin"><link name="l"/><{tag} name="origin"/></xacro:macro>'
     call = '<xacro:m><origin xyz="0 0 1"/></xacro:m>'
-    assert codes_of(robot(inside + call, PREFIX), "LW705", "LW720", name="r.urdf.xacro") == codes
+    assert codes_of(robot_text(inside + call, PREFIX), "LW705", "LW720", name="r.urdf.xacro") == codes
 
 
-@pytest.mark.parametrize(("more", "severity"), [("", "WARNING"), ("<exec_depend>far</exec_depend>", "INFO")])
-def test_mesh_of_declared_missing_package_is_an_info(tmp_path, more, severity):
+@pytest.mark.parametrize(("extra_text", "severity"), [("", "WARNING"), ("<exec_depend>far</exec_depend>", "INFO")])
+def test_mesh_of_declared_missing_package_is_an_info(tmp_path, extra_text, severity):
     mesh = '<link name="l"><visual><geometry><mesh filename="package://far/a.stl"/></geometry></visual></link>'
-    (tmp_path / "package.xml").write_text(MANIFEST.format(more=more))
-    (tmp_path / "r.urdf").write_text(robot(mesh))
+    (tmp_path / "package.xml").write_text(MANIFEST.format(more=extra_text))
+    (tmp_path / "r.urdf").write_text(robot_text(mesh))
     findings = examine(tmp_path / "r.urdf", settings=Settings(select=("LW423",))).diagnostics
     assert [finding.severity.name for finding in findings if finding.code == "LW423"] == [severity]
 
@@ -236,15 +244,15 @@ def test_mesh_of_declared_missing_package_is_an_info(tmp_path, more, severity):
     [("3.14159265", []), ("${pi/2}", []), ("1.5708", []), ("0.0174533", []), ("57.29578", []), ("3.2", ["LW701"])],
 )
 def test_unused_mathematical_constant_is_accepted(codes_of, value, codes):
-    text = robot(f'<xacro:property name="constant" value="{value}"/><link name="a"/>', PREFIX)
+    text = robot_text(f'<xacro:property name="constant" value="{value}"/><link name="a"/>', PREFIX)
     assert codes_of(text, "LW701", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(("default", "codes"), [("^|false", []), ("^", []), ("false", ["LW705"])])
 def test_unused_parameter_with_outer_default_is_accepted(codes_of, default, codes):
     macro = f'<xacro:macro name="m" params="use_sim:={default}"><link name="m"/></xacro:macro>'
-    outer = '<xacro:property name="use_sim" value="1"/><joint name="${use_sim}"/>'
-    text = robot(f'{outer}<link name="base"/>{macro}<xacro:m/>', PREFIX)
+    outer_default = '<xacro:property name="use_sim" value="1"/><joint name="${use_sim}"/>'
+    text = robot_text(f'{outer_default}<link name="base"/>{macro}<xacro:m/>', PREFIX)
     assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
 
 
@@ -252,22 +260,24 @@ def test_bare_call_beside_namespaced_call_is_accepted(codes_of):
     chosen = (
         '<xacro:property name="a" value="${xacro.load_yaml(f)}"/><xacro:property name="b" value="${load_yaml(f)}"/>'
     )
-    outer = f'<xacro:macro name="m" params="f">{chosen}<link name="${{a}}${{b}}"/></xacro:macro>'
-    assert codes_of(robot(f'<link name="base"/>{outer}', PREFIX), "LW714", name="r.urdf.xacro") == []
-    alone = outer.replace("xacro.load_yaml", "xacro.abs_filename")
-    assert codes_of(robot(f'<link name="base"/>{alone}', PREFIX), "LW714", name="r.urdf.xacro") == ["LW714"]
+    macro_text = f'<xacro:macro name="m" params="f">{chosen}<link name="${{a}}${{b}}"/></xacro:macro>'
+    assert codes_of(robot_text(f'<link name="base"/>{macro_text}', PREFIX), "LW714", name="r.urdf.xacro") == []
+    without_namespaced_call = macro_text.replace("xacro.load_yaml", "xacro.abs_filename")
+    assert codes_of(
+        robot_text(f'<link name="base"/>{without_namespaced_call}', PREFIX), "LW714", name="r.urdf.xacro"
+    ) == ["LW714"]
 
 
 @pytest.mark.parametrize(("needs", "codes"), [("q", ["LW724"]), ("p", []), ("helper", [])])
 def test_circular_dependency_is_not_requested(tmp_path, needs, codes):
     depend = "<exec_depend>{}</exec_depend>"
-    for name, more in (("p", ""), ("q", depend.format(needs)), ("helper", depend.format("p"))):
+    for name, extra_text in (("p", ""), ("q", depend.format(needs)), ("helper", depend.format("p"))):
         (tmp_path / name).mkdir()
-        manifest = MANIFEST.format(more=more).replace("<name>p<", f"<name>{name}<")
+        manifest = MANIFEST.format(more=extra_text).replace("<name>p<", f"<name>{name}<")
         (tmp_path / name / "package.xml").write_text(manifest)
     (tmp_path / "q/wheel.xacro").write_text("<robot/>")
     include = '<xacro:include filename="$(find q)/wheel.xacro"/>'
-    (tmp_path / "p/r.urdf.xacro").write_text(robot(f'{include}<link name="a"/>', PREFIX))
+    (tmp_path / "p/r.urdf.xacro").write_text(robot_text(f'{include}<link name="a"/>', PREFIX))
     (tmp_path / "p/launch").mkdir()
     (tmp_path / "p/launch/a.launch.py").write_text("def generate_launch_description():\n    Node(package='q')\n")
     packages = {name: tmp_path / name for name in ("p", "q", "helper")}
@@ -288,7 +298,7 @@ def test_circular_dependency_is_not_requested(tmp_path, needs, codes):
     ],
 )
 def test_vendor_elements_and_attributes_are_accepted(codes_of, inside, codes):
-    assert codes_of(robot(f'<link name="base">{inside}</link>'), "LW107", "LW108") == codes
+    assert codes_of(robot_text(f'<link name="base">{inside}</link>'), "LW107", "LW108") == codes
 
 
 @pytest.mark.parametrize(
@@ -299,7 +309,7 @@ def test_small_soft_limit_overrun_of_gripper_is_accepted(codes_of, lower, upper,
     soft = f'soft_lower_limit="{lower}" soft_upper_limit="{upper}"'
     limits = f'<limit lower="0" upper="0.09" effort="1" velocity="1"/><safety_controller k_velocity="1" {soft}/>'
     joint = f'<joint name="j" type="prismatic"><parent link="base"/><child link="a"/>{limits}</joint>'
-    assert codes_of(robot(f'<link name="base"/><link name="a"/>{joint}'), "LW240") == codes
+    assert codes_of(robot_text(f'<link name="base"/><link name="a"/>{joint}'), "LW240") == codes
 
 
 @pytest.mark.parametrize(
@@ -313,8 +323,8 @@ def test_collision_apart_hint_names_center_of_offset_mesh(tmp_path, origin, hint
     corners = "".join(f"vertex {corner}\n" for corner in ("1 2 3", "1.1 2 3", "1 2 3.1"))
     (tmp_path / "a.stl").write_text(f"solid a\nfacet normal 0 1 0\nouter loop\n{corners}endloop\nendfacet\nendsolid\n")
     visual = '<visual><origin xyz="0 0 0.1"/><geometry><mesh filename="a.stl"/></geometry></visual>'
-    felt = f'<collision><origin xyz="{origin}"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
-    (tmp_path / "r.urdf").write_text(robot(f'<link name="a">{visual}{felt}</link>'))
+    collision = f'<collision><origin xyz="{origin}"/><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    (tmp_path / "r.urdf").write_text(robot_text(f'<link name="a">{visual}{collision}</link>'))
     (finding,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW412",))).diagnostics
     assert str(finding.hint).startswith(hint)
 
@@ -323,17 +333,17 @@ def test_collision_apart_hint_names_center_of_offset_mesh(tmp_path, origin, hint
 def test_mesh_in_millimeters_is_reported_once(codes_of, size, codes):
     facet = f"facet normal 0 0 1\nouter loop\nvertex 5 0 0\nvertex {5 + size} 0 0\nvertex 5 {size} 0\nendloop\nendfacet"
     visual = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
-    felt = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
-    text = robot(f'<link name="a">{visual}{felt}</link>')
+    collision = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
+    text = robot_text(f'<link name="a">{visual}{collision}</link>')
     finding_codes = codes_of(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
     assert sorted(finding_codes) == codes
 
 
-@pytest.mark.parametrize(("far", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
-def test_far_shape_is_reported_once(codes_of, far, codes):
-    visual = f'<visual><origin xyz="{far} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
-    felt = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
-    assert codes_of(robot(f'<link name="a">{visual}{felt}</link>'), "LW405", "LW412") == codes
+@pytest.mark.parametrize(("far_shape", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
+def test_far_shape_is_reported_once(codes_of, far_shape, codes):
+    visual = f'<visual><origin xyz="{far_shape} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
+    collision = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+    assert codes_of(robot_text(f'<link name="a">{visual}{collision}</link>'), "LW405", "LW412") == codes
 
 
 @pytest.mark.parametrize(
@@ -341,7 +351,7 @@ def test_far_shape_is_reported_once(codes_of, far, codes):
     [('<ros2_control name="c" type="system"/>', ["LINT302"]), ('<gazebo reference="a"/>', ["URDF106"])],
 )
 def test_separate_ros2_control_file_is_not_missing_links(codes_of, part, codes):
-    assert codes_of(robot(part, PREFIX), "LINT302", "URDF106", name="r.urdf.xacro") == codes
+    assert codes_of(robot_text(part, PREFIX), "LINT302", "URDF106", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(
@@ -354,14 +364,14 @@ def test_separate_ros2_control_file_is_not_missing_links(codes_of, part, codes):
 def test_mesh_path_in_ros_installation_is_reported_once(tmp_path, address, hint):
     path = tmp_path / "r.urdf"
     mesh = f'<visual><geometry><mesh filename="{address}"/></geometry></visual>'
-    path.write_text(robot(f'<link name="a">{mesh}</link>'))
+    path.write_text(robot_text(f'<link name="a">{mesh}</link>'))
     (finding,) = examine(path, settings=Settings(select=("LW422", "LW424"))).diagnostics
     assert (finding.code, str(finding.hint)) == ("LW422", hint)
 
 
-@pytest.mark.parametrize("big", ["a", "b"])
-def test_disconnected_parts_are_reported_once(codes_of, big):
-    text = robot(f'<link name="a"/><link name="b"/>{moving("c", "", parent=big)}')
+@pytest.mark.parametrize("large_shape", ["a", "b"])
+def test_disconnected_parts_are_reported_once(codes_of, large_shape):
+    text = robot_text(f'<link name="a"/><link name="b"/>{moving_link("c", "", parent=large_shape)}')
     assert codes_of(text, "LW103", "URDF152") == ["URDF152"]
 
 
@@ -379,7 +389,7 @@ def test_missing_include_that_build_generates_is_an_info(tmp_path, cmake, severi
     (tmp_path / "CMakeLists.txt").write_text(f"project(p)\n{cmake}\n")
     (tmp_path / "urdf").mkdir()
     include = '<xacro:include filename="$(find p)/urdf/arm.urdf"/>'
-    (tmp_path / "r.urdf.xacro").write_text(robot(f'<link name="a"/>{include}', PREFIX))
+    (tmp_path / "r.urdf.xacro").write_text(robot_text(f'<link name="a"/>{include}', PREFIX))
     findings = examine(tmp_path / "r.urdf.xacro", packages={"p": tmp_path}).diagnostics
     assert [finding.severity.name for finding in findings if finding.code == "XML101"] == [severity]
 
@@ -389,7 +399,7 @@ def test_include_relative_to_package_folder_is_a_warning(tmp_path, name, severit
     (tmp_path / "package.xml").write_text(MANIFEST.format(more=""))
     (tmp_path / "urdf").mkdir()
     (tmp_path / "urdf/arm.xacro").write_text("<robot/>")
-    text = robot(f'<link name="a"/><xacro:include filename="{name}"/>', PREFIX)
+    text = robot_text(f'<link name="a"/><xacro:include filename="{name}"/>', PREFIX)
     (tmp_path / "urdf/r.urdf.xacro").write_text(text)
     (finding,) = (
         diagnostic for diagnostic in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if diagnostic.code == "XML101"
@@ -406,7 +416,7 @@ def test_includes_relative_to_package_folder_are_one_finding_per_file(
     for name in ("arm", "leg", "head"):
         (tmp_path / f"urdf/{name}.xacro").write_text("<robot/>")
     includes = "".join(f'<xacro:include filename="urdf/{name}.xacro"/>' for name in ("arm", "leg", "head", "tail"))
-    (tmp_path / "urdf/r.urdf.xacro").write_text(robot(f'<link name="a"/>{includes}', PREFIX))
+    (tmp_path / "urdf/r.urdf.xacro").write_text(robot_text(f'<link name="a"/>{includes}', PREFIX))
     findings = [
         diagnostic for diagnostic in examine(tmp_path / "urdf/r.urdf.xacro").diagnostics if diagnostic.code == "XML101"
     ]
@@ -420,11 +430,11 @@ def test_includes_relative_to_package_folder_are_one_finding_per_file(
 def test_mesh_package_declared_by_sibling_package_is_an_info(tmp_path, declaring):
     for name in ("p", "beside"):
         (tmp_path / name).mkdir()
-        more = "<exec_depend>arm_description</exec_depend>" if name == declaring else ""
-        (tmp_path / name / "package.xml").write_text(MANIFEST.format(more=more))
+        extra_text = "<exec_depend>arm_description</exec_depend>" if name == declaring else ""
+        (tmp_path / name / "package.xml").write_text(MANIFEST.format(more=extra_text))
     mesh = '<visual><geometry><mesh filename="package://{}/a.stl"/></geometry></visual>'
     links = (f'<link name="{name}">{mesh.format(name)}</link>' for name in ("arm_description", "far_description"))
-    (tmp_path / "p/r.urdf").write_text(robot("".join(links)))
+    (tmp_path / "p/r.urdf").write_text(robot_text("".join(links)))
     findings = examine(tmp_path / "p/r.urdf").diagnostics
     assert [finding.severity.name for finding in findings if finding.code == "LW423"] == ["INFO", "WARNING"]
 
@@ -433,22 +443,22 @@ def test_material_is_not_reported_beside_missing_include(codes_of):
     colored = '<visual><geometry><box size="1 1 1"/></geometry><material name="dark"/></visual>'
     include = '<xacro:include filename="$(find far_description)/colors.xacro"/>'
     link = f'<link name="a">{colored}</link>'
-    assert codes_of(robot(link), "URDF160") == ["URDF160"]
-    assert codes_of(robot(include + link, PREFIX), "URDF160") == []
+    assert codes_of(robot_text(link), "URDF160") == ["URDF160"]
+    assert codes_of(robot_text(include + link, PREFIX), "URDF160") == []
 
 
-@pytest.mark.parametrize(("more", "codes"), [("", ["LW102"]), ('<ros2_control name="c" type="system"/>', [])])
-def test_robot_with_ros2_control_needs_no_shapes(codes_of, more, codes):
-    assert codes_of(robot(f'<link name="base"/>{moving("a", "")}{more}'), "LW102") == codes
+@pytest.mark.parametrize(("extra_text", "codes"), [("", ["LW102"]), ('<ros2_control name="c" type="system"/>', [])])
+def test_robot_with_ros2_control_needs_no_shapes(codes_of, extra_text, codes):
+    assert codes_of(robot_text(f'<link name="base"/>{moving_link("a", "")}{extra_text}'), "LW102") == codes
 
 
 @pytest.mark.parametrize(("xyz", "codes"), [("0 0 0", []), ("0 0 1", ["LW105"])])
 def test_misplaced_zero_origin_is_accepted(codes_of, xyz, codes):
-    assert codes_of(robot(f'<link name="base"><origin xyz="{xyz}" rpy="0 0 0"/></link>'), "LW105") == codes
+    assert codes_of(robot_text(f'<link name="base"><origin xyz="{xyz}" rpy="0 0 0"/></link>'), "LW105") == codes
 
 
 def test_misplaced_material_hint_names_visual(tmp_path):
-    (tmp_path / "r.urdf").write_text(robot('<link name="base"><material name="red"/></link>'))
+    (tmp_path / "r.urdf").write_text(robot_text('<link name="base"><material name="red"/></link>'))
     (finding,) = examine(tmp_path / "r.urdf", settings=Settings(select=("LW105",))).diagnostics
     assert finding.hint == "put it directly in <visual>"
 
@@ -456,34 +466,34 @@ def test_misplaced_material_hint_names_visual(tmp_path):
 @pytest.mark.parametrize(
     ("text", "codes"),
     [
-        (f'<link name="rock">{BOX.format(1)}{inertial(0, 0)}</link>', []),
-        (f'<link name="rock">{BOX.format(1)}{inertial(0, 1)}</link>', ["LW302"]),
-        (f'<link name="base"/>{moving("rock", BOX.format(1) + inertial(0, 0))}', ["LW302"]),
+        (f'<link name="rock">{BOX.format(1)}{inertial_text(0, 0)}</link>', []),
+        (f'<link name="rock">{BOX.format(1)}{inertial_text(0, 1)}</link>', ["LW302"]),
+        (f'<link name="base"/>{moving_link("rock", BOX.format(1) + inertial_text(0, 0))}', ["LW302"]),
     ],
 )
 def test_zero_mass_of_single_link_is_accepted(codes_of, text, codes):
-    assert codes_of(robot(text), "LW302") == codes
+    assert codes_of(robot_text(text), "LW302") == codes
 
 
 @pytest.mark.parametrize(("second", "count"), [(1.0, 1), (2.0, 2)])
 def test_equal_too_large_inertias_are_reported_once(codes_of, second, count):
-    fingers = moving("a", BOX.format(0.01) + inertial(0.01, 1.0)) + moving(
-        "b", BOX.format(0.02) + inertial(0.01, second)
+    fingers = moving_link("a", BOX.format(0.01) + inertial_text(0.01, 1.0)) + moving_link(
+        "b", BOX.format(0.02) + inertial_text(0.01, second)
     )
-    assert codes_of(robot(f'<link name="base">{BOX.format(1)}</link>{fingers}'), "LW324") == ["LW324"] * count
+    assert codes_of(robot_text(f'<link name="base">{BOX.format(1)}</link>{fingers}'), "LW324") == ["LW324"] * count
 
 
 @pytest.mark.parametrize(("call", "codes"), [("<!-- <xacro:m/> -->", []), ("<!-- <xacro:n/> -->", ["LW704"])])
 def test_include_with_commented_out_call_is_accepted(codes_of, call, codes):
     part = f'<robot {PREFIX}><xacro:macro name="m"><link name="m"/></xacro:macro></robot>'
-    text = robot(f'<link name="base"/><xacro:include filename="part.xacro"/>{call}', PREFIX)
+    text = robot_text(f'<link name="base"/><xacro:include filename="part.xacro"/>{call}', PREFIX)
     assert codes_of(text, "LW704", name="r.urdf.xacro", part_dot_xacro=part) == codes
 
 
 @pytest.mark.parametrize(("body", "codes"), [("", []), ('<link name="m"/>', ["LW705"])])
 def test_unused_parameter_of_empty_macro_is_accepted(codes_of, body, codes):
     macro = f'<xacro:macro name="m" params="sim">{body}</xacro:macro><xacro:m sim="1"/>'
-    assert codes_of(robot(f'<link name="base"/>{macro}', PREFIX), "LW705", name="r.urdf.xacro") == codes
+    assert codes_of(robot_text(f'<link name="base"/>{macro}', PREFIX), "LW705", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(
@@ -491,15 +501,15 @@ def test_unused_parameter_of_empty_macro_is_accepted(codes_of, body, codes):
 )
 def test_shipped_package_is_suggested_only_for_misspelled_name(tmp_path, name, hint):
     mesh = f'<link name="l"><visual><geometry><mesh filename="package://{name}/a.stl"/></geometry></visual></link>'
-    (tmp_path / "r.urdf").write_text(robot(mesh))
+    (tmp_path / "r.urdf").write_text(robot_text(mesh))
     (finding,) = (diagnostic for diagnostic in examine(tmp_path / "r.urdf").diagnostics if diagnostic.code == "LW423")
     assert ("my_robot_description" in (finding.hint or "")) is hint
 
 
 @pytest.mark.parametrize(("izz", "codes"), [(1, ["LW324"]), (3, ["LW314"])])
 def test_impossible_inertia_is_not_reported_as_too_large(codes_of, izz, codes):
-    part = moving("a", BOX.format(0.1) + inertial(0.1, 1).replace('izz="1"', f'izz="{izz}"'))
-    assert codes_of(robot(f'<link name="base"/>{part}'), "LW314", "LW324") == codes
+    part = moving_link("a", BOX.format(0.1) + inertial_text(0.1, 1).replace('izz="1"', f'izz="{izz}"'))
+    assert codes_of(robot_text(f'<link name="base"/>{part}'), "LW314", "LW324") == codes
 
 
 @pytest.mark.parametrize(
@@ -511,9 +521,9 @@ def test_impossible_inertia_is_not_reported_as_too_large(codes_of, izz, codes):
     ],
 )
 def test_inertia_of_link_that_slides_on_world_is_accepted(codes_of, root, kind, codes):
-    part = moving("cart", BOX.format(0.1) + inertial(0.1, 1), parent=root).replace("continuous", kind)
+    part = moving_link("cart", BOX.format(0.1) + inertial_text(0.1, 1), parent=root).replace("continuous", kind)
     part = part.replace("</joint>", '<limit lower="0" upper="1" effort="1" velocity="1"/></joint>')
-    assert codes_of(robot(f'<link name="{root}"/>{part}'), "LW322", "LW324") == codes
+    assert codes_of(robot_text(f'<link name="{root}"/>{part}'), "LW322", "LW324") == codes
 
 
 @pytest.mark.parametrize(
@@ -521,15 +531,15 @@ def test_inertia_of_link_that_slides_on_world_is_accepted(codes_of, root, kind, 
     [("-100", "100", 0), ("-1000.0", "1e3", 0), ("0", "100", 1), ("-120", "120", 2), ("-100", "1000", 2)],
 )
 def test_symmetric_round_limits_of_prismatic_joint_are_accepted(codes_of, lower, upper, count):
-    slide = moving("cart", "").replace("continuous", "prismatic")
+    slide = moving_link("cart", "").replace("continuous", "prismatic")
     limit = f'<limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>'
-    assert codes_of(robot(f'<link name="base"/>{slide.replace("</joint>", limit)}'), "LW213") == ["LW213"] * count
+    assert codes_of(robot_text(f'<link name="base"/>{slide.replace("</joint>", limit)}'), "LW213") == ["LW213"] * count
 
 
-ROVER = """<link name="rocker"><visual><geometry><box size="0.4 0.02 0.02"/></geometry></visual></link>
+ROVER_LINKS = """<link name="rocker"><visual><geometry><box size="0.4 0.02 0.02"/></geometry></visual></link>
 <joint name="left_hip" type="revolute"><parent link="base"/><child link="{rocker}"/><axis xyz="{axis}"/>
 <origin xyz="0 0.2 0"/><limit lower="-0.3" upper="0.3" effort="1" velocity="1"/></joint>"""
-WHEEL = """<link name="{0}_wheel"><visual><origin rpy="1.5707963 0 0"/>
+WHEEL_LINK = """<link name="{0}_wheel"><visual><origin rpy="1.5707963 0 0"/>
 <geometry><cylinder radius="0.1" length="0.05"/></geometry></visual></link>
 <joint name="{0}_wheel" type="continuous"><parent link="{1}"/><child link="{0}_wheel"/>
 <origin xyz="{2} 0 {3}"/><axis xyz="0 1 0"/></joint>"""
@@ -537,30 +547,30 @@ WHEEL = """<link name="{0}_wheel"><visual><origin rpy="1.5707963 0 0"/>
 
 @pytest.mark.parametrize(("axis", "codes"), [("0 1 0", []), ("0 0 1", ["LW390"])])
 def test_wheels_on_rocker_need_not_be_level(codes_of, axis, codes):
-    wheels = WHEEL.format("front", "rocker", 0.2, 0) + WHEEL.format("rear", "base", -0.2, 0.05)
-    rocker = ROVER.format(rocker="rocker", axis=axis)
-    assert codes_of(robot(f'<link name="base"/>{rocker}{wheels}'), "LW390") == codes
+    wheels = WHEEL_LINK.format("front", "rocker", 0.2, 0) + WHEEL_LINK.format("rear", "base", -0.2, 0.05)
+    rocker = ROVER_LINKS.format(rocker="rocker", axis=axis)
+    assert codes_of(robot_text(f'<link name="base"/>{rocker}{wheels}'), "LW390") == codes
 
 
-@pytest.mark.parametrize(("between", "codes"), [(False, ["LW641"]), (True, [])])
-def test_link_that_carries_wheel_is_not_a_wheel(codes_of, between, codes):
-    carrier = ROVER.replace('name="rocker"', 'name="left_wheel_connector"').format(
+@pytest.mark.parametrize(("intermediate", "codes"), [(False, ["LW641"]), (True, [])])
+def test_link_that_carries_wheel_is_not_a_wheel(codes_of, intermediate, codes):
+    carrier = ROVER_LINKS.replace('name="rocker"', 'name="left_wheel_connector"').format(
         rocker="left_wheel_connector", axis="0 1 0"
     )
     ends = '<parent link="left_wheel_connector"/><child link="leg"/>'
     leg = f'<link name="leg"/><joint name="leg" type="fixed">{ends}</joint>'
-    wheel = WHEEL.format("front", "leg" if between else "base", 0.2, 0)
-    assert codes_of(robot(f'<link name="base"/>{carrier}{leg}{wheel}'), "LW641") == codes
+    wheel = WHEEL_LINK.format("front", "leg" if intermediate else "base", 0.2, 0)
+    assert codes_of(robot_text(f'<link name="base"/>{carrier}{leg}{wheel}'), "LW641") == codes
 
 
 @pytest.mark.parametrize(("parent", "codes"), [("world", []), ("base", ["LW226"])])
 def test_far_origin_of_joint_from_world_is_accepted(codes_of, parent, codes):
     joint = f'<joint name="j" type="fixed"><origin xyz="33 17 2"/><parent link="{parent}"/><child link="a"/></joint>'
-    assert codes_of(robot(f'<link name="{parent}"/><link name="a"/>{joint}'), "LW226") == codes
+    assert codes_of(robot_text(f'<link name="{parent}"/><link name="a"/>{joint}'), "LW226") == codes
 
 
 def test_duplicate_joint_name_hides_second_parent_finding(codes_of):
     joint = '<joint name="{}" type="fixed"><parent link="base"/><child link="a"/></joint>'
     links = '<link name="base"/><link name="a"/>'
-    assert codes_of(robot(links + joint.format("j") + joint.format("j")), "URDF1") == ["URDF110"]
-    assert codes_of(robot(links + joint.format("j") + joint.format("k")), "URDF1") == ["URDF151"]
+    assert codes_of(robot_text(links + joint.format("j") + joint.format("j")), "URDF1") == ["URDF110"]
+    assert codes_of(robot_text(links + joint.format("j") + joint.format("k")), "URDF1") == ["URDF151"]

@@ -209,8 +209,10 @@ def test_program_in_data_files_is_an_executable(tmp_path, program, data, codes):
     assert [finding.code for finding in findings] == codes
 
 
-@pytest.mark.parametrize(("there", "codes"), [("launch/sensors.launch.py", []), ("launch/other.launch.py", ["LW842"])])
-def test_launched_file_missing_only_from_old_build_is_accepted(tmp_path, there, codes):
+@pytest.mark.parametrize(
+    ("existing_file", "codes"), [("launch/sensors.launch.py", []), ("launch/other.launch.py", ["LW842"])]
+)
+def test_launched_file_missing_only_from_old_build_is_accepted(tmp_path, existing_file, codes):
     for name in ("p", "q"):
         (tmp_path / "src" / name / "launch").mkdir(parents=True)
         manifest = MANIFEST.format(more="").replace("<name>p<", f"<name>{name}<")
@@ -221,7 +223,7 @@ def test_launched_file_missing_only_from_old_build_is_accepted(tmp_path, there, 
     (tmp_path / "install/.colcon_install_layout").write_text("isolated\n")
     (tmp_path / "install/q/share/colcon-core/packages").mkdir(parents=True)
     (tmp_path / "install/q/share/colcon-core/packages/q").write_text("")
-    (tmp_path / "src/q" / there).write_text("def generate_launch_description():\n    pass\n")
+    (tmp_path / "src/q" / existing_file).write_text("def generate_launch_description():\n    pass\n")
     launch = "import os\n\n\ndef generate_launch_description():\n    share = get_package_share_directory('q')\n"
     launch += "    return os.path.join(share, 'launch', 'sensors.launch.py')\n"
     (tmp_path / "src/p/launch/a.launch.py").write_text(launch)

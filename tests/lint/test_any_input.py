@@ -16,7 +16,7 @@ from linkwright.lint.suppression import directives
 from tests.lint.cases import load_cases
 from tests.work import lines_run
 
-ODD = [
+ODD_VALUES = [
     "",
     " ",
     "nan",
@@ -35,7 +35,7 @@ ODD = [
     "a b",
     "<",
 ]
-VALUE = re.compile(r'="([^"]*)"')
+VALUE_PATTERN = re.compile(r'="([^"]*)"')
 DESCRIPTIONS = [
     case for case in load_cases() if next(iter(case.files)).endswith((".urdf", ".xacro")) and len(case.files) == 1
 ]
@@ -44,15 +44,15 @@ DESCRIPTIONS = [
 @pytest.mark.parametrize("seed", range(60))
 def test_lint_survives_odd_attribute_values(tmp_path, monkeypatch, seed):
     monkeypatch.chdir(tmp_path)
-    chance = random.Random(seed)
-    for number, case in enumerate(chance.sample(DESCRIPTIONS, 6)):
+    rng = random.Random(seed)
+    for number, case in enumerate(rng.sample(DESCRIPTIONS, 6)):
         text = next(iter(case.files.values()))
-        for _ in range(chance.randint(1, 4)):
-            places = [match.span(1) for match in VALUE.finditer(text)]
+        for _ in range(rng.randint(1, 4)):
+            places = [match.span(1) for match in VALUE_PATTERN.finditer(text)]
             if not places:
                 break
-            start, end = chance.choice(places)
-            text = text[:start] + chance.choice(ODD).replace("<", "&lt;") + text[end:]
+            start, end = rng.choice(places)
+            text = text[:start] + rng.choice(ODD_VALUES).replace("<", "&lt;") + text[end:]
         path = tmp_path / f"{number}.urdf"
         path.write_text(text, encoding="utf-8")
         with warnings.catch_warnings():
@@ -63,12 +63,12 @@ def test_lint_survives_odd_attribute_values(tmp_path, monkeypatch, seed):
 @pytest.mark.parametrize("seed", range(40))
 def test_lint_survives_missing_and_duplicate_lines(tmp_path, monkeypatch, seed):
     monkeypatch.chdir(tmp_path)
-    chance = random.Random(seed)
-    for number, case in enumerate(chance.sample(DESCRIPTIONS, 6)):
+    rng = random.Random(seed)
+    for number, case in enumerate(rng.sample(DESCRIPTIONS, 6)):
         lines = next(iter(case.files.values())).splitlines()
-        for _ in range(chance.randint(1, 3)):
-            at = chance.randrange(len(lines))
-            lines[at : at + 1] = chance.choice([[], [lines[at], lines[at]]])
+        for _ in range(rng.randint(1, 3)):
+            line_index = rng.randrange(len(lines))
+            lines[line_index : line_index + 1] = rng.choice([[], [lines[line_index], lines[line_index]]])
             if not lines:
                 break
         path = tmp_path / f"{number}.urdf"
@@ -85,30 +85,30 @@ def test_suppression_ranges_stay_within_arbitrary_text(before, after):
             assert 0 <= start <= end <= len(text)
 
 
-def chain(count: int, mimic: str = "", loose: str = "") -> str:
+def chain_of_links(count: int, mimic: str = "", disconnected_links: str = "") -> str:
     """Return a robot with a chain of links; `mimic` is the content of each joint."""
     parts = (
         f'<link name="l{i}"/><joint name="j{i}" type="continuous"><parent link="l{i - 1}"/><child link="l{i}"/>'
         f"{mimic.format(before=i - 1)}</joint>\n"
         for i in range(1, count)
     )
-    return f'<robot name="r"><link name="l0"/>{"".join(parts)}{loose}</robot>'
+    return f'<robot name="r"><link name="l0"/>{"".join(parts)}{disconnected_links}</robot>'
 
 
 @pytest.mark.parametrize(
-    ("mimic", "loose"),
+    ("mimic", "disconnected_links"),
     [
         ("", '<link name="a"/><link name="b"/>'),
         ('<mimic joint="j{before}"/>', '<joint name="j0" type="fixed"/>'),
         ('<mimic joint="j{before}"/>', '<joint name="j0" type="continuous"><mimic joint="j1"/></joint>'),
     ],
 )
-def test_lint_effort_is_linear_in_robot_size(tmp_path, mimic, loose):
+def test_lint_effort_is_linear_in_robot_size(tmp_path, mimic, disconnected_links):
     settings = Settings(select=("ALL",))
 
     def work(count: int) -> int:
         path = tmp_path / "r.urdf"
-        path.write_text(chain(count, mimic, loose), encoding="utf-8")
+        path.write_text(chain_of_links(count, mimic, disconnected_links), encoding="utf-8")
         return lines_run(lambda: examine(path, settings=settings))
 
     work(5)  # fills caches

@@ -18,7 +18,7 @@ ARM = f"""<robot {XACRO} name="$(arg name)">
   <xacro:include filename="$(arg type).xacro"/>
 </robot>
 """
-CAN = '<visual><geometry><mesh filename="file://$(find arm)/urdf/can.stl"/></geometry></visual>'
+CAN_VISUAL = '<visual><geometry><mesh filename="file://$(find arm)/urdf/can.stl"/></geometry></visual>'
 PART = '<robot><link name="base_link"/></robot>\n'
 LAUNCH = """
 import xacro
@@ -35,7 +35,10 @@ def generate_launch_description():
 
 @pytest.fixture
 def check(tmp_path, monkeypatch, capsys):
-    """Write files, check the folder, and return the code, severity, file, message and notes of each finding."""
+    """Write files, check the folder, and return the findings.
+
+    Each has its code, severity, file, message and notes.
+    """
     monkeypatch.chdir(tmp_path)
 
     def run(files, *words):
@@ -48,7 +51,7 @@ def check(tmp_path, monkeypatch, capsys):
     return run
 
 
-def codes(findings):
+def finding_codes(findings):
     return [(finding["severity"], finding["code"]) for finding in findings]
 
 
@@ -61,7 +64,7 @@ def test_failure_without_arguments_is_one_info(check):
             "arm/launch/view.launch.py": LAUNCH.format(kinds="'small', 'big'"),
         }
     )
-    assert codes(findings) == [("info", "LINT303")]
+    assert finding_codes(findings) == [("info", "LINT303")]
     assert findings[0]["message"] == "'arm.urdf.xacro' needs the arguments 'name' and 'type'"
     assert [note["message"] for note in findings[0]["notes"]] == [
         "for instance, a caller passes name:=a type:=small here",
@@ -70,8 +73,8 @@ def test_failure_without_arguments_is_one_info(check):
     assert findings[0]["notes"][0]["file"].endswith("view.launch.py")
 
 
-PLAIN = f'<robot name="r"><link name="base_link">{CAN}</link></robot>'
-EXPANDS = """
+PLAIN = f'<robot name="r"><link name="base_link">{CAN_VISUAL}</link></robot>'
+EXPANDING_LAUNCH = """
 import os
 import xacro
 from ament_index_python.packages import get_package_share_directory
@@ -85,11 +88,11 @@ def generate_launch_description():
 
 @pytest.mark.parametrize(
     ("launch", "expected"),
-    [(EXPANDS, []), (EXPANDS.replace("xacro", "document"), [("error", "LW114")])],
+    [(EXPANDING_LAUNCH, []), (EXPANDING_LAUNCH.replace("xacro", "document"), [("error", "LW114")])],
 )
 def test_urdf_file_expanded_by_launch_file_may_contain_xacro(check, launch, expected):
     findings = check({"arm/urdf/arm.urdf": PLAIN, "arm/urdf/can.stl": "", "arm/launch/view.launch.py": launch})
-    assert [code for code in codes(findings) if code[1] == "LW114"] == expected
+    assert [code for code in finding_codes(findings) if code[1] == "LW114"] == expected
 
 
 def test_failing_launch_value_is_an_error_with_argument_set(check):
@@ -100,7 +103,7 @@ def test_failing_launch_value_is_an_error_with_argument_set(check):
             "arm/launch/view.launch.py": LAUNCH.format(kinds="'small', 'lost'"),
         }
     )
-    assert codes(findings) == [("info", "LINT303"), ("error", "XML101")]
+    assert finding_codes(findings) == [("info", "LINT303"), ("error", "XML101")]
     assert "this happens with type:=lost" in [note["message"] for note in findings[1]["notes"]]
 
 
@@ -143,24 +146,24 @@ def test_configured_arguments_override_launch_files(check):
 def test_undeclared_argument_is_info_for_folder_and_error_for_file(check):
     files = {"arm/urdf/arm.urdf.xacro": f'<robot {XACRO} name="r"><link name="$(arg prefix)base_link"/></robot>'}
     findings = check(files)
-    assert codes(findings) == [("info", "LINT303")]
+    assert finding_codes(findings) == [("info", "LINT303")]
     assert findings[0]["hints"] == ['give values in linkwright.toml: [arguments] "arm.urdf.xacro" = { prefix = "..." }']
-    assert codes(check(files, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC211")]
+    assert finding_codes(check(files, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC211")]
 
 
 def test_include_named_by_argument_used_too_early_is_not_an_error(check):
     text = f"""<robot {XACRO} name="$(arg model)"><xacro:arg name="model" default="r"/>
 <xacro:include filename="$(arg model)/arm.xacro"/><xacro:include filename="{{}}.xacro"/></robot>"""
     findings = check({"arm/urdf/arm.urdf.xacro": text.format("hand"), "arm/urdf/hand.xacro": PART})
-    assert codes(findings) == [("info", "LINT303")]
+    assert finding_codes(findings) == [("info", "LINT303")]
     findings = check({"arm/urdf/arm.urdf.xacro": text.format("none")})
-    assert codes(findings) == [("info", "LINT303"), ("error", "XML101")]
+    assert finding_codes(findings) == [("info", "LINT303"), ("error", "XML101")]
 
 
 def test_misspelled_argument_stays_an_error(check):
     robot = f"""<robot {XACRO} name="r"><xacro:arg name="prefix" default=""/>
     <link name="$(arg prefix)base_link"/><link name="$(arg prefx)tool"/></robot>"""
-    assert ("error", "XAC211") in codes(check({"arm/urdf/arm.urdf.xacro": robot}))
+    assert ("error", "XAC211") in finding_codes(check({"arm/urdf/arm.urdf.xacro": robot}))
 
 
 def test_caller_without_arguments_uses_defaults(check):
@@ -172,26 +175,28 @@ def test_expands():
     xacro.process_file(get_package_share_path('arm') / 'urdf/arm.urdf.xacro')
 """
     findings = check({"arm/urdf/arm.urdf.xacro": ARM, "arm/test/test_arm.py": test})
-    assert {code for severity, code in codes(findings) if severity == "error"} == {"XAC211", "XML101"}
+    assert {code for severity, code in finding_codes(findings) if severity == "error"} == {"XAC211", "XML101"}
 
 
 def test_runtime_values_are_named(check):
     launch = LAUNCH.format(kinds="'small'").replace("'type': kind", "'type': ask()")
     findings = check({"arm/urdf/arm.urdf.xacro": ARM, "arm/launch/view.launch.py": launch})
-    assert codes(findings) == [("info", "LINT303")]
+    assert finding_codes(findings) == [("info", "LINT303")]
     assert findings[0]["arguments"]["names"] == "'type'"
 
 
 def test_command_line_arguments_replace_all_other_sets(check):
     files = {"arm/urdf/arm.urdf.xacro": ARM, "arm/urdf/small.xacro": PART}
     assert check(files, "arm/urdf/arm.urdf.xacro", "name:=a", "type:=small") == []
-    assert ("error", "XML101") in codes(check(files, "arm/urdf/arm.urdf.xacro", "name:=a", "type:=lost"))
+    assert ("error", "XML101") in finding_codes(check(files, "arm/urdf/arm.urdf.xacro", "name:=a", "type:=lost"))
 
 
-DERIVED = ", ' config:=', PathJoinSubstitution(['config', LaunchConfiguration('type'), LaunchConfiguration('dof')])"
+DERIVED_ARGUMENT = (
+    ", ' config:=', PathJoinSubstitution(['config', LaunchConfiguration('type'), LaunchConfiguration('dof')])"
+)
 
 
-@pytest.mark.parametrize("derived", ["", DERIVED], ids=["", "with a path made of both"])
+@pytest.mark.parametrize("derived", ["", DERIVED_ARGUMENT], ids=["", "with a path made of both"])
 def test_value_that_works_with_another_choice_is_not_an_error(check, derived):
     launch = """
 from launch import LaunchDescription
@@ -214,7 +219,7 @@ def generate_launch_description():
         "LaunchConfiguration('type'), ' dof:=', LaunchConfiguration('dof')" + derived,
     )
     findings = check({**files, "arm/urdf/six_6.xacro": PART, "arm/urdf/seven_7.xacro": PART})
-    assert codes(findings) == [("info", "LINT303")]
+    assert finding_codes(findings) == [("info", "LINT303")]
 
 
 @pytest.mark.parametrize(("chosen", "codes_found"), [("large", ["XML101"]), ("small", [])])
@@ -229,12 +234,16 @@ DeclareLaunchArgument('type', default_value='six', choices=['six', 'seven'])
 path = PathJoinSubstitution([FindPackageShare('arm'), 'urdf', [LaunchConfiguration('robot'), '.urdf.xacro']])
 Command(['xacro ', path, ' name:=a', ' type:=', LaunchConfiguration('type')])
 """
-    both = {
+    files_with_both_values = {
         f"arm/urdf/{name}.urdf.xacro": ARM.replace("$(arg type)", f"{name}_$(arg type)") for name in ("large", "small")
     }
     parts = ["large_six", "large_seven", "small_six", "small_seven"]
     parts.remove(f"{chosen}_seven")
-    files = {**both, "arm/launch/view.launch.py": launch, **{f"arm/urdf/{name}.xacro": PART for name in parts}}
+    files = {
+        **files_with_both_values,
+        "arm/launch/view.launch.py": launch,
+        **{f"arm/urdf/{name}.xacro": PART for name in parts},
+    }
     assert [finding["code"] for finding in check(files) if finding["severity"] != "info"] == codes_found
 
 
@@ -254,7 +263,7 @@ def generate_launch_description():
              ' type:=', LaunchConfiguration('type')])
 """
     files = {"arm/urdf/arm.urdf.xacro": ARM, "arm/urdf/small.xacro": PART, "arm/launch/view.launch.py": launch}
-    assert [code for code in codes(check(files)) if code[1] == "XML101"] == [(severity, "XML101")]
+    assert [code for code in finding_codes(check(files)) if code[1] == "XML101"] == [(severity, "XML101")]
 
 
 @pytest.mark.parametrize(
@@ -271,10 +280,10 @@ def test_missing_package_is_a_warning_if_declared_nearby(check, needs, beside, s
     )
     manifest, other = MANIFEST.format(name="arm", needs=needs), MANIFEST.format(name="bringup", needs=beside)
     findings = check({"arm/package.xml": manifest, "bringup/package.xml": other, "arm/urdf/arm.urdf.xacro": robot})
-    assert (severity, "PKG101") in codes(findings)
+    assert (severity, "PKG101") in finding_codes(findings)
 
 
-SIDED = f"""<robot {XACRO} name="r">
+ROBOT_WITH_SIDES = f"""<robot {XACRO} name="r">
   <xacro:arg name="side" default=""/>
   <xacro:property name="which" value="$(arg side)"/>
   <xacro:if value="${{which == 'left'}}"><xacro:property name="mount" value="0.1"/></xacro:if>
@@ -285,19 +294,21 @@ SIDED = f"""<robot {XACRO} name="r">
 
 
 def test_compared_values_are_tried_for_missing_argument(check):
-    findings = check({"arm/urdf/arm.urdf.xacro": SIDED}, ".", "--ignore", "LW102")
-    assert codes(findings) == [("info", "LINT303")]
+    findings = check({"arm/urdf/arm.urdf.xacro": ROBOT_WITH_SIDES}, ".", "--ignore", "LW102")
+    assert finding_codes(findings) == [("info", "LINT303")]
     assert findings[0]["message"] == "'arm.urdf.xacro' needs the argument 'side'"
     assert findings[0]["notes"][0]["message"] == "for instance, side:=left expands the file"
-    assert codes(check({"arm/urdf/arm.urdf.xacro": SIDED}, "arm/urdf/arm.urdf.xacro")) == [("error", "XAC201")]
+    assert finding_codes(check({"arm/urdf/arm.urdf.xacro": ROBOT_WITH_SIDES}, "arm/urdf/arm.urdf.xacro")) == [
+        ("error", "XAC201")
+    ]
 
 
 def test_error_that_no_compared_value_fixes_remains(check):
-    findings = check({"arm/urdf/arm.urdf.xacro": SIDED.replace("0 ${mount} 0", "0 ${lost} 0")})
-    assert codes(findings) == [("error", "XAC201")]
+    findings = check({"arm/urdf/arm.urdf.xacro": ROBOT_WITH_SIDES.replace("0 ${mount} 0", "0 ${lost} 0")})
+    assert finding_codes(findings) == [("error", "XAC201")]
 
 
-FILED = f"""<robot {XACRO} name="r">
+ROBOT_WITH_FILE = f"""<robot {XACRO} name="r">
   <xacro:arg name="limits" default="{{default}}"/>
   <xacro:property name="found" value="${{{{xacro.load_yaml('$(arg limits)')}}}}"/>
   <link name="base_link"/><link name="${{{{found['name']}}}}"/>{{more}}
@@ -306,34 +317,36 @@ FILED = f"""<robot {XACRO} name="r">
 
 
 def test_failure_with_empty_default_requires_argument(check):
-    findings = check({"arm/urdf/arm.urdf.xacro": FILED.format(default="", more="")})
-    assert codes(findings) == [("info", "LINT303")]
+    findings = check({"arm/urdf/arm.urdf.xacro": ROBOT_WITH_FILE.format(default="", more="")})
+    assert finding_codes(findings) == [("info", "LINT303")]
     assert findings[0]["arguments"]["names"] == "'limits'"
-    findings = check({"arm/urdf/arm.urdf.xacro": FILED.format(default="", more='<link name="${lost}"/>')})
-    assert codes(findings) == [("info", "LINT303"), ("error", "XAC201")]
-    assert ("error", "XAC506") in codes(check({"arm/urdf/arm.urdf.xacro": FILED.format(default="a.yaml", more="")}))
+    findings = check({"arm/urdf/arm.urdf.xacro": ROBOT_WITH_FILE.format(default="", more='<link name="${lost}"/>')})
+    assert finding_codes(findings) == [("info", "LINT303"), ("error", "XAC201")]
+    assert ("error", "XAC506") in finding_codes(
+        check({"arm/urdf/arm.urdf.xacro": ROBOT_WITH_FILE.format(default="a.yaml", more="")})
+    )
 
 
 def test_missing_key_in_file_of_runtime_value_is_not_an_error(check):
     launch = LAUNCH.format(kinds="'a'").replace("'name': 'a', 'type': kind", "'limits': kind + ask()")
     files = {
-        "arm/urdf/arm.urdf.xacro": FILED.format(default="$(find arm)/urdf/a.yaml", more=""),
+        "arm/urdf/arm.urdf.xacro": ROBOT_WITH_FILE.format(default="$(find arm)/urdf/a.yaml", more=""),
         "arm/urdf/a.yaml": "other: 1\n",
         "arm/launch/view.launch.py": launch,
     }
-    assert codes(check(files)) == [("info", "LINT303")]
-    assert ("error", "XAC205") in codes(check({**files, "arm/launch/view.launch.py": ""}))
+    assert finding_codes(check(files)) == [("info", "LINT303")]
+    assert ("error", "XAC205") in finding_codes(check({**files, "arm/launch/view.launch.py": ""}))
 
 
 def test_copied_inertia_hides_too_large_inertia_of_other_set(check):
     mass = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
-    own = mass.replace('ixx="1"', 'ixx="0.0010${index}"').replace('iyy="1" izz="1"', 'iyy="0.001" izz="0.001"')
+    indexed_mass = mass.replace('ixx="1"', 'ixx="0.0010${index}"').replace('iyy="1" izz="1"', 'iyy="0.001" izz="0.001"')
     robot = f"""<robot {XACRO} name="r">
   <xacro:arg name="arm" default="false"/>
   <xacro:macro name="part" params="index"><joint name="j${{index}}" type="fixed"><parent link="base_link"/>
     <child link="l${{index}}"/></joint><link name="l${{index}}"><collision><geometry>
     <box size="0.1 0.1 0.1${{index}}"/></geometry></collision><xacro:if value="${{index &lt; 4}}">{mass}</xacro:if>
-    <xacro:unless value="${{index &lt; 4}}">{own}</xacro:unless></link></xacro:macro>
+    <xacro:unless value="${{index &lt; 4}}">{indexed_mass}</xacro:unless></link></xacro:macro>
   <link name="base_link"/>
   <xacro:part index="1"/><xacro:part index="2"/><xacro:part index="3"/>
   <xacro:if value="$(arg arm)">{"".join(f'<xacro:part index="{index}"/>' for index in range(4, 9))}</xacro:if>
@@ -341,14 +354,14 @@ def test_copied_inertia_hides_too_large_inertia_of_other_set(check):
     launch = LAUNCH.replace("'name': 'a', 'type': kind", "'arm': kind").format(kinds="'false', 'true'")
     files = {"arm/urdf/arm.urdf.xacro": robot, "arm/launch/view.launch.py": launch}
     assert [finding["code"] for finding in check(files) if finding["code"].startswith("LW3")] == ["LW315"]
-    alone = {
+    file_without_copy = {
         "arm/urdf/arm.urdf.xacro": robot.replace('default="false"', 'default="true"'),
         "arm/launch/view.launch.py": "",
     }
-    assert [finding["code"] for finding in check(alone) if finding["code"].startswith("LW3")] == ["LW324"]
+    assert [finding["code"] for finding in check(file_without_copy) if finding["code"].startswith("LW3")] == ["LW324"]
 
 
-TURNED = """
+TURNED_LINK = """
   <link name="base_link"/><link name="hand"/>
   <xacro:macro name="turned" params="rate"><joint name="turn" type="revolute">
     <parent link="base_link"/><child link="hand"/><axis xyz="0 0 1"/>
@@ -358,7 +371,7 @@ TURNED = """
 """
 
 
-def given_kinds(inside, *kinds):
+def find_given_kinds(inside, *kinds):
     """Write a description with an argument, and a launch file that sets its value."""
     robot = f'<robot {XACRO} name="a"><xacro:arg name="kind" default="{kinds[0]}"/>{inside}</robot>'
     launch = LAUNCH.format(kinds=", ".join(map(repr, kinds))).replace("'name': 'a', 'type'", "'kind'")
@@ -375,11 +388,13 @@ def test_rules_run_once_for_sets_with_same_robot(check, monkeypatch, velocity, o
     for code in ("LW206", "LW701"):
         rule = find_rule(code)
         monkeypatch.setattr(
-            type(rule), "check", lambda self, subject, own=rule.check: ran.append(self.code) or list(own(subject))
+            type(rule),
+            "check",
+            lambda self, subject, original_check=rule.check: ran.append(self.code) or list(original_check(subject)),
         )
-    files = given_kinds(TURNED.format(velocity=velocity), "1", "2", "3")
+    files = find_given_kinds(TURNED_LINK.format(velocity=velocity), "1", "2", "3")
     findings = check(files, ".", "--select", "LW206,LW701")
-    assert codes(findings) == [("warning", "LW206")]
+    assert finding_codes(findings) == [("warning", "LW206")]
     notes = [note["message"] for note in findings[0]["notes"]]
     assert ("this happens with kind:=3" in notes) is (of_robot > 1)
     assert (ran.count("LW206"), ran.count("LW701")) == (of_robot, 1)
@@ -388,6 +403,6 @@ def test_rules_run_once_for_sets_with_same_robot(check, monkeypatch, velocity, o
 def test_property_named_by_argument_value_of_one_set_is_used(check):
     """The used properties depend on the values of arguments, even if the files are the same."""
     properties = "".join(f'<xacro:property name="{name}" value="1"/>' for name in ("size", "width", "other"))
-    files = given_kinds(f'{properties}<link name="l${{$(arg kind)}}"/>', "size", "width")
+    files = find_given_kinds(f'{properties}<link name="l${{$(arg kind)}}"/>', "size", "width")
     findings = check(files, ".", "--select", "LW701")
     assert [finding["message"] for finding in findings] == ["nothing uses the property 'other'"]

@@ -72,15 +72,15 @@ def test_disabled_rule_runs_if_selected():
 
 
 def test_nearest_configuration_file_is_used(tmp_path):
-    inner = tmp_path / "package" / "urdf"
-    inner.mkdir(parents=True)
+    inner_folder = tmp_path / "package" / "urdf"
+    inner_folder.mkdir(parents=True)
     (tmp_path / "linkwright.toml").write_text("ignore = ['LW1']")
-    assert find_configuration(inner / "robot.urdf") == tmp_path / "linkwright.toml"
+    assert find_configuration(inner_folder / "robot.urdf") == tmp_path / "linkwright.toml"
     (tmp_path / "package" / "pyproject.toml").write_text("[project]\nname = 'p'\n")
-    assert find_configuration(inner / "robot.urdf") == tmp_path / "linkwright.toml"
+    assert find_configuration(inner_folder / "robot.urdf") == tmp_path / "linkwright.toml"
     (tmp_path / "package" / "pyproject.toml").write_text("[tool.linkwright]\nignore = ['LW2']\n")
-    assert find_configuration(inner / "robot.urdf") == tmp_path / "package" / "pyproject.toml"
-    assert settings_for(inner / "robot.urdf")[0].ignore == ("LW2",)
+    assert find_configuration(inner_folder / "robot.urdf") == tmp_path / "package" / "pyproject.toml"
+    assert settings_for(inner_folder / "robot.urdf")[0].ignore == ("LW2",)
 
 
 def test_missing_configuration_gives_default_settings(tmp_path):

@@ -12,26 +12,26 @@ from linkwright.lint.explain import find_page, known_codes, nearest_codes, room_
 from linkwright.lint.registry import all_rules
 
 ROOMS = Path(linkwright.__file__).parent
-CODE = re.compile(
+CODE_PATTERN = re.compile(
     r'"((?:XML|XAC|URDF|SDF|PKG|KIN|GRAPH|NODE|RVIZ|VIEW|LAUNCH|CLI|LINT|INR|MSG|DOC|DDS|BAG|SHELL|DRIVE|SIM|SWEEP|CTL|NAV|VOICE|VISION|MODEL|EDIT|LANG|LEARN|REV|PIC)[0-9]{3})"'
 )
 
 
-def codes_of_the_program() -> set[str]:
+def find_reported_codes() -> set[str]:
     return {
         code
         for file in ROOMS.rglob("*.py")
         if "translation" not in file.parts
-        for code in CODE.findall(file.read_text(encoding="utf-8"))
+        for code in CODE_PATTERN.findall(file.read_text(encoding="utf-8"))
     }
 
 
 def test_every_reported_code_has_page():
-    assert codes_of_the_program() - set(known_codes()) == set()
+    assert find_reported_codes() - set(known_codes()) == set()
 
 
 def test_every_page_belongs_to_reported_code():
-    assert set(room_pages()) - codes_of_the_program() == set()
+    assert set(room_pages()) - find_reported_codes() == set()
 
 
 def test_every_file_of_pages_begins_with_title():

@@ -56,7 +56,7 @@ def test_unrelated_comments_keep_warning(tmp_path, mass):
 
 def test_comment_at_repeated_inertia_lowers_severity_to_info(tmp_path):
     shapes = (_BOX, '<sphere radius="0.1"/>', '<cylinder radius="0.1" length="0.1"/>')
-    links = "".join(_LINK.format(f"l{at}", '<mass value="1"/>', shape) for at, shape in enumerate(shapes))
+    links = "".join(_LINK.format(f"l{number}", '<mass value="1"/>', shape) for number, shape in enumerate(shapes))
     assert severities(tmp_path, links) == [("LW315", "warning")]
     explained = links.replace('izz="1"/>', 'izz="1"/> <!-- to stabilise -->')
     assert severities(tmp_path, explained) == [("LW315", "info")]

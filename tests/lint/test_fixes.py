@@ -1,4 +1,7 @@
-"""Fixes: the changed and unchanged parts, and files that are written completely or not at all."""
+"""Fixes.
+
+The tests cover the changed and unchanged parts, and files that are written completely or not at all.
+"""
 
 from __future__ import annotations
 
@@ -35,16 +38,16 @@ ROBOT = """<?xml version="1.0"?>
 """
 
 
-def element(text: str, *path: str) -> Element:
+def parse_element(text: str, *path: str) -> Element:
     root = parse(text, "robot.urdf").root
     for tag in path:
-        inner = root.first(tag)
-        assert inner is not None
-        root = inner
+        child = root.first(tag)
+        assert child is not None
+        root = child
     return root
 
 
-def applied(text: str, fix: Fix | None) -> str:
+def apply_fix(text: str, fix: Fix | None) -> str:
     assert fix is not None
     for edit in sorted(fix.edits, key=lambda edit: -edit.start):
         text = text[: edit.start] + edit.replacement + text[edit.end :]
@@ -61,39 +64,42 @@ def applied(text: str, fix: Fix | None) -> str:
     ],
 )
 def test_element_range_covers_whole_element(text, expected):
-    span = element_range(element(text, "a"))
+    span = element_range(parse_element(text, "a"))
     assert span is not None
     assert text[slice(*span)] == expected
 
 
 def test_attribute_value_is_replaced_between_quotes():
     text = "<r><a  x = '1'  y=\"2\"/></r>"
-    assert applied(text, replace_value(element(text, "a"), "x", '"<&')) == "<r><a  x = '&quot;&lt;&amp;'  y=\"2\"/></r>"
+    assert (
+        apply_fix(text, replace_value(parse_element(text, "a"), "x", '"<&'))
+        == "<r><a  x = '&quot;&lt;&amp;'  y=\"2\"/></r>"
+    )
 
 
 def test_attributes_are_added_and_renamed():
     text = '<r><a x="1"\n  y="2" /></r>'
-    assert applied(text, add_attribute(element(text, "a"), "z", "3")) == '<r><a x="1"\n  y="2" z="3" /></r>'
-    assert applied(text, rename_attribute(element(text, "a"), "y", "z")) == '<r><a x="1"\n  z="2" /></r>'
-    assert rename_attribute(element(text, "a"), "y", "x") is None
-    assert add_attribute(element("<r><a></a></r>", "a"), "z", "3") is not None
+    assert apply_fix(text, add_attribute(parse_element(text, "a"), "z", "3")) == '<r><a x="1"\n  y="2" z="3" /></r>'
+    assert apply_fix(text, rename_attribute(parse_element(text, "a"), "y", "z")) == '<r><a x="1"\n  z="2" /></r>'
+    assert rename_attribute(parse_element(text, "a"), "y", "x") is None
+    assert add_attribute(parse_element("<r><a></a></r>", "a"), "z", "3") is not None
 
 
 def test_elements_are_renamed_in_start_and_end_tag():
     text = "<r><a><a/></a\n></r>"
-    assert applied(text, rename_element(element(text, "a"), "bc")) == "<r><bc><a/></bc\n></r>"
-    assert applied("<r><a/></r>", rename_element(element("<r><a/></r>", "a"), "bc")) == "<r><bc/></r>"
+    assert apply_fix(text, rename_element(parse_element(text, "a"), "bc")) == "<r><bc><a/></bc\n></r>"
+    assert apply_fix("<r><a/></r>", rename_element(parse_element("<r><a/></r>", "a"), "bc")) == "<r><bc/></r>"
 
 
 def test_element_alone_on_line_is_removed_with_line():
     text = "<r>\n  <a>\n  </a>\n  <b/>\n</r>"
-    assert applied(text, remove_element(element(text, "a"))) == "<r>\n  <b/>\n</r>"
-    assert applied("<r><a/><b/></r>", remove_element(element("<r><a/><b/></r>", "a"))) == "<r><b/></r>"
+    assert apply_fix(text, remove_element(parse_element(text, "a"))) == "<r>\n  <b/>\n</r>"
+    assert apply_fix("<r><a/><b/></r>", remove_element(parse_element("<r><a/><b/></r>", "a"))) == "<r><b/></r>"
 
 
 def test_expression_is_not_a_literal():
     text = '<r><a x="${1 + 1}" y="2" z="&lt;"/></r>'
-    parsed = element(text, "a")
+    parsed = parse_element(text, "a")
     assert [is_literal(parsed, name) for name in "xyz"] == [False, True, False]
     assert replace_value(parsed, "x", "3") is None
 
@@ -105,7 +111,7 @@ def test_element_without_source_has_no_fix():
     assert add_attribute(element, "y", "2") is None
 
 
-def fix(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[str, ...] = ("LW2",)):
+def fix_path(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[str, ...] = ("LW2",)):
     def check(text: str | None):
         overlay = None if text is None else Overlay({path: text})
         return examine(path, settings=Settings(select=select), overlay=overlay).diagnostics
@@ -116,7 +122,7 @@ def fix(path: Path, *, unsafe: bool = False, write: bool = True, select: tuple[s
 def test_fix_keeps_rest_of_file(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_text(ROBOT)
-    result = fix(path)
+    result = fix_path(path)
     assert path.read_text() == ROBOT.replace("1 1 0", "0.707107 0.707107 0")
     assert result.counts == {"LW221": 1}
 
@@ -125,7 +131,7 @@ def test_diff_does_not_write_file(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     path = Path("robot.urdf")
     path.write_text(ROBOT)
-    assert fix(path, write=False).diff().splitlines() == [
+    assert fix_path(path, write=False).diff().splitlines() == [
         "--- robot.urdf",
         "+++ robot.urdf",
         "@@ -6,7 +6,7 @@",
@@ -145,7 +151,7 @@ def test_fix_keeps_line_endings_byte_order_mark_and_permissions(tmp_path):
     path = tmp_path / "robot.urdf"
     path.write_bytes(b"\xef\xbb\xbf" + ROBOT.replace("\n", "\r\n").encode())
     path.chmod(0o640)
-    fix(path)
+    fix_path(path)
     expected = ROBOT.replace("1 1 0", "0.707107 0.707107 0").replace("\n", "\r\n")
     assert path.read_bytes() == b"\xef\xbb\xbf" + expected.encode()
     assert path.stat().st_mode & 0o777 == 0o640
@@ -180,7 +186,7 @@ def test_included_file_is_fixed_once_for_all_macro_calls(tmp_path):
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n  <xacro:include filename="wheel.xacro"/>\n'
         '  <link name="a"/>\n  <xacro:wheel side="l"/>\n  <xacro:wheel side="r"/>\n</robot>\n'
     )
-    result = fix(path)
+    result = fix_path(path)
     assert result.counts == {"LW221": 1}
     text = (tmp_path / "wheel.xacro").read_text()
     assert 'xyz="0 1 0"' in text
@@ -195,7 +201,7 @@ def test_files_outside_package_are_not_fixed(tmp_path):
     path.write_text(
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:include filename="../other.xacro"/></robot>'
     )
-    assert fix(path).counts == {}
+    assert fix_path(path).counts == {}
     assert other.read_text() == ROBOT
 
 
@@ -236,9 +242,9 @@ def test_unsafe_fixes_are_applied_only_on_request(tmp_path):
         .replace("</joint>", '<limit lower="2" upper="1" effort="1" velocity="1"/></joint>')
     )
     path.write_text(text)
-    fix(path)
+    fix_path(path)
     assert path.read_text() == text
-    fix(path, unsafe=True)
+    fix_path(path, unsafe=True)
     assert 'lower="1" upper="2"' in path.read_text()
 
 

@@ -103,8 +103,8 @@ def test_findings_are_in_order_of_text(tmp_path):
 
 
 def test_unreadable_description_is_reported_and_not_raised(tmp_path):
-    (only,) = check(tmp_path / "none.urdf")
-    assert only.code == "XML101"
+    (only_finding,) = check(tmp_path / "none.urdf")
+    assert only_finding.code == "XML101"
     path = tmp_path / "robot.urdf.xacro"
     path.write_text('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="${nothing}"/></robot>')
     assert [finding.code for finding in check(path)] == ["XAC201"]

@@ -19,40 +19,48 @@ DRIVEN = "<ros2_control>{}</ros2_control>".format(
         f'<joint name="{side}_wheel_joint"><command_interface name="velocity"/></joint>' for side in ("left", "right")
     )
 )
-STATES = DRIVEN.replace("command_interface", "state_interface")
-PLUGIN = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+STATE_INTERFACES_ONLY = DRIVEN.replace("command_interface", "state_interface")
+PLUGIN_ELEMENT = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_drive.so">
 <left_joint>left_wheel_joint</left_joint>
 <right_joint>right_wheel_joint</right_joint></plugin></gazebo>"""
 
 
 @pytest.fixture
 def severity_of(tmp_path):
-    """Return the severity of a rule's only finding about a robot with a link ``base`` and other elements."""
+    """Return the severity of a rule's only finding about a robot.
+
+    The robot has a link ``base`` and other elements.
+    """
 
     def check(code, inside):
         (tmp_path / "r.urdf").write_text(f'<robot name="r"><link name="base"/>{inside}</robot>')
         findings = examine(tmp_path / "r.urdf", settings=Settings(select=(code,))).diagnostics
-        (only,) = [finding for finding in findings if finding.code == code]
-        return only.severity.name
+        (only_finding,) = [finding for finding in findings if finding.code == code]
+        return only_finding.severity.name
 
     return check
 
 
-def surface(name, inside="<mu1>1</mu1>"):
+def surface_text(name, inside="<mu1>1</mu1>"):
     return f'<gazebo reference="{name}">{inside}</gazebo>'
 
 
 @pytest.mark.parametrize(
     ("gazebo", "severity"),
     [
-        (surface("base") + surface("arm") + surface("camera"), "INFO"),
-        (surface("base") + surface("arm") + surface("camera", ""), "INFO"),
-        (surface("base") + surface("camera"), "WARNING"),
-        (surface("base") + surface("arm") + surface("arm_lnk"), "WARNING"),
-        (surface("base") + surface("arm") + surface("{name}_foot"), "WARNING"),
-        (surface("base") + surface("arm") + surface("camera", '<sensor name="s" type="camera"/>'), "WARNING"),
+        (surface_text("base") + surface_text("arm") + surface_text("camera"), "INFO"),
+        (surface_text("base") + surface_text("arm") + surface_text("camera", ""), "INFO"),
+        (surface_text("base") + surface_text("camera"), "WARNING"),
+        (surface_text("base") + surface_text("arm") + surface_text("arm_lnk"), "WARNING"),
+        (surface_text("base") + surface_text("arm") + surface_text("{name}_foot"), "WARNING"),
         (
-            surface("base") + surface("arm") + surface("tool", "<preserveFixedJoint>true</preserveFixedJoint>"),
+            surface_text("base") + surface_text("arm") + surface_text("camera", '<sensor name="s" type="camera"/>'),
+            "WARNING",
+        ),
+        (
+            surface_text("base")
+            + surface_text("arm")
+            + surface_text("tool", "<preserveFixedJoint>true</preserveFixedJoint>"),
             "WARNING",
         ),
     ],
@@ -61,7 +69,7 @@ def test_gazebo_surface_of_unknown_link_is_an_info(severity_of, gazebo, severity
     assert severity_of("LW120", ARM.replace("arm", "arm_link") + ARM + gazebo) == severity
 
 
-def moving(mass):
+def moving_link(mass):
     inertial = f'<inertial><mass value="{mass}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
     joint = '<joint name="j" type="continuous"><parent link="base"/><child link="part"/></joint>'
     return f'<link name="part"><visual>{BOX}</visual>{inertial}</link>{joint}'
@@ -69,19 +77,20 @@ def moving(mass):
 
 @pytest.mark.parametrize(("mass", "severity"), [("3", "INFO"), ("3.2", "WARNING"), ("20", "WARNING")])
 def test_round_mass_of_small_part_is_an_info(severity_of, mass, severity):
-    assert severity_of("LW320", moving(mass)) == severity
+    assert severity_of("LW320", moving_link(mass)) == severity
 
 
 @pytest.mark.parametrize(("mass", "severity"), [("20.5", "INFO"), ("205", "WARNING")])
 def test_high_density_of_fixed_part_is_an_info(severity_of, mass, severity):
-    assert severity_of("LW320", moving(mass).replace("continuous", "fixed")) == severity
+    assert severity_of("LW320", moving_link(mass).replace("continuous", "fixed")) == severity
 
 
 @pytest.mark.parametrize(
-    ("more", "severity"), [("", "INFO"), (STATES, "INFO"), (DRIVEN, "WARNING"), (PLUGIN, "WARNING")]
+    ("extra_text", "severity"),
+    [("", "INFO"), (STATE_INTERFACES_ONLY, "INFO"), (DRIVEN, "WARNING"), (PLUGIN_ELEMENT, "WARNING")],
 )
-def test_opposing_wheels_are_warning_only_if_driven(severity_of, more, severity):
-    assert severity_of("LW643", WHEELS + more) == severity
+def test_opposing_wheels_are_warning_only_if_driven(severity_of, extra_text, severity):
+    assert severity_of("LW643", WHEELS + extra_text) == severity
 
 
 @pytest.mark.parametrize(("triangles", "severity"), [(40_000, "INFO"), (40_001, "WARNING")])
@@ -103,10 +112,10 @@ def test_locked_sensor_joint_is_an_info(severity_of, name, end, severity):
     assert severity_of("LW202", f'<link name="{name}_link"/>{joint}{limit}') == severity
 
 
-@pytest.mark.parametrize(("more", "severity"), [("", "WARNING"), (f"<visual>{BOX}</visual>", "INFO")])
-def test_footprint_that_is_whole_body_is_an_info(severity_of, more, severity):
+@pytest.mark.parametrize(("extra_text", "severity"), [("", "WARNING"), (f"<visual>{BOX}</visual>", "INFO")])
+def test_footprint_that_is_whole_body_is_an_info(severity_of, extra_text, severity):
     joint = '<joint name="j" type="fixed"><parent link="base"/><child link="base_footprint"/></joint>'
-    link = f'<link name="base_footprint"><collision>{BOX.replace("0.01", "1")}</collision>{more}</link>'
+    link = f'<link name="base_footprint"><collision>{BOX.replace("0.01", "1")}</collision>{extra_text}</link>'
     assert severity_of("LW623", joint + link) == severity
 
 
@@ -127,7 +136,7 @@ def test_malformed_xml_comment_in_world_is_an_info(tmp_path, name, text, severit
 def test_similar_color_of_same_material_is_an_info(severity_of, second, severity):
     gray = '<visual>{}<material name="grey"><color rgba="{}"/></material></visual>'
     visuals = "".join(gray.format(BOX, color) for color in ("0.7 0.7 0.7 1", second))
-    assert severity_of("LW501", moving("3").replace("<inertial>", visuals + "<inertial>")) == severity
+    assert severity_of("LW501", moving_link("3").replace("<inertial>", visuals + "<inertial>")) == severity
 
 
 @pytest.mark.parametrize(("kind", "severity"), [("fixed", "INFO"), ("continuous", "WARNING")])
@@ -142,7 +151,7 @@ def test_non_ascii_mesh_name_is_an_info_and_blank_is_a_warning(severity_of, name
 
 
 @pytest.mark.parametrize(
-    ("names", "used", "severity"),
+    ("names", "used_name", "severity"),
     [
         ("d4_depth_px d4_depth_py d4_depth_pz", 2, "INFO"),
         ("d4_depth_px d4_depth_py d4_depth_pz", 1, "WARNING"),
@@ -151,10 +160,10 @@ def test_non_ascii_mesh_name_is_an_info_and_blank_is_a_warning(severity_of, name
         ("d4_wheel_radios d4_wheel_radius d4_wheel_width", 2, "WARNING"),
     ],
 )
-def test_unused_property_of_dimension_table_is_an_info(tmp_path, names, used, severity):
-    first, *others = names.split()
-    text = "".join(f'<xacro:property name="{name}" value="0.2"/>' for name in (first, *others))
-    links = "".join(f'<link name="l_${{{name}}}_{name}"/>' for name in others[:used])
+def test_unused_property_of_dimension_table_is_an_info(tmp_path, names, used_name, severity):
+    first, *other_names = names.split()
+    text = "".join(f'<xacro:property name="{name}" value="0.2"/>' for name in (first, *other_names))
+    links = "".join(f'<link name="l_${{{name}}}_{name}"/>' for name in other_names[:used_name])
     prefix = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
     (tmp_path / "r.urdf.xacro").write_text(f'<robot name="r" {prefix}>{text}{links}</robot>')
     findings = examine(tmp_path / "r.urdf.xacro", settings=Settings(select=("LW701",))).diagnostics
@@ -180,10 +189,10 @@ def test_relative_mesh_path_beside_mujoco_model_is_an_info(severity_of, tmp_path
 
 
 @pytest.mark.parametrize(
-    ("more", "shape", "severity"),
+    ("extra_text", "shape", "severity"),
     [("", "", "INFO"), ("<gazebo/>", "", "WARNING"), ("", f"<visual>{BOX}</visual>", "WARNING")],
 )
-def test_missing_inertial_without_shape_and_simulator_is_an_info(severity_of, more, shape, severity):
-    robot = moving("3") + f'<link name="command">{shape}</link>'
+def test_missing_inertial_without_shape_and_simulator_is_an_info(severity_of, extra_text, shape, severity):
+    robot = moving_link("3") + f'<link name="command">{shape}</link>'
     joint = '<joint name="k" type="continuous"><parent link="base"/><child link="command"/></joint>'
-    assert severity_of("LW301", robot + joint + more) == severity
+    assert severity_of("LW301", robot + joint + extra_text) == severity

@@ -40,16 +40,16 @@ _REMAINDERS = [
 ]
 
 
-def _manifest(remainder: str = '<maintainer email="lee@my-lab.org">Lee</maintainer>', **values: str | None) -> str:
+def _make_manifest(remainder: str = '<maintainer email="lee@my-lab.org">Lee</maintainer>', **values: str | None) -> str:
     values_by_tag = {"name": "my_robot", "version": "0.1.0", "description": "A robot.", "license": "MIT", **values}
     elements = "".join(f"<{tag}>{text}</{tag}>" for tag, text in values_by_tag.items() if text is not None)
     return f'<package format="3">{elements}{remainder}</package>'
 
 
 _CASES = [
-    *(_manifest(**{tag: text}) for tag, texts in _VALUES_BY_TAG.items() for text in (*texts, None)),
-    *map(_manifest, _REMAINDERS),
-    _manifest("").replace("package", "pkg"),
+    *(_make_manifest(**{tag: text}) for tag, texts in _VALUES_BY_TAG.items() for text in (*texts, None)),
+    *map(_make_manifest, _REMAINDERS),
+    _make_manifest("").replace("package", "pkg"),
 ]
 
 

@@ -112,8 +112,8 @@ class Broken(Rule):
 @pytest.mark.parametrize("fault", ["subject.nothing", "raise KeyError(1)", "yield None"])
 def test_failing_plugin_rule_is_reported_and_other_rules_run(installed, robot, fault):
     installed(RULES + BROKEN.format(fault=fault))
-    ours, failed = sorted(check(robot), key=lambda finding: finding.code, reverse=True)
-    assert (ours.code, failed.code, failed.severity.value) == ("TEAM001", "LINT304", "error")
+    finding_of_rule, failed = sorted(check(robot), key=lambda finding: finding.code, reverse=True)
+    assert (finding_of_rule.code, failed.code, failed.severity.value) == ("TEAM001", "LINT304", "error")
     assert failed.message.startswith("rule TEAM003 of the module 'team_rules' failed: ")
     if fault != "yield None":
         assert failed.span.file.endswith("team_rules.py")

@@ -1,4 +1,7 @@
-"""Fixes of package.xml, setup.py and CMakeLists.txt: the finding disappears, and the format remains."""
+"""Fixes of package.xml, setup.py and CMakeLists.txt.
+
+The finding disappears, and the format remains.
+"""
 
 from __future__ import annotations
 
@@ -28,8 +31,13 @@ def generate_launch_description():
 """
 
 
-def fixed(folder: Path, build_file: str, text: str, *, selected: tuple[str, ...] = ("LW822", "LW826")) -> str:
-    """Return a build file after all safe fixes of the package, and check that no finding remains."""
+def apply_safe_fixes(
+    folder: Path, build_file: str, text: str, *, selected: tuple[str, ...] = ("LW822", "LW826")
+) -> str:
+    """Return a build file after all safe fixes of the package.
+
+    No finding may remain.
+    """
     build_type = "ament_python" if build_file == "setup.py" else "ament_cmake"
     files = {
         "package.xml": MANIFEST.format(build_type=build_type),
@@ -72,12 +80,12 @@ setup(
         "        ('share/' + package_name + '/launch', glob('launch/*')),\n"
         "        ('share/' + package_name + '/meshes', glob('meshes/*')),\n",
     )
-    assert sorted(fixed(tmp_path, "setup.py", text).splitlines()) == sorted(expected.splitlines())
+    assert sorted(apply_safe_fixes(tmp_path, "setup.py", text).splitlines()) == sorted(expected.splitlines())
 
 
 def test_empty_data_files_and_missing_import_are_filled(tmp_path):
     text = 'from setuptools import setup\n\nsetup(name="arm", data_files=[])\n'
-    changed = fixed(tmp_path, "setup.py", text)
+    changed = apply_safe_fixes(tmp_path, "setup.py", text)
     assert changed.startswith("from glob import glob\nfrom setuptools import setup\n\n")
     for part in ('("share/arm", ["package.xml"])', '("share/arm/meshes", glob("meshes/*"))', '["resource/arm"]'):
         assert part in changed
@@ -87,7 +95,7 @@ def test_folder_with_subfolders_is_installed_by_extension(tmp_path):
     (tmp_path / "meshes" / "more").mkdir(parents=True)
     (tmp_path / "meshes" / "more" / "b.dae").write_text("<COLLADA/>")
     text = "from glob import glob\nfrom setuptools import setup\nsetup(name='arm', data_files=[])\n"
-    changed = fixed(tmp_path, "setup.py", text)
+    changed = apply_safe_fixes(tmp_path, "setup.py", text)
     assert "('share/arm/meshes', glob('meshes/*.stl'))" in changed
     assert "('share/arm/meshes/more', glob('meshes/more/*'))" in changed
 
@@ -108,12 +116,12 @@ def test_folder_is_added_to_existing_install_command(tmp_path, newline):
         )
     )
     expected = text.replace('    "launch"' + newline, f'    "launch"{newline}    meshes{newline}')
-    assert fixed(tmp_path, "CMakeLists.txt", text) == expected
+    assert apply_safe_fixes(tmp_path, "CMakeLists.txt", text) == expected
 
 
 def test_install_command_is_added_before_ament_package(tmp_path):
     text = "project(arm)\nfind_package(ament_cmake REQUIRED)\ninstall(FILES launch/arm.launch.py DESTINATION share)\n"
-    changed = fixed(tmp_path, "CMakeLists.txt", text + "\nament_package()\n")
+    changed = apply_safe_fixes(tmp_path, "CMakeLists.txt", text + "\nament_package()\n")
     assert changed == text + "\ninstall(DIRECTORY meshes DESTINATION share/${PROJECT_NAME})\n\nament_package()\n"
 
 

@@ -74,7 +74,7 @@ def test_shipped_package_has_no_findings():
     assert not examine_package(PACKAGE, Settings()).diagnostics
 
 
-def with_slips(folder: Path) -> Path:
+def copy_with_mistakes(folder: Path) -> Path:
     """Return a copy of the shipped package with the mistakes of the tutorial."""
     package = without_meshes(PACKAGE, folder)
     (package / "setup.py").write_text(_SETUP)
@@ -87,7 +87,7 @@ def with_slips(folder: Path) -> Path:
 
 @pytest.mark.parametrize("which", ["ours", *(["published"] if PUBLISHED.is_dir() else [])])
 def test_tutorial_package_has_known_findings(which, tmp_path):
-    package = PUBLISHED if which == "published" else with_slips(tmp_path)
+    package = PUBLISHED if which == "published" else copy_with_mistakes(tmp_path)
     findings = {(diagnostic.code, diagnostic.message) for diagnostic in examine_package(package, _ALL).diagnostics}
     assert ("LW821", "the pattern 'urdf/sensors/*.*' in setup.py matches no file") in findings
     assert ("LW808", "the e-mail address 'lll@todo.todo' is a placeholder") in findings

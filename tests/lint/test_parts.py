@@ -7,11 +7,11 @@ import pytest
 from linkwright.lint import check
 from linkwright.lint.registry import all_rules
 
-FINE = '<axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/>'
-LIMITS = '<axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="1" velocity="1"/>'
+VALID_LIMITS = '<axis xyz="0 0 1"/><limit lower="-1" upper="1" effort="1" velocity="1"/>'
+INVALID_LIMITS = '<axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="1" velocity="1"/>'
 
 
-def joint(name: str, limit: str = LIMITS) -> str:
+def joint_text(name: str, limit: str = INVALID_LIMITS) -> str:
     return f'<joint name="{name}" type="revolute"><parent link="base"/><child link="{name}_tip"/>{limit}</joint>'
 
 
@@ -26,7 +26,7 @@ def codes(tmp_path):
 
 
 def test_rule_findings_are_reported_beside_xacro_error(codes):
-    assert codes(f'{joint("a")}\n<xacro:whel/>\n<link name="${{x}}"/>') == ["LW201", "XAC401", "XAC201"]
+    assert codes(f'{joint_text("a")}\n<xacro:whel/>\n<link name="${{x}}"/>') == ["LW201", "XAC401", "XAC201"]
 
 
 def test_urdf_errors_are_reported_beside_xacro_error(codes):
@@ -36,12 +36,12 @@ def test_urdf_errors_are_reported_beside_xacro_error(codes):
 def test_consequences_of_missing_part_are_not_reported(codes):
     # Without the missing part, there are two root links, a joint of missing links, and an unused property and macro.
     unused = '<xacro:property name="p" value="1"/><xacro:macro name="m"/>'
-    assert codes(f'{unused}<link name="a"/><link name="b"/>{joint("c", FINE)}<xacro:whel/>') == ["XAC401"]
+    assert codes(f'{unused}<link name="a"/><link name="b"/>{joint_text("c", VALID_LIMITS)}<xacro:whel/>') == ["XAC401"]
 
 
 def test_element_with_failed_attribute_is_not_checked(codes):
     limit = '<axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="${x}" velocity="1"/>'
-    assert codes(joint("a", limit)) == ["XAC201"]
+    assert codes(joint_text("a", limit)) == ["XAC201"]
 
 
 def test_suppression_is_not_reported_as_unused_beside_xacro_error(tmp_path):
@@ -59,5 +59,5 @@ def test_element_rules_hold_for_partial_descriptions():
 
 
 def test_whole_robot_rules_skip_partial_descriptions():
-    whole = {"LW102", "LW103", "LW121", "LW302", "LW507", "LW701", "LW849"}
-    assert not whole & {rule.code for rule in all_rules() if rule.holds_for_parts}
+    whole_robot_codes = {"LW102", "LW103", "LW121", "LW302", "LW507", "LW701", "LW849"}
+    assert not whole_robot_codes & {rule.code for rule in all_rules() if rule.holds_for_parts}

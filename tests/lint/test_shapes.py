@@ -1,4 +1,7 @@
-"""The rules about masses, shapes, meshes and materials, with real robots and extreme numbers."""
+"""The rules about masses, shapes, meshes and materials.
+
+They check real robots and extreme numbers.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from tests.places import PACKAGE
 from tests.work import lines_run
 
 RULES = ("LW3", "LW4", "LW5")
-FOUND = {
+FOUND_PACKAGES = {
     # Steering links with a mass and a tensor of zero; a box of 1 kg in a cubic meter.
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_ackermann_drive.xacro.urdf": {"LW310", "LW321"},
     "gz_ros2_control/gz_ros2_control_demos/urdf/test_diff_drive.xacro.urdf": {"LW321"},
@@ -42,7 +45,7 @@ def test_corpus_robots_have_only_expected_warnings(model):
     warned = {
         finding.code for finding in findings if finding.severity.value != "info" and finding.code.startswith(RULES)
     }
-    assert warned == FOUND.get(model.data["entry"], set())
+    assert warned == FOUND_PACKAGES.get(model.data["entry"], set())
 
 
 @pytest.mark.parametrize("path", sorted(PACKAGE.glob("urdf/mbot_*")), ids=lambda path: path.name)
@@ -51,24 +54,40 @@ def test_mbot_has_no_shape_findings(path):
     assert [finding.message for finding in findings if finding.code.startswith(RULES)] == []
 
 
-NUMBER = re.compile(r'(?<=["\s])-?\d+(?:\.\d+)?(?:e-?\d+)?(?=["\s])')
-EXTREME = ("0", "-1", "1e308", "-1e308", "1e-308", "5e-324", "1e160", "1e-160", "1e77", "1e20", "-0", "0.5", "3")
+NUMBER_PATTERN = re.compile(r'(?<=["\s])-?\d+(?:\.\d+)?(?:e-?\d+)?(?=["\s])')
+EXTREME_NUMBERS = (
+    "0",
+    "-1",
+    "1e308",
+    "-1e308",
+    "1e-308",
+    "5e-324",
+    "1e160",
+    "1e-160",
+    "1e77",
+    "1e20",
+    "-0",
+    "0.5",
+    "3",
+)
 PAGES = ("inertia", "geometry", "meshes", "materials")
 
 
 @pytest.mark.parametrize("seed", range(60))
 def test_shape_rules_survive_extreme_numbers(seed, tmp_path, capsys):
-    chance = random.Random(seed)
-    case = chance.choice([case for case in load_cases() if case.page in PAGES])
+    rng = random.Random(seed)
+    case = rng.choice([case for case in load_cases() if case.page in PAGES])
     for name, text in case.files.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
     path = tmp_path / next(iter(case.files))
-    share = chance.choice((0.05, 0.2, 0.6))
+    share = rng.choice((0.05, 0.2, 0.6))
     text = path.read_text(encoding="utf-8")
-    path.write_text(NUMBER.sub(lambda match: chance.choice(EXTREME) if chance.random() < share else match[0], text))
+    path.write_text(
+        NUMBER_PATTERN.sub(lambda match: rng.choice(EXTREME_NUMBERS) if rng.random() < share else match[0], text)
+    )
     examine(path, settings=Settings(select=RULES))
-    assert main(["inertia", str(path), "--format", chance.choice(("text", "json"))]) in (0, 1)
+    assert main(["inertia", str(path), "--format", rng.choice(("text", "json"))]) in (0, 1)
     capsys.readouterr()
 
 

@@ -17,13 +17,19 @@ REFERENCES = {
     "LW121": '<transmission name="t"><joint name="{}_joint"/></transmission>',
     "LW122": f'<ros2_control name="c" type="system">{HARDWARE}<joint name="{{}}_joint"/></ros2_control>',
 }
-NUMBERED = [("arm_2", "arm_1"), ("wheel12", "wheel1"), ("leg_3_knee", "leg_4_knee")]
-SIBLINGS = [*NUMBERED, ("fl_wheel", "fr_wheel"), ("lwheel", "rwheel"), ("left_arm", "right_arm"), ("rear", "front")]
+NUMBERED_PAIRS = [("arm_2", "arm_1"), ("wheel12", "wheel1"), ("leg_3_knee", "leg_4_knee")]
+SIBLING_PAIRS = [
+    *NUMBERED_PAIRS,
+    ("fl_wheel", "fr_wheel"),
+    ("lwheel", "rwheel"),
+    ("left_arm", "right_arm"),
+    ("rear", "front"),
+]
 
 
-def finding(tmp_path, rule, written, there):
+def find_only_finding(tmp_path, rule, written, sibling_name):
     body = '<visual><geometry><sphere radius="1"/></geometry></visual>'
-    parts = f'<link name="base">{body}</link><link name="{there}_link"/>{JOINT.format(there)}'
+    parts = f'<link name="base">{body}</link><link name="{sibling_name}_link"/>{JOINT.format(sibling_name)}'
     path = tmp_path / "r.urdf"
     path.write_text(f'<robot name="r">{parts}{REFERENCES[rule].format(written)}</robot>')
     (finding,) = examine(path, settings=Settings(select=(rule.split()[0],))).diagnostics
@@ -32,25 +38,25 @@ def finding(tmp_path, rule, written, there):
 
 
 @pytest.mark.parametrize("rule", REFERENCES)
-@pytest.mark.parametrize(("written", "there"), SIBLINGS)
-def test_fix_never_uses_name_of_sibling(tmp_path, rule, written, there):
-    assert finding(tmp_path, rule, written, there).fix is None
+@pytest.mark.parametrize(("written", "sibling_name"), SIBLING_PAIRS)
+def test_fix_never_uses_name_of_sibling(tmp_path, rule, written, sibling_name):
+    assert find_only_finding(tmp_path, rule, written, sibling_name).fix is None
 
 
 @pytest.mark.parametrize("rule", REFERENCES)
-@pytest.mark.parametrize(("written", "there"), NUMBERED)
-def test_hint_never_suggests_number_of_sibling(tmp_path, rule, written, there):
-    assert f"'{there}_" not in str(finding(tmp_path, rule, written, there).hint)
+@pytest.mark.parametrize(("written", "sibling_name"), NUMBERED_PAIRS)
+def test_hint_never_suggests_number_of_sibling(tmp_path, rule, written, sibling_name):
+    assert f"'{sibling_name}_" not in str(find_only_finding(tmp_path, rule, written, sibling_name).hint)
 
 
 @pytest.mark.parametrize(
-    ("rule", "written", "meant"),
+    ("rule", "written", "intended"),
     [
         ("LW120 link", "elbw", "elbow_link"),
         ("LW120 joint", "elbw", "elbow_joint"),
         ("LW122", "elbw", "elbow_joint"),
     ],
 )
-def test_misspelled_name_is_fixed_with_name_of_same_kind(tmp_path, rule, written, meant):
-    sibling_finding = finding(tmp_path, rule, written, "elbow")
-    assert [edit.replacement for edit in sibling_finding.fix.edits] == [meant]
+def test_misspelled_name_is_fixed_with_name_of_same_kind(tmp_path, rule, written, intended):
+    sibling_finding = find_only_finding(tmp_path, rule, written, "elbow")
+    assert [edit.replacement for edit in sibling_finding.fix.edits] == [intended]

@@ -9,14 +9,14 @@ from linkwright.lint import Settings, check
 from linkwright.lint.suppression import directives
 
 
-def ranges(text: str) -> list[list[str] | None]:
+def suppressed_ranges(text: str) -> list[list[str] | None]:
     return [
         None if directive.ranges is None else [text[start:end] for start, end in directive.ranges]
         for directive in directives(SourceText("f", text))
     ]
 
 
-def words(text: str) -> list[list[str]]:
+def directive_words(text: str) -> list[list[str]]:
     return [[word for word, _ in directive.selectors] for directive in directives(SourceText("f", text))]
 
 
@@ -33,30 +33,32 @@ def words(text: str) -> list[list[str]]:
     ],
 )
 def test_suppression_comment_names_codes(comment, expected):
-    assert words(f"<robot>{comment}</robot>") == [expected]
+    assert directive_words(f"<robot>{comment}</robot>") == [expected]
 
 
 @pytest.mark.parametrize("comment", ["<!-- ignore LW201 -->", "<!-- linkwright: ignored -->", "<!-- linkwright -->"])
 def test_other_comments_are_not_suppressions(comment):
-    assert words(f"<robot>{comment}</robot>") == []
+    assert directive_words(f"<robot>{comment}</robot>") == []
 
 
 def test_suppression_covers_line_and_next_element():
-    assert ranges("<r>\n<!-- linkwright: ignore -->\n<a>\n<b/></a>\n</r>") == [["<a>\n<b/></a>"]]
-    assert ranges("<r>\n<a/> <!-- linkwright: ignore -->\n<b/></r>") == [["<a/> <!-- linkwright: ignore -->\n"]]
-    assert ranges("<r>\n<!-- linkwright: ignore --> <a>\n</a>\n</r>") == [
+    assert suppressed_ranges("<r>\n<!-- linkwright: ignore -->\n<a>\n<b/></a>\n</r>") == [["<a>\n<b/></a>"]]
+    assert suppressed_ranges("<r>\n<a/> <!-- linkwright: ignore -->\n<b/></r>") == [
+        ["<a/> <!-- linkwright: ignore -->\n"]
+    ]
+    assert suppressed_ranges("<r>\n<!-- linkwright: ignore --> <a>\n</a>\n</r>") == [
         ["<!-- linkwright: ignore --> <a>\n", "<a>\n</a>"]
     ]
-    assert ranges("<r>\n<!-- linkwright: ignore -->\n<!-- x -->\n<a/></r>") == [["<a/>"]]
-    assert ranges("<r>\n<!-- linkwright: ignore -->\n</r>") == [[]]
-    assert ranges("<!-- linkwright: ignore-file -->\n<r/>") == [None]
+    assert suppressed_ranges("<r>\n<!-- linkwright: ignore -->\n<!-- x -->\n<a/></r>") == [["<a/>"]]
+    assert suppressed_ranges("<r>\n<!-- linkwright: ignore -->\n</r>") == [[]]
+    assert suppressed_ranges("<!-- linkwright: ignore-file -->\n<r/>") == [None]
 
 
 def test_suppression_in_files_other_than_xml():
     text = "import os\nx = 1  # linkwright: ignore LW842\n# linkwright: ignore LW843 (reason)\ny = 2\nz = 3\n"
-    assert words(text) == [["LW842"], ["LW843"]]
-    assert ranges(text) == [["x = 1  # linkwright: ignore LW842\n"], ["y = 2\n"]]
-    assert ranges("# linkwright: ignore-file\nx = 1\n") == [None]
+    assert directive_words(text) == [["LW842"], ["LW843"]]
+    assert suppressed_ranges(text) == [["x = 1  # linkwright: ignore LW842\n"], ["y = 2\n"]]
+    assert suppressed_ranges("# linkwright: ignore-file\nx = 1\n") == [None]
 
 
 def test_unused_suppression_is_reported_with_any_selection(tmp_path):

@@ -13,7 +13,7 @@ from linkwright.packages import PackageFinder
 
 WORLDS = Path(__file__).parents[3] / "shared" / "worlds"
 MANIFEST = WORLDS / "manifest.json"
-GOOD = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>"
+VALID_INERTIAL = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>1</izz></inertia></inertial>"
 
 
 @pytest.fixture
@@ -30,12 +30,12 @@ def findings_of(tmp_path, monkeypatch):
     return check
 
 
-def link(inertial, more=""):
-    return f'<model name="m">{more}<link name="l">{inertial}</link></model>'
+def link_text(inertial, content=""):
+    return f'<model name="m">{content}<link name="l">{inertial}</link></model>'
 
 
-def tensor(ixx, iyy, izz, more=""):
-    return f"<inertial><inertia><ixx>{ixx}</ixx><iyy>{iyy}</iyy><izz>{izz}</izz>{more}</inertia></inertial>"
+def inertia_text(ixx, iyy, izz, products=""):
+    return f"<inertial><inertia><ixx>{ixx}</ixx><iyy>{iyy}</iyy><izz>{izz}</izz>{products}</inertia></inertial>"
 
 
 @pytest.mark.parametrize(
@@ -43,23 +43,23 @@ def tensor(ixx, iyy, izz, more=""):
     [
         ("<inertial><mass>0</mass></inertial>", "LW302", "the mass of link 'l' is zero"),
         ("<inertial><mass>-2</mass></inertial>", "LW303", "the mass of link 'l' is negative: -2 kg"),
-        (tensor(1, 0, 1), "LW311", "'iyy' of link 'l' is zero"),
-        (tensor(1, 1, 1, "<ixy>0.8</ixy>"), "LW312", "'ixy' of link 'l' is larger than its moments allow: 0.8"),
-        (tensor(1, 1, 3), "LW314", "'izz' of link 'l' is larger than the other two moments together"),
-        (tensor(1, "nan", 1), "SDF122", "the mass or inertia of link 'l' is not a finite number"),
+        (inertia_text(1, 0, 1), "LW311", "'iyy' of link 'l' is zero"),
+        (inertia_text(1, 1, 1, "<ixy>0.8</ixy>"), "LW312", "'ixy' of link 'l' is larger than its moments allow: 0.8"),
+        (inertia_text(1, 1, 3), "LW314", "'izz' of link 'l' is larger than the other two moments together"),
+        (inertia_text(1, "nan", 1), "SDF122", "the mass or inertia of link 'l' is not a finite number"),
     ],
 )
 def test_impossible_inertials_are_reported_unless_static(findings_of, inertial, code, message):
-    assert findings_of(link(inertial)) == [(code, 2, message)]
-    assert findings_of(link(inertial, "<static>true</static>")) == []
+    assert findings_of(link_text(inertial)) == [(code, 2, message)]
+    assert findings_of(link_text(inertial, "<static>true</static>")) == []
 
 
 def test_automatic_inertial_is_not_checked(findings_of):
-    assert findings_of(link('<inertial auto="true"><mass>0</mass></inertial>')) == []
+    assert findings_of(link_text('<inertial auto="true"><mass>0</mass></inertial>')) == []
 
 
 def test_models_in_static_models_are_not_checked(findings_of):
-    inner = link("<inertial><mass>-2</mass></inertial>")
+    inner = link_text("<inertial><mass>-2</mass></inertial>")
     assert findings_of(f'<model name="o"><static>1</static>{inner}</model>') == []
     assert len(findings_of(f'<model name="o"><link name="a"/>{inner}</model>')) == 1
 
@@ -75,7 +75,9 @@ def test_models_in_static_models_are_not_checked(findings_of):
 )
 def test_nonpositive_shape_sizes_are_reported(findings_of, shape):
     collision = f'<collision name="c"><geometry>{shape}</geometry></collision>'
-    assert findings_of(link(GOOD + collision)) == [("SDF122", 2, "collision 'c' has a size that is not positive")]
+    assert findings_of(link_text(VALID_INERTIAL + collision)) == [
+        ("SDF122", 2, "collision 'c' has a size that is not positive")
+    ]
 
 
 def test_zero_axis_and_zero_step_are_reported(findings_of):
@@ -89,20 +91,20 @@ def test_zero_axis_and_zero_step_are_reported(findings_of):
         ("SDF122", 2, "the axis of joint 'f' has no direction (and 2 more)"),
     ]
     step = '<physics type="ode"><max_step_size>0</max_step_size></physics>'
-    assert findings_of(step + link(GOOD)) == [("SDF122", 2, "the time step is not positive: 0 s")]
+    assert findings_of(step + link_text(VALID_INERTIAL)) == [("SDF122", 2, "the time step is not positive: 0 s")]
 
 
 def test_shapes_without_size_are_one_finding_per_model(findings_of):
     box = '<{0} name="{1}"><geometry>\n<box><size>0 1 2</size></box></geometry></{0}>'
     walls = "".join(box.format(kind, f"{kind}{number}") for number in range(2) for kind in ("visual", "collision"))
-    assert findings_of(link(GOOD + walls)) == [
+    assert findings_of(link_text(VALID_INERTIAL + walls)) == [
         ("SDF122", 3, "visual 'visual0' has a size that is not positive (and 3 more)")
     ]
 
 
 def test_missing_mesh_is_reported_once(findings_of, tmp_path):
     visual = '<visual name="v{}"><geometry><mesh>\n<uri>meshes/a.stl</uri></mesh></geometry></visual>'
-    model = link(GOOD + visual.format(1) + visual.format(2))
+    model = link_text(VALID_INERTIAL + visual.format(1) + visual.format(2))
     findings = findings_of(model)
     assert [finding[:2] for finding in findings] == [("SDF162", 3)]
     assert findings[0][2].startswith("'meshes/a.stl' of visual 'v1' is left out: ")
@@ -116,9 +118,8 @@ def test_missing_models_and_meshes_are_one_finding_each(tmp_path, monkeypatch):
     includes = "".join(f"<include>\n<uri>model://tree_{number}</uri></include>" for number in range(12))
     mesh = '<visual name="v{0}"><geometry><mesh>\n<uri>meshes/{0}.stl</uri></mesh></geometry></visual>'
     path = tmp_path / "w.world"
-    path.write_text(
-        f'<sdf version="1.9"><world name="w">{includes}{link(GOOD + mesh.format(1) + mesh.format(2))}</world></sdf>'
-    )
+    link = link_text(VALID_INERTIAL + mesh.format(1) + mesh.format(2))
+    path.write_text(f'<sdf version="1.9"><world name="w">{includes}{link}</world></sdf>')
     models, meshes = examine(path).diagnostics
     assert (models.code, meshes.code) == ("SDF160", "SDF162")
     assert str(models.message) == (
@@ -133,7 +134,7 @@ def test_missing_models_and_meshes_are_one_finding_each(tmp_path, monkeypatch):
 def test_world_findings_follow_settings(tmp_path):
     (tmp_path / "linkwright.toml").write_text('ignore = ["mass-negative", "SDF122"]\n')
     path = tmp_path / "w.world"
-    model = link(
+    model = link_text(
         "<inertial><mass>-2</mass></inertial>"
         '<visual name="v"><geometry><sphere><radius>0</radius></sphere></geometry></visual>'
     )
@@ -141,14 +142,14 @@ def test_world_findings_follow_settings(tmp_path):
     assert examine(path).diagnostics == ()
 
 
-def _items():
+def _read_items():
     if not MANIFEST.is_file():
         return []
     items = json.loads(MANIFEST.read_text(encoding="utf-8"))["items"]
     return [pytest.param(item, id=item["name"]) for item in items if item["entry"].endswith((".world", ".sdf"))]
 
 
-@pytest.mark.parametrize("item", _items())
+@pytest.mark.parametrize("item", _read_items())
 def test_real_worlds_have_no_lint_findings(item, monkeypatch):
     path = WORLDS / item["entry"]
     folders = dict.fromkeys(str(WORLDS / path) for path in item.get("model_paths", ()))

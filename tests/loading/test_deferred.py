@@ -1,4 +1,4 @@
-"""Patterns of `linkwright.loading.deferred`, compared with patterns that are compiled immediately."""
+"""Patterns of `linkwright.loading.deferred`, compared with immediately compiled ones."""
 
 from __future__ import annotations
 

@@ -57,12 +57,12 @@ def classes(library: Any, options: dict[str, int]) -> dict[str, Any]:
     return {cls.__name__: cls for cls in (Point, Path, Named, Derived, Nothing)}
 
 
-def answers(library: Any, options: dict[str, int]) -> list[object]:
+def observe_behavior(library: Any, options: dict[str, int]) -> list[object]:
     """Return the results of operations on objects of the classes."""
     class_by_name = classes(library, options)
-    point, path, named, nothing = (class_by_name[name] for name in ("Point", "Path", "Named", "Nothing"))
+    point, path, named, empty_class = (class_by_name[name] for name in ("Point", "Path", "Named", "Nothing"))
     objects = [point(1), point(1.0, y=2), point(3, 4), path(), path([point(1)], place="here"), named(1, 2, "tip")]
-    objects += [class_by_name["Derived"](1), nothing()]
+    objects += [class_by_name["Derived"](1), empty_class()]
     results: list[object] = [*map(repr, objects), [[first == other for other in objects] for first in objects]]
     for instance in objects:
         results.append(dataclasses.asdict(instance))
@@ -71,14 +71,14 @@ def answers(library: Any, options: dict[str, int]) -> list[object]:
         results.append(repr(copy.deepcopy(instance)))
         results.append([(field.name, field.init, field.repr, field.compare) for field in dataclasses.fields(instance)])
         results += [outcome(lambda instance=instance: hash(instance) == hash(copy.copy(instance)))]
-        mine = copy.copy(instance)
-        if isinstance(instance, (class_by_name["Derived"], nothing)):
+        copied = copy.copy(instance)
+        if isinstance(instance, (class_by_name["Derived"], empty_class)):
             continue  # `dataclasses` raises a TypeError about super() here
         results += [
-            outcome(lambda mine=mine: setattr(mine, mine.__match_args__[0], 5)),
-            outcome(lambda mine=mine: delattr(mine, mine.__match_args__[0])),
+            outcome(lambda copied=copied: setattr(copied, copied.__match_args__[0], 5)),
+            outcome(lambda copied=copied: delattr(copied, copied.__match_args__[0])),
         ]
-        results.append(outcome(lambda mine=mine: setattr(mine, "new", 5)) is None)
+        results.append(outcome(lambda copied=copied: setattr(copied, "new", 5)) is None)
         results += [hasattr(instance, "__dict__"), type(instance).__match_args__]
     results += [point.shared, objects[1].sum, repr(library.replace(objects[2], x=0)), vars(point).get("y") == 2.0]
     results += [outcome(point), outcome(lambda: point(1, 2, 3)), outcome(lambda: point(1, z=3))]
@@ -97,7 +97,7 @@ def outcome(call: Any) -> Any:
 
 @pytest.mark.parametrize("options", KINDS)
 def test_lean_dataclass_behaves_like_dataclass(options):
-    assert answers(lean_dataclasses, options) == answers(dataclasses, options)
+    assert observe_behavior(lean_dataclasses, options) == observe_behavior(dataclasses, options)
 
 
 @lean_dataclasses.dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from lsprotocol import types
 from pygls.lsp.client import LanguageClient
 
 from tests.measuring import coverage_options
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 MAIN = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:include filename="parts.xacro"/>
@@ -103,7 +103,7 @@ class Editor:
 
     async def until(self, name: str, *codes: str) -> list[types.Diagnostic]:
         """Wait until a file has exactly these findings, and return them."""
-        for _ in range(int(SECONDS / 0.02)):
+        for _ in range(int(TIMEOUT_S / 0.02)):
             if self.uri(name) in self.diagnostics and sorted(self.codes(name)) == sorted(codes):
                 return list(self.diagnostics[self.uri(name)])
             await asyncio.sleep(0.02)
@@ -127,7 +127,7 @@ def package(tmp_path: Path) -> Path:
 
 
 @asynccontextmanager
-async def connected(
+async def connect_editor(
     package: Path,
     capabilities: types.ClientCapabilities,
     registrations: asyncio.Queue[types.Registration] | None = None,
@@ -159,7 +159,7 @@ async def connected(
 
 @pytest_asyncio.fixture
 async def editor(package: Path) -> AsyncIterator[Editor]:
-    async with connected(package, types.ClientCapabilities()) as editor:
+    async with connect_editor(package, types.ClientCapabilities()) as editor:
         yield editor
 
 
@@ -174,12 +174,12 @@ OPENS_PAGES = types.ClientCapabilities(
 
 @pytest_asyncio.fixture
 async def editor_with_pages(package: Path) -> AsyncIterator[Editor]:
-    async with connected(package, OPENS_PAGES) as editor:
+    async with connect_editor(package, OPENS_PAGES) as editor:
         yield editor
 
 
 @pytest_asyncio.fixture
 async def editor_with_commands(package: Path) -> AsyncIterator[Editor]:
     commands = ["linkwright.showReferences", "linkwright.openInPage"]
-    async with connected(package, types.ClientCapabilities(experimental={"commands": commands})) as editor:
+    async with connect_editor(package, types.ClientCapabilities(experimental={"commands": commands})) as editor:
         yield editor

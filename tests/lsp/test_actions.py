@@ -11,7 +11,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from linkwright.lsp.positions import TextPositions
-from tests.lsp.conftest import MAIN, PARTS, connected
+from tests.lsp.conftest import MAIN, PARTS, connect_editor
 
 FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
 RESOLVING = types.ClientCapabilities(
@@ -30,20 +30,20 @@ RESOLVING = types.ClientCapabilities(
 
 @pytest_asyncio.fixture
 async def resolving_editor(package):
-    async with connected(package, RESOLVING) as editor:
+    async with connect_editor(package, RESOLVING) as editor:
         yield editor
 
 
-async def actions(editor, name: str, text: str, place: str, only: Sequence[str] | None = None):
+async def request_actions(editor, name: str, text: str, place: str, kinds: Sequence[str] | None = None):
     """Return the actions for a selected text of a file."""
     start = text.index(place)
     selected = TextPositions(text).range(start, start + len(place))
-    context = types.CodeActionContext(editor.diagnostics.get(editor.uri(name), ()), only)
+    context = types.CodeActionContext(editor.diagnostics.get(editor.uri(name), ()), kinds)
     parameters = types.CodeActionParams(editor.document(name), selected, context)
     return await editor.client.text_document_code_action_async(parameters)
 
 
-def applied(text: str, edit: types.WorkspaceEdit) -> str:
+def apply_edit(text: str, edit: types.WorkspaceEdit) -> str:
     """Return a text with the edit of its file."""
     positions = TextPositions(text)
     (change,) = edit.document_changes
@@ -57,9 +57,9 @@ async def test_suppressed_finding_disappears(editor):
     text = MAIN.replace('  <link name="base"/>', '  <link name="base"/>\n  <xacro:nothing/>')
     editor.open(FILE, text)
     await editor.until(FILE, "XAC401")
-    (action,) = await actions(editor, FILE, text, "<xacro:nothing", ["quickfix"])
+    (action,) = await request_actions(editor, FILE, text, "<xacro:nothing", ["quickfix"])
     assert action.diagnostics[0].code == "XAC401"
-    changed = applied(text, action.edit)
+    changed = apply_edit(text, action.edit)
     assert "\n  <!-- linkwright: ignore XAC401 (reason) -->\n  <xacro:nothing/>" in changed
     editor.change(FILE, changed)
     await editor.until(FILE)
@@ -67,9 +67,9 @@ async def test_suppressed_finding_disappears(editor):
 
 async def test_single_selected_character_is_treated_as_block_cursor(editor):
     editor.open(FILE, MAIN)
-    (action,) = await actions(editor, FILE, MAIN, "4", ["refactor.extract"])
+    (action,) = await request_actions(editor, FILE, MAIN, "4", ["refactor.extract"])
     assert action.title == "extract '0.4' to a property"
-    assert 'length="${bar_length}"' in applied(MAIN, action.edit)
+    assert 'length="${bar_length}"' in apply_edit(MAIN, action.edit)
 
 
 async def test_suppressed_finding_of_cmake_file_disappears(editor):
@@ -77,8 +77,8 @@ async def test_suppressed_finding_of_cmake_file_disappears(editor):
     text = (editor.folder / "CMakeLists.txt").read_text().replace("DIRECTORY urdf", "DIRECTORY urdf meshs")
     editor.open("CMakeLists.txt", text)
     await editor.until("CMakeLists.txt", "LW824")
-    (action,) = await actions(editor, "CMakeLists.txt", text, "meshs", ["quickfix"])
-    changed = applied(text, action.edit)
+    (action,) = await request_actions(editor, "CMakeLists.txt", text, "meshs", ["quickfix"])
+    changed = apply_edit(text, action.edit)
     assert "\n# linkwright: ignore LW824 (reason)\ninstall(" in changed
     editor.change("CMakeLists.txt", changed)
     await editor.until("CMakeLists.txt")
@@ -86,9 +86,9 @@ async def test_suppressed_finding_of_cmake_file_disappears(editor):
 
 async def test_refactoring_is_verified_immediately_without_resolve_support(editor):
     editor.open(FILE)
-    (action,) = await actions(editor, FILE, MAIN, "0.4", ["refactor"])
+    (action,) = await request_actions(editor, FILE, MAIN, "0.4", ["refactor"])
     assert action.kind == "refactor.extract.property"
-    changed = applied(MAIN, action.edit)
+    changed = apply_edit(MAIN, action.edit)
     assert '<xacro:property name="bar_length" value="0.4"/>\n  <xacro:bar name="upper"' in changed
     assert 'length="${bar_length}"/>' in changed
     assert action.edit.document_changes[0].text_document.version == 1
@@ -97,16 +97,16 @@ async def test_refactoring_is_verified_immediately_without_resolve_support(edito
 async def test_unverified_refactoring_is_not_offered(editor):
     text = MAIN.replace('<link name="base"/>', '<link name="base"/><gazebo><gravity v="0.10"/></gazebo>')
     editor.open(FILE, text)
-    assert not await actions(editor, FILE, text, "0.10", ["refactor"])
+    assert not await request_actions(editor, FILE, text, "0.10", ["refactor"])
 
 
 async def test_edit_is_computed_on_resolve(resolving_editor):
     editor = resolving_editor
     editor.open(PARTS_FILE)
-    (action,) = await actions(editor, PARTS_FILE, PARTS, '<axis xyz="0 0 1"/>', ["refactor.extract"])
+    (action,) = await request_actions(editor, PARTS_FILE, PARTS, '<axis xyz="0 0 1"/>', ["refactor.extract"])
     assert action.edit is None
     resolved = await editor.client.code_action_resolve_async(action)
-    changed = applied(PARTS, resolved.edit)
+    changed = apply_edit(PARTS, resolved.edit)
     assert '<xacro:macro name="joint_axis" params="">\n    <axis xyz="0 0 1"/>\n  </xacro:macro>' in changed
 
 
@@ -114,7 +114,7 @@ async def test_unverified_edit_is_rejected_with_reason(resolving_editor):
     text = MAIN.replace('<link name="base"/>', '<link name="base"/><gazebo><gravity v="0.10"/></gazebo>')
     editor = resolving_editor
     editor.open(FILE, text)
-    (action,) = await actions(editor, FILE, text, "0.10", ["refactor"])
+    (action,) = await request_actions(editor, FILE, text, "0.10", ["refactor"])
     with pytest.raises(JsonRpcException, match=r"the robot of .* would change"):
         await editor.client.code_action_resolve_async(action)
 
@@ -122,7 +122,7 @@ async def test_unverified_edit_is_rejected_with_reason(resolving_editor):
 async def test_edit_is_rejected_after_text_change(resolving_editor):
     editor = resolving_editor
     editor.open(FILE)
-    (action,) = await actions(editor, FILE, MAIN, "0.4", ["refactor"])
+    (action,) = await request_actions(editor, FILE, MAIN, "0.4", ["refactor"])
     editor.change(FILE, "<!-- typed -->\n" + MAIN)
     await asyncio.sleep(0)
     with pytest.raises(JsonRpcException, match="changed in the meantime"):
@@ -133,7 +133,7 @@ async def test_urdf_is_converted_to_xacro_in_new_file(resolving_editor):
     editor, text = resolving_editor, '<robot name="r"><link name="a"/></robot>\n'
     (editor.folder / "urdf" / "r.urdf").write_text(text)
     editor.open("urdf/r.urdf", text)
-    (action,) = await actions(editor, "urdf/r.urdf", text, "robot", ["refactor.rewrite"])
+    (action,) = await request_actions(editor, "urdf/r.urdf", text, "robot", ["refactor.rewrite"])
     created, written = (await editor.client.code_action_resolve_async(action)).edit.document_changes
     assert created.uri == written.text_document.uri == editor.uri("urdf/r.urdf.xacro")
     assert written.edits[0].new_text.startswith('<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">')
@@ -141,9 +141,9 @@ async def test_urdf_is_converted_to_xacro_in_new_file(resolving_editor):
 
 async def test_only_requested_action_kinds_are_returned(editor):
     editor.open(FILE)
-    assert not await actions(editor, FILE, MAIN, "0.4", ["source"])
-    assert await actions(editor, FILE, MAIN, "0.4", ["refactor.extract.property"])
-    assert not await actions(editor, FILE, MAIN, "0.4", ["refactor.inline"])
+    assert not await request_actions(editor, FILE, MAIN, "0.4", ["source"])
+    assert await request_actions(editor, FILE, MAIN, "0.4", ["refactor.extract.property"])
+    assert not await request_actions(editor, FILE, MAIN, "0.4", ["refactor.inline"])
 
 
 async def test_missing_install_line_is_added_to_cmake_file(editor):
@@ -153,8 +153,8 @@ async def test_missing_install_line_is_added_to_cmake_file(editor):
     text = (editor.folder / "CMakeLists.txt").read_text()
     editor.open("CMakeLists.txt", text)
     await editor.until("CMakeLists.txt", "LW822")
-    fix, *_ = await actions(editor, "CMakeLists.txt", text, "project(arm_description)", ["quickfix"])
-    changed = applied(text, fix.edit)
+    fix, *_ = await request_actions(editor, "CMakeLists.txt", text, "project(arm_description)", ["quickfix"])
+    changed = apply_edit(text, fix.edit)
     assert "install(DIRECTORY urdf launch DESTINATION share/${PROJECT_NAME})" in changed
     editor.change("CMakeLists.txt", changed)
     await editor.until("CMakeLists.txt")

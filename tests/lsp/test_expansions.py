@@ -13,7 +13,7 @@ from tests.lsp.conftest import MAIN, MANIFEST, PARTS
 from tests.lsp.test_hints import FILE, PARTS_FILE, position_after
 
 
-async def content(editor, uri: str) -> str:
+async def request_content(editor, uri: str) -> str:
     content = await editor.client.workspace_text_document_content_async(types.TextDocumentContentParams(uri))
     return content.text
 
@@ -50,7 +50,7 @@ async def test_implementation_request_links_element_and_expansions(editor_with_p
     )
     assert len(implementations) == 2
     uri = implementations[0].uri
-    expansion = await content(editor, uri)
+    expansion = await request_content(editor, uri)
     lines = expansion.splitlines()
     assert [lines[location.range.start.line].strip() for location in implementations] == ['<axis xyz="0 0 1"/>'] * 2
     assert '<link name="lower"/>' in expansion
@@ -65,4 +65,4 @@ async def test_expansion_of_invalid_description_is_its_error(editor):
     editor.open(FILE, MAIN.replace("xacro:bar", "xacro:baz"))
     uri = editor.uri(FILE).replace("file:", "linkwright-expansion:")
     with pytest.raises(JsonRpcException, match="there is no macro 'baz'"):
-        await content(editor, uri)
+        await request_content(editor, uri)

@@ -67,15 +67,20 @@ async def test_manifest_is_checked(editor):
 
 async def test_large_file_gets_only_findings(editor):
     text = MAIN.replace("</robot>", f"<!-- {'a' * MAX_CHARACTERS} -->\n</robot>")
-    at = types.Position(2, 4)
+    position = types.Position(2, 4)
     editor.open(MAIN_FILE, text.replace("xacro:bar", "xacro:barr"))
     await editor.until(MAIN_FILE, "XAC401")
-    assert await editor.client.text_document_hover_async(types.HoverParams(editor.document(MAIN_FILE), at)) is None
+    assert (
+        await editor.client.text_document_hover_async(types.HoverParams(editor.document(MAIN_FILE), position)) is None
+    )
     assert editor.messages == ["'arm.urdf.xacro' is too large for completions and hovers: only its findings are shown"]
     editor.change(MAIN_FILE, text)
     await editor.until(MAIN_FILE)
     editor.change(MAIN_FILE, MAIN)
-    assert await editor.client.text_document_hover_async(types.HoverParams(editor.document(MAIN_FILE), at)) is not None
+    assert (
+        await editor.client.text_document_hover_async(types.HoverParams(editor.document(MAIN_FILE), position))
+        is not None
+    )
 
 
 async def test_newest_text_of_large_file_is_checked(editor):

@@ -1,4 +1,7 @@
-"""The folders of an editor: added, removed, renamed and deleted while the server runs; its progress."""
+"""The folders of an editor, and the progress that the server reports.
+
+Folders are added, removed, renamed and deleted while the server runs.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +14,8 @@ from pygls.exceptions import JsonRpcException
 
 from linkwright.diagnostics import phrase
 from linkwright.lsp.folders import WATCHED_FILES, show_progress
-from tests.lsp.conftest import MAIN, MANIFEST, PARTS, connected
-from tests.waiting import SECONDS
+from tests.lsp.conftest import MAIN, MANIFEST, PARTS, connect_editor
+from tests.waiting import TIMEOUT_S
 
 MAIN_FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
 
@@ -59,7 +62,7 @@ async def test_renamed_folder_is_searched_again(editor):
     (editor.folder / "urdf").rename(editor.folder / "description")
     renamed = types.FileRename(editor.uri("urdf"), editor.uri("description"))
     editor.client.workspace_did_rename_files(types.RenameFilesParams([renamed]))
-    for _ in range(int(SECONDS / 0.1)):
+    for _ in range(int(TIMEOUT_S / 0.1)):
         symbols = await editor.client.workspace_symbol_async(types.WorkspaceSymbolParams("base"))
         if {symbol.location.uri for symbol in symbols} == {editor.uri("description/arm.urdf.xacro")}:
             return
@@ -71,13 +74,13 @@ async def test_editor_is_asked_to_watch_files(package):
     watched = types.DidChangeWatchedFilesClientCapabilities(dynamic_registration=True)
     workspace = types.WorkspaceClientCapabilities(did_change_watched_files=watched)
     registrations: asyncio.Queue[types.Registration] = asyncio.Queue()
-    async with connected(package, types.ClientCapabilities(workspace=workspace), registrations) as _:
-        registration = await asyncio.wait_for(registrations.get(), SECONDS)
+    async with connect_editor(package, types.ClientCapabilities(workspace=workspace), registrations) as _:
+        registration = await asyncio.wait_for(registrations.get(), TIMEOUT_S)
     assert registration.method == types.WORKSPACE_DID_CHANGE_WATCHED_FILES
     assert [watcher["globPattern"] for watcher in registration.register_options["watchers"]] == [*WATCHED_FILES]
 
 
-class Recorder:
+class ProgressRecorder:
     """A server that records the progress it shows."""
 
     def __init__(self, *, can_show: bool) -> None:
@@ -104,7 +107,7 @@ class Recorder:
     ("seconds", "can_show", "shown"), [(0.0, True, []), (1.0, False, []), (1.0, True, ["searching", "end"])]
 )
 async def test_progress_is_shown_for_long_work(seconds, can_show, shown):
-    server, work = Recorder(can_show=can_show), asyncio.ensure_future(asyncio.sleep(seconds))
+    server, work = ProgressRecorder(can_show=can_show), asyncio.ensure_future(asyncio.sleep(seconds))
     await show_progress(server, phrase("searching"), work)
     assert server.shown == shown
     assert not server.tokens
@@ -114,7 +117,7 @@ async def test_editor_can_reject_progress():
     async def refuse(_: str) -> None:
         raise JsonRpcException("no")
 
-    server, work = Recorder(can_show=True), asyncio.ensure_future(asyncio.sleep(1))
+    server, work = ProgressRecorder(can_show=True), asyncio.ensure_future(asyncio.sleep(1))
     server.create_async = refuse
     await show_progress(server, phrase("searching"), work)
     assert server.shown == []

@@ -18,12 +18,12 @@ PYTHON = """def generate_launch_description():
 """
 
 
-def opened(editor, name: str, text: str) -> types.TextDocumentPositionParams:
+def open_at_cursor(editor, name: str, text: str) -> types.TextDocumentPositionParams:
     """Open a text, and return the position of its cursor."""
     before = text[: text.index("█")]
     editor.open(name, text.replace("█", ""))
-    at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-    return types.TextDocumentPositionParams(editor.document(name), at)
+    position = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+    return types.TextDocumentPositionParams(editor.document(name), position)
 
 
 @pytest.mark.parametrize(
@@ -38,7 +38,7 @@ def opened(editor, name: str, text: str) -> types.TextDocumentPositionParams:
     ],
 )
 async def test_best_completion_comes_first(editor, name, text, first):
-    parameters = opened(editor, name, text)
+    parameters = open_at_cursor(editor, name, text)
     completions = await editor.client.text_document_completion_async(
         types.CompletionParams(parameters.text_document, parameters.position)
     )
@@ -48,7 +48,7 @@ async def test_best_completion_comes_first(editor, name, text, first):
 
 
 async def test_hover_and_definition_of_launch_argument_are_found(editor):
-    parameters = opened(editor, "launch/a.launch.xml", XML)
+    parameters = open_at_cursor(editor, "launch/a.launch.xml", XML)
     hover = await editor.client.text_document_hover_async(
         types.HoverParams(parameters.text_document, parameters.position)
     )
@@ -63,10 +63,10 @@ async def test_links_and_symbols_of_launch_files_are_found(editor):
     launch = editor.folder / "launch"
     launch.mkdir()
     (launch / "other.launch.py").write_text("")
-    parameters = opened(editor, "launch/a.launch.xml", XML)
+    parameters = open_at_cursor(editor, "launch/a.launch.xml", XML)
     (link,) = await editor.client.text_document_document_link_async(types.DocumentLinkParams(parameters.text_document))
     assert link.target == editor.uri("launch/other.launch.py")
-    parameters = opened(editor, "launch/b.launch.py", PYTHON)
+    parameters = open_at_cursor(editor, "launch/b.launch.py", PYTHON)
     symbols = await editor.client.text_document_document_symbol_async(
         types.DocumentSymbolParams(parameters.text_document)
     )
@@ -74,7 +74,7 @@ async def test_links_and_symbols_of_launch_files_are_found(editor):
 
 
 async def test_references_and_highlights_of_launch_argument_are_found(editor):
-    parameters = opened(editor, "launch/a.launch.xml", XML)
+    parameters = open_at_cursor(editor, "launch/a.launch.xml", XML)
     references = await editor.client.text_document_references_async(
         types.ReferenceParams(
             types.ReferenceContext(include_declaration=True), parameters.text_document, parameters.position

@@ -1,4 +1,7 @@
-"""Inlay hints, lenses, colors, semantic tokens, links, workspace symbols and macro calls, through the protocol."""
+"""Requests that annotate a text, through the protocol.
+
+The tests cover inlay hints, lenses, colors, semantic tokens, links, workspace symbols and macro calls.
+"""
 
 from __future__ import annotations
 
@@ -108,16 +111,16 @@ async def test_semantic_tokens_classify_names(editor):
     )
     line = column = 0
     kinds = [*HighlightKind]
-    seen = []
+    token_names = []
     lines = PARTS.splitlines()
     for start in range(0, len(tokens.data), 5):
         line_step, step, length, kind, modifiers = tokens.data[start : start + 5]
         line, column = line + line_step, step if line_step else column + step
-        seen.append((lines[line][column : column + length], kinds[kind].value, modifiers))
-    assert seen[:2] == [("bar", "macro", 1), ("name", "parameter", 1)]
-    assert ("${", "operator", 0) in seen
-    assert ("name", "parameter", 0) in seen
-    assert ("base", "class", 0) in seen
+        token_names.append((lines[line][column : column + length], kinds[kind].value, modifiers))
+    assert token_names[:2] == [("bar", "macro", 1), ("name", "parameter", 1)]
+    assert ("${", "operator", 0) in token_names
+    assert ("name", "parameter", 0) in token_names
+    assert ("base", "class", 0) in token_names
 
 
 async def test_includes_and_meshes_are_links_and_definitions(editor, package):

@@ -1,4 +1,7 @@
-"""The memory of a server over a long time; ``benchmarks/soak_editor.py`` does this for an hour."""
+"""The memory of a server over a long time.
+
+``benchmarks/soak_editor.py`` does this for an hour.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ from tests.lsp.conftest import MAIN
 FILE = "urdf/arm.urdf.xacro"
 
 
-async def typed(editor, first: int, last: int) -> None:
+async def type_calls(editor, first: int, last: int) -> None:
     """Type calls of macros that do not exist, one name after the other."""
     for number in range(first, last):
         editor.change(FILE, MAIN.replace("xacro:bar", f"xacro:bar{number}") + f"<!-- {number} -->\n" * 200)
@@ -25,7 +28,7 @@ async def test_memory_does_not_grow_with_number_of_edits(editor):
     editor.open(FILE)
     await editor.until(FILE)
     (server,) = (child for child in psutil.Process().children() if child.cmdline()[-1] == "lsp")
-    await typed(editor, 0, 300)
+    await type_calls(editor, 0, 300)
     before = server.memory_info().rss
-    await typed(editor, 300, 1500)
+    await type_calls(editor, 300, 1500)
     assert (server.memory_info().rss - before) / 1e6 < 10

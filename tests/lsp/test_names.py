@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types
 
-from tests.lsp.conftest import MAIN, PARTS, connected
+from tests.lsp.conftest import MAIN, PARTS, connect_editor
 
 FILE = "urdf/arm.urdf.xacro"
 CURSOR = "█"
@@ -15,12 +15,14 @@ async def complete(editor, text: str, name: str = FILE) -> list[str]:
     """Return the labels of the completions at the cursor."""
     before = text[: text.index(CURSOR)]
     editor.open(name, text.replace(CURSOR, ""))
-    at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-    completions = await editor.client.text_document_completion_async(types.CompletionParams(editor.document(name), at))
+    position = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+    completions = await editor.client.text_document_completion_async(
+        types.CompletionParams(editor.document(name), position)
+    )
     return [item.label for item in completions]
 
 
-async def look(editor, request, kind):
+async def request_at_cursor(editor, request, kind):
     text = MAIN.replace('length="0.4"', 'length="${2 * reach}"').replace(
         '<link name="base"/>', '<xacro:property name="reach" value="0.2"/>\n  <link name="base"/>'
     )
@@ -28,12 +30,12 @@ async def look(editor, request, kind):
         editor.open(FILE, text)
         editor.__dict__["reach"] = text
     before = text[: text.index(request) + len(request)]
-    at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-    return await kind(at)
+    position = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+    return await kind(position)
 
 
 @pytest.mark.parametrize(
-    ("typed", "offered", "not_offered"),
+    ("typed", "expected_labels", "not_offered"),
     [
         ("<█", {"link", "joint", "material", "xacro:property", "xacro:bar"}, {"visual"}),
         ('<link name="tip"><vis█</link>', {"visual", "collision", "inertial"}, {"joint"}),
@@ -49,9 +51,9 @@ async def look(editor, request, kind):
         ("<link></█", {"link"}, {"joint"}),
     ],
 )
-async def test_completions_depend_on_context(editor, typed, offered, not_offered):
+async def test_completions_depend_on_context(editor, typed, expected_labels, not_offered):
     completions = set(await complete(editor, MAIN.replace("<xacro:bar", typed + "\n  <xacro:bar", 1)))
-    assert offered <= completions
+    assert expected_labels <= completions
     assert not not_offered & completions
 
 
@@ -60,30 +62,30 @@ async def test_world_elements_are_completed_in_world(editor):
 
 
 async def test_hover_explains_elements_attributes_and_names(editor):
-    async def hover(at: types.Position) -> str:
-        hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), at))
+    async def hover(position: types.Position) -> str:
+        hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), position))
         return "" if hover is None else hover.contents.value
 
-    assert "`<link>`" in await look(editor, "<lin", hover)
-    assert "**macro bar**" in await look(editor, "<xacro:ba", hover)
-    assert "`name length`" in await look(editor, "<xacro:ba", hover)
-    assert "**property reach** = `0.2`" in await look(editor, "* rea", hover)
-    assert await look(editor, "<xacro:bar na", hover) == "**name** (required), xacro:bar, parts.xacro"
-    assert "name" in await look(editor, "<link na", hover)
-    assert await look(editor, "\n", hover) == ""
+    assert "`<link>`" in await request_at_cursor(editor, "<lin", hover)
+    assert "**macro bar**" in await request_at_cursor(editor, "<xacro:ba", hover)
+    assert "`name length`" in await request_at_cursor(editor, "<xacro:ba", hover)
+    assert "**property reach** = `0.2`" in await request_at_cursor(editor, "* rea", hover)
+    assert await request_at_cursor(editor, "<xacro:bar na", hover) == "**name** (required), xacro:bar, parts.xacro"
+    assert "name" in await request_at_cursor(editor, "<link na", hover)
+    assert await request_at_cursor(editor, "\n", hover) == ""
 
 
 async def test_definition_is_found_in_included_file(editor):
-    async def define(at: types.Position):
-        parameters = types.DefinitionParams(editor.document(FILE), at)
+    async def define(position: types.Position):
+        parameters = types.DefinitionParams(editor.document(FILE), position)
         return [
             (definition.uri.rpartition("/")[2], definition.range.start.line)
             for definition in await editor.client.text_document_definition_async(parameters)
         ]
 
-    assert await look(editor, "<xacro:ba", define) == [("parts.xacro", 1)]
-    assert await look(editor, "* rea", define) == [("arm.urdf.xacro", 2)]
-    assert await look(editor, "<xacro:bar na", define) == [("parts.xacro", 1)]
+    assert await request_at_cursor(editor, "<xacro:ba", define) == [("parts.xacro", 1)]
+    assert await request_at_cursor(editor, "* rea", define) == [("arm.urdf.xacro", 2)]
+    assert await request_at_cursor(editor, "<xacro:bar na", define) == [("parts.xacro", 1)]
 
 
 async def test_hover_describes_links_joints_meshes_and_packages(editor, package):
@@ -100,8 +102,8 @@ async def test_hover_describes_links_joints_meshes_and_packages(editor, package)
 
     async def hover(name: str, text: str, place: str) -> str:
         before = text[: text.index(place) + len(place)]
-        at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-        hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), at))
+        position = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+        hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), position))
         return "" if hover is None else hover.contents.value
 
     base = await hover(FILE, text, 'link name="ba')
@@ -117,7 +119,10 @@ async def test_hover_describes_links_joints_meshes_and_packages(editor, package)
 
 
 async def test_hover_of_link_uses_facts_of_its_own_file(package):
-    """Macros of several arms in one package give the same names to their links, as in xarm_description."""
+    """Macros of several arms in one package give the same names to their links.
+
+    xarm_description does so.
+    """
     arm = (
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:macro name="{0}"><link name="elbow"><inertial>'
         '<mass value="{1}"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>'
@@ -134,11 +139,11 @@ async def test_hover_of_link_uses_facts_of_its_own_file(package):
         template.format('<xacro:include filename="third.xacro"/><link name="elbow"/>')
     )
     shown = {}
-    async with connected(package, types.ClientCapabilities()) as editor:
+    async with connect_editor(package, types.ClientCapabilities()) as editor:
         for name, mass in masses.items():
             editor.open(f"urdf/{name}.xacro")
-            at = types.Position(0, arm.format(name, mass).index('"elbow"') + 2)
-            parameters = types.HoverParams(editor.document(f"urdf/{name}.xacro"), at)
+            position = types.Position(0, arm.format(name, mass).index('"elbow"') + 2)
+            parameters = types.HoverParams(editor.document(f"urdf/{name}.xacro"), position)
             shown[name] = (await editor.client.text_document_hover_async(parameters)).contents.value
     assert "- mass 1.5 kg" in shown["first"]
     assert "- mass 2.5 kg" in shown["second"]
@@ -151,8 +156,8 @@ async def test_hover_of_material_shows_color(editor):
     text = MAIN.replace("</robot>", f"{material}{use}</robot>")
     editor.open(FILE, text)
     before = text[: text.rindex("orange") + 2]
-    at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-    hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), at))
+    position = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+    hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(FILE), position))
     assert "**material orange** = `1 0.5 0 1`" in hover.contents.value
 
 
@@ -168,8 +173,10 @@ async def test_editor_without_snippets_gets_sorted_plain_text(editor):
     text = MAIN.replace("<xacro:bar", '<joint name="a" type="revolute">\n    █\n  </joint>\n  <xacro:bar', 1)
     before = text[: text.index(CURSOR)]
     editor.open(FILE, text.replace(CURSOR, ""))
-    at = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
-    completions = await editor.client.text_document_completion_async(types.CompletionParams(editor.document(FILE), at))
+    position = types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
+    completions = await editor.client.text_document_completion_async(
+        types.CompletionParams(editor.document(FILE), position)
+    )
     first = completions[0]
     assert (first.label, first.text_edit.new_text, first.filter_text) == ("parent", "<parent", "<parent")
     assert first.insert_text_format == types.InsertTextFormat.PlainText

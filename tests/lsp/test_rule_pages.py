@@ -5,14 +5,14 @@ from __future__ import annotations
 import pytest
 from lsprotocol import types
 
-from tests.lsp.conftest import MAIN, OPENS_PAGES, connected
+from tests.lsp.conftest import MAIN, OPENS_PAGES, connect_editor
 
 FILE = "urdf/arm.urdf.xacro"
 BROKEN = MAIN.replace('  <link name="base"/>', '  <link name="base"/>\n  <xacro:nothing/>')
 
 
 async def test_finding_code_links_to_rule_page(package):
-    async with connected(package, OPENS_PAGES) as editor:
+    async with connect_editor(package, OPENS_PAGES) as editor:
         editor.open(FILE, BROKEN)
         (finding,) = await editor.until(FILE, "XAC401")
         parameters = types.TextDocumentContentParams(finding.code_description.href)

@@ -7,20 +7,20 @@ import asyncio
 from lsprotocol import types
 
 from tests.lsp.conftest import MAIN
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 FILE = "urdf/arm.urdf.xacro"
 OPTIONS = types.FormattingOptions(2, insert_spaces=True)
 MESSY = MAIN.replace('  <link name="base"/>', '      <link   name="base"/>').replace("  <xacro:bar", "<xacro:bar")
 
 
-def place(text: str, mark: str, after: int = 0) -> types.Position:
+def find_position(text: str, mark: str, after: int = 0) -> types.Position:
     """Return the position of a mark in a text."""
     before = text[: text.index(mark) + after]
     return types.Position(before.count("\n"), len(before) - before.rfind("\n") - 1)
 
 
-def applied(text: str, edits) -> str:
+def apply_edits(text: str, edits) -> str:
     """Return a text with the edits of the server."""
     lines = text.splitlines(keepends=True)
     for edit in sorted(edits, key=lambda edit: edit.range.start.line, reverse=True):
@@ -34,12 +34,12 @@ async def test_formatting_matches_format_command(editor):
     edits = await editor.client.text_document_formatting_async(
         types.DocumentFormattingParams(editor.document(FILE), OPTIONS)
     )
-    assert applied(MESSY, edits) == MAIN
-    where = types.Range(place(MESSY, "      <link"), place(MESSY, "<xacro:bar"))
+    assert apply_edits(MESSY, edits) == MAIN
+    selected_range = types.Range(find_position(MESSY, "      <link"), find_position(MESSY, "<xacro:bar"))
     edits = await editor.client.text_document_range_formatting_async(
-        types.DocumentRangeFormattingParams(editor.document(FILE), where, OPTIONS)
+        types.DocumentRangeFormattingParams(editor.document(FILE), selected_range, OPTIONS)
     )
-    assert '  <link name="base"/>\n' in applied(MESSY, edits)
+    assert '  <link name="base"/>\n' in apply_edits(MESSY, edits)
 
 
 async def test_malformed_xml_is_not_formatted(editor):
@@ -65,7 +65,7 @@ async def test_folds_selections_and_linked_tags_are_returned(editor):
     folds = await editor.client.text_document_folding_range_async(types.FoldingRangeParams(document))
     assert [(fold.start_line, fold.end_line) for fold in folds] == [(0, 8), (1, 7), (3, 6)]
     (selection,) = await editor.client.text_document_selection_range_async(
-        types.SelectionRangeParams(document, [place(text, "continuous", 2)])
+        types.SelectionRangeParams(document, [find_position(text, "continuous", 2)])
     )
     lengths = []
     while selection is not None:
@@ -75,7 +75,7 @@ async def test_folds_selections_and_linked_tags_are_returned(editor):
     written = ("continuous", 'type="continuous"', '<joint name="${name}_joint" type="continuous">')
     assert lengths[:3] == [(0, len(text)) for text in written]
     linked = await editor.client.text_document_linked_editing_range_async(
-        types.LinkedEditingRangeParams(document, place(text, "<joint", 3))
+        types.LinkedEditingRangeParams(document, find_position(text, "<joint", 3))
     )
     assert [linked_range.start.line for linked_range in linked.ranges] == [3, 7]
 
@@ -87,13 +87,13 @@ async def test_code_action_fixes_finding(editor):
     (finding,) = await editor.until("urdf/parts.xacro", "LW221")
     context = types.CodeActionContext([finding], only=["quickfix", "source"])
     parameters = types.CodeActionParams(editor.document("urdf/parts.xacro"), finding.range, context)
-    fix, everything, ignoring = await editor.client.text_document_code_action_async(parameters)
-    for action in (fix, everything):
+    fix, fix_all, ignoring = await editor.client.text_document_code_action_async(parameters)
+    for action in (fix, fix_all):
         (change,) = action.edit.document_changes
         assert [edit.new_text for edit in change.edits] == ["0 0 1"]
         assert change.text_document.version == 1
     assert ignoring.title == "ignore LW221 here, with a reason"
-    assert [fix.kind, everything.kind] == [types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll]
+    assert [fix.kind, fix_all.kind] == [types.CodeActionKind.QuickFix, types.CodeActionKind.SourceFixAll]
 
 
 async def test_build_files_have_no_symbols(editor):
@@ -111,10 +111,10 @@ async def test_unsupported_file_has_empty_list_of_colors(editor):
     editor.open("notes.txt")
     document = editor.document("notes.txt")
     colors = editor.client.text_document_document_color_async(types.DocumentColorParams(document))
-    assert [*await asyncio.wait_for(colors, SECONDS)] == []
+    assert [*await asyncio.wait_for(colors, TIMEOUT_S)] == []
     place = types.Range(types.Position(0, 0), types.Position(0, 3))
     parameters = types.ColorPresentationParams(document, types.Color(1.0, 0.0, 0.0, 1.0), place)
-    assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(parameters), SECONDS)] == []
+    assert [*await asyncio.wait_for(editor.client.text_document_color_presentation_async(parameters), TIMEOUT_S)] == []
 
 
 async def test_single_line_file_has_no_folds(editor):

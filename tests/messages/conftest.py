@@ -18,7 +18,10 @@ _MANIFEST = """<?xml version="1.0"?>
 
 
 class InterfacePackage:
-    """A package of interface files; each has another name, because the interfaces of a name are cached."""
+    """A package of interface files.
+
+    Each has another name, because the interfaces of a name are cached.
+    """
 
     def __init__(self, folder: Path, name: str) -> None:
         self.folder = folder / "src" / name

@@ -1,4 +1,7 @@
-"""Messages of any class with random values, and equal objects of rosbags, whose bytes must be equal."""
+"""Messages of any class with random values, and equal objects of rosbags.
+
+The bytes of both must be equal.
+"""
 
 from __future__ import annotations
 
@@ -30,8 +33,8 @@ def _message(cls: type[Any], draw: random.Random) -> Any:
 
 def _value(kind: FieldType, draw: random.Random) -> Any:
     if kind.container is not Container.ONE:
-        most = min(kind.size or 3, 3)
-        count = kind.size if kind.container is Container.ARRAY else draw.randint(0, most)
+        max_length = min(kind.size or 3, 3)
+        count = kind.size if kind.container is Container.ARRAY else draw.randint(0, max_length)
         element_type = FieldType(kind.base, kind.string_bound)
         return [_value(element_type, draw) for _ in range(count or 0)]
     if kind.primitive is None:

@@ -1,4 +1,7 @@
-"""Messages as bytes: rosbags writes the same bytes, and invalid bytes raise an error instead of a crash."""
+"""Messages as bytes.
+
+Rosbags writes the same bytes, and invalid bytes raise an error instead of a crash.
+"""
 
 from __future__ import annotations
 
@@ -27,20 +30,20 @@ from linkwright.messages import (
 from tests.messages.random_messages import random_message, rosbags_object, rosbags_store
 
 OF_ROSBAGS = sorted(rosbags_store().fielddefs) if find_spec("rosbags") else []
-ALL = sorted(interface_names("msg"))
+ALL_TYPES = sorted(interface_names("msg"))
 
 
 @pytest.mark.parametrize("name", OF_ROSBAGS)
 def test_serialized_bytes_match_rosbags(name):
     for seed in range(6):
         message = random_message(get_message(name), seed)
-        ours = serialize(message)
-        assert ours == bytes(rosbags_store().serialize_cdr(rosbags_object(message), name))
-        big = bytes(rosbags_store().serialize_cdr(rosbags_object(message), name, little_endian=False))
-        assert deserialize(big, type(message)) == message
+        serialized = serialize(message)
+        assert serialized == bytes(rosbags_store().serialize_cdr(rosbags_object(message), name))
+        big_endian = bytes(rosbags_store().serialize_cdr(rosbags_object(message), name, little_endian=False))
+        assert deserialize(big_endian, type(message)) == message
 
 
-@given(name=st.sampled_from(ALL), seed=st.integers(0, 2**32))
+@given(name=st.sampled_from(ALL_TYPES), seed=st.integers(0, 2**32))
 @settings(max_examples=400, deadline=None)
 def test_message_round_trip_is_lossless(name, seed):
     message = random_message(get_message(name), seed)
@@ -49,7 +52,7 @@ def test_message_round_trip_is_lossless(name, seed):
         assert deserialize(form, type(message)) == message
 
 
-def parts(name):
+def message_classes(name):
     cls = get_interface(name)
     if hasattr(cls, "Goal"):
         return [cls.Goal, cls.Result, cls.Feedback, cls.Impl.FeedbackMessage, cls.Impl.SendGoalService.Request,
@@ -59,12 +62,12 @@ def parts(name):
 
 @pytest.mark.parametrize("name", interface_names("srv") + interface_names("action"))
 def test_service_and_action_parts_round_trip(name):
-    for cls in parts(name):
+    for cls in message_classes(name):
         message = random_message(cls, 3)
         assert deserialize(serialize(message), cls) == message
 
 
-@given(name=st.sampled_from(ALL), seed=st.integers(0, 2**32), data=st.data())
+@given(name=st.sampled_from(ALL_TYPES), seed=st.integers(0, 2**32), data=st.data())
 @settings(max_examples=600, deadline=None)
 def test_corrupted_bytes_are_rejected_or_deserialized(name, seed, data):
     cls = get_message(name)
@@ -108,14 +111,14 @@ def test_length_beyond_data_allocates_no_memory(name):
     cls = get_message(name)
     data = serialize(cls())
     tracemalloc.start()
-    for at in range(4, len(data) - 3):
+    for offset in range(4, len(data) - 3):
         for length in (0x7FFFFFFF, 0xFFFFFFFF, 0x10000000):
-            wrong = data[:at] + struct.pack("<I", length) + data[at + 4 :]
+            malformed = data[:offset] + struct.pack("<I", length) + data[offset + 4 :]
             with contextlib.suppress(MessageDataError):
-                deserialize(wrong, cls)
-    _, most = tracemalloc.get_traced_memory()
+                deserialize(malformed, cls)
+    _, peak_bytes = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert most < 2_000_000
+    assert peak_bytes < 2_000_000
 
 
 class TestRejectedBytes:
@@ -236,8 +239,8 @@ def test_cached_names_survive_other_names_in_between():
 
 def test_deeply_nested_types_round_trip(tmp_path, interface_package):
     for depth in range(12):
-        inner = f"Level{depth + 1}[] below\nLevel{depth + 1} one" if depth < 11 else "int8 n"
-        interface_package.write("msg", f"Level{depth}", f"bool b\n{inner}\n")
+        field_lines = f"Level{depth + 1}[] below\nLevel{depth + 1} one" if depth < 11 else "int8 n"
+        interface_package.write("msg", f"Level{depth}", f"bool b\n{field_lines}\n")
     cls = get_message(f"{interface_package.name}/msg/Level0")
     lower = [get_message(f"{interface_package.name}/msg/Level{depth}") for depth in range(12)]
     message = cls(below=[lower[1](b=True, below=[lower[2]()])])

@@ -1,4 +1,7 @@
-"""The classes of messages behave as those of rosidl_generator_py (Humble), and raise errors with the same texts."""
+"""The classes of messages behave as those of rosidl_generator_py (Humble).
+
+They raise errors with the same texts.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +47,7 @@ from tests.messages.random_messages import random_message, rosbags_store
 DOUBLES = f"in [{-1.7976931348623157e308:f}, {1.7976931348623157e308:f}]"
 
 
-def refusal(cls, name, value):
+def assignment_error(cls, name, value):
     message = cls()
     before = getattr(message, name)
     with pytest.raises(AssertionError) as caught:
@@ -56,35 +59,45 @@ def refusal(cls, name, value):
 class TestChecks:
     def test_number_fields_reject_wrong_types_and_ranges(self):
         time = get_message("builtin_interfaces/msg/Time")
-        assert refusal(time, "sec", 1.0) == "The 'sec' field must be of type 'int'"
-        assert refusal(time, "sec", 1 << 31) == "The 'sec' field must be an integer in [-2147483648, 2147483647]"
-        assert refusal(time, "nanosec", -1) == "The 'nanosec' field must be an unsigned integer in [0, 4294967295]"
-        assert refusal(time, "sec", np.int32(1)) == "The 'sec' field must be of type 'int'"
+        assert assignment_error(time, "sec", 1.0) == "The 'sec' field must be of type 'int'"
+        assert (
+            assignment_error(time, "sec", 1 << 31) == "The 'sec' field must be an integer in [-2147483648, 2147483647]"
+        )
+        assert (
+            assignment_error(time, "nanosec", -1)
+            == "The 'nanosec' field must be an unsigned integer in [0, 4294967295]"
+        )
+        assert assignment_error(time, "sec", np.int32(1)) == "The 'sec' field must be of type 'int'"
         vector = get_message("geometry_msgs/msg/Vector3")
-        assert refusal(vector, "x", 1) == "The 'x' field must be of type 'float'"
+        assert assignment_error(vector, "x", 1) == "The 'x' field must be of type 'float'"
         color = get_message("std_msgs/msg/ColorRGBA")
-        wanted = "The 'r' field must be a float in [-3.402823466e+38, 3.402823466e+38]"
-        assert refusal(color, "r", 1e39) == wanted
+        expected = "The 'r' field must be a float in [-3.402823466e+38, 3.402823466e+38]"
+        assert assignment_error(color, "r", 1e39) == expected
         assert color(r=float("inf")).r == float("inf")
         assert vector(x=np.float64(2.5)).x == 2.5
 
     def test_bool_string_and_byte_fields_reject_wrong_types(self):
-        assert refusal(get_message("std_msgs/msg/Bool"), "data", 1) == "The 'data' field must be of type 'bool'"
-        assert refusal(get_message("std_msgs/msg/String"), "data", b"a") == "The 'data' field must be of type 'str'"
-        assert refusal(get_message("std_msgs/msg/String"), "data", UserString("a"))
-        wanted = "The 'data' field must be of type 'bytes' or 'ByteString' with length 1"
+        assert (
+            assignment_error(get_message("std_msgs/msg/Bool"), "data", 1) == "The 'data' field must be of type 'bool'"
+        )
+        assert (
+            assignment_error(get_message("std_msgs/msg/String"), "data", b"a")
+            == "The 'data' field must be of type 'str'"
+        )
+        assert assignment_error(get_message("std_msgs/msg/String"), "data", UserString("a"))
+        expected = "The 'data' field must be of type 'bytes' or 'ByteString' with length 1"
         byte = get_message("std_msgs/msg/Byte")
-        assert refusal(byte, "data", b"ab") == refusal(byte, "data", 1) == wanted
+        assert assignment_error(byte, "data", b"ab") == assignment_error(byte, "data", 1) == expected
         assert byte(data=bytearray(b"a")).data == b"a"
         bounded = get_message("test_msgs/msg/Strings")
-        wanted = "The 'bounded_string_value' field must be string value not longer than 22"
-        assert refusal(bounded, "bounded_string_value", "x" * 23) == wanted
+        expected = "The 'bounded_string_value' field must be string value not longer than 22"
+        assert assignment_error(bounded, "bounded_string_value", "x" * 23) == expected
         assert bounded(bounded_string_value=UserString("abc")).bounded_string_value == "abc"
 
     def test_nested_message_field_rejects_other_types(self):
         twist = get_message("geometry_msgs/msg/Twist")
-        wanted = "The 'linear' field must be a sub message of type 'Vector3'"
-        assert refusal(twist, "linear", get_message("geometry_msgs/msg/Point")()) == wanted
+        expected = "The 'linear' field must be a sub message of type 'Vector3'"
+        assert assignment_error(twist, "linear", get_message("geometry_msgs/msg/Point")()) == expected
 
     def test_number_sequences_reject_wrong_values(self):
         laser = get_message("sensor_msgs/msg/LaserScan")
@@ -92,46 +105,48 @@ class TestChecks:
             "The 'ranges' field must be a set or sequence and each value of type 'float' and each float in "
             "[-340282346600000016151267322115014000640.000000, 340282346600000016151267322115014000640.000000]"
         )
-        assert refusal(laser, "ranges", [1.0, 2]) == floats
-        assert refusal(laser, "ranges", [1e39]) == floats
-        assert refusal(laser, "ranges", 3.0) == floats
-        assert refusal(laser, "ranges", "ab") == floats
-        assert refusal(laser, "ranges", array("d")) == "The 'ranges' array.array() must have the type code of 'f'"
-        assert DOUBLES in refusal(get_message("sensor_msgs/msg/JointState"), "position", ["a"])
+        assert assignment_error(laser, "ranges", [1.0, 2]) == floats
+        assert assignment_error(laser, "ranges", [1e39]) == floats
+        assert assignment_error(laser, "ranges", 3.0) == floats
+        assert assignment_error(laser, "ranges", "ab") == floats
+        assert (
+            assignment_error(laser, "ranges", array("d")) == "The 'ranges' array.array() must have the type code of 'f'"
+        )
+        assert DOUBLES in assignment_error(get_message("sensor_msgs/msg/JointState"), "position", ["a"])
         image = get_message("sensor_msgs/msg/Image")
-        wanted = (
+        expected = (
             "The 'data' field must be a set or sequence and each value of type 'int' "
             "and each unsigned integer in [0, 255]"
         )
-        assert refusal(image, "data", [256]) == refusal(image, "data", np.array([300])) == wanted
-        assert refusal(image, "data", np.array([1.5])) == wanted
+        assert assignment_error(image, "data", [256]) == assignment_error(image, "data", np.array([300])) == expected
+        assert assignment_error(image, "data", np.array([1.5])) == expected
 
     def test_bounded_sequences_and_arrays_reject_wrong_length(self):
         cls = get_message("test_msgs/msg/BoundedSequences")
         begin = "The 'int32_values' field must be a set or sequence with length <= 3 and each value of type 'int'"
-        assert refusal(cls, "int32_values", [1, 2, 3, 4]).startswith(begin)
-        wanted = "The 'int32_values' array.array() must have a size <= 3"
-        assert refusal(cls, "int32_values", array("i", range(4))) == wanted
-        assert refusal(cls, "string_values", ["a"] * 4) == (
+        assert assignment_error(cls, "int32_values", [1, 2, 3, 4]).startswith(begin)
+        expected = "The 'int32_values' array.array() must have a size <= 3"
+        assert assignment_error(cls, "int32_values", array("i", range(4))) == expected
+        assert assignment_error(cls, "string_values", ["a"] * 4) == (
             "The 'string_values' field must be a set or sequence with length <= 3 and each value of type 'str'"
         )
         arrays = get_message("test_msgs/msg/Arrays")
-        wanted = "The 'float32_values' numpy.ndarray() must have the dtype of 'numpy.float32'"
-        assert refusal(arrays, "float32_values", np.zeros(3)) == wanted
-        wanted = "The 'float64_values' numpy.ndarray() must have a size of 3"
-        assert refusal(arrays, "float64_values", np.zeros(4)) == wanted
-        assert refusal(arrays, "bool_values", [True]) == (
+        expected = "The 'float32_values' numpy.ndarray() must have the dtype of 'numpy.float32'"
+        assert assignment_error(arrays, "float32_values", np.zeros(3)) == expected
+        expected = "The 'float64_values' numpy.ndarray() must have a size of 3"
+        assert assignment_error(arrays, "float64_values", np.zeros(4)) == expected
+        assert assignment_error(arrays, "bool_values", [True]) == (
             "The 'bool_values' field must be a set or sequence with length 3 and each value of type 'bool'"
         )
-        assert refusal(arrays, "int8_values", [1, 2]) == (
+        assert assignment_error(arrays, "int8_values", [1, 2]) == (
             "The 'int8_values' field must be a set or sequence with length 3 and each value of type 'int' "
             "and each integer in [-128, 127]"
         )
 
     def test_message_sequences_reject_other_types(self):
         path = get_message("nav_msgs/msg/Path")
-        wanted = "The 'poses' field must be a set or sequence and each value of type 'PoseStamped'"
-        assert refusal(path, "poses", [1]) == wanted
+        expected = "The 'poses' field must be a set or sequence and each value of type 'PoseStamped'"
+        assert assignment_error(path, "poses", [1]) == expected
 
     def test_constructor_rejects_unknown_arguments(self):
         with pytest.raises(AssertionError, match=r"^Invalid arguments passed to constructor: datum, foo$"):
@@ -155,15 +170,21 @@ class TestArrays:
         assert state.position is values
         np.asarray(state.position)[0] = 7.0
         assert values[0] == 7.0
-        for given in ((1.0, 2.0), UserList([1.0, 2.0]), np.array([1.0, 2.0]), np.array([1, 2]), np.float32([1.0, 2.0])):
-            state.velocity = given
+        for assigned in (
+            (1.0, 2.0),
+            UserList([1.0, 2.0]),
+            np.array([1.0, 2.0]),
+            np.array([1, 2]),
+            np.float32([1.0, 2.0]),
+        ):
+            state.velocity = assigned
             assert state.velocity == array("d", [1.0, 2.0])
 
     def test_byte_sequences_accept_buffers_and_arrays(self):
         image = get_message("sensor_msgs/msg/Image")
         pixels = np.arange(24, dtype=np.uint8).reshape(2, 4, 3)
-        for given in (pixels, pixels.tobytes(), bytearray(pixels.tobytes()), memoryview(pixels.tobytes())):
-            assert image(data=given).data == array("B", range(24))
+        for assigned in (pixels, pixels.tobytes(), bytearray(pixels.tobytes()), memoryview(pixels.tobytes())):
+            assert image(data=assigned).data == array("B", range(24))
         assert image(data=pixels[:, ::2]).data.tolist() == pixels[:, ::2].ravel().tolist()
 
     def test_constructor_accepts_integers_for_floats_as_rclpy(self):
@@ -266,8 +287,8 @@ def test_humble_messages_match_rosbags():
     assert set(store.fielddefs) <= set(interface_names("msg"))
     for name, (constants, fields) in store.fielddefs.items():
         structure = LIBRARY.structure(name)
-        wanted = [field for field, _ in fields if field != "structure_needs_at_least_one_member"]
-        assert [field.name for field in structure.fields] == wanted
+        expected = [field for field, _ in fields if field != "structure_needs_at_least_one_member"]
+        assert [field.name for field in structure.fields] == expected
         assert [constant.name for constant in structure.constants] == [constant[0] for constant in constants]
 
 

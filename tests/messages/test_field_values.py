@@ -23,7 +23,7 @@ from linkwright.messages import (
 from tests.messages.random_messages import random_message
 
 
-def message_of(message_class, values):
+def make_message(message_class, values):
     message = message_class()
     set_fields(message, values)
     return message
@@ -33,20 +33,20 @@ def message_of(message_class, values):
 @settings(max_examples=150, deadline=None)
 def test_field_values_round_trip_through_yaml(name, seed):
     message = random_message(get_message(name), seed)
-    assert message_of(type(message), to_dict(message)) == message
-    assert message_of(type(message), yaml.safe_load(to_yaml(message))) == message
+    assert make_message(type(message), to_dict(message)) == message
+    assert make_message(type(message), yaml.safe_load(to_yaml(message))) == message
 
 
 def test_values_are_converted_to_field_types():
-    message = message_of(JointState, {"header": {"frame_id": 3, "stamp": {"sec": "5"}}, "position": [1, "2.5", True]})
+    message = make_message(JointState, {"header": {"frame_id": 3, "stamp": {"sec": "5"}}, "position": [1, "2.5", True]})
     assert message.header.frame_id == "3"
     assert message.header.stamp.sec == 5
     assert message.position == array("d", [1.0, 2.5, 1.0])
-    assert message_of(get_message("std_msgs/msg/Byte"), {"data": 7}).data == b"\7"
-    assert message_of(get_message("std_msgs/msg/UInt8MultiArray"), {"data": b"ab"}).data == array("B", b"ab")
-    assert message_of(get_message("std_msgs/msg/String"), {"data": True}).data == "true"
+    assert make_message(get_message("std_msgs/msg/Byte"), {"data": 7}).data == b"\7"
+    assert make_message(get_message("std_msgs/msg/UInt8MultiArray"), {"data": b"ab"}).data == array("B", b"ab")
+    assert make_message(get_message("std_msgs/msg/String"), {"data": True}).data == "true"
     covariance = {"covariance": np.zeros(36)}
-    assert message_of(get_message("geometry_msgs/msg/PoseWithCovariance"), covariance).covariance.shape == (36,)
+    assert make_message(get_message("geometry_msgs/msg/PoseWithCovariance"), covariance).covariance.shape == (36,)
 
 
 def test_omitted_fields_keep_values_and_nested_ones_get_defaults():
@@ -56,7 +56,7 @@ def test_omitted_fields_keep_values_and_nested_ones_get_defaults():
     assert set_fields(message, {"header": {"frame_id": "map"}}) == []
     assert message.name == ["a"]
     assert (message.header.frame_id, message.header.stamp.sec) == ("map", 0)
-    assert message_of(JointState, {"header": message.header}).header is message.header
+    assert make_message(JointState, {"header": message.header}).header is message.header
 
 
 def test_header_auto_sets_stamp_when_sent():
@@ -117,7 +117,7 @@ def test_header_auto_sets_stamp_when_sent():
 )
 def test_wrong_value_is_reported(name, values, code, message, hint):
     with pytest.raises(FieldValueError) as caught:
-        message_of(get_message(f"sensor_msgs/msg/{name}"), values)
+        make_message(get_message(f"sensor_msgs/msg/{name}"), values)
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == code
     assert message in diagnostic.message
@@ -127,14 +127,14 @@ def test_wrong_value_is_reported(name, values, code, message, hint):
 
 def test_all_wrong_values_are_reported_together():
     with pytest.raises(FieldValueError) as caught:
-        message_of(JointState, {"nam": 1, "position": "a", "header": {"stamp": {"sec": "x", "nsec": 1}}})
+        make_message(JointState, {"nam": 1, "position": "a", "header": {"stamp": {"sec": "x", "nsec": 1}}})
     assert [diagnostic.code for diagnostic in caught.value.diagnostics] == ["MSG301", "MSG302", "MSG302", "MSG301"]
 
 
 def test_byte_and_bounded_sequence_values_are_checked():
     with pytest.raises(FieldValueError):
-        message_of(get_message("std_msgs/msg/Byte"), {"data": 256})
+        make_message(get_message("std_msgs/msg/Byte"), {"data": 256})
     with pytest.raises(FieldValueError):
-        message_of(get_message("test_msgs/msg/BoundedSequences"), {"bool_values": [True] * 4})
+        make_message(get_message("test_msgs/msg/BoundedSequences"), {"bool_values": [True] * 4})
     with pytest.raises(FieldValueError):
-        message_of(get_message("test_msgs/msg/Strings"), {"bounded_string_value": "x" * 23})
+        make_message(get_message("test_msgs/msg/Strings"), {"bounded_string_value": "x" * 23})

@@ -37,17 +37,17 @@ class Everything:
         return None
 
 
-def parsed(text, kind="msg"):
+def parse_definition(text, kind="msg"):
     return parse_interface(SourceText("F.msg", text), f"my_msgs/{kind}/F", Everything())
 
 
-def fields(text):
-    return {field.name: (field.type.to_msg_text("my_msgs"), field.default) for field in parsed(text).fields}
+def field_names(text):
+    return {field.name: (field.type.to_msg_text("my_msgs"), field.default) for field in parse_definition(text).fields}
 
 
-def faults(text, kind="msg"):
+def fault_texts(text, kind="msg"):
     with pytest.raises(DefinitionError) as caught:
-        parsed(text, kind)
+        parse_definition(text, kind)
     return [(diagnostic.code, str(diagnostic.span), diagnostic.message) for diagnostic in caught.value.diagnostics]
 
 
@@ -66,7 +66,7 @@ class TestFields:
         Other i
         Other[<=4]   j
         """
-        assert {name: kind for name, (kind, _) in fields(text).items()} == {
+        assert {name: kind for name, (kind, _) in field_names(text).items()} == {
             "a": "bool",
             "b": "byte[]",
             "c": "float64[3]",
@@ -107,19 +107,19 @@ class TestFields:
         ],
     )
     def test_default_values_are_parsed(self, line, value):
-        assert fields(line)["x"][1] == value
+        assert field_names(line)["x"][1] == value
 
     def test_constants_are_parsed(self):
         text = 'int32 A=1\nint32 B = -2 # b\nstring NAME="a=b"\nstring PLAIN= x y \nfloat64 PI2=6.28\nbool ON=true\n'
-        constants = {constant.name: constant.value for constant in parsed(text).constants}
+        constants = {constant.name: constant.value for constant in parse_definition(text).constants}
         assert constants == {"A": 1, "B": -2, "NAME": "a=b", "PLAIN": "x y", "PI2": 6.28, "ON": True}
 
     def test_service_and_action_parts_are_parsed(self):
-        service = parsed("int64 a\n---\nint64 sum\n", "srv")
+        service = parse_definition("int64 a\n---\nint64 sum\n", "srv")
         assert service.request.type_name == "my_msgs/srv/F_Request"
         assert service.response.type_name == "my_msgs/srv/F_Response"
         assert [field.name for field in service.response.fields] == ["sum"]
-        action = parsed("---\n---\n", "action")
+        action = parse_definition("---\n---\n", "action")
         assert action.goal.fields == action.result.fields == action.feedback.fields == ()
 
 
@@ -165,12 +165,12 @@ class TestFaults:
         ],
     )
     def test_syntax_error_is_reported_with_position(self, text, code, place, message):
-        ((found_code, found_place, found_message),) = faults(text)
+        ((found_code, found_place, found_message),) = fault_texts(text)
         assert (found_code, found_place) == (code, place)
         assert message in found_message
 
     def test_all_syntax_errors_are_reported_together(self):
-        assert [code for code, _, _ in faults("int3 x\nint32 Y\nint8 z 300\n\nint32\n")] == [
+        assert [code for code, _, _ in fault_texts("int3 x\nint32 Y\nint8 z 300\n\nint32\n")] == [
             "MSG111",
             "MSG112",
             "MSG114",
@@ -178,15 +178,18 @@ class TestFaults:
         ]
 
     def test_wrong_number_of_parts_is_reported(self):
-        assert faults("int8 x\n", "srv")[0][2] == "a .srv file has 2 parts with '---' between them, but this file has 1"
-        assert faults("---\n---\n", "srv")[0][1] == "F.msg:2:1"
-        assert faults("---\n", "action")[0][0] == "MSG118"
+        assert (
+            fault_texts("int8 x\n", "srv")[0][2]
+            == "a .srv file has 2 parts with '---' between them, but this file has 1"
+        )
+        assert fault_texts("---\n---\n", "srv")[0][1] == "F.msg:2:1"
+        assert fault_texts("---\n", "action")[0][0] == "MSG118"
 
     @given(st.text(st.sampled_from("int32 float64[]<=3/x'\"#\n-=AStrinHeader,0.é"), max_size=60))
     @settings(max_examples=500)
     def test_any_text_is_parsed_or_rejected(self, text):
         with contextlib.suppress(DefinitionError):
-            assert parsed(text).type_name == "my_msgs/msg/F"
+            assert parse_definition(text).type_name == "my_msgs/msg/F"
 
 
 class TestWorkspace:
@@ -391,13 +394,13 @@ class TestEmbeddedDefinitions:
             f"{'=' * 80}\nMSG: std_msgs/Header\nint32 another_header\n"
         )
         add_definitions("carried_msgs/msg/Outer", text, "some.mcap")
-        outer = get_message("carried_msgs/msg/Outer")
-        inner = get_message("carried_msgs/msg/Inner")
-        assert outer(inner=[inner()]).inner[0].n == 5
-        assert outer.get_fields_and_field_types()["header"] == "std_msgs/Header"
-        assert hasattr(outer().header, "frame_id"), "Linkwright's definitions take precedence"
+        outer_class = get_message("carried_msgs/msg/Outer")
+        inner_class = get_message("carried_msgs/msg/Inner")
+        assert outer_class(inner=[inner_class()]).inner[0].n == 5
+        assert outer_class.get_fields_and_field_types()["header"] == "std_msgs/Header"
+        assert hasattr(outer_class().header, "frame_id"), "Linkwright's definitions take precedence"
         assert {"carried_msgs/msg/Inner", "carried_msgs/msg/Outer"} <= set(interface_names("msg"))
-        assert deserialize(serialize(outer()), outer) == outer()
+        assert deserialize(serialize(outer_class()), outer_class) == outer_class()
 
     def test_first_of_two_embedded_definitions_is_used(self):
         add_definitions("carried_msgs/msg/Twice", "int32 first\n", "a.mcap")

@@ -1,3 +1,5 @@
+"""Message classes: constructors, defaults, assignment and comparison."""
+
 from array import array
 
 import numpy as np
@@ -76,7 +78,7 @@ def test_joint_states_compare_lists_and_arrays_by_value():
     assert with_list != "a"
 
 
-def stamped(parent: str, child: str, x: float, stamp: Time) -> TransformStamped:
+def make_transform(parent: str, child: str, x: float, stamp: Time) -> TransformStamped:
     return TransformStamped(
         header=Header(stamp=stamp, frame_id=parent),
         child_frame_id=child,
@@ -87,7 +89,7 @@ def stamped(parent: str, child: str, x: float, stamp: Time) -> TransformStamped:
 def test_tf_message_of_batch_returns_transforms():
     batch = TransformBatch(("world",), ("base",), 1_500_000_000, np.array([[1.0, 0, 0, 0, 0, 0, 1.0]]))
     message = TFMessage(batch=batch)
-    assert message.transforms == [stamped("world", "base", 1.0, Time(sec=1, nanosec=500_000_000))]
+    assert message.transforms == [make_transform("world", "base", 1.0, Time(sec=1, nanosec=500_000_000))]
     assert message.batch is batch
     assert message.transforms is message.transforms
 
@@ -96,8 +98,8 @@ def test_tf_message_of_transforms_returns_current_batch():
     message = TFMessage()
     assert len(message.batch) == 0
     assert message.batch.poses.shape == (0, 7)
-    message.transforms.append(stamped("world", "base", 1.0, Time(sec=3)))
-    message.transforms.append(stamped("base", "arm", 2.0, Time(sec=4)))
+    message.transforms.append(make_transform("world", "base", 1.0, Time(sec=3)))
+    message.transforms.append(make_transform("base", "arm", 2.0, Time(sec=4)))
     assert message.batch.parents == ("world", "base")
     assert message.batch.children == ("base", "arm")
     assert message.batch.stamp_ns == 4_000_000_000
@@ -106,9 +108,9 @@ def test_tf_message_of_transforms_returns_current_batch():
 
 def test_new_transforms_replace_batch():
     message = TFMessage(batch=TransformBatch(("a",), ("b",), 0, np.zeros((1, 7))))
-    message.transforms = [stamped("world", "base", 1.0, Time())]
+    message.transforms = [make_transform("world", "base", 1.0, Time())]
     assert message.batch.children == ("base",)
-    assert message == TFMessage(transforms=[stamped("world", "base", 1.0, Time())])
+    assert message == TFMessage(transforms=[make_transform("world", "base", 1.0, Time())])
 
 
 def test_batch_of_mismatched_lengths_is_rejected():

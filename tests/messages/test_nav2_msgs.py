@@ -9,7 +9,7 @@ from linkwright.messages.catalog import texts
 from linkwright.messages.definitions.library import Library
 
 
-def names(package: str) -> list[str]:
+def interface_names_of(package: str) -> list[str]:
     return sorted(texts(package))
 
 
@@ -22,7 +22,7 @@ class TestHumble:
         assert all("error_code" not in text for text in texts("nav2_msgs").values())
 
     def test_jazzy_interfaces_and_fields_are_missing(self):
-        assert "action/DockRobot" not in names("nav2_msgs")
+        assert "action/DockRobot" not in interface_names_of("nav2_msgs")
         assert "goal_checker_id" in texts("nav2_msgs")["action/FollowPath"]
         assert "progress_checker_id" not in texts("nav2_msgs")["action/FollowPath"]
 
@@ -38,7 +38,9 @@ class TestJazzy:
         assert "progress_checker_id" in interface_texts["action/FollowPath"]
 
     def test_humble_and_jazzy_interfaces_are_available(self):
-        assert {"action/DockRobot", "action/NavigateToPose", "msg/Costmap", "srv/GetCost"} <= set(names("nav2_msgs"))
+        assert {"action/DockRobot", "action/NavigateToPose", "msg/Costmap", "srv/GetCost"} <= set(
+            interface_names_of("nav2_msgs")
+        )
 
 
 @pytest.mark.parametrize("distribution", ["humble", "jazzy"])

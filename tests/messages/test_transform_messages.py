@@ -77,9 +77,13 @@ def test_batch_serializes_like_its_transforms(count):
     assert data == serialize(TFMessage(transforms=batch.to_messages()))
     received = deserialize(data, TFMessage)
     assert received == TFMessage(batch=batch)
-    again = deserialize(data, TFMessage).batch
-    assert (again.parents, again.children, again.stamp_ns) == (batch.parents, batch.children, batch.stamp_ns)
-    np.testing.assert_array_equal(again.poses, batch.poses)
+    batch_read_back = deserialize(data, TFMessage).batch
+    assert (batch_read_back.parents, batch_read_back.children, batch_read_back.stamp_ns) == (
+        batch.parents,
+        batch.children,
+        batch.stamp_ns,
+    )
+    np.testing.assert_array_equal(batch_read_back.poses, batch.poses)
 
 
 def test_frame_names_of_equal_length_are_distinguished():
@@ -100,12 +104,12 @@ def test_repeated_frames_return_same_tuples():
 
 def test_padding_bytes_are_ignored():
     data = bytearray(serialize(TFMessage(batch=chain(20))))
-    wanted = deserialize(bytes(data), TFMessage)
+    expected = deserialize(bytes(data), TFMessage)
     deserialize(bytes(data), TFMessage)
-    at = data.index(b"world\0") + 6
-    assert data[at] == 0
-    data[at] = 0xCD
-    assert deserialize(bytes(data), TFMessage) == wanted
+    offset = data.index(b"world\0") + 6
+    assert data[offset] == 0
+    data[offset] = 0xCD
+    assert deserialize(bytes(data), TFMessage) == expected
 
 
 def test_received_message_can_be_modified():

@@ -39,7 +39,7 @@ Dumper.add_representer(
 )
 
 
-def dumped(data, flow_style=False):
+def dump_yaml(data, flow_style=False):
     return yaml.dump(data, Dumper=Dumper, allow_unicode=True, width=sys.maxsize, default_flow_style=flow_style)
 
 
@@ -47,8 +47,8 @@ def dumped(data, flow_style=False):
 def test_to_yaml_matches_pyyaml(name):
     for seed, options in enumerate(OPTIONS):
         message = random_message(get_message(name), seed)
-        assert to_yaml(message, **options) == dumped(to_dict(message, **options))
-        assert to_yaml(message, flow_style=True, **options) == dumped(to_dict(message, **options), True)
+        assert to_yaml(message, **options) == dump_yaml(to_dict(message, **options))
+        assert to_yaml(message, flow_style=True, **options) == dump_yaml(to_dict(message, **options), True)
 
 
 @given(text=st.text(max_size=40))
@@ -56,13 +56,13 @@ def test_to_yaml_matches_pyyaml(name):
 def test_strings_match_pyyaml(text):
     message = get_message("diagnostic_msgs/msg/DiagnosticStatus")(name=text)
     message.values = [get_message("diagnostic_msgs/msg/KeyValue")(key="k", value=text)]
-    assert to_yaml(message) == dumped(to_dict(message))
+    assert to_yaml(message) == dump_yaml(to_dict(message))
 
 
 @given(st.floats())
 def test_numbers_match_pyyaml(number):
     message = get_message("std_msgs/msg/Float64")(data=number)
-    assert to_yaml(message) == dumped(to_dict(message))
+    assert to_yaml(message) == dump_yaml(to_dict(message))
 
 
 def test_joint_state_as_yaml():

@@ -1,4 +1,7 @@
-"""Write the current findings into the Markdown files: ``python -m tests.mistakes``; read the difference afterwards."""
+"""Write the current findings into the Markdown files.
+
+Run ``python -m tests.mistakes``, and read the difference afterwards.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +18,8 @@ def rewrite_findings(page: Path) -> None:
     for case in read_cases(page):
         with tempfile.TemporaryDirectory() as folder:
             result = case.check(Path(folder).resolve())
-        at = text.index("\n```text\n", text.index(f"## {case.title}\n")) + len("\n```text\n")
-        text = text[:at] + (f"{result}\n" if result else "") + text[text.index("```\n", at) :]
+        start = text.index("\n```text\n", text.index(f"## {case.title}\n")) + len("\n```text\n")
+        text = text[:start] + (f"{result}\n" if result else "") + text[text.index("```\n", start) :]
     page.write_text(text, encoding="utf-8")
 
 

@@ -1,4 +1,6 @@
-"""Mistakes of learners in Markdown: a change to a file of mbot's package, and the findings of ``linkwright check``.
+"""Mistakes of learners in Markdown.
+
+Each is a change to a file of mbot's package, with the findings of ``linkwright check``.
 
 A ``##`` heading is a case. Its ```` ```diff FILE ```` blocks change files of the package: ``+`` lines replace the ``-``
 lines before them, which must occur exactly once in the file. A block with only ``+`` lines creates a file. An

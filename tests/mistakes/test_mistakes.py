@@ -1,4 +1,7 @@
-"""Findings about realistic mistakes: the position to the column, the wording, and a hint with the fix."""
+"""Findings about realistic mistakes.
+
+The tests cover the position to the column, the wording, and a hint with the fix.
+"""
 
 from __future__ import annotations
 
@@ -26,8 +29,8 @@ def test_mistake_gives_expected_findings(case: Case, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
 def test_expected_findings_have_location_and_hint(case: Case) -> None:
-    first, *rest = case.expected.splitlines()
+    first, *notes_and_hint = case.expected.splitlines()
     if not case.arguments:  # a mistake on the command line has no location in a file
         assert ":" in first.split()[0], "the finding has no location"
         assert "[]" not in first, "the finding marks no text"
-    assert any(line.startswith("  hint: ") for line in rest), "the finding has no hint"
+    assert any(line.startswith("  hint: ") for line in notes_and_hint), "the finding has no hint"

@@ -1,3 +1,5 @@
+"""Fixtures of the model tests: a server of models, and a home folder."""
+
 from __future__ import annotations
 
 import pytest

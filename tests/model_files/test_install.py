@@ -1,4 +1,7 @@
-"""Installation of models from their makers, mirrors, files and folders; incomplete models are never installed."""
+"""Installation of models from their makers, mirrors, files and folders.
+
+Incomplete models are never installed.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""The table of models: entries have all facts for the download, and checksums for each file."""
+"""The table of models.
+
+Entries have all facts for the download, and checksums for each file.
+"""
 
 from __future__ import annotations
 

@@ -1,15 +1,17 @@
+"""Fixtures of the node tests: a harness, and the texts of the log."""
+
 from __future__ import annotations
 
 import pytest
 
 from linkwright.graph import LogLevel
 from tests.graph.conftest import clock, graph, log  # noqa: F401  # fixtures
-from tests.nodes.stage import Stage
+from tests.nodes.harness import NodeHarness
 
 
 @pytest.fixture
-def stage(graph, clock, log) -> Stage:  # noqa: F811
-    return Stage(graph, clock, log)
+def harness(graph, clock, log) -> NodeHarness:  # noqa: F811
+    return NodeHarness(graph, clock, log)
 
 
 @pytest.fixture

@@ -1,3 +1,5 @@
+"""Waits of nodes for services of other nodes."""
+
 from __future__ import annotations
 
 import asyncio
@@ -18,7 +20,7 @@ async def test_canceled_wait_for_service_survives_graph_changes() -> None:
     client = node.create_client(get_service(TRIGGER), "answer")
     waiting = loop.create_task(wait_for_service(node, client, None))
     await asyncio.sleep(0)
-    graph.create_node("another").create_service(get_service(TRIGGER), "other", lambda _, answer: answer)
+    graph.create_node("another").create_service(get_service(TRIGGER), "other", lambda _, response: response)
     waiting.cancel()
     node.destroy_node()
     await asyncio.gather(waiting, return_exceptions=True)

@@ -1,3 +1,5 @@
+"""The demo nodes: services, and the images of a camera."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -10,22 +12,22 @@ from linkwright.nodes.add_two_ints import AddTwoIntsClient, AddTwoIntsServer
 from linkwright.nodes.demo_camera import DemoCamera
 
 
-async def test_add_two_ints_client_waits_for_server_and_ends(stage, logged):
-    client = AddTwoIntsClient(stage.graph, NodeOptions())
-    await stage.clock.advance(2.5)
+async def test_add_two_ints_client_waits_for_server_and_ends(harness, logged):
+    client = AddTwoIntsClient(harness.graph, NodeOptions())
+    await harness.clock.advance(2.5)
     assert logged("INFO") == ["service not available, waiting again..."] * 2
-    AddTwoIntsServer(stage.graph, NodeOptions())
-    await stage.clock.advance(0.1)
+    AddTwoIntsServer(harness.graph, NodeOptions())
+    await harness.clock.advance(0.1)
     assert logged("INFO")[2:] == ["Incoming request\na: 2 b: 3", "Result of add_two_ints: 5"]
     assert client.finished.result() == 0
     client.close()
 
 
-async def test_demo_camera_image_changes(stage):
+async def test_demo_camera_image_changes(harness):
     images = []
-    stage.node.create_subscription(get_message("sensor_msgs/msg/Image"), "/image", images.append, 10)
-    DemoCamera(stage.graph, stage.options({"width": 64, "height": 48, "frequency": 10.0}))
-    await stage.clock.advance(0.21)
+    harness.node.create_subscription(get_message("sensor_msgs/msg/Image"), "/image", images.append, 10)
+    DemoCamera(harness.graph, harness.options({"width": 64, "height": 48, "frequency": 10.0}))
+    await harness.clock.advance(0.21)
     assert len(images) == 2
     first, second = (np.asarray(image.data).reshape(48, 64, 3) for image in images)
     assert (images[0].encoding, images[0].step, images[0].header.frame_id) == ("bgr8", 192, "camera_frame")
@@ -37,6 +39,6 @@ async def test_demo_camera_image_changes(stage):
     ("parameters", "message"),
     [({"width": 0}, "parameter 'width' must be more than 0"), ({"reliability": "maybe"}, "parameter 'reliability'")],
 )
-async def test_invalid_demo_camera_parameters_are_rejected(stage, parameters, message):
+async def test_invalid_demo_camera_parameters_are_rejected(harness, parameters, message):
     with pytest.raises(LinkwrightError, match=message):
-        DemoCamera(stage.graph, stage.options(parameters))
+        DemoCamera(harness.graph, harness.options(parameters))

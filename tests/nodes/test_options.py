@@ -1,3 +1,5 @@
+"""The command line of a node, and the options that it starts with."""
+
 import os
 import sys
 
@@ -6,7 +8,7 @@ import pytest
 from linkwright.graph import LogLevel
 from linkwright.nodes import EXECUTABLES, NodeOptions
 from linkwright.nodes.options import create_node, default_name
-from tests.nodes.stage import joint, robot
+from tests.nodes.harness import joint, robot
 from tests.speech.nodes import fake_sounddevice
 
 ARGUMENTS = {
@@ -61,7 +63,7 @@ def microphone(monkeypatch):
 
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
-async def test_executables_start_and_close(stage, executable, terminal):
+async def test_executables_start_and_close(harness, executable, terminal):
     options = NodeOptions(
         name="mine",
         namespace="/robot",
@@ -72,21 +74,21 @@ async def test_executables_start_and_close(stage, executable, terminal):
             "node_names": ["a"],
         },
         arguments=ARGUMENTS.get(executable[1], []),
-        library=stage.library,
+        library=harness.library,
         terminal=terminal,
     )
     if executable[0] in NEED_A_TERMINAL and terminal is None:
         pytest.skip("Windows has no pseudo-terminals")
-    running = EXECUTABLES[executable](stage.graph, options)
+    running = EXECUTABLES[executable](harness.graph, options)
     assert running.node.get_fully_qualified_name() == "/robot/mine"
     running.close()
     running.close()
-    await stage.clock.advance(1.0)
-    assert stage.graph.node_names() == ["/audience"]
+    await harness.clock.advance(1.0)
+    assert harness.graph.node_names() == ["/test_node"]
 
 
 @pytest.mark.parametrize("executable", EXECUTABLES, ids="/".join)
-async def test_default_name_matches_started_node(stage, executable, terminal):
+async def test_default_name_matches_started_node(harness, executable, terminal):
     options = NodeOptions(
         parameters={
             "robot_description": robot(joint("a")),
@@ -95,21 +97,21 @@ async def test_default_name_matches_started_node(stage, executable, terminal):
             "node_names": ["a"],
         },
         arguments=ARGUMENTS.get(executable[1], []),
-        library=stage.library,
+        library=harness.library,
         terminal=terminal,
     )
     if executable[0] in NEED_A_TERMINAL and terminal is None:
         pytest.skip("Windows has no pseudo-terminals")
-    running = EXECUTABLES[executable](stage.graph, options)
+    running = EXECUTABLES[executable](harness.graph, options)
     name = default_name(*executable)
     assert running.node.get_name() == name or (name is None and executable[1] in NAMED_BY_THEMSELVES)
     running.close()
 
 
 async def test_log_level_argument_is_applied(graph):
-    node, others = create_node(graph, NodeOptions(arguments=["--ros-args", "--log-level", "warn"]), "node")
+    node, other_options = create_node(graph, NodeOptions(arguments=["--ros-args", "--log-level", "warn"]), "node")
     assert node.get_logger().level is LogLevel.WARN
-    assert others == []
+    assert other_options == []
 
 
 async def test_ros_arguments_are_applied(graph, tmp_path):
@@ -117,9 +119,9 @@ async def test_ros_arguments_are_applied(graph, tmp_path):
     file.write_text("/robot/renamed: {ros__parameters: {a: 1, b: 1}}\nnode: {ros__parameters: {b: 2}}\n")
     words = ["x", "--ros-args", "-r", "node:__node:=renamed", "-r", "__ns:=/robot", "--params-file", str(file)]
     words += ["--log-level", "other:=error", "--disable-rosout-logs"]
-    node, others = create_node(graph, NodeOptions(arguments=words, parameters={"b": 3, "c": 3}), "node")
+    node, other_options = create_node(graph, NodeOptions(arguments=words, parameters={"b": 3, "c": 3}), "node")
     assert node.get_fully_qualified_name() == "/robot/renamed"
     assert [node.declare_parameter(name, 0).value for name in "abc"] == [1, 1, 3]
     assert graph.get_logger("other").level is LogLevel.ERROR
     assert "/rosout" not in graph.topics()
-    assert others == ["x"]
+    assert other_options == ["x"]

@@ -1,4 +1,7 @@
-"""Parameters of nodes from dataclasses; parameters of controllers are tested with the controllers."""
+"""Parameters of nodes from dataclasses.
+
+Parameters of controllers are tested with the controllers.
+"""
 
 from __future__ import annotations
 

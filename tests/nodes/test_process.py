@@ -16,7 +16,7 @@ import pytest
 from linkwright.nodes.process import main
 from linkwright.wire.dds import unavailable_reason
 from tests.domains import own_domain
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 needs_network = pytest.mark.skipif(bool(unavailable_reason()), reason="cyclonedds is not installed")
 
@@ -36,7 +36,7 @@ class Program:
         self._reader = Thread(target=self._read)
         self._reader.start()
 
-    def wait_for(self, text: str, seconds: float = SECONDS) -> str:
+    def wait_for(self, text: str, seconds: float = TIMEOUT_S) -> str:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             for line in self.lines:
@@ -49,7 +49,7 @@ class Program:
         """Send a signal unless the process has ended, and return the exit status."""
         if self.process.poll() is None:
             self.process.send_signal(number)
-        status = self.process.wait(SECONDS)
+        status = self.process.wait(TIMEOUT_S)
         self._reader.join()
         assert self.process.stdout is not None
         self.process.stdout.close()
@@ -62,7 +62,7 @@ class Program:
 
 
 @pytest.fixture
-def start(tmp_path: Path) -> Iterator[Callable[..., Program]]:
+def start_program(tmp_path: Path) -> Iterator[Callable[..., Program]]:
     programs: list[Program] = []
     environment = {
         **os.environ,
@@ -84,8 +84,8 @@ def start(tmp_path: Path) -> Iterator[Callable[..., Program]]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_node_process_ends_cleanly_on_signal(start, tmp_path, number):
-    program = start(
+def test_node_process_ends_cleanly_on_signal(start_program, tmp_path, number):
+    program = start_program(
         *("tf2_ros", "static_transform_publisher", "--frame-id", "a", "--child-frame-id", "b"),
         *("--ros-args", "-r", "__node:=mine", "-r", "__ns:=/robot"),
         LINKWRIGHT_DDS="0",
@@ -100,8 +100,8 @@ def test_node_process_ends_cleanly_on_signal(start, tmp_path, number):
     assert file.read_text().splitlines()[0] == line
 
 
-def test_startup_error_is_reported(start):
-    program = start("robot_state_publisher", "robot_state_publisher", LINKWRIGHT_DDS="0")
+def test_startup_error_is_reported(start_program):
+    program = start_program("robot_state_publisher", "robot_state_publisher", LINKWRIGHT_DDS="0")
     assert program.process.wait(60) == 1
     program.end()
     text = "\n".join(program.lines)
@@ -130,9 +130,9 @@ def test_invalid_ros_arguments_are_rejected_before_start(capsys):
 
 
 @needs_network
-def test_two_processes_communicate_over_dds(start):
-    server = start("demo_nodes_py", "add_two_ints_server", "--ros-args", "-r", "add_two_ints:=/sum")
-    client = start("demo_nodes_cpp", "add_two_ints_client", "--ros-args", "-r", "add_two_ints:=/sum")
+def test_two_processes_communicate_over_dds(start_program):
+    server = start_program("demo_nodes_py", "add_two_ints_server", "--ros-args", "-r", "add_two_ints:=/sum")
+    client = start_program("demo_nodes_cpp", "add_two_ints_client", "--ros-args", "-r", "add_two_ints:=/sum")
     server.wait_for("Incoming request")
     client.wait_for("Result of add_two_ints: 5")
     assert client.process.wait(60) == 0
@@ -141,9 +141,9 @@ def test_two_processes_communicate_over_dds(start):
 
 
 @needs_network
-def test_static_transform_reaches_tf2_echo(start):
-    echo = start("tf2_ros", "tf2_echo", "map", "base", "10")
-    publisher = start(
+def test_static_transform_reaches_tf2_echo(start_program):
+    echo = start_program("tf2_ros", "tf2_echo", "map", "base", "10")
+    publisher = start_program(
         *("tf2_ros", "static_transform_publisher", "--x", "1.5", "--frame-id", "map", "--child-frame-id", "base")
     )
     echo.wait_for("- Translation: [1.500, 0.000, 0.000]")

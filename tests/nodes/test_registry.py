@@ -11,7 +11,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.loading import extensions
 from linkwright.nodes import COMPONENTS, EXECUTABLES, NodeOptions
 from linkwright.nodes.options import NodeRegistry, SingleNode
-from tests.nodes.stage import Stage
+from tests.nodes.harness import NodeHarness
 
 
 class Blinker(SingleNode):
@@ -23,7 +23,10 @@ class Blinker(SingleNode):
 
 @pytest.fixture
 def installed(tmp_path, monkeypatch: pytest.MonkeyPatch) -> Iterator[NodeRegistry]:
-    """Return the executables with an installed package that adds two, one of which cannot be imported."""
+    """Return the executables with an installed package that adds two.
+
+    One of these cannot be imported.
+    """
     metadata = tmp_path / "my_robot-1.0.dist-info"
     metadata.mkdir()
     (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: my_robot\nVersion: 1.0\n")
@@ -52,8 +55,8 @@ def test_builtin_nodes_can_be_imported(key: tuple[str, str]) -> None:
     assert callable(EXECUTABLES.get(key) or COMPONENTS[key])
 
 
-def test_node_of_another_package_is_started(installed: NodeRegistry, stage: Stage) -> None:
-    running = installed["my_robot", "blinker"](stage.graph, NodeOptions())
+def test_node_of_another_package_is_started(installed: NodeRegistry, harness: NodeHarness) -> None:
+    running = installed["my_robot", "blinker"](harness.graph, NodeOptions())
     assert running.node.get_name() == "blinker"
     running.close()
 

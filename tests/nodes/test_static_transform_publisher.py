@@ -1,3 +1,5 @@
+"""`static_transform_publisher`: both forms of its arguments, and its transform."""
+
 import re
 from math import pi, sqrt
 
@@ -9,18 +11,23 @@ from linkwright.graph import Graph
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.static_transform_publisher import StaticTransformPublisher, parse_arguments
 
-HALF = sqrt(0.5)
+SQRT_HALF = sqrt(0.5)
 
 
 @pytest.mark.parametrize(
     ("arguments", "translation", "rotation", "old_style"),
     [
         ("--frame-id map --child-frame-id odom", (0, 0, 0), (0, 0, 0, 1), False),
-        (f"--x 1 --y -2 --yaw {pi / 2} --frame-id map --child-frame-id odom", (1, -2, 0), (0, 0, HALF, HALF), False),
+        (
+            f"--x 1 --y -2 --yaw {pi / 2} --frame-id map --child-frame-id odom",
+            (1, -2, 0),
+            (0, 0, SQRT_HALF, SQRT_HALF),
+            False,
+        ),
         (f"--roll {pi} --frame-id map --child-frame-id odom", (0, 0, 0), (1, 0, 0, 0), False),
-        ("--qx 1 --qw 1 --frame-id map --child-frame-id odom", (0, 0, 0), (HALF, 0, 0, HALF), False),
-        (f"1 2 3 {pi / 2} 0 0 map odom", (1, 2, 3), (0, 0, HALF, HALF), True),
-        (f"1 2 3 0 {pi / 2} 0 map odom", (1, 2, 3), (0, HALF, 0, HALF), True),
+        ("--qx 1 --qw 1 --frame-id map --child-frame-id odom", (0, 0, 0), (SQRT_HALF, 0, 0, SQRT_HALF), False),
+        (f"1 2 3 {pi / 2} 0 0 map odom", (1, 2, 3), (0, 0, SQRT_HALF, SQRT_HALF), True),
+        (f"1 2 3 0 {pi / 2} 0 map odom", (1, 2, 3), (0, SQRT_HALF, 0, SQRT_HALF), True),
         ("1 2 3 0 0 1 0 map odom", (1, 2, 3), (0, 0, 1, 0), True),
     ],
 )  # fmt: skip
@@ -60,14 +67,14 @@ def test_invalid_arguments_are_rejected_with_usage(arguments, reason):
     assert diagnostic.hint.startswith("usage: static_transform_publisher [--x X]")
 
 
-async def test_static_transform_is_latched(stage, logged):
+async def test_static_transform_is_latched(harness, logged):
     options = NodeOptions(arguments=["1", "2", "3", "0", "0", "0", "map", "base"])
-    first = StaticTransformPublisher(stage.graph, options)
+    first = StaticTransformPublisher(harness.graph, options)
     second = StaticTransformPublisher(
-        stage.graph, NodeOptions(arguments=["--frame-id", "base", "--child-frame-id", "camera", "--z", "4"])
+        harness.graph, NodeOptions(arguments=["--frame-id", "base", "--child-frame-id", "camera", "--z", "4"])
     )
-    await stage.graph.settle()
-    np.testing.assert_allclose(stage.buffer.lookup("map", "camera"), [1, 2, 7, 0, 0, 0, 1])
+    await harness.graph.settle()
+    np.testing.assert_allclose(harness.buffer.lookup("map", "camera"), [1, 2, 7, 0, 0, 0, 1])
     names = [publisher.node.get_name() for publisher in (first, second)]
     assert all(re.fullmatch(r"static_transform_publisher_[A-Za-z0-9]{16}", name) for name in names)
     assert names[0] != names[1]
@@ -76,21 +83,21 @@ async def test_static_transform_is_latched(stage, logged):
         "Spinning until stopped - publishing transform\ntranslation: ('1.000000', '2.000000', '3.000000')\n"
         "rotation: ('0.000000', '0.000000', '0.000000', '1.000000')\nfrom 'map' to 'base'"
     )
-    assert stage.tf_static[0].batch.stamp_ns == stage.clock.now_ns()
+    assert harness.tf_static[0].batch.stamp_ns == harness.clock.now_ns()
     first.close()
-    assert stage.graph.count_publishers("/tf_static") == 1
+    assert harness.graph.count_publishers("/tf_static") == 1
 
 
-async def test_invalid_arguments_end_node(stage: object, graph: Graph, logged):
+async def test_invalid_arguments_end_node(harness: object, graph: Graph, logged):
     with pytest.raises(LinkwrightError):
         StaticTransformPublisher(graph, NodeOptions(name="camera_tf", arguments=["1"]))
     assert logged("FATAL") == ["error parsing command line arguments: Extra unparsed arguments on command-line"]
-    assert graph.node_names() == ["/audience"]
+    assert graph.node_names() == ["/test_node"]
 
 
-async def test_help_is_printed(stage):
+async def test_help_is_printed(harness):
     printed = []
-    running = StaticTransformPublisher(stage.graph, NodeOptions(arguments=["--help"], output=printed.append))
+    running = StaticTransformPublisher(harness.graph, NodeOptions(arguments=["--help"], output=printed.append))
     assert running.finished.result() == 0
     assert printed[0].startswith("A command line utility for manually sending a static transform.")
-    assert stage.graph.count_publishers("/tf_static") == 0
+    assert harness.graph.count_publishers("/tf_static") == 0

@@ -1,3 +1,5 @@
+"""The nodes of topic_tools: relay, throttle, drop, delay, mux, demux and transform."""
+
 from __future__ import annotations
 
 import pytest
@@ -19,11 +21,11 @@ async def test():
         yield graph
 
 
-def start(test, kind, *words, **parameters):
+def start_tool(test, kind, *words, **parameters):
     return kind(test.graph, NodeOptions(arguments=list(words), parameters=parameters))
 
 
-def logged(test, level):
+def logged_texts(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
@@ -38,7 +40,7 @@ def received_texts(recording):
 
 
 async def test_relay_detects_type_and_forwards_messages(test):
-    start(test, Relay, "chatter", "copy")
+    start_tool(test, Relay, "chatter", "copy")
     copy = test.record("/copy", String)
     await test.settle()
     assert test.graph.count_publishers("/copy") == 0
@@ -49,7 +51,7 @@ async def test_relay_detects_type_and_forwards_messages(test):
 
 
 async def test_relay_forwards_same_message_object(test):
-    start(test, Relay, input_topic="chatter")
+    start_tool(test, Relay, input_topic="chatter")
     relayed = test.record("/chatter_relay", String)
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
@@ -60,22 +62,22 @@ async def test_relay_forwards_same_message_object(test):
 
 
 async def test_relay_adopts_qos_of_source_and_ends_with_it(test):
-    start(test, Relay, "chatter", "copy")
-    lasting = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    source = test.node.create_publisher(String, "chatter", lasting)
+    start_tool(test, Relay, "chatter", "copy")
+    transient_local = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    source = test.node.create_publisher(String, "chatter", transient_local)
     source.publish(String(data="kept"))
     await test.settle()
     (copy,) = test.graph.get_publishers_info_by_topic("/copy")
     assert copy.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL
-    late = test.record("/copy")
+    late_messages = test.record("/copy")
     await test.settle()
-    assert received_texts(late) == ["kept"]
+    assert received_texts(late_messages) == ["kept"]
     test.node.create_publisher(String, "chatter", QoSProfile(1, ReliabilityPolicy.BEST_EFFORT))
     await test.settle()
     (copy,) = test.graph.get_publishers_info_by_topic("/copy")
     assert copy.qos_profile.durability is DurabilityPolicy.VOLATILE
     assert copy.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
-    assert len([text for text in logged(test, "WARN") if text.startswith("Some, but not all, publishers")]) == 2
+    assert len([text for text in logged_texts(test, "WARN") if text.startswith("Some, but not all, publishers")]) == 2
     for publisher in [publisher for publisher in test.node.publishers if publisher.name == "/chatter"]:
         test.node.destroy_publisher(publisher)
     await test.settle()
@@ -89,7 +91,7 @@ async def test_relay_adopts_qos_of_source_and_ends_with_it(test):
 
 
 async def test_lazy_relay_subscribes_only_if_output_has_subscribers(test):
-    running = start(test, Relay, "chatter", "copy", lazy=True)
+    running = start_tool(test, Relay, "chatter", "copy", lazy=True)
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
     assert test.graph.count_subscribers("/chatter") == 0
@@ -105,7 +107,7 @@ async def test_lazy_relay_subscribes_only_if_output_has_subscribers(test):
 
 
 async def test_throttle_limits_messages_per_second(test):
-    start(test, Throttle, "messages", "chatter", "2.0")
+    start_tool(test, Throttle, "messages", "chatter", "2.0")
     slow = test.record("/chatter_throttle", String)
     publisher = test.node.create_publisher(String, "chatter", 100)
     test.node.create_timer(0.1, lambda: publisher.publish(String()))
@@ -114,7 +116,7 @@ async def test_throttle_limits_messages_per_second(test):
 
 
 async def test_throttle_limits_bytes_per_window(test):
-    start(test, Throttle, "bytes", "chatter", "100", "1.0", "slow")
+    start_tool(test, Throttle, "bytes", "chatter", "100", "1.0", "slow")
     slow = test.record("/slow", String)
     publisher = test.node.create_publisher(String, "chatter", 100)
     test.node.create_timer(0.1, lambda: publisher.publish(String(data="x" * 31)))  # 40 bytes with header and length
@@ -123,31 +125,31 @@ async def test_throttle_limits_bytes_per_window(test):
 
 
 async def test_drop_removes_first_messages_of_each_cycle(test):
-    start(test, Drop, "chatter", "1", "3")
-    rest = test.record("/chatter_drop", String)
+    start_tool(test, Drop, "chatter", "1", "3")
+    forwarded = test.record("/chatter_drop", String)
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
     await publish_texts(test, "chatter", *"abcdefg")
-    assert received_texts(rest) == ["b", "c", "e", "f"]
+    assert received_texts(forwarded) == ["b", "c", "e", "f"]
 
 
 async def test_delay_keeps_order_and_spacing(test):
-    start(test, Delay, "chatter", "0.5")
-    late = test.record("/chatter_delay", String)
+    start_tool(test, Delay, "chatter", "0.5")
+    delayed = test.record("/chatter_delay", String)
     test.node.create_publisher(String, "chatter", 10)
     await test.settle()
     await publish_texts(test, "chatter", "a", "b")
     await test.advance(0.2)
     await publish_texts(test, "chatter", "c")
     await test.advance(0.29)
-    assert received_texts(late) == []
+    assert received_texts(delayed) == []
     await test.advance(0.5)
-    assert received_texts(late) == ["a", "b", "c"]
-    assert late.times == pytest.approx([0.5, 0.5, 0.7])
+    assert received_texts(delayed) == ["a", "b", "c"]
+    assert delayed.times == pytest.approx([0.5, 0.5, 0.7])
 
 
 async def test_mux_selects_adds_lists_and_deletes(test):
-    start(test, Mux, "out", "first", "second")
+    start_tool(test, Mux, "out", "first", "second")
     out = test.record("/out", String)
     for topic in ("first", "second", "third"):
         test.node.create_publisher(String, topic, 10)
@@ -162,8 +164,8 @@ async def test_mux_selects_adds_lists_and_deletes(test):
             request.topic = topic
         return await test.call(f"/mux/{verb}", request)
 
-    answer = await ask("select", "/second")
-    assert (answer.success, answer.prev_topic) == (True, "first")
+    response = await ask("select", "/second")
+    assert (response.success, response.prev_topic) == (True, "first")
     await publish_texts(test, "first", "1")
     await publish_texts(test, "second", "2")
     assert received_texts(out) == ["1", "2"]
@@ -176,14 +178,14 @@ async def test_mux_selects_adds_lists_and_deletes(test):
     assert (await ask("select", "__none")).success
     await publish_texts(test, "second", "2")
     assert received_texts(out) == ["1", "2"]
-    assert logged(test, "WARN") == [
+    assert logged_texts(test, "WARN") == [
         "tried to add a topic that mux was already listening to: [third]",
         "tried to delete currently selected topic second from mux",
     ]
 
 
 async def test_demux_publishes_on_selected_output(test):
-    start(test, Demux, "in", "left", "right")
+    start_tool(test, Demux, "in", "left", "right")
     left, right = test.record("/left", String), test.record("/right", String)
     test.node.create_publisher(String, "in", 10)
     await test.settle()
@@ -197,7 +199,7 @@ async def test_demux_publishes_on_selected_output(test):
 async def test_transform_evaluates_expression(test):
     words = ["/imu", "--field", "orientation", "/norm", "std_msgs/Float64"]
     expression = "std_msgs.msg.Float64(data=numpy.linalg.norm([m.x, m.y, m.z, m.w]))"
-    start(test, Transform, *words, expression, "--import", "std_msgs", "numpy")
+    start_tool(test, Transform, *words, expression, "--import", "std_msgs", "numpy")
     norm = test.record("/norm")
     imu = get_message("sensor_msgs/msg/Imu")()
     imu.orientation.x, imu.orientation.w = 3.0, 4.0
@@ -209,7 +211,9 @@ async def test_transform_evaluates_expression(test):
 
 
 async def test_relay_field_evaluates_field_expressions(test):
-    start(test, RelayField, "/chatter", "/header", "std_msgs/Header", "{stamp: {sec: 7}, frame_id: m.data + '_link'}")
+    start_tool(
+        test, RelayField, "/chatter", "/header", "std_msgs/Header", "{stamp: {sec: 7}, frame_id: m.data + '_link'}"
+    )
     header = test.record("/header")
     test.node.create_publisher(String, "/chatter", 10)
     await test.settle()
@@ -218,7 +222,7 @@ async def test_relay_field_evaluates_field_expressions(test):
 
 
 async def test_failing_expression_is_reported_and_next_message_is_processed(test):
-    start(
+    start_tool(
         test,
         Transform,
         "/chatter",
@@ -233,7 +237,7 @@ async def test_failing_expression_is_reported_and_next_message_is_processed(test
     await test.settle()
     await publish_texts(test, "/chatter", "one", "1")
     assert [message.data for message in number] == [1]
-    (text,) = logged(test, "ERROR")
+    (text,) = logged_texts(test, "ERROR")
     assert text.endswith("ValueError: invalid literal for int() with base 10: 'one'")
 
 
@@ -256,15 +260,15 @@ async def test_failing_expression_is_reported_and_next_message_is_processed(test
 )
 async def test_invalid_arguments_are_rejected(test, kind, words, text):
     with pytest.raises(LinkwrightError) as caught:
-        start(test, kind, *words)
+        start_tool(test, kind, *words)
     assert text in str(caught.value)
     assert test.graph.node_names() == []
 
 
 async def test_unknown_parameters_are_reported_once(test):
-    start(test, Relay, input_topic="a", lasy=True, robot_model="x")
-    assert logged(test, "WARN") == ["'lasy' is not a parameter of this node; did you mean 'lazy'?"]
-    assert logged(test, "INFO") == ["parameters that this node does not have are ignored: robot_model"]
+    start_tool(test, Relay, input_topic="a", lasy=True, robot_model="x")
+    assert logged_texts(test, "WARN") == ["'lasy' is not a parameter of this node; did you mean 'lazy'?"]
+    assert logged_texts(test, "INFO") == ["parameters that this node does not have are ignored: robot_model"]
 
 
 @pytest.mark.parametrize(
@@ -272,7 +276,7 @@ async def test_unknown_parameters_are_reported_once(test):
 )
 async def test_stop_is_sent_when_velocity_publisher_is_lost(test, kind, words):
     twist = get_message("geometry_msgs/msg/Twist")
-    start(test, kind, *words)
+    start_tool(test, kind, *words)
     test.node.create_publisher(twist, "drive", 10)
     driven = test.record("/cmd_vel", twist)
     await test.settle()
@@ -283,5 +287,5 @@ async def test_stop_is_sent_when_velocity_publisher_is_lost(test, kind, words):
     driver.disappear()
     await test.settle()
     assert driven.last.linear.x == 0.0
-    (line,) = logged(test, "WARN")
+    (line,) = logged_texts(test, "WARN")
     assert line.endswith("was lost (killed, crashed or out of reach): a stop command is sent to '/cmd_vel'")

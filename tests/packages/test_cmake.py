@@ -47,14 +47,14 @@ def test_trailing_slash_installs_folder_content(package: Path) -> None:
 
 
 def test_install_patterns_select_files(package: Path) -> None:
-    only = 'install(DIRECTORY urdf DESTINATION share/arm FILES_MATCHING PATTERN "*.urdf" PATTERN "*.xacro")'
-    assert set(copied(only, package)) == {"urdf/arm.urdf", "urdf/parts/hand.xacro"}
-    without = 'install(DIRECTORY urdf DESTINATION share/arm PATTERN "parts" EXCLUDE)'
-    assert set(copied(without, package)) == {"urdf/arm.urdf", "urdf/notes.txt"}
+    matching = 'install(DIRECTORY urdf DESTINATION share/arm FILES_MATCHING PATTERN "*.urdf" PATTERN "*.xacro")'
+    assert set(copied(matching, package)) == {"urdf/arm.urdf", "urdf/parts/hand.xacro"}
+    excluding = 'install(DIRECTORY urdf DESTINATION share/arm PATTERN "parts" EXCLUDE)'
+    assert set(copied(excluding, package)) == {"urdf/arm.urdf", "urdf/notes.txt"}
 
 
 @pytest.mark.parametrize(
-    ("more", "is_required"),
+    ("extra_text", "is_required"),
     [
         ("", True),
         ('PATTERN "*.h"', True),
@@ -65,9 +65,9 @@ def test_install_patterns_select_files(package: Path) -> None:
         ("OPTIONAL", False),
     ],
 )
-def test_excluded_missing_folder_is_not_required(package: Path, more: str, is_required: bool) -> None:
+def test_excluded_missing_folder_is_not_required(package: Path, extra_text: str, is_required: bool) -> None:
     # As in file(INSTALL) of CMake 3.25: a folder that no pattern selects is skipped, even if it is missing.
-    install_rules = rules(f"install(DIRECTORY include/ DESTINATION include {more})")
+    install_rules = rules(f"install(DIRECTORY include/ DESTINATION include {extra_text})")
     assert [item.text for item in install_rules.required_paths] == (["include/"] if is_required else [])
 
 

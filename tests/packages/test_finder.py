@@ -1,3 +1,5 @@
+"""The package finder: sources, prefixes and their precedence."""
+
 from __future__ import annotations
 
 import os
@@ -120,9 +122,9 @@ def test_installed_copy_takes_precedence_over_source(tmp_path: Path) -> None:
 
 def test_sources_are_found_below_src_of_parent_folders(tmp_path: Path) -> None:
     arm = make_source(tmp_path / "ws" / "src" / "group" / "arm", "arm")
-    elsewhere = tmp_path / "ws" / "notes" / "today"
-    elsewhere.mkdir(parents=True)
-    assert finder(elsewhere).share("arm") == arm
+    unrelated_folder = tmp_path / "ws" / "notes" / "today"
+    unrelated_folder.mkdir(parents=True)
+    assert finder(unrelated_folder).share("arm") == arm
 
 
 def test_current_package_and_its_siblings_are_found(tmp_path: Path) -> None:
@@ -198,10 +200,10 @@ def test_error_is_key_error_as_in_ament_index_python(tmp_path: Path) -> None:
 
 
 def test_use_finder_sets_current_finder(tmp_path: Path) -> None:
-    mine = finder(tmp_path)
-    with use_finder(mine):
-        assert current_finder() is mine
-    assert current_finder() is not mine
+    own_finder = finder(tmp_path)
+    with use_finder(own_finder):
+        assert current_finder() is own_finder
+    assert current_finder() is not own_finder
 
 
 class TestSourceScan:
@@ -223,8 +225,8 @@ class TestSourceScan:
 
     def test_nearer_of_duplicate_packages_is_used(self, tmp_path: Path) -> None:
         make_source(tmp_path / "a" / "deep" / "arm", "arm")
-        near = make_source(tmp_path / "z_arm", "arm")
-        assert SourceScan(tmp_path).find("arm") == near
+        nearer = make_source(tmp_path / "z_arm", "arm")
+        assert SourceScan(tmp_path).find("arm") == nearer
 
     def test_circular_symlinks_end_scan(self, tmp_path: Path) -> None:
         arm = make_source(tmp_path / "group" / "arm", "arm")
@@ -309,8 +311,8 @@ def test_stand_in_packages_have_share_folder_unless_installed(tmp_path: Path, na
     assert is_substitute(share)
     assert share.name == name
     assert name not in package_finder.packages()
-    own = install(tmp_path / "ros", name)
-    assert finder(tmp_path, tmp_path / "ros").share(name) == own
+    installed_folder = install(tmp_path / "ros", name)
+    assert finder(tmp_path, tmp_path / "ros").share(name) == installed_folder
 
 
 def test_entry_points_provide_substitutes_for_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

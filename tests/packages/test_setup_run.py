@@ -163,9 +163,9 @@ def read(text: str, package: Path) -> set[tuple[str, str]]:
 
 def run_by_python(text: str, package: Path, monkeypatch: pytest.MonkeyPatch) -> set[tuple[str, str]]:
     """Return the arguments of setuptools when Python runs the file."""
-    given: list[Any] = []
+    setup_calls: list[Any] = []
     setuptools, somewhere = ModuleType("setuptools"), ModuleType("somewhere")
-    vars(setuptools)["setup"] = lambda **arguments: given.extend(arguments["data_files"])
+    vars(setuptools)["setup"] = lambda **arguments: setup_calls.extend(arguments["data_files"])
     vars(somewhere)["version"] = lambda: "1"
     monkeypatch.setitem(sys.modules, "setuptools", setuptools)
     monkeypatch.setitem(sys.modules, "somewhere", somewhere)
@@ -173,7 +173,7 @@ def run_by_python(text: str, package: Path, monkeypatch: pytest.MonkeyPatch) -> 
     exec(compile(text, "setup.py", "exec"), {"__name__": "__main__", "__file__": "setup.py"})
     return {
         (Path(os.path.relpath(file)).as_posix(), (Path(folder) / Path(file).name).as_posix())
-        for folder, files in given
+        for folder, files in setup_calls
         for file in files
         if Path(file).is_file()
     }

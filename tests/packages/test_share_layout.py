@@ -86,8 +86,8 @@ def finder_of(package: Path) -> PackageFinder:
 
 def files_below(folder: Path) -> set[str]:
     return {
-        Path(where, name).relative_to(folder).as_posix()
-        for where, _, names in os.walk(folder, followlinks=True)
+        Path(subfolder, name).relative_to(folder).as_posix()
+        for subfolder, _, names in os.walk(folder, followlinks=True)
         for name in names
     }
 

@@ -1,3 +1,5 @@
+"""Who may connect to the page's server: tokens, hosts and origins."""
+
 from __future__ import annotations
 
 import hmac
@@ -22,9 +24,9 @@ def test_token_in_query_is_accepted(gate):
     assert gate.has_token({"token": gate.token})
 
 
-@pytest.mark.parametrize("wrong", ["", "x", "\udcff", "é" * 32])
-def test_wrong_or_missing_token_is_rejected(gate, wrong):
-    assert not gate.has_token({"token": wrong})
+@pytest.mark.parametrize("token", ["", "x", "\udcff", "é" * 32])
+def test_wrong_or_missing_token_is_rejected(gate, token):
+    assert not gate.has_token({"token": token})
     assert not gate.has_token({"token": gate.token[:-1]})
     assert not gate.has_token({})
     assert not gate.has_token({"other": gate.token})

@@ -6,20 +6,20 @@ import base64
 
 import pytest
 
-from tests.page.test_files import package, write
-from tests.page.test_security import MESHED, raw
+from tests.page.test_files import write_file, write_package
+from tests.page.test_security import MESHED, send_raw_request
 from tests.viewer.scene import open_world, page
 
 
 @pytest.fixture
 async def served(tmp_path):
-    share = package(tmp_path / "robot", "robot")
-    write(share / "meshes" / "arm.stl", "solid arm")
+    share = write_package(tmp_path / "robot", "robot")
+    write_file(share / "meshes" / "arm.stl", "solid arm")
     async with open_world(packages={"robot": share}) as world:
         yield world
 
 
-async def exported(client, kind: str = "glb") -> dict:
+async def wait_for_export(client, kind: str = "glb") -> dict:
     await client.send(
         "request_export", format=kind, view={"cls": "rviz_default_plugins/Orbit", "name": "", "values": {}}
     )
@@ -33,32 +33,39 @@ async def test_export_is_fetched_once_from_secret_url(served):
     served.describe('<robot name="../../evil name"><link name="base"/></robot>')
     await served.settle()
     async with page(served.viewer) as client:
-        ready = await exported(client)
+        ready = await wait_for_export(client)
         assert ready["name"] == "evil_name.glb"
         key = ready["url"].split("/")[2]
         assert len(base64.urlsafe_b64decode(f"{key}==")) >= 16
-        assert (await raw(served.viewer, ready["url"].replace(key, key[:-1])))[0] == 404
-        assert (await raw(served.viewer, ready["url"], host="evil.example"))[0] == 403
-        status, body, head = await raw(served.viewer, ready["url"], token=False)
+        assert (await send_raw_request(served.viewer, ready["url"].replace(key, key[:-1])))[0] == 404
+        assert (await send_raw_request(served.viewer, ready["url"], host="evil.example"))[0] == 403
+        status, body, head = await send_raw_request(served.viewer, ready["url"], token=False)
         assert (status, body[:4]) == (200, "glTF")
         assert "content-disposition: attachment" in head
-        assert (await raw(served.viewer, ready["url"]))[0] == 404
-        for guess in ("/export/x/evil_name.glb", "/export/../server.py", "/export/%2e%2e/server.py", "/export/"):
-            assert (await raw(served.viewer, guess))[0] in (403, 404)
+        assert (await send_raw_request(served.viewer, ready["url"]))[0] == 404
+        for guessed_path in ("/export/x/evil_name.glb", "/export/../server.py", "/export/%2e%2e/server.py", "/export/"):
+            assert (await send_raw_request(served.viewer, guessed_path))[0] in (403, 404)
 
 
 async def test_unfetched_exports_expire(served):
     served.describe('<robot name="arm"><link name="base"/></robot>')
     await served.settle()
     async with page(served.viewer) as client:
-        ready = [await exported(client) for _ in range(6)]
-        assert [(await raw(served.viewer, export["url"]))[0] for export in ready] == [404, 404, 200, 200, 200, 200]
+        ready = [await wait_for_export(client) for _ in range(6)]
+        assert [(await send_raw_request(served.viewer, export["url"]))[0] for export in ready] == [
+            404,
+            404,
+            200,
+            200,
+            200,
+            200,
+        ]
 
 
 async def test_failed_export_reports_reason(served):
     served.describe(MESHED)
     await served.settle()
     async with page(served.viewer) as client:
-        failed = await exported(client)
+        failed = await wait_for_export(client)
         assert failed["type"] == "export_failed"
         assert "arm.stl" in failed["message"]

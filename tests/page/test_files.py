@@ -1,3 +1,5 @@
+"""The files that the page may load: URLs, folders and limits."""
+
 from __future__ import annotations
 
 import os
@@ -9,24 +11,24 @@ from linkwright.packages import PackageFinder
 from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, FileRefusedError, MeshFolders, MeshIndex
 
 
-def write(path: Path, content: str = "solid") -> Path:
+def write_file(path: Path, content: str = "solid") -> Path:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(content, encoding="utf-8")
     return path
 
 
-def package(folder: Path, name: str) -> Path:
-    write(folder / "package.xml", f"<package format='3'><name>{name}</name></package>")
+def write_package(folder: Path, name: str) -> Path:
+    write_file(folder / "package.xml", f"<package format='3'><name>{name}</name></package>")
     return folder
 
 
 @pytest.fixture
 def robot(tmp_path):
-    share = package(tmp_path / "robot", "robot")
-    write(share / "meshes" / "arm.dae")
-    write(share / "meshes" / "arm.png")
-    write(share / "materials" / "wood.png")
-    write(share / "launch" / "secret.py")
+    share = write_package(tmp_path / "robot", "robot")
+    write_file(share / "meshes" / "arm.dae")
+    write_file(share / "meshes" / "arm.png")
+    write_file(share / "materials" / "wood.png")
+    write_file(share / "launch" / "secret.py")
     return share
 
 
@@ -73,9 +75,9 @@ def test_file_uris_and_paths_in_package_use_package_url(index, robot):
 
 
 def test_mesh_outside_package_exposes_its_folder_and_subfolders(index, tmp_path):
-    mesh = write(tmp_path / "loose" / "a b" / "part.STL")
-    write(mesh.parent / "textures" / "t.png")
-    write(mesh.parent / "textures" / "deep" / "t.png")
+    mesh = write_file(tmp_path / "loose" / "a b" / "part.STL")
+    write_file(mesh.parent / "textures" / "t.png")
+    write_file(mesh.parent / "textures" / "deep" / "t.png")
     url = index.locate(f"file://{mesh.parent.parent}/a%20b/part.STL", None, MESH_TYPES).url
     assert "/part.STL?" in url
     base = url[: url.index("part")]
@@ -150,14 +152,14 @@ def rejection_status(index: MeshIndex, relative: str) -> int:
     ],
 )
 def test_paths_outside_package_are_rejected(index, robot, relative, status):
-    write(robot.parent / "outside.dae")
+    write_file(robot.parent / "outside.dae")
     index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
     assert rejection_status(index, relative) == status
 
 
 @pytest.mark.parametrize("target", ["outside.dae", "secret.txt"])
 def test_symlink_out_of_package_is_rejected(index, robot, target):
-    outside = write(robot.parent / target)
+    outside = write_file(robot.parent / target)
     (robot / "meshes" / "link.dae").symlink_to(outside)
     index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
     assert rejection_status(index, "meshes/link.dae") == 403
@@ -165,7 +167,7 @@ def test_symlink_out_of_package_is_rejected(index, robot, target):
 
 
 def test_symlinked_folder_out_of_package_is_rejected(index, robot):
-    write(robot.parent / "other" / "a.dae")
+    write_file(robot.parent / "other" / "a.dae")
     (robot / "more").symlink_to(robot.parent / "other")
     index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES)
     assert rejection_status(index, "more/a.dae") == 403
@@ -178,9 +180,9 @@ def test_circular_symlink_is_not_found(index, robot):
 
 
 def test_symlink_install_links_into_sources_are_served(tmp_path):
-    source = package(tmp_path / "src" / "robot", "robot")
-    mesh = write(source / "meshes" / "arm.dae")
-    share = package(tmp_path / "install" / "robot" / "share" / "robot", "robot")
+    source = write_package(tmp_path / "src" / "robot", "robot")
+    mesh = write_file(source / "meshes" / "arm.dae")
+    share = write_package(tmp_path / "install" / "robot" / "share" / "robot", "robot")
     (share / "meshes").mkdir()
     (share / "meshes" / "arm.dae").symlink_to(mesh)
     index = MeshIndex(PackageFinder(start=tmp_path / "nowhere", environment={}, extra={"robot": share}))
@@ -189,9 +191,9 @@ def test_symlink_install_links_into_sources_are_served(tmp_path):
 
 
 def test_symlinks_into_other_package_are_rejected(tmp_path):
-    other = package(tmp_path / "src" / "other", "other")
-    write(other / "meshes" / "arm.dae")
-    share = package(tmp_path / "share" / "robot", "robot")
+    other = write_package(tmp_path / "src" / "other", "other")
+    write_file(other / "meshes" / "arm.dae")
+    share = write_package(tmp_path / "share" / "robot", "robot")
     (share / "meshes").symlink_to(other / "meshes")
     index = MeshIndex(PackageFinder(start=tmp_path / "nowhere", environment={}, extra={"robot": share}))
     assert index.locate("package://robot/meshes/arm.dae", None, MESH_TYPES).url is None

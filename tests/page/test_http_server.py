@@ -14,7 +14,7 @@ from tests.places import REPOSITORY
 SERVER = "import sys; from linkwright.page.http_server import web; import aiohttp; "
 
 
-def output_of(code: str) -> list[str]:
+def run_python(code: str) -> list[str]:
     result = subprocess.run(
         [sys.executable, "-W", "error", "-c", SERVER + code], capture_output=True, text=True, check=True
     )
@@ -22,22 +22,22 @@ def output_of(code: str) -> list[str]:
 
 
 def test_server_does_not_load_client():
-    assert output_of("print('aiohttp.web' in sys.modules, 'aiohttp.connector' in sys.modules)") == ["True", "False"]
+    assert run_python("print('aiohttp.web' in sys.modules, 'aiohttp.connector' in sys.modules)") == ["True", "False"]
 
 
 def test_client_is_loaded_on_demand():
     code = "from aiohttp import ClientSession; print(ClientSession is aiohttp.client.ClientSession)"
-    assert output_of(f"{code}; print(aiohttp.web is web, aiohttp.WSMsgType is web.WSMsgType)") == ["True"] * 3
+    assert run_python(f"{code}; print(aiohttp.web is web, aiohttp.WSMsgType is web.WSMsgType)") == ["True"] * 3
 
 
 def test_package_version_is_available_before_and_after_client():
     code = "from importlib.metadata import version; print(version('aiohttp'), aiohttp.__version__)"
-    assert len(set(output_of(f"{code}; aiohttp.ClientSession; print(aiohttp.__version__)"))) == 1
+    assert len(set(run_python(f"{code}; aiohttp.ClientSession; print(aiohttp.__version__)"))) == 1
 
 
 def test_unknown_attributes_of_package_are_missing():
     for name in ("nothing", "__nothing__"):
-        assert output_of(f"print(hasattr(aiohttp, '{name}'))") == ["False"]
+        assert run_python(f"print(hasattr(aiohttp, '{name}'))") == ["False"]
 
 
 def test_server_that_needs_whole_package_loads_it(tmp_path):

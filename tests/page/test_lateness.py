@@ -20,15 +20,15 @@ class Loop:
     def time(self) -> float:
         return self.now
 
-    def call_at(self, at: float, timer: Callable[[], None]) -> Loop:
-        self.at, self.timer = at, timer
+    def call_at(self, time_s: float, timer: Callable[[], None]) -> Loop:
+        self.at, self.timer = time_s, timer
         return self
 
     def cancel(self) -> None:
         self.timer = None
 
-    def run(self, late: float) -> None:
-        self.now = self.at + late
+    def run(self, lateness_s: float) -> None:
+        self.now = self.at + lateness_s
         assert self.timer is not None
         self.timer()
 

@@ -1,3 +1,5 @@
+"""The address and the port of the page's server."""
+
 from __future__ import annotations
 
 import socket

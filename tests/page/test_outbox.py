@@ -1,3 +1,5 @@
+"""The outbox of a page: replaced payloads, order and held content."""
+
 from __future__ import annotations
 
 import asyncio
@@ -8,7 +10,7 @@ from hypothesis import strategies as st
 from linkwright.page.outbox import FRAME_TABLE, TRANSFORMS, Outbox, ScaledData
 
 
-async def drain(outbox: Outbox) -> list:
+async def drain_outbox(outbox: Outbox) -> list:
     return [await outbox.take() for _ in range(len(outbox))]
 
 
@@ -19,14 +21,14 @@ async def test_only_newest_payload_per_key_is_kept():
         outbox.put(TRANSFORMS, bytes([number]))
     outbox.put("b", "b")
     assert len(outbox) == 3
-    assert await drain(outbox) == [bytes([4]), "a4", "b"]
+    assert await drain_outbox(outbox) == [bytes([4]), "a4", "b"]
 
 
 async def test_replaced_payload_moves_to_end():
     outbox = Outbox()
     for key, payload in (("a", "a1"), ("b", "b1"), ("a", "a2")):
         outbox.put(key, payload)
-    assert await drain(outbox) == ["b1", "a2"]
+    assert await drain_outbox(outbox) == ["b1", "a2"]
 
 
 def scaled_data(key: str) -> ScaledData:
@@ -85,7 +87,7 @@ async def test_frame_table_precedes_its_transforms():
     outbox = Outbox()
     outbox.put(FRAME_TABLE, "table")
     outbox.put(TRANSFORMS, b"1")
-    assert await drain(outbox) == ["table", b"1"]
+    assert await drain_outbox(outbox) == ["table", b"1"]
 
 
 async def test_take_waits_for_payload():
@@ -103,7 +105,7 @@ def test_last_payload_of_every_key_arrives(puts):
         outbox = Outbox()
         for key, number in puts:
             outbox.put(key, f"{key} {number}")
-        return await drain(outbox)
+        return await drain_outbox(outbox)
 
     last = {key: f"{key} {number}" for key, number in puts}
     assert sorted(asyncio.run(scenario())) == sorted(last.values())

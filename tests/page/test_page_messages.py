@@ -1,4 +1,7 @@
-"""After any valid message of a page, the viewer continues, and the configuration can be saved."""
+"""After any valid message of a page, the viewer continues.
+
+The configuration can still be saved.
+"""
 
 from __future__ import annotations
 
@@ -31,40 +34,40 @@ MESSAGES = [subclass for subclass in PageMessage.__subclasses__() if subclass is
 MESSAGES += [SetProperty] * 30
 
 
-def anything(kind: Any, name: str, chance: random.Random) -> Any:
+def generate_value(kind: Any, name: str, rng: random.Random) -> Any:
     """Generate a JSON value that a field of the protocol may contain."""
     origin, arguments = typing.get_origin(kind), typing.get_args(kind)
     if isinstance(kind, type) and issubclass(kind, msgspec.Struct):
         hints = typing.get_type_hints(kind)
-        fields = {field: anything(hints[field], field, chance) for field in kind.__struct_fields__}
+        fields = {field: generate_value(hints[field], field, rng) for field in kind.__struct_fields__}
         return fields | ({"type": kind.__struct_config__.tag} if issubclass(kind, PageMessage) else {})
     if origin is typing.Literal:
-        return chance.choice(arguments)
+        return rng.choice(arguments)
     if origin is list:
-        return [anything(arguments[0], name, chance) for _ in range(chance.choice([0, 1, 3, 7]))]
+        return [generate_value(arguments[0], name, rng) for _ in range(rng.choice([0, 1, 3, 7]))]
     if origin is dict:
-        return {chance.choice(WORDS): anything(arguments[1], name, chance) for _ in range(chance.choice([0, 1, 3]))}
+        return {rng.choice(WORDS): generate_value(arguments[1], name, rng) for _ in range(rng.choice([0, 1, 3]))}
     if origin in (typing.Union, types.UnionType):
-        return anything(chance.choice(arguments), name, chance)
+        return generate_value(rng.choice(arguments), name, rng)
     values: dict[Any, list[Any]] = {
         bool: [False, True],
         int: [0, 1, -1, 2**31, -(2**63), 10**30],
         float: [0.0, 1.0, -1.5, 1e308, -1e308, 5e-324],
-        str: IDS if name in ("id", "display", "displays", "group", "before") and chance.random() < 0.8 else WORDS,
+        str: IDS if name in ("id", "display", "displays", "group", "before") and rng.random() < 0.8 else WORDS,
         type(None): [None],
     }
-    return chance.choice(values[kind])
+    return rng.choice(values[kind])
 
 
 @pytest.mark.parametrize("seed", range(3))
 async def test_viewer_survives_random_page_messages(seed, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     async with open_world(RvizConfig.parse(CONFIGURATION)) as world, page(world.viewer) as client:
         await client.opened()
         world.move_arm()
         for _ in range(30):
-            sent = [anything(chance.choice(MESSAGES), "", chance) for _ in range(20)]
+            sent = [generate_value(rng.choice(MESSAGES), "", rng) for _ in range(20)]
             for message in sent:
                 await client.socket.send_json(message)
             await client.drain(0.01)

@@ -30,11 +30,11 @@ def address_of(server: PageServer, path: str) -> str:
 
 async def test_page_is_served_before_viewer_and_socket_waits_for_it():
     async with running_server() as (server, browser):
-        async with browser.get(server.url) as answer:
-            assert answer.status == 200
+        async with browser.get(server.url) as response:
+            assert response.status == 200
         waiting = asyncio.ensure_future(browser.ws_connect(address_of(server, "ws")))
-        async with browser.get(address_of(server, "nothing")) as answer:
-            assert answer.status == 404
+        async with browser.get(address_of(server, "nothing")) as response:
+            assert response.status == 404
         assert not waiting.done()
         world = World(server=server)
         await world.viewer.start()
@@ -48,21 +48,21 @@ async def test_page_is_served_before_viewer_and_socket_waits_for_it():
 
 async def test_request_without_token_is_rejected_at_once():
     async with running_server() as (server, browser):
-        plain = server.url.partition("?")[0]
-        async with browser.get(f"{plain}ws") as answer:
-            assert answer.status == 401
-        async with browser.post(f"{plain}recordings") as answer:
-            assert answer.status == 401
+        url_without_token = server.url.partition("?")[0]
+        async with browser.get(f"{url_without_token}ws") as response:
+            assert response.status == 401
+        async with browser.post(f"{url_without_token}recordings") as response:
+            assert response.status == 401
 
 
 async def test_waiting_page_gets_503_when_server_closes():
     async with running_server() as (server, browser):
         waiting = asyncio.ensure_future(browser.get(address_of(server, "ws")))
-        async with browser.get(server.url) as answer:
-            assert answer.status == 200
+        async with browser.get(server.url) as response:
+            assert response.status == 200
         await server.close()
-        answer = await waiting
-        assert answer.status == 503
+        response = await waiting
+        assert response.status == 503
 
 
 async def test_server_without_uploads_has_no_recordings_url():
@@ -70,8 +70,8 @@ async def test_server_without_uploads_has_no_recordings_url():
     await world.viewer.start()
     address = world.viewer.url.replace("/?", "/recordings?")
     try:
-        async with aiohttp.ClientSession() as browser, browser.post(address, json={}) as answer:
-            assert answer.status == 404
+        async with aiohttp.ClientSession() as browser, browser.post(address, json={}) as response:
+            assert response.status == 404
     finally:
         await world.viewer.close()
         await world.graph.close()

@@ -17,13 +17,13 @@ import pytest
 from linkwright.page import peers
 from linkwright.page.access import is_local_connection
 from linkwright.page.peers import may_be_own_user
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the tables of connections are Linux's")
 FAMILIES = ("127.0.0.1", "127.0.0.1"), ("127.0.0.1", "::ffff:127.0.0.1"), ("::1", "::1"), ("::", "127.0.0.1")
-NOBODY = 65534
+NOBODY_UID = 65534
 
-CONNECT = """
+CONNECTING_PROGRAM = """
 import encodings.idna, os, socket, sys  # all imports first, as the other user may not be able to read Python's files
 os.setgid({user}); os.setuid({user})
 connection = socket.create_connection(("127.0.0.1", {port}))
@@ -34,17 +34,17 @@ sys.stdin.read()
 class Connection(Transport):
     """The properties of an accepted connection in asyncio."""
 
-    def __init__(self, peer: Any, own: Any) -> None:
-        super().__init__({"peername": peer, "sockname": own})
+    def __init__(self, peer: Any, own_address: Any) -> None:
+        super().__init__({"peername": peer, "sockname": own_address})
 
 
-def accepted(listener: socket.socket) -> tuple[socket.socket, Connection]:
-    listener.settimeout(SECONDS)
-    ours, _ = listener.accept()
-    return ours, Connection(ours.getpeername(), ours.getsockname())
+def accept_connection(listener: socket.socket) -> tuple[socket.socket, Connection]:
+    listener.settimeout(TIMEOUT_S)
+    accepted_socket, _ = listener.accept()
+    return accepted_socket, Connection(accepted_socket.getpeername(), accepted_socket.getsockname())
 
 
-def listen(host: str) -> socket.socket:
+def open_listener(host: str) -> socket.socket:
     try:
         is_ipv6 = ":" in host
         return socket.create_server(
@@ -55,21 +55,21 @@ def listen(host: str) -> socket.socket:
 
 
 @contextmanager
-def connected(
+def connect_pair(
     listening: str = "127.0.0.1", connecting: str = "127.0.0.1"
 ) -> Iterator[tuple[socket.socket, Connection]]:
     """Return a socket of this process that is connected to a server in this process."""
     family = socket.AF_INET6 if ":" in connecting else socket.AF_INET
-    with listen(listening) as listener, socket.socket(family) as theirs:
+    with open_listener(listening) as listener, socket.socket(family) as theirs:
         theirs.connect((connecting, listener.getsockname()[1]))
-        ours, connection = accepted(listener)
-        with ours:
+        accepted_socket, connection = accept_connection(listener)
+        with accepted_socket:
             yield theirs, connection
 
 
 @pytest.mark.parametrize(("listening", "connecting"), FAMILIES)
 def test_program_of_same_user_is_accepted(listening: str, connecting: str) -> None:
-    with connected(listening, connecting) as (_, connection):
+    with connect_pair(listening, connecting) as (_, connection):
         assert is_local_connection(connection)
         assert may_be_own_user(connection)
 
@@ -77,8 +77,8 @@ def test_program_of_same_user_is_accepted(listening: str, connecting: str) -> No
 @linux
 @pytest.mark.parametrize(("listening", "connecting"), FAMILIES)
 def test_other_user_is_rejected(monkeypatch: pytest.MonkeyPatch, listening: str, connecting: str) -> None:
-    with connected(listening, connecting) as (_, connection):
-        monkeypatch.setattr(os, "geteuid", lambda: NOBODY - 1)
+    with connect_pair(listening, connecting) as (_, connection):
+        monkeypatch.setattr(os, "geteuid", lambda: NOBODY_UID - 1)
         monkeypatch.setattr(peers, "_ROOT", None)
         assert is_local_connection(connection)
         assert not may_be_own_user(connection)
@@ -86,13 +86,13 @@ def test_other_user_is_rejected(monkeypatch: pytest.MonkeyPatch, listening: str,
 
 @linux
 @pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() != 0, reason="only root can become another user")
-@pytest.mark.parametrize(("user", "is_accepted"), [(NOBODY, False), (0, True)])
+@pytest.mark.parametrize(("user", "is_accepted"), [(NOBODY_UID, False), (0, True)])
 def test_user_of_other_process_is_recognized(user: int, is_accepted: bool) -> None:
-    with listen("127.0.0.1") as listener:
-        program = CONNECT.format(user=user, port=listener.getsockname()[1])
+    with open_listener("127.0.0.1") as listener:
+        program = CONNECTING_PROGRAM.format(user=user, port=listener.getsockname()[1])
         with subprocess.Popen([sys.executable, "-I", "-c", program], stdin=subprocess.PIPE) as process:
-            ours, connection = accepted(listener)
-            with ours:
+            accepted_socket, connection = accept_connection(listener)
+            with accepted_socket:
                 assert may_be_own_user(connection) is is_accepted
                 process.communicate()
                 assert not may_be_own_user(connection), "a closed socket has no owner, and is listed as root's"
@@ -100,15 +100,15 @@ def test_user_of_other_process_is_recognized(user: int, is_accepted: bool) -> No
 
 @linux
 def test_root_is_accepted(monkeypatch: pytest.MonkeyPatch) -> None:
-    with connected() as (_, connection):
-        monkeypatch.setattr(os, "geteuid", lambda: NOBODY - 1)
+    with connect_pair() as (_, connection):
+        monkeypatch.setattr(os, "geteuid", lambda: NOBODY_UID - 1)
         monkeypatch.setattr(peers, "_ROOT", os.getuid())
         assert may_be_own_user(connection)
 
 
 @linux
 def test_closed_socket_is_rejected() -> None:
-    with connected() as (theirs, connection):
+    with connect_pair() as (theirs, connection):
         theirs.close()
         assert not may_be_own_user(connection)
 
@@ -118,7 +118,7 @@ def test_socket_omitted_once_by_system_is_found(monkeypatch: pytest.MonkeyPatch)
     read = peers._read_tables
     answers = iter(["  sl  local_address\n", "  sl  local_address\n"])
     monkeypatch.setattr(peers, "_read_tables", lambda: next(answers, None) or read())
-    with connected() as (_, connection):
+    with connect_pair() as (_, connection):
         assert may_be_own_user(connection)
 
 
@@ -137,7 +137,7 @@ def test_lost_connection_is_rejected(transport: Connection | None) -> None:
 
 
 @pytest.mark.parametrize(
-    ("peer", "own", "is_local"),
+    ("peer", "own_address", "is_local"),
     [
         (("127.0.0.2", 1), ("127.0.0.1", 2), True),
         (("192.0.2.1", 1), ("192.0.2.1", 2), True),
@@ -147,5 +147,5 @@ def test_lost_connection_is_rejected(transport: Connection | None) -> None:
         (("fe80::1%eth0", 1, 0, 2), ("fe80::2%eth0", 2, 0, 2), False),
     ],
 )
-def test_loopback_and_own_addresses_are_local(peer: Any, own: Any, is_local: bool) -> None:
-    assert is_local_connection(Connection(peer, own)) is is_local
+def test_loopback_and_own_addresses_are_local(peer: Any, own_address: Any, is_local: bool) -> None:
+    assert is_local_connection(Connection(peer, own_address)) is is_local

@@ -58,9 +58,9 @@ def test_token_file_accessible_to_others_is_ignored(mode):
 @posix
 def test_symlinked_token_file_is_ignored(tmp_path):
     token = load_token(PORT).token
-    elsewhere = tmp_path / "token"
-    (token_folder() / str(PORT)).rename(elsewhere)
-    (token_folder() / str(PORT)).symlink_to(elsewhere)
+    other_file = tmp_path / "token"
+    (token_folder() / str(PORT)).rename(other_file)
+    (token_folder() / str(PORT)).symlink_to(other_file)
     assert load_token(PORT).token != token
 
 

@@ -18,13 +18,13 @@ from linkwright.page.page_server import PageServer
 from linkwright.page.program_pages import Embedder
 from linkwright.panels.terminal.feature import TerminalFeature
 from tests.viewer.scene import World, page
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 FRAMES = "frame-src http://127.0.0.1:* http://localhost:*"
 
 
 @asynccontextmanager
-async def classroom(folder: Path, command: tuple[str, ...] = ("/bin/sh", "-i")) -> AsyncIterator[World]:
+async def open_classroom(folder: Path, command: tuple[str, ...] = ("/bin/sh", "-i")) -> AsyncIterator[World]:
     """Start a viewer whose page has terminals."""
     world = World(server=PageServer("127.0.0.1", 0, only_loopback=True))
     await world.viewer.start()
@@ -38,7 +38,7 @@ async def classroom(folder: Path, command: tuple[str, ...] = ("/bin/sh", "-i")) 
 
 
 @asynccontextmanager
-async def program() -> AsyncIterator[PageServer]:
+async def start_program_server() -> AsyncIterator[PageServer]:
     """Start the server of a program that would open its page in the browser."""
     server = PageServer("127.0.0.1", 0)
     await server.open()
@@ -48,54 +48,59 @@ async def program() -> AsyncIterator[PageServer]:
         await server.close()
 
 
-def environment(world: World) -> dict[str, str]:
+def program_environment(world: World) -> dict[str, str]:
     origin = world.viewer.url.partition("/?")[0]
     return world.viewer._server.program_pages.variables(origin)
 
 
-async def policy(server: PageServer) -> str:
-    async with aiohttp.ClientSession() as browser, browser.get(server.url) as answer:
-        return answer.headers["Content-Security-Policy"]
+async def content_security_policy(server: PageServer) -> str:
+    async with aiohttp.ClientSession() as browser, browser.get(server.url) as response:
+        return response.headers["Content-Security-Policy"]
 
 
-async def status_of(address: str, line: bytes, **headers: str) -> int:
-    async with aiohttp.ClientSession() as session, session.post(address, data=line, headers=headers) as answer:
-        return answer.status
+async def post_line(address: str, line: bytes, **headers: str) -> int:
+    async with aiohttp.ClientSession() as session, session.post(address, data=line, headers=headers) as response:
+        return response.status
 
 
 async def test_program_page_is_shown_until_program_ends(tmp_path):
-    async with classroom(tmp_path) as world, page(world.viewer) as client, program() as server:
+    async with open_classroom(tmp_path) as world, page(world.viewer) as client, start_program_server() as server:
         await client.send("watch_program_pages")
         assert (await client.until("program_pages"))["pages"] == []
-        assert "frame-ancestors 'none'" in await policy(server)
-        assert await server.embed(environment(world), "a world")
+        assert "frame-ancestors 'none'" in await content_security_policy(server)
+        assert await server.embed(program_environment(world), "a world")
         shown = await client.until("program_pages")
         assert shown["pages"] == [{"id": 1, "title": "a world", "url": server.url}]
-        assert f"frame-ancestors {world.viewer.url.partition('/?')[0]};" in f"{await policy(server)};"
-        assert FRAMES in await policy(world.viewer._server)
-        assert "frame-ancestors 'none'" in await policy(world.viewer._server)
+        assert f"frame-ancestors {world.viewer.url.partition('/?')[0]};" in f"{await content_security_policy(server)};"
+        assert FRAMES in await content_security_policy(world.viewer._server)
+        assert "frame-ancestors 'none'" in await content_security_policy(world.viewer._server)
         await server.close()
         assert (await client.until("program_pages"))["pages"] == []
 
 
 async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
-    asked = []
+    pause_requests = []
 
     def pause(must_pause: bool) -> bool:
-        asked.append(must_pause)
+        pause_requests.append(must_pause)
         return must_pause
 
-    async with classroom(tmp_path) as world, page(world.viewer), program() as server, program() as other:
+    async with (
+        open_classroom(tmp_path) as world,
+        page(world.viewer),
+        start_program_server() as server,
+        start_program_server() as other,
+    ):
         programs = world.viewer._server.program_pages
-        assert await server.embed(environment(world), "a world")
+        assert await server.embed(program_environment(world), "a world")
         server.on_pause(pause)
-        assert await other.embed(environment(world), "a page without a world")
+        assert await other.embed(program_environment(world), "a page without a world")
         programs.pause_worlds()
         await eventually(lambda: programs.is_world_paused)
-        assert asked == [True]
+        assert pause_requests == [True]
         programs.resume_worlds()
         assert not programs.is_world_paused
-        await eventually(lambda: asked == [True, False])
+        await eventually(lambda: pause_requests == [True, False])
         programs.resume_worlds()
         programs.pause_worlds()
         await eventually(lambda: programs.is_world_paused)
@@ -104,69 +109,69 @@ async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
 
 
 async def test_a_world_resumes_when_the_page_that_paused_it_is_gone(tmp_path):
-    asked = []
-    async with program() as server:
-        async with classroom(tmp_path) as world, page(world.viewer):
-            assert await server.embed(environment(world), "a world")
-            server.on_pause(lambda must_pause: asked.append(must_pause) or must_pause)
+    pause_requests = []
+    async with start_program_server() as server:
+        async with open_classroom(tmp_path) as world, page(world.viewer):
+            assert await server.embed(program_environment(world), "a world")
+            server.on_pause(lambda must_pause: pause_requests.append(must_pause) or must_pause)
             world.viewer._server.program_pages.pause_worlds()
-            await eventually(lambda: asked == [True])
-        await eventually(lambda: asked == [True, False])
+            await eventually(lambda: pause_requests == [True])
+        await eventually(lambda: pause_requests == [True, False])
 
 
 async def test_terminal_has_variable_with_page_address(tmp_path):
     command = ("/bin/sh", "-c", f"echo ${VARIABLE}")
-    async with classroom(tmp_path, command) as world, page(world.viewer) as client:
+    async with open_classroom(tmp_path, command) as world, page(world.viewer) as client:
         await client.send("open_terminal", columns=200, rows=24)
         output = await client.until("terminal_output", is_replay=False)
-        assert output["text"].strip() == environment(world)[VARIABLE]
+        assert output["text"].strip() == program_environment(world)[VARIABLE]
 
 
 async def test_wrong_key_and_foreign_origin_are_rejected(tmp_path):
-    async with classroom(tmp_path) as world, page(world.viewer), program() as server:
-        address = environment(world)[VARIABLE]
+    async with open_classroom(tmp_path) as world, page(world.viewer), start_program_server() as server:
+        address = program_environment(world)[VARIABLE]
         line = json.dumps({"title": "", "url": server.url}).encode() + b"\n"
-        assert await status_of(address[:-1], line) == 401
-        assert await status_of(address, line, Origin="http://evil.example") == 403
+        assert await post_line(address[:-1], line) == 401
+        assert await post_line(address, line, Origin="http://evil.example") == 403
         for url in ("http://evil.example/?token=abcdefgh", "https://127.0.0.1:1/?token=abc", "javascript:alert(1)", ""):
-            assert await status_of(address, json.dumps({"title": "", "url": url}).encode() + b"\n") == 400
+            assert await post_line(address, json.dumps({"title": "", "url": url}).encode() + b"\n") == 400
         for nonsense in (b"", b"[]", b"{", b"x" * 100_000, b"[" * 60_000 + b"\n"):
-            assert await status_of(address, nonsense) == 400
+            assert await post_line(address, nonsense) == 400
         token = urlsplit(world.viewer.url).query
-        assert await status_of(f"{address.rpartition('/')[0]}/?{token}", line) in (401, 404, 405)
+        assert await post_line(f"{address.rpartition('/')[0]}/?{token}", line) in (401, 404, 405)
 
 
 async def test_page_without_terminals_receives_no_program_pages(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.page.server.may_be_own_user", lambda _: False)
-    async with classroom(tmp_path) as world, page(world.viewer) as client, program() as server:
+    async with open_classroom(tmp_path) as world, page(world.viewer) as client, start_program_server() as server:
         await client.send("watch_program_pages")
         assert "browser of the user" in (await client.until("terminals", folder=""))["refusal_reason"]
-        assert not await server.embed(environment(world), "")
-        assert "frame-ancestors 'none'" in await policy(server)
+        assert not await server.embed(program_environment(world), "")
+        assert "frame-ancestors 'none'" in await content_security_policy(server)
 
 
 async def test_program_is_not_embedded_without_open_page(tmp_path):
-    async with program() as server:
-        async with classroom(tmp_path) as world:
-            variables = environment(world)
+    async with start_program_server() as server:
+        async with open_classroom(tmp_path) as world:
+            variables = program_environment(world)
             assert not await server.embed(variables, "")
         assert not await server.embed(variables, "")
         assert not server.is_embedded
 
 
 async def test_page_with_terminals_is_never_embedded(tmp_path):
-    async with classroom(tmp_path) as world, page(world.viewer), classroom(tmp_path) as other:
-        assert not await other.viewer._server.embed(environment(world), "")
-        assert "frame-ancestors 'none'" in await policy(other.viewer._server)
+    async with open_classroom(tmp_path) as world, page(world.viewer), open_classroom(tmp_path) as other:
+        assert not await other.viewer._server.embed(program_environment(world), "")
+        assert "frame-ancestors 'none'" in await content_security_policy(other.viewer._server)
 
 
 async def test_unresponsive_server_is_abandoned_after_timeout(monkeypatch):
     monkeypatch.setattr("linkwright.page.program_pages._TIMEOUT_S", 0.1)
     with socket.create_server(("127.0.0.1", 0)) as silent:
         address = f"http://127.0.0.1:{silent.getsockname()[1]}/programs/abc"
-        async with program() as server:
+        async with start_program_server() as server:
             assert not await server.embed({VARIABLE: address}, "")
-            assert "frame-ancestors 'none'" in await policy(server)
+            assert "frame-ancestors 'none'" in await content_security_policy(server)
 
 
 @pytest.mark.parametrize(
@@ -185,8 +190,8 @@ def test_embedder_has_origin_and_path_of_address():
 
 async def test_closing_server_does_not_wait_for_programs(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.page.server._CLOSE_TIMEOUT_S", 600.0)
-    async with classroom(tmp_path) as world, program() as server:
+    async with open_classroom(tmp_path) as world, start_program_server() as server:
         async with page(world.viewer):
-            assert await server.embed(environment(world), "")
-        await asyncio.wait_for(world.viewer._server.close(), SECONDS)
+            assert await server.embed(program_environment(world), "")
+        await asyncio.wait_for(world.viewer._server.close(), TIMEOUT_S)
         assert world.viewer._server.program_pages.pages == []

@@ -35,10 +35,10 @@ Visualization Manager:
     Fixed Frame: base
     Frame Rate: 50
 """
-MEGABIT = 125_000.0
+MEGABIT_IN_BYTES = 125_000.0
 
 
-def cloud(count: int):
+def make_cloud(count: int):
     message = get_message("sensor_msgs/msg/PointCloud2")()
     field = get_message("sensor_msgs/msg/PointField")
     message.header.frame_id = "base"
@@ -48,7 +48,7 @@ def cloud(count: int):
     return message
 
 
-def image(width: int, height: int):
+def make_image(width: int, height: int):
     message = get_message("sensor_msgs/msg/Image")()
     message.header.frame_id = "base"
     message.width, message.height, message.encoding, message.step = width, height, "rgb8", 3 * width
@@ -92,7 +92,10 @@ class Watcher:
                 self.contents.append((self.now(), unpack_content(frame).fields))
 
     def _whole(self, data: bytes) -> bytes:
-        """Return the frame that a message contains or completes, or an empty one if pieces are missing."""
+        """Return the frame that a message contains or completes.
+
+        The frame is empty if pieces are missing.
+        """
         kind, _, offset, length = struct.unpack_from("<IIII", data)
         if kind != PIECE_KIND:
             return data
@@ -121,12 +124,15 @@ async def watching(url: str, *, answers: bool = True, busy: float = 0.0):
 
 
 async def publish_all(world, seconds: float, *, rate: float = 50.0, points: int = 100_000) -> None:
-    """Publish the robot's transform with x = time at a rate, and a cloud and an image ten times a second."""
+    """Publish the robot's transform at a rate, with x = time.
+
+    A cloud and an image are published ten times a second.
+    """
     now = asyncio.get_running_loop().time
     node = world.graph.create_node("senses")
     clouds = node.create_publisher(get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1)
     images = node.create_publisher(get_message("sensor_msgs/msg/Image"), "/image", 1)
-    one_cloud, one_image = cloud(points), image(1280, 720)
+    one_cloud, one_image = make_cloud(points), make_image(1280, 720)
     for turn in range(round(seconds * rate)):
         world.move({("base", "tip"): (now(), 0, 0, 0, 0, 0, 1)})
         if turn % int(rate / 10) == 0:
@@ -141,11 +147,11 @@ async def publish_all(world, seconds: float, *, rate: float = 50.0, points: int 
 @skipping
 async def test_robot_keeps_moving_over_one_megabit(answers, latest, seconds):
     """The server knows less about a client that acknowledges nothing, such as another program."""
-    async with open_world(RvizConfig.parse(FILE)) as world, slow_line(world.viewer.url, MEGABIT) as url:
+    async with open_world(RvizConfig.parse(FILE)) as world, slow_line(world.viewer.url, MEGABIT_IN_BYTES) as url:
         async with watching(url, answers=answers) as watcher:
-            began = watcher.now()
+            start_s = watcher.now()
             await publish_all(world, seconds)
-        settled = [delay for at, delay in watcher.delays if at - began > 2.0]
+        settled = [delay for time_s, delay in watcher.delays if time_s - start_s > 2.0]
         assert len(settled) > 10
         assert max(settled) < latest
         steps = [fields["step"] for fields in watcher.contents_of_kind("cloud_points")]
@@ -172,7 +178,7 @@ async def test_single_cloud_is_completed_on_fast_connection():
             get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1
         )
         await eventually(lambda: watcher.sizes)
-        clouds.publish(cloud(100_000))
+        clouds.publish(make_cloud(100_000))
         await eventually(
             lambda: (
                 watcher.contents_of_kind("cloud_points") and watcher.contents_of_kind("cloud_points")[-1]["step"] == 1
@@ -187,7 +193,7 @@ async def test_thinned_cloud_is_completed_when_page_is_idle():
             get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1
         )
         await eventually(lambda: watcher.sizes)
-        clouds.publish(cloud(20_000))
+        clouds.publish(make_cloud(20_000))
         await eventually(lambda: bool(watcher.contents_of_kind("cloud_points")))
         assert watcher.contents_of_kind("cloud_points")[-1]["step"] > 1
         watcher.busy = 0.0
@@ -199,14 +205,14 @@ async def test_thinned_cloud_is_completed_when_page_is_idle():
 async def test_cloud_over_slow_connection_does_not_delay_transforms():
     async with (
         open_world(RvizConfig.parse(FILE)) as world,
-        slow_line(world.viewer.url, 2 * MEGABIT) as url,
+        slow_line(world.viewer.url, 2 * MEGABIT_IN_BYTES) as url,
         watching(url) as watcher,
     ):
         clouds = world.graph.create_node("senses").create_publisher(
             get_message("sensor_msgs/msg/PointCloud2"), "/cloud", 1
         )
         await eventually(lambda: watcher.sizes > 0)
-        clouds.publish(cloud(20_000))
+        clouds.publish(make_cloud(20_000))
         await eventually(lambda: watcher.contents_of_kind("cloud_points"))
         assert watcher.contents_of_kind("cloud_points")[-1]["step"] > 1
         x = 0.0
@@ -242,7 +248,7 @@ async def test_four_pages_drop_only_stale_frames():
             assert client.x == x  # all pages receive the last pose
 
 
-class Hand:
+class ManualClock:
     """A clock that the test sets."""
 
     def __init__(self) -> None:
@@ -253,7 +259,7 @@ class Hand:
 
 
 def test_connection_meter_learns_from_acknowledgments():
-    clock = Hand()
+    clock = ManualClock()
     line = ConnectionMeter(clock)
     line.sending(10)
     clock.now += 0.05
@@ -269,7 +275,7 @@ def test_connection_meter_learns_from_acknowledgments():
 
 
 def test_small_messages_do_not_fill_connection():
-    line = ConnectionMeter(Hand())
+    line = ConnectionMeter(ManualClock())
     line.sending(10)
     line.record_acknowledged(1)
     for _ in range(1000):
@@ -278,7 +284,7 @@ def test_small_messages_do_not_fill_connection():
 
 
 def test_connection_meter_survives_invalid_acknowledgments():
-    line = ConnectionMeter(Hand())
+    line = ConnectionMeter(ManualClock())
     for count in (-5, 10**12, 0):
         line.record_acknowledged(count)
     line.sending(10_000)

@@ -18,10 +18,10 @@ from tests.panels.test_timeline import recorded
 from tests.skipping import skipping
 from tests.viewer.scene import Client, World
 
-SECONDS = 5.0
+TIMEOUT_S = 5.0
 """The seconds after which an abandoned upload is removed; normally a minute."""
 
-REFUSED = -1
+REFUSED_STATUS = -1
 """Replaces the HTTP status if the response has a problem for the user."""
 
 
@@ -38,8 +38,8 @@ def scratch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture(autouse=True)
 def short_time_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorten the time limits to seconds."""
-    monkeypatch.setattr(uploads, "IDLE_TIMEOUT_S", SECONDS)
-    monkeypatch.setattr(guests, "IDLE_TIMEOUT_S", SECONDS)
+    monkeypatch.setattr(uploads, "IDLE_TIMEOUT_S", TIMEOUT_S)
+    monkeypatch.setattr(guests, "IDLE_TIMEOUT_S", TIMEOUT_S)
 
 
 class Sender:
@@ -53,11 +53,11 @@ class Sender:
 
     async def ask(self, method: str, path: str, language: str = "en", **options: object) -> tuple[int, dict[str, str]]:
         params = {"token": self.token, "language": language}
-        async with self.session.request(method, f"{self.base}/{path}", params=params, **options) as answer:
-            if answer.content_type != "application/json":
-                return answer.status, {"text": await answer.text()}
-            message = await answer.json()
-            return REFUSED if "problem" in message else answer.status, message
+        async with self.session.request(method, f"{self.base}/{path}", params=params, **options) as response:
+            if response.content_type != "application/json":
+                return response.status, {"text": await response.text()}
+            message = await response.json()
+            return REFUSED_STATUS if "problem" in message else response.status, message
 
     async def announce(self, name: str, files: dict[str, int]) -> tuple[int, dict[str, str]]:
         listed = [{"name": name, "size": size} for name, size in files.items()]
@@ -65,10 +65,10 @@ class Sender:
 
     async def send(self, name: str, files: dict[str, bytes]) -> tuple[int, dict[str, str]]:
         """Send a whole recording, and return the last answer."""
-        status, answer = await self.announce(name, {name: len(data) for name, data in files.items()})
+        status, response = await self.announce(name, {name: len(data) for name, data in files.items()})
         if status != 200:
-            return status, answer
-        key = answer["key"]
+            return status, response
+        key = response["key"]
         for number, data in enumerate(files.values()):
             status, _ = await self.ask("PUT", f"recordings/{key}/{number}", data=data)
             assert status == 204
@@ -103,7 +103,7 @@ async def answer_pings(client: Client) -> None:
         await client.socket.receive()
 
 
-def contents(folder: Path) -> dict[str, bytes]:
+def file_contents(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
@@ -113,11 +113,11 @@ def list_uploads(scratch: Path) -> list[str]:
 
 @skipping
 async def test_uploaded_folder_is_shown_with_own_timeline_and_graph(tmp_path: Path):
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     async with upload_server() as (world, sender):
-        status, answer = await sender.send("drive", files)
-        assert status == 200, answer
-        async with recording_page(sender, answer["recording"]) as client:
+        status, response = await sender.send("drive", files)
+        assert status == 200, response
+        async with recording_page(sender, response["recording"]) as client:
             assert (await client.until("hello"))["title"] == "drive"
             timeline = await client.until("timeline")
             assert (timeline["name"], timeline["live"], timeline["end"] - timeline["start"]) == ("drive", False, 10)
@@ -131,11 +131,11 @@ async def test_uploaded_folder_is_shown_with_own_timeline_and_graph(tmp_path: Pa
 
 @skipping
 async def test_single_file_is_shown_with_its_name(tmp_path: Path):
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     name = next(file for file in files if file.endswith(".mcap"))
     async with upload_server() as (_, sender):
-        _, answer = await sender.send("anything", {name: files[name]})
-        async with recording_page(sender, answer["recording"]) as client:
+        _, response = await sender.send("anything", {name: files[name]})
+        async with recording_page(sender, response["recording"]) as client:
             assert (await client.until("timeline"))["name"] == name
 
 
@@ -148,8 +148,8 @@ async def test_upload_requires_token_and_same_origin(scratch: Path):
             ("POST", "recordings/k"),
             ("DELETE", "recordings/k"),
         ):
-            async with sender.session.request(method, f"{sender.base}/{path}") as answer:
-                assert answer.status == 401
+            async with sender.session.request(method, f"{sender.base}/{path}") as response:
+                assert response.status == 401
             headers = {"Origin": "http://elsewhere.example"}
             status, _ = await sender.ask(method, path, headers=headers)
             assert status == 403
@@ -160,23 +160,23 @@ async def test_upload_requires_token_and_same_origin(scratch: Path):
 @pytest.mark.parametrize(
     ("name", "files", "status"),
     [
-        ("drive", {"../drive.mcap": 1}, REFUSED),
-        ("drive", {"a/b.mcap": 1}, REFUSED),
-        ("drive", {"notes.txt": 1}, REFUSED),
-        ("drive", {}, REFUSED),
+        ("drive", {"../drive.mcap": 1}, REFUSED_STATUS),
+        ("drive", {"a/b.mcap": 1}, REFUSED_STATUS),
+        ("drive", {"notes.txt": 1}, REFUSED_STATUS),
+        ("drive", {}, REFUSED_STATUS),
         ("..", {"a.mcap": 1, "b.mcap": 1}, 400),
         ("a/b", {"a.mcap": 1, "b.mcap": 1}, 400),
         ("drive", {"a.mcap": -1}, 400),
-        ("drive", {"a.mcap": 10**18}, REFUSED),
+        ("drive", {"a.mcap": 10**18}, REFUSED_STATUS),
     ],
 )
 async def test_invalid_or_oversized_recording_is_rejected_before_upload(
     scratch: Path, name: str, files: dict[str, int], status: int
 ):
     async with upload_server() as (_, sender):
-        given, answer = await sender.announce(name, files)
-        assert given == status, answer
-        assert status == 400 or answer["problem"]
+        received_status, response = await sender.announce(name, files)
+        assert received_status == status, response
+        assert status == 400 or response["problem"]
         assert not list_uploads(scratch)
 
 
@@ -186,10 +186,10 @@ async def test_invalid_or_oversized_recording_is_rejected_before_upload(
 )
 async def test_unreadable_recording_is_reported_without_server_path(scratch: Path, data: bytes):
     async with upload_server() as (_, sender):
-        status, answer = await sender.send("x", {"x.mcap": data})
-        assert status == REFUSED
-        assert "'x.mcap'" in answer["problem"]
-        assert str(scratch) not in answer["problem"]
+        status, response = await sender.send("x", {"x.mcap": data})
+        assert status == REFUSED_STATUS
+        assert "'x.mcap'" in response["problem"]
+        assert str(scratch) not in response["problem"]
         assert not list_uploads(scratch)
 
 
@@ -198,8 +198,8 @@ async def test_rejection_is_translated_to_page_language():
     async with upload_server() as (_, sender):
         announced = {"name": "x", "files": [{"name": "x.txt", "size": 1}]}
         for language, words in (("en", "is not a recording file"), ("zh", "不是录制")):
-            _, answer = await sender.ask("POST", "recordings", language, json=announced)
-            assert words in answer["problem"], answer
+            _, response = await sender.ask("POST", "recordings", language, json=announced)
+            assert words in response["problem"], response
 
 
 @skipping
@@ -207,15 +207,15 @@ async def test_recording_of_program_is_shown_and_kept(tmp_path: Path):
     (path,) = recorded(tmp_path).glob("*.mcap")
     async with upload_server() as (world, sender):
         url = world.viewer.context.downloads.offer_repeatedly(path).lstrip("/")
-        status, answer = await sender.ask("POST", url)
-        assert status == 200, answer
-        async with recording_page(sender, answer["recording"]) as client:
+        status, response = await sender.ask("POST", url)
+        assert status == 200, response
+        async with recording_page(sender, response["recording"]) as client:
             assert not (await client.until("timeline"))["live"]
-        await asyncio.sleep(4 * SECONDS)
-        assert world.viewer.guests.audience(answer["recording"]) is None
+        await asyncio.sleep(4 * TIMEOUT_S)
+        assert world.viewer.guests.audience(response["recording"]) is None
         assert path.exists()
         path.write_bytes(b"not a recording")
-        assert (await sender.ask("POST", url))[0] == REFUSED
+        assert (await sender.ask("POST", url))[0] == REFUSED_STATUS
         assert (await sender.ask("POST", "export/other/x.mcap"))[0] == 404
         sender.token = "another"
         assert (await sender.ask("POST", url))[0] == 401
@@ -223,24 +223,26 @@ async def test_recording_of_program_is_shown_and_kept(tmp_path: Path):
 
 @skipping
 async def test_truncated_recording_is_shown_with_warning(tmp_path: Path):
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     name = next(file for file in files if file.endswith(".mcap"))
     async with upload_server() as (_, sender):
-        status, answer = await sender.send("x", {name: files[name][:-100]})
-        assert status == 200, answer
-        async with recording_page(sender, answer["recording"]) as client:
+        status, response = await sender.send("x", {name: files[name][:-100]})
+        assert status == 200, response
+        async with recording_page(sender, response["recording"]) as client:
             assert "is truncated" in (await client.until("playhead"))["problem"]
 
 
 @skipping
 async def test_file_of_wrong_size_is_rejected_and_can_be_resent(tmp_path: Path):
     async with upload_server() as (_, sender):
-        _, answer = await sender.announce("x", {"x.mcap": 100})
-        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 50))[0] == 400
-        assert (await sender.ask("POST", f"recordings/{answer['key']}"))[0] == 404, "the file was removed"
-        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 200))[0] == 400
-        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 100))[0] == 204
-        assert (await sender.ask("PUT", f"recordings/{answer['key']}/0", data=b"x" * 100))[0] == 404, "the file exists"
+        _, response = await sender.announce("x", {"x.mcap": 100})
+        assert (await sender.ask("PUT", f"recordings/{response['key']}/0", data=b"x" * 50))[0] == 400
+        assert (await sender.ask("POST", f"recordings/{response['key']}"))[0] == 404, "the file was removed"
+        assert (await sender.ask("PUT", f"recordings/{response['key']}/0", data=b"x" * 200))[0] == 400
+        assert (await sender.ask("PUT", f"recordings/{response['key']}/0", data=b"x" * 100))[0] == 204
+        assert (await sender.ask("PUT", f"recordings/{response['key']}/0", data=b"x" * 100))[0] == 404, (
+            "the file exists"
+        )
 
 
 @skipping
@@ -251,7 +253,7 @@ async def test_canceled_or_stalled_upload_is_removed(scratch: Path):
         assert len(list_uploads(scratch)) == 2
         assert (await sender.ask("DELETE", f"recordings/{given_up['key']}"))[0] == 204
         assert len(list_uploads(scratch)) == 1
-        await asyncio.sleep(2 * SECONDS)
+        await asyncio.sleep(2 * TIMEOUT_S)
         assert not list_uploads(scratch)
         assert (await sender.ask("PUT", f"recordings/{forgotten['key']}/0", data=b"x" * 100))[0] == 404
 
@@ -261,40 +263,40 @@ async def test_number_of_simultaneous_uploads_is_limited(scratch: Path):
     async with upload_server() as (_, sender):
         for _ in range(4):
             assert (await sender.announce("x", {"x.mcap": 1}))[0] == 200
-        status, answer = await sender.announce("x", {"x.mcap": 1})
-        assert status == REFUSED
-        assert "wait" in answer["problem"]
+        status, response = await sender.announce("x", {"x.mcap": 1})
+        assert status == REFUSED_STATUS
+        assert "wait" in response["problem"]
     assert not list_uploads(scratch), "the end of the program removes the files"
 
 
 @skipping
 async def test_recording_is_closed_after_its_last_page(tmp_path: Path, scratch: Path):
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     async with upload_server() as (_, sender):
-        _, answer = await sender.send("drive", files)
-        async with recording_page(sender, answer["recording"]) as client:
+        _, response = await sender.send("drive", files)
+        async with recording_page(sender, response["recording"]) as client:
             await client.until("timeline")
             answering = asyncio.create_task(answer_pings(client))
-            await asyncio.sleep(3 * SECONDS)
+            await asyncio.sleep(3 * TIMEOUT_S)
             assert len(list_uploads(scratch)) == 1, "a page shows the recording"
             answering.cancel()
-        await asyncio.sleep(2 * SECONDS)
+        await asyncio.sleep(2 * TIMEOUT_S)
         assert not list_uploads(scratch)
 
 
 @skipping
 async def test_open_recordings_are_limited_and_removed_at_exit(tmp_path: Path, scratch: Path, monkeypatch):
     monkeypatch.setattr(guests, "IDLE_TIMEOUT_S", 60.0)
-    files = contents(recorded(tmp_path))
+    files = file_contents(recorded(tmp_path))
     async with upload_server() as (_, sender):
         for _ in range(4):
             assert (await sender.send("drive", files))[0] == 200
-        status, answer = await sender.send("drive", files)
-        assert status == REFUSED
-        assert "already open" in answer["problem"]
+        status, response = await sender.send("drive", files)
+        assert status == REFUSED_STATUS
+        assert "already open" in response["problem"]
         assert len(list_uploads(scratch)) == 4
         await asyncio.sleep(11)
-        status, answer = await sender.send("drive", files)
+        status, response = await sender.send("drive", files)
         assert status == 200, "the upload that was abandoned first is removed"
         assert len(list_uploads(scratch)) == 4
     assert not list_uploads(scratch)

@@ -33,7 +33,10 @@ Panels:
 
 
 def window_state(collapsed: tuple[str, ...] = (), hide_right: bool = False, **hidden: bool) -> str:
-    """Return ``Window Geometry`` with a state from Qt; docks are visible except those with ``NAME=False``."""
+    """Return ``Window Geometry`` with a state from Qt.
+
+    Docks are visible except those with ``NAME=False``.
+    """
     docks = {"Selection": True, "Tool Properties": True, "Displays": True, "Knobs": True, "Views": True} | hidden
     state = "000000ff00000000fd00000001000000000000013c0000025ffc02" + f"{len(docks) + 1:08x}"
     for name, shown in docks.items():
@@ -47,5 +50,5 @@ def window_state(collapsed: tuple[str, ...] = (), hide_right: bool = False, **hi
     return "\n".join([*lines, "  Width: 1200\n"])
 
 
-def panels_of(config: RvizConfig) -> list[str] | None:
+def open_panels(config: RvizConfig) -> list[str] | None:
     return config.panels.shown

@@ -50,7 +50,7 @@ NEW = """\
 """
 
 
-class Compared:
+class ComparisonViewer:
     """A viewer that compares two files."""
 
     def __init__(self, world: World, folder: Path, old: str, new: str) -> None:
@@ -97,27 +97,29 @@ class Compared:
 
 
 @asynccontextmanager
-async def compared(folder: Path, old: str = OLD, new: str = NEW) -> AsyncIterator[tuple[Compared, Client]]:
+async def open_comparison(
+    folder: Path, old: str = OLD, new: str = NEW
+) -> AsyncIterator[tuple[ComparisonViewer, Client]]:
     config = RvizConfig.for_model("base")
     add_old_robot(config, "old.urdf")
     async with open_world(config) as world:
-        both = Compared(world, folder, old, new)
+        comparison = ComparisonViewer(world, folder, old, new)
         async with page(world.viewer) as client:
-            yield both, client
+            yield comparison, client
 
 
-def marks(message: dict, side: str) -> dict[str, str]:
+def difference_marks(message: dict, side: str) -> dict[str, str]:
     return message[side]["marks"]
 
 
 async def test_page_receives_differences_with_links(tmp_path):
-    async with compared(tmp_path) as (both, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         message = await client.until("compared_descriptions")
-        displays = [display.id for display in both.world.viewer.displays if display.CLASS.endswith("RobotModel")]
+        displays = [display.id for display in comparison.world.viewer.displays if display.CLASS.endswith("RobotModel")]
         assert [message["new"]["display"], message["old"]["display"]] == displays
         assert message["new"]["label"].endswith("new.urdf")
-        assert marks(message, "old") == {"camera": "removed"}
-        assert marks(message, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
+        assert difference_marks(message, "old") == {"camera": "removed"}
+        assert difference_marks(message, "new") == {"lidar": "added", "lower": "changed", "upper": "changed"}
         assert message["joints"] == {"turn": "spin"}, "a joint of another type has no counterpart"
         items = {(item["subject"], item["name"], item["property"]): item for item in message["items"]}
         mass = items["link", "lower", "inertial mass"]
@@ -125,8 +127,13 @@ async def test_page_receives_differences_with_links(tmp_path):
         assert (mass["old_place"]["line"], mass["new_place"]["line"]) == (3, 3)
         assert mass["old_place"]["file"] == str(tmp_path / "old.urdf")
         assert mass["new_place"]["text"].endswith("new.urdf:3:45")
-        gone = items["link", "camera", ""]
-        assert (gone["kind"], gone["element"], gone["in_old"], gone["new_place"]) == ("removed", "camera", True, None)
+        removed_camera = items["link", "camera", ""]
+        assert (
+            removed_camera["kind"],
+            removed_camera["element"],
+            removed_camera["in_old"],
+            removed_camera["new_place"],
+        ) == ("removed", "camera", True, None)
         joint = items["joint", "mount", ""]
         assert (joint["element_kind"], joint["element"], joint["in_old"]) == ("joint", "mount", True)
         assert items["joint", "spin", "name"]["kind"] == "renamed"
@@ -135,77 +142,84 @@ async def test_page_receives_differences_with_links(tmp_path):
 
 
 async def test_old_robot_follows_joints_of_new_robot(tmp_path):
-    async with compared(tmp_path) as (both, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         await client.until("compared_descriptions")
-        await eventually(lambda: both.pose("old/camera") is not None)
-        assert both.pose("old/lower") == pytest.approx([0, 0, 0, 0, 0, 0, 1], abs=1e-6)
-        half = 0.75 / 2  # the middle of limits that exclude zero, as in joint_state_publisher
-        assert both.pose("old/upper")[:3] == pytest.approx([1, 0, 0], abs=1e-6)
-        assert both.pose("old/upper")[3:] == pytest.approx([np.sin(half), 0, 0, np.cos(half)], abs=1e-6)
-        both.move(spin=np.pi, bend=0.9)
+        await eventually(lambda: comparison.pose("old/camera") is not None)
+        assert comparison.pose("old/lower") == pytest.approx([0, 0, 0, 0, 0, 0, 1], abs=1e-6)
+        middle_position = 0.75 / 2  # the middle of limits that exclude zero, as in joint_state_publisher
+        assert comparison.pose("old/upper")[:3] == pytest.approx([1, 0, 0], abs=1e-6)
+        assert comparison.pose("old/upper")[3:] == pytest.approx(
+            [np.sin(middle_position), 0, 0, np.cos(middle_position)], abs=1e-6
+        )
+        comparison.move(spin=np.pi, bend=0.9)
         turned = [-1, 0, 0]
-        await eventually(lambda: np.allclose(both.pose("old/upper")[:3], turned, atol=1e-6))
-        assert both.pose("old/lower")[3:] == pytest.approx([0, 0, 1, 0], abs=1e-6)
-        assert np.linalg.norm(both.pose("old/upper")[:3]) == pytest.approx(1.0), "the old joint is revolute"
+        await eventually(lambda: np.allclose(comparison.pose("old/upper")[:3], turned, atol=1e-6))
+        assert comparison.pose("old/lower")[3:] == pytest.approx([0, 0, 1, 0], abs=1e-6)
+        assert np.linalg.norm(comparison.pose("old/upper")[:3]) == pytest.approx(1.0), "the old joint is revolute"
 
 
 async def test_new_root_moves_old_robot(tmp_path):
-    lifted = NEW.replace('<link name="lidar"/>', '<link name="foot"/>').replace(
+    robot_with_foot = NEW.replace('<link name="lidar"/>', '<link name="foot"/>').replace(
         '<joint name="fix" type="fixed"><parent link="upper"/><child link="lidar"/></joint>',
         '<joint name="fix" type="fixed"><origin xyz="0 0 3"/><parent link="foot"/><child link="base"/></joint>',
     )
-    async with compared(tmp_path, lifted, NEW) as (both, client):
+    async with open_comparison(tmp_path, robot_with_foot, NEW) as (comparison, client):
         message = await client.until("compared_descriptions")
-        assert marks(message, "old") == {"foot": "removed"}
-        await eventually(lambda: both.pose("old/foot") is not None)
-        assert both.pose("old/base")[:3] == pytest.approx([0, 0, 0], abs=1e-6)
-        assert both.pose("old/foot")[:3] == pytest.approx([0, 0, -3], abs=1e-6)
+        assert difference_marks(message, "old") == {"foot": "removed"}
+        await eventually(lambda: comparison.pose("old/foot") is not None)
+        assert comparison.pose("old/base")[:3] == pytest.approx([0, 0, 0], abs=1e-6)
+        assert comparison.pose("old/foot")[:3] == pytest.approx([0, 0, -3], abs=1e-6)
 
 
 async def test_edited_description_is_compared_again(tmp_path):
-    async with compared(tmp_path) as (both, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         count = len((await client.until("compared_descriptions"))["items"])
-        both.write(tmp_path, "new.urdf", NEW.replace('mass value="2"', 'mass value="1"'))
-        both.show_new()
+        comparison.write(tmp_path, "new.urdf", NEW.replace('mass value="2"', 'mass value="1"'))
+        comparison.show_new()
         fewer = await client.until("compared_descriptions")
         assert len(fewer["items"]) == count - 1
-        assert "lower" in marks(fewer, "new"), "the name of its joint differs"
-        both.write(tmp_path, "old.urdf", both.pair.new.path.read_text(encoding="utf-8"))
-        both.show_old()
-        same = await client.until("compared_descriptions")
-        assert (same["items"], marks(same, "new"), marks(same, "old")) == ([], {}, {})
+        assert "lower" in difference_marks(fewer, "new"), "the name of its joint differs"
+        comparison.write(tmp_path, "old.urdf", comparison.pair.new.path.read_text(encoding="utf-8"))
+        comparison.show_old()
+        message = await client.until("compared_descriptions")
+        assert (message["items"], difference_marks(message, "new"), difference_marks(message, "old")) == ([], {}, {})
 
 
 async def test_source_text_of_both_descriptions_can_be_requested(tmp_path):
-    async with compared(tmp_path, NEW, NEW) as (both, client):
+    async with open_comparison(tmp_path, NEW, NEW) as (comparison, client):
         message = await client.until("compared_descriptions")
         assert message["items"] == []
         for side, name in (("old", "old.urdf"), ("new", "new.urdf")):
             file = str(tmp_path / name)
             await client.send("request_description_text", display=message[side]["display"], file=file)
             assert (await client.until("description_text", file=file))["text"] == NEW
-        assert both.world.library.packages(both.world.display("RobotModel").text) is None
+        assert comparison.world.library.packages(comparison.world.display("RobotModel").text) is None
 
 
 async def test_removed_old_display_is_reported_as_empty(tmp_path):
-    async with compared(tmp_path) as (both, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         message = await client.until("compared_descriptions")
         await client.send("remove_displays", displays=[message["old"]["display"]])
         assert (await client.until("compared_descriptions"))["old"]["display"] == ""
-        assert both.world.viewer.manager.display(message["old"]["display"]) is None
+        assert comparison.world.viewer.manager.display(message["old"]["display"]) is None
 
 
 async def test_exported_comparison_contains_no_paths(tmp_path):
-    async with compared(tmp_path) as (both, client):
+    async with open_comparison(tmp_path) as (comparison, client):
         await client.until("compared_descriptions")
-        manager = both.world.viewer.manager
+        manager = comparison.world.viewer.manager
         result = next(
             message
-            for message in both.world.viewer.configuration_messages(manager)
+            for message in comparison.world.viewer.configuration_messages(manager)
             if isinstance(message, ComparedDescriptions)
         )
-        bare = without_paths(result)
-        assert (bare.old.label, bare.new.label) == ("old.urdf", "new.urdf")
-        places = [place for item in bare.items for place in (item.old_place, item.new_place) if place is not None]
+        result_without_paths = without_paths(result)
+        assert (result_without_paths.old.label, result_without_paths.new.label) == ("old.urdf", "new.urdf")
+        places = [
+            place
+            for item in result_without_paths.items
+            for place in (item.old_place, item.new_place)
+            if place is not None
+        ]
         assert {place.file for place in places} == {""}
         assert {place.text.partition(":")[0] for place in places} == {"old.urdf", "new.urdf"}

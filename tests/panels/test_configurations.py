@@ -100,8 +100,8 @@ async def test_configuration_is_loaded_from_text():
         await client.send("load_configuration", name="mine.rviz", text="\ufeff" + TEXT, discard=False)
         await client.until("configuration", opened=2)
         await client.send("request_configuration_text")
-        answer = await client.until("configuration_text")
-        assert (answer["name"], answer["text"]) == ("untitled.rviz", TEXT)
+        response = await client.until("configuration_text")
+        assert (response["name"], response["text"]) == ("untitled.rviz", TEXT)
 
 
 async def test_configuration_is_reverted(tmp_path):

@@ -65,30 +65,30 @@ def describe(world, folder: Path) -> str:
     return text
 
 
-async def ask(client, kind: str, answer: str, **fields) -> dict:
-    await client.send(kind, **fields)
-    return await client.until(answer)
+async def request(client, request_kind: str, response_kind: str, **fields) -> dict:
+    await client.send(request_kind, **fields)
+    return await client.until(response_kind)
 
 
-def lines(text: str, written: dict) -> str:
+def text_of_range(text: str, written: dict) -> str:
     """Return the text of a range."""
-    rows = text.splitlines(keepends=True)[written["line"] - 1 : written["end_line"]]
-    rows[-1] = rows[-1][: written["end_column"] - 1]
-    rows[0] = rows[0][written["column"] - 1 :]
-    return "".join(rows)
+    text_lines = text.splitlines(keepends=True)[written["line"] - 1 : written["end_line"]]
+    text_lines[-1] = text_lines[-1][: written["end_column"] - 1]
+    text_lines[0] = text_lines[0][written["column"] - 1 :]
+    return "".join(text_lines)
 
 
 async def test_description_has_links_and_joints_with_locations(files):
     async with open_world() as world, page(world.viewer) as client:
         text = describe(world, files)
-        message = await ask(client, "request_description", "description", display=DISPLAY)
+        message = await request(client, "request_description", "description", display=DISPLAY)
     assert (message["name"], message["root"]) == ("wheeled", "base")
     links = {link["name"]: link for link in message["links"]}
     assert list(links) == ["base", "left_wheel", "right_wheel"]
     left = links["left_wheel"]
     assert (left["frame"], left["parent_joint"]) == ("left_wheel", "left_wheel_joint")
-    assert lines(text, left["written"]["expanded"]).startswith('<link name="left_wheel">')
-    assert lines(text, left["written"]["expanded"]).endswith("</link>")
+    assert text_of_range(text, left["written"]["expanded"]).startswith('<link name="left_wheel">')
+    assert text_of_range(text, left["written"]["expanded"]).endswith("</link>")
     origin = left["written"]["origin"]
     assert origin["file"] == str(files / "wheel.xacro")
     assert (origin["line"], origin["end_line"]) == (3, 9)
@@ -109,7 +109,7 @@ async def test_description_has_links_and_joints_with_locations(files):
 async def test_inertia_is_shown_as_equivalent_box(files):
     async with open_world() as world, page(world.viewer) as client:
         describe(world, files)
-        message = await ask(client, "request_description", "description", display=DISPLAY)
+        message = await request(client, "request_description", "description", display=DISPLAY)
     base, left, _ = (link["inertia"] for link in message["links"])
     assert (base["mass"], base["center"]) == (6, [0, 0, 0.1])
     # A cube of edge a has I = m a2 / 6.
@@ -120,7 +120,7 @@ async def test_inertia_is_shown_as_equivalent_box(files):
 async def test_implausible_inertias_are_reported_for_each_link_of_macro(files):
     async with open_world() as world, page(world.viewer) as client:
         describe(world, files)
-        message = await ask(client, "request_inertia", "inertia_findings", display=DISPLAY)
+        message = await request(client, "request_inertia", "inertia_findings", display=DISPLAY)
     broken = [finding["link"] for finding in message["findings"] if finding["code"] == "LW314"]
     assert broken == ["left_wheel", "right_wheel"]
     assert all(finding["message"] and finding["code"].startswith("LW3") for finding in message["findings"])
@@ -130,13 +130,13 @@ async def test_texts_are_sent_only_for_files_of_description(files):
     (files / "secret.txt").write_text("secret")
     async with open_world() as world, page(world.viewer) as client:
         text = describe(world, files)
-        message = await ask(client, "request_description", "description", display=DISPLAY)
+        message = await request(client, "request_description", "description", display=DISPLAY)
         assert [Path(name).name for name in message["files"]] == ["robot.xacro", "wheel.xacro", "sizes.yaml"]
 
         async def text_of(file: str) -> str | None:
-            answer = await ask(client, "request_description_text", "description_text", display=DISPLAY, file=file)
-            assert answer["file"] == file
-            return answer["text"]
+            response = await request(client, "request_description_text", "description_text", display=DISPLAY, file=file)
+            assert response["file"] == file
+            return response["text"]
 
         assert await text_of("") == text
         assert await text_of(str(files / "wheel.xacro")) == WHEEL
@@ -174,7 +174,7 @@ async def test_opened_page_is_notified_of_description():
         async with page(world.viewer) as client:
             message = await client.until("description_changed", display=DISPLAY)
             assert (message["links"], message["joints"]) == ([], [])
-            details = await ask(client, "request_description", "description", display=DISPLAY)
+            details = await request(client, "request_description", "description", display=DISPLAY)
     assert details["revision"] == message["revision"]
     # The description was published as text, without files.
     assert details["files"] == []
@@ -190,10 +190,10 @@ async def test_text_with_errors_is_sent_instead_of_shown_robot(files):
             examine(files / "robot.xacro")
         world.viewer.show_diagnostics(caught.value.diagnostics)
         file = str(files / "robot.xacro")
-        message = await ask(client, "request_description_text", "description_text", display=DISPLAY, file=file)
+        message = await request(client, "request_description_text", "description_text", display=DISPLAY, file=file)
         assert 'sid="left"' in message["text"]
         world.viewer.show_diagnostics([])
-        message = await ask(client, "request_description_text", "description_text", display=DISPLAY, file=file)
+        message = await request(client, "request_description_text", "description_text", display=DISPLAY, file=file)
         assert message["text"] == WHEELED
 
 
@@ -212,29 +212,37 @@ async def test_robot_with_all_meshes_missing_is_reported(files):
 
 async def test_requests_for_unknown_display_are_ignored():
     async with open_world(RvizConfig.for_model("base")) as world, page(world.viewer) as client:
-        answer = await ask(
+        response = await request(
             client, "request_description_text", "description_text", display="display-99", file="/etc/passwd"
         )
-        assert answer["text"] is None
+        assert response["text"] is None
         await client.send("request_description", display="display-99")
         await client.send("request_inertia", display="display-99")
-        rest = await client.drain()
-    assert not [message for message in rest if isinstance(message, dict) and message["type"] == "description"]
+        remaining_messages = await client.drain()
+    assert not [
+        message for message in remaining_messages if isinstance(message, dict) and message["type"] == "description"
+    ]
 
 
 async def test_page_with_own_displays_receives_only_their_descriptions(files):
     async with open_world() as world, page(world.viewer) as shared:
         describe(world, files)
-        answer = await shared.until("description_changed")
-        async with page(SimpleNamespace(url=f"{world.viewer.url}&own=of-my-own")) as alone:
-            mine = await alone.until("description_changed")
-            assert mine["display"] != answer["display"]
-            await alone.send("request_description", display=answer["display"])  # this page does not have that display
-            details = await ask(alone, "request_description", "description", display=mine["display"])
-            assert details["display"] == mine["display"]
+        response = await shared.until("description_changed")
+        async with page(SimpleNamespace(url=f"{world.viewer.url}&own=of-my-own")) as own_client:
+            own_description = await own_client.until("description_changed")
+            assert own_description["display"] != response["display"]
+            await own_client.send(
+                "request_description", display=response["display"]
+            )  # this page does not have that display
+            details = await request(
+                own_client, "request_description", "description", display=own_description["display"]
+            )
+            assert details["display"] == own_description["display"]
             describe(world, files)
-            rest = await shared.drain()
+            remaining_messages = await shared.drain()
     kinds = [
-        message["display"] for message in rest if isinstance(message, dict) and "description_changed" in message["type"]
+        message["display"]
+        for message in remaining_messages
+        if isinstance(message, dict) and "description_changed" in message["type"]
     ]
-    assert set(kinds) <= {answer["display"]}
+    assert set(kinds) <= {response["display"]}

@@ -48,11 +48,11 @@ def describe(world: Any, file: Path) -> None:
     world.describe(world.library.store(examine(file)))
 
 
-def content(file: Path) -> str:
+def file_content(file: Path) -> str:
     return file.read_text()
 
 
-def write(file: Path, text: str) -> None:
+def write_file(file: Path, text: str) -> None:
     file.write_text(text)
 
 
@@ -60,19 +60,19 @@ def delete_file(file: Path) -> None:
     file.unlink()
 
 
-async def ask(client: Any, kind: str, answer: str, **fields: Any) -> dict[str, Any]:
-    await client.send(kind, **fields)
-    reply: dict[str, Any] = await client.until(answer)
-    return reply
+async def request(client: Any, request_kind: str, response_kind: str, **fields: Any) -> dict[str, Any]:
+    await client.send(request_kind, **fields)
+    response: dict[str, Any] = await client.until(response_kind)
+    return response
 
 
-async def parts(client: Any, link: str) -> dict[str, Any]:
-    return await ask(client, "request_editable_parts", "editable_parts", display=DISPLAY, link=link)
+async def request_parts(client: Any, link: str) -> dict[str, Any]:
+    return await request(client, "request_editable_parts", "editable_parts", display=DISPLAY, link=link)
 
 
-async def preview(client: Any, number: int, part: str, name: str, **fields: Any) -> dict[str, Any]:
+async def request_preview(client: Any, number: int, part: str, name: str, **fields: Any) -> dict[str, Any]:
     question = {"index": 0, "xyz": None, "rpy": None, "together": False, **fields}
-    return await ask(
+    return await request(
         client, "preview_edit", "edit_preview", number=number, display=DISPLAY, part=part, name=name, **question
     )
 
@@ -81,9 +81,11 @@ async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        answer = await parts(client, "mast")
-        assert answer["refusal_reason"] == ""
-        part_facts = [(part["part"], part["name"], part["title"], part["xyz"], part["rpy"]) for part in answer["parts"]]
+        response = await request_parts(client, "mast")
+        assert response["refusal_reason"] == ""
+        part_facts = [
+            (part["part"], part["name"], part["title"], part["xyz"], part["rpy"]) for part in response["parts"]
+        ]
         assert part_facts == [
             ("joint", "turn", "continuous", [0, 0, 0.25], [0, 0, 0.5]),
             ("axis", "turn", "continuous", [0, 0, 1], []),
@@ -91,14 +93,14 @@ async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
             ("collision", "mast", "mast.stl", [0, 0, 0], [0, 0, 0]),
             ("inertial", "mast", "1.5 kg", [0, 0, 0.4], [0, 0, 0]),
         ]
-        assert [part["written"] for part in answer["parts"]] == [
+        assert [part["written"] for part in response["parts"]] == [
             'xyz="0 0 ${height}" rpy="0 0 0.5"',
             'xyz="0 0 1"',
             'xyz="0 0 0.5"',
             "",
             'xyz="0 0 0.4"',
         ]
-        assert {(part["file"], part["line"]) for part in answer["parts"][:2]} == {(str(file), 19)}
+        assert {(part["file"], part["line"]) for part in response["parts"][:2]} == {(str(file), 19)}
 
 
 async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
@@ -110,56 +112,56 @@ async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        answer = await parts(client, "base")
-        assert "described in SDF" in answer["refusal_reason"]
-        refused = await preview(client, 1, "visual", "base", xyz=[0, 0, 1])
+        response = await request_parts(client, "base")
+        assert "described in SDF" in response["refusal_reason"]
+        refused = await request_preview(client, 1, "visual", "base", xyz=[0, 0, 1])
         assert refused["files"] == []
-        assert refused["refusal"]["message"] == answer["refusal_reason"]
+        assert refused["refusal"]["message"] == response["refusal_reason"]
 
 
 async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        shown = await preview(client, 7, "joint", "turn", xyz=[0, 0, 0.3])
+        shown = await request_preview(client, 7, "joint", "turn", xyz=[0, 0, 0.3])
         assert (shown["number"], shown["refusal"], shown["also"]) == (7, None, [])
         (changed,) = shown["files"]
         assert changed["file"] == str(file)
         old, new = '  <xacro:property name="height" value="0.25"/>', '  <xacro:property name="height" value="0.3"/>'
         assert [line for line in changed["diff"] if line[0] in "+-"] == [f"-{old}", f"+{new}"]
-        assert content(file) == ROBOT
+        assert file_content(file) == ROBOT
 
-        written = await ask(client, "apply_edit", "edit_written", number=7)
+        written = await request(client, "apply_edit", "edit_written", number=7)
         assert (written["files"], written["refusal"]) == ([str(file)], None)
-        assert content(file) == ROBOT.replace(old, new)
+        assert file_content(file) == ROBOT.replace(old, new)
         history = await client.until("edit_history")
         assert (history["can_undo"], history["can_redo"]) == (True, False)
 
-        await ask(client, "undo_edit", "edit_written")
-        assert content(file) == ROBOT
-        await ask(client, "redo_edit", "edit_written")
-        assert content(file) == ROBOT.replace(old, new)
+        await request(client, "undo_edit", "edit_written")
+        assert file_content(file) == ROBOT
+        await request(client, "redo_edit", "edit_written")
+        assert file_content(file) == ROBOT.replace(old, new)
 
 
 async def test_only_previewed_edit_is_written(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
-        assert (await ask(client, "apply_edit", "edit_written", number=2))["refusal"]["code"] == "EDIT101"
-        assert content(file) == ROBOT
+        await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
+        assert (await request(client, "apply_edit", "edit_written", number=2))["refusal"]["code"] == "EDIT101"
+        assert file_content(file) == ROBOT
 
 
 async def test_edit_with_side_effects_requires_together_option(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        refused = await preview(client, 1, "joint", "left_joint", xyz=[0, 0, 0.2])
+        refused = await request_preview(client, 1, "joint", "left_joint", xyz=[0, 0, 0.2])
         assert refused["files"] == []
         assert refused["refusal"]["code"] == "EDIT104"
         assert refused["refusal"]["line"] == 7
         assert "right_joint" in refused["refusal"]["message"]
-        shown = await preview(client, 2, "joint", "left_joint", xyz=[0, 0, 0.2], together=True)
+        shown = await request_preview(client, 2, "joint", "left_joint", xyz=[0, 0, 0.2], together=True)
         assert (shown["refusal"], shown["also"]) == (None, ["joint 'right_joint'"])
 
 
@@ -167,32 +169,32 @@ async def test_file_changed_after_preview_is_not_overwritten(file: Path) -> None
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        await preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
-        write(file, ROBOT + "<!-- mine -->")
-        assert (await ask(client, "apply_edit", "edit_written", number=1))["refusal"]["code"] == "EDIT107"
-        assert content(file) == ROBOT + "<!-- mine -->"
+        await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
+        write_file(file, ROBOT + "<!-- mine -->")
+        assert (await request(client, "apply_edit", "edit_written", number=1))["refusal"]["code"] == "EDIT107"
+        assert file_content(file) == ROBOT + "<!-- mine -->"
 
 
 async def test_malformed_or_missing_file_is_reported_and_editing_continues(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        write(file, "<robot")
-        assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"].startswith("XML")
+        write_file(file, "<robot")
+        assert (await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"].startswith("XML")
         delete_file(file)
-        assert (await preview(client, 2, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is not None
-        write(file, ROBOT)
-        assert (await preview(client, 3, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is None
-        assert (await preview(client, 4, "joint", "turn", xyz=[0, 1]))["refusal"]["code"] == "EDIT102"
+        assert (await request_preview(client, 2, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is not None
+        write_file(file, ROBOT)
+        assert (await request_preview(client, 3, "joint", "turn", xyz=[0, 0, 1]))["refusal"] is None
+        assert (await request_preview(client, 4, "joint", "turn", xyz=[0, 1]))["refusal"]["code"] == "EDIT102"
 
 
 async def test_description_without_file_cannot_be_edited(file: Path) -> None:
     async with open_world() as world, page(world.viewer) as client:
         world.describe(ARM)
         await client.until("description_changed")
-        answer = await parts(client, "base")
-        assert "linkwright view FILE" in answer["refusal_reason"]
-        assert (await preview(client, 1, "joint", "shoulder", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT101"
+        response = await request_parts(client, "base")
+        assert "linkwright view FILE" in response["refusal_reason"]
+        assert (await request_preview(client, 1, "joint", "shoulder", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT101"
 
 
 async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -206,7 +208,7 @@ async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pyte
     async with open_world() as world, page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
-        assert "open on the machine with the files" in (await parts(client, "mast"))["refusal_reason"]
-        assert (await preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"
-        assert (await ask(client, "undo_edit", "edit_written"))["refusal"]["code"] == "EDIT109"
-    assert content(file) == ROBOT
+        assert "open on the machine with the files" in (await request_parts(client, "mast"))["refusal_reason"]
+        assert (await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 1]))["refusal"]["code"] == "EDIT109"
+        assert (await request(client, "undo_edit", "edit_written"))["refusal"]["code"] == "EDIT109"
+    assert file_content(file) == ROBOT

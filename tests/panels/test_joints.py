@@ -1,3 +1,5 @@
+"""The Joints panel: its rows, and the positions that it publishes."""
+
 from __future__ import annotations
 
 import math
@@ -45,13 +47,13 @@ async def panel(graph):
 
 
 @pytest.fixture
-def published():
+def published_messages():
     return []
 
 
 @pytest.fixture
-def bridge(published):
-    pages = SimpleNamespace(publish=published.append)
+def bridge(published_messages):
+    pages = SimpleNamespace(publish=published_messages.append)
     return JointsFeature(SimpleNamespace(context=SimpleNamespace(pages=pages), managers=None))
 
 
@@ -61,7 +63,7 @@ async def until_published(graph, bridge):
     await eventually(lambda: bridge._send_timer is None)
 
 
-async def filled(graph, panel):
+async def fill_panel(graph, panel):
     from linkwright.graph import DESCRIPTION_QOS
     from linkwright.messages import String
 
@@ -77,10 +79,10 @@ def test_bridge_without_panel_has_no_joints(bridge):
     bridge.receive(PAGE, RandomizeJoints())
 
 
-async def test_attached_panel_publishes_controls_and_positions(graph, bridge, panel, published):
-    await filled(graph, panel)
+async def test_attached_panel_publishes_controls_and_positions(graph, bridge, panel, published_messages):
+    await fill_panel(graph, panel)
     bridge.attach(panel)
-    controls, positions = published
+    controls, positions = published_messages
     by_name = {control.name: control for control in controls.controls}
     assert (by_name["turn"].kind, by_name["turn"].lower, by_name["turn"].upper) == ("continuous", -math.pi, math.pi)
     assert (by_name["open"].lower, by_name["open"].upper) == (0.01, 0.05)
@@ -88,45 +90,45 @@ async def test_attached_panel_publishes_controls_and_positions(graph, bridge, pa
     follow = by_name["follow"]
     assert (follow.mimic, follow.multiplier, follow.offset) == ("open", -1.0, 0.0)
     assert positions.positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
-    assert bridge.opening_messages() == published
+    assert bridge.opening_messages() == published_messages
 
 
-async def test_joint_rows_follow_description(graph, bridge, panel, published):
+async def test_joint_rows_follow_description(graph, bridge, panel, published_messages):
     bridge.attach(panel)
-    assert published[0] == Joints([])
-    await filled(graph, panel)
+    assert published_messages[0] == Joints([])
+    await fill_panel(graph, panel)
     await until_published(graph, bridge)
-    last = {type(message): message for message in published}
+    last = {type(message): message for message in published_messages}
     assert [control.name for control in last[Joints].controls] == ["turn", "open", "follow"]
     assert set(last[JointPositions].positions) == {"turn", "open", "follow"}
 
 
-async def test_pages_move_free_joints(graph, bridge, panel, published):
-    await filled(graph, panel)
+async def test_pages_move_free_joints(graph, bridge, panel, published_messages):
+    await fill_panel(graph, panel)
     bridge.attach(panel)
     bridge.receive(PAGE, SetJoint("turn", 0.5))
     bridge.receive(PAGE, SetJoint("open", 7.0))
     bridge.receive(PAGE, SetJoint("follow", 0.0))
     bridge.receive(PAGE, SetJoint("nobody", 0.0))
     await until_published(graph, bridge)
-    assert published[-1].positions == pytest.approx({"turn": 0.5, "open": 0.05, "follow": -0.05})
+    assert published_messages[-1].positions == pytest.approx({"turn": 0.5, "open": 0.05, "follow": -0.05})
     bridge.receive(PAGE, SetJoints({"turn": -0.25, "open": 0.02, "follow": 1.0, "nobody": 1.0}))
     await until_published(graph, bridge)
-    assert published[-1].positions == pytest.approx({"turn": -0.25, "open": 0.02, "follow": -0.02})
+    assert published_messages[-1].positions == pytest.approx({"turn": -0.25, "open": 0.02, "follow": -0.02})
     bridge.receive(PAGE, CenterJoints())
     await until_published(graph, bridge)
-    assert published[-1].positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
+    assert published_messages[-1].positions == pytest.approx({"turn": 0.0, "open": 0.03, "follow": -0.03})
     bridge.receive(PAGE, RandomizeJoints())
     await until_published(graph, bridge)
-    assert published[-1].positions["turn"] != 0.0
+    assert published_messages[-1].positions["turn"] != 0.0
 
 
-async def test_detached_panel_publishes_nothing(graph, bridge, panel, published):
-    await filled(graph, panel)
+async def test_detached_panel_publishes_nothing(graph, bridge, panel, published_messages):
+    await fill_panel(graph, panel)
     bridge.attach(panel)
     bridge.attach(None)
-    assert published[-1] == Joints(None)
-    count = len(published)
+    assert published_messages[-1] == Joints(None)
+    count = len(published_messages)
     panel.randomize()
     await until_published(graph, bridge)
-    assert len(published) == count
+    assert len(published_messages) == count

@@ -18,10 +18,10 @@ from linkwright.page.protocol.message import BadMessageError, decode, define_lat
 from linkwright.page.protocol.message import Received
 define_later("{PROTOCOL}:WatchNavigation")
 """
-GOOD = """
+SUCCESS_CHECK = """
 assert decode('{"type":"watch_navigation","open":true}').open
 """
-WRONG = """
+FAILURE_CHECK = """
 try:
     decode('{"type":"watch_navigation"}')
 except BadMessageError as error:
@@ -35,6 +35,6 @@ def test_message_address_matches_class(address: str):
     assert import_path_of(getattr(import_module(module), name)) == address
 
 
-@pytest.mark.parametrize(("sent", "defined"), [("", False), (GOOD, True), (WRONG, True)])
+@pytest.mark.parametrize(("sent", "defined"), [("", False), (SUCCESS_CHECK, True), (FAILURE_CHECK, True)])
 def test_first_message_imports_its_class(sent: str, defined: bool):
     assert (PROTOCOL in loaded_by(f"exec({PROGRAM + sent!r})")) is defined

@@ -17,41 +17,41 @@ FIRST_OF_RVIZ = {"Selection": False, "Tool Properties": False}
 """The hidden panels of RViz's first window."""
 
 
-def parsed(geometry: str = "", panels: str = RVIZ_PANELS) -> RvizConfig:
+def parse_panels(geometry: str = "", panels: str = RVIZ_PANELS) -> RvizConfig:
     return RvizConfig.parse(panels + DISPLAYS + geometry)
 
 
-def changes(config: RvizConfig, before: str) -> list[str]:
+def changed_lines(config: RvizConfig, before: str) -> list[str]:
     """Return the changed lines, without those that only contain the state of the window."""
     lines = difflib.ndiff(before.splitlines(), config.text().splitlines())
     return [line for line in lines if line[0] in "+-" and "QMainWindow State" not in line]
 
 
 def test_listed_panels_are_shown_in_file_order():
-    assert parsed().panels.shown == ["displays", "selection", "tool-properties", "views"]
-    assert parsed(panels="Panels: []\n").panels.shown == []
-    assert parsed(panels="").panels.shown is None
-    assert parsed(panels="Panels: ~\n").panels.shown is None
+    assert parse_panels().panels.shown == ["displays", "selection", "tool-properties", "views"]
+    assert parse_panels(panels="Panels: []\n").panels.shown == []
+    assert parse_panels(panels="").panels.shown is None
+    assert parse_panels(panels="Panels: ~\n").panels.shown is None
 
 
 def test_panels_hidden_in_window_state_are_not_shown():
-    assert parsed(window_state(**FIRST_OF_RVIZ)).panels.shown == ["displays", "views"]
-    assert parsed(window_state(Views=False)).panels.shown == ["displays", "selection", "tool-properties"]
+    assert parse_panels(window_state(**FIRST_OF_RVIZ)).panels.shown == ["displays", "views"]
+    assert parse_panels(window_state(Views=False)).panels.shown == ["displays", "selection", "tool-properties"]
 
 
 def test_panels_on_collapsed_window_side_are_not_shown():
-    assert parsed(window_state(("Views",), hide_right=True)).panels.shown == [
+    assert parse_panels(window_state(("Views",), hide_right=True)).panels.shown == [
         "displays",
         "selection",
         "tool-properties",
     ]
     # RViz shows a collapsed dock if its side is not hidden.
-    assert "views" in (parsed(window_state(("Views",), Views=False)).panels.shown or [])
+    assert "views" in (parse_panels(window_state(("Views",), Views=False)).panels.shown or [])
 
 
 def test_rviz1_panel_names_are_recognized_and_unnamed_entries_skipped():
     former = ("Displays, Name: Displays", "Time, Name: Zeit", "Views")
-    config = parsed(panels="Panels:\n" + "".join(f"  - {{Class: rviz/{name}}}\n" for name in former))
+    config = parse_panels(panels="Panels:\n" + "".join(f"  - {{Class: rviz/{name}}}\n" for name in former))
     assert config.panels.shown == ["displays", "time"]
     config.panels.show(["displays", "time", "selection", "transformation"])
     assert config.panels.shown == ["displays", "time", "selection"]
@@ -60,7 +60,7 @@ def test_rviz1_panel_names_are_recognized_and_unnamed_entries_skipped():
 
 
 def test_unknown_panels_are_reported_once_and_kept():
-    config = parsed()
+    config = parse_panels()
     assert [(warning.code, warning.span.line) for warning in config.warnings] == [("RVIZ204", 16)]
     assert "'Knobs'" in config.warnings[0].message
     config.panels.show([])
@@ -69,19 +69,19 @@ def test_unknown_panels_are_reported_once_and_kept():
 
 
 def test_closed_panel_is_hidden_in_window_state_and_keeps_entry():
-    config = parsed(window_state(**FIRST_OF_RVIZ))
+    config = parse_panels(window_state(**FIRST_OF_RVIZ))
     before = config.text()
     assert config.panels.show(["displays"])
-    assert changes(config, before) == []
-    again = RvizConfig.parse(config.text())
-    assert again.panels.shown == ["displays"]
-    assert not again.panels.show(["displays"])
-    assert again.panels.show(["displays", "views"])
-    assert (again.panels.shown, again.text()) == (["displays", "views"], before)
+    assert changed_lines(config, before) == []
+    reread = RvizConfig.parse(config.text())
+    assert reread.panels.shown == ["displays"]
+    assert not reread.panels.show(["displays"])
+    assert reread.panels.show(["displays", "views"])
+    assert (reread.panels.shown, reread.text()) == (["displays", "views"], before)
 
 
 def test_closed_panel_without_window_state_returns_to_its_position():
-    config = parsed()
+    config = parse_panels()
     before = config.text()
     config.panels.show(["tool-properties"])
     assert RvizConfig.parse(config.text()).panels.shown == ["tool-properties"]
@@ -91,26 +91,26 @@ def test_closed_panel_without_window_state_returns_to_its_position():
 
 def test_opened_panel_missing_from_file_is_added():
     for geometry in ("", window_state(**FIRST_OF_RVIZ)):
-        config = parsed(geometry)
+        config = parse_panels(geometry)
         before = config.text()
         shown = config.panels.shown
         config.panels.show([*shown, "time"])
-        assert changes(config, before) == ["+   - Class: rviz_common/Time", "+     Name: Time"]
+        assert changed_lines(config, before) == ["+   - Class: rviz_common/Time", "+     Name: Time"]
         assert RvizConfig.parse(config.text()).panels.shown == [*shown, "time"]
         config.panels.show(shown)
         assert config.text() == before
 
 
 def test_opened_panel_is_expanded():
-    config = parsed(window_state(("Views",), hide_right=True, Views=False))
+    config = parse_panels(window_state(("Views",), hide_right=True, Views=False))
     before = config.text()
     config.panels.show([*config.panels.shown, "views"])
     assert RvizConfig.parse(config.text()).panels.shown == ["displays", "selection", "tool-properties", "views"]
-    assert changes(config, before) == ["-     collapsed: true", "+     collapsed: false"]
+    assert changed_lines(config, before) == ["-     collapsed: true", "+     collapsed: false"]
 
 
 def test_file_without_panels_gets_a_list():
-    config = parsed(panels="")
+    config = parse_panels(panels="")
     assert config.panels.show(["displays", "time"])
     assert RvizConfig.parse(config.text()).panels.shown == ["displays", "time"]
     assert config.text().startswith("Panels:\n- Class: rviz_common/Displays\n  Name: Displays\n- Class: rviz_")
@@ -158,8 +158,8 @@ async def test_panel_changes_do_not_affect_other_pages(tmp_path):
         await client.send("show_panels", shown=[])
         await other.until("configuration", unsaved=True)
         assert "panels" not in [message["type"] for message in await other.drain() if isinstance(message, dict)]
-        async with page(world.viewer) as late:
-            assert (await late.opened())["panels"]["shown"] == []
+        async with page(world.viewer) as late_client:
+            assert (await late_client.opened())["panels"]["shown"] == []
 
 
 async def test_panel_changes_without_file_are_not_unsaved_edits(tmp_path):

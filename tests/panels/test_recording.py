@@ -16,7 +16,7 @@ from linkwright.page.access import TOKEN_PARAMETER
 from linkwright.panels import recording as module
 from linkwright.panels.recording import RecordingFeature
 from tests.full_disk import full_disk, needs_limits
-from tests.panels.test_live_history import KEPT, publish_positions
+from tests.panels.test_live_history import MAX_HISTORY_BYTES, publish_positions
 from tests.panels.test_time import config
 from tests.panels.test_timeline import open_recording
 from tests.recordings import needs_rosbags
@@ -120,12 +120,12 @@ async def test_pages_share_recording_that_outlives_its_page():
             await world.settle()
             await asyncio.sleep(2.0)
             assert (await other.until("recording_state"))["path"] == recording_state["path"]
-        async with page(world.viewer) as late:
-            assert (await late.until("recording_state"))["path"] == state["path"]
+        async with page(world.viewer) as late_client:
+            assert (await late_client.until("recording_state"))["path"] == state["path"]
             world.move_arm(2.0)
             await world.settle()
-            await late.send("stop_recording")
-            assert [file["path"] for file in (await wait_for_end(late))["files"]] == [state["path"]]
+            await late_client.send("stop_recording")
+            assert [file["path"] for file in (await wait_for_end(late_client))["files"]] == [state["path"]]
 
 
 @skipping
@@ -251,28 +251,28 @@ async def test_simulated_time_reset_stops_recording():
 
 @skipping
 async def test_history_and_part_of_history_are_saved():
-    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
         await client.until("recording_state")
         world.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
-        between = await publish_positions(world)
-        (whole,) = (await saved(client))["files"]
-        with BagReader(whole["path"]) as bag:
+        times_between = await publish_positions(world)
+        (whole_file,) = (await saved(client))["files"]
+        with BagReader(whole_file["path"]) as bag:
             assert len(list(bag.messages([TF]))) == 5
-        part = (await saved(client, between[1], between[3]))["files"][0]
-        assert part["path"] != whole["path"]
+        part = (await saved(client, times_between[1], times_between[3]))["files"][0]
+        assert part["path"] != whole_file["path"]
         with BagReader(part["path"]) as bag:
             stamps = [stamp / 1e9 for _, stamp, _ in bag.messages()]
-            assert between[1] - 1e-6 <= stamps[0] <= stamps[-1] <= between[3]
+            assert times_between[1] - 1e-6 <= stamps[0] <= stamps[-1] <= times_between[3]
             assert len(list(bag.messages(["/tf_static"]))) == 1, "earlier static transforms are included"
-            later = [stamp for _, stamp, _ in bag.messages([TF]) if stamp / 1e9 > between[1] + 1e-6]
+            later = [stamp for _, stamp, _ in bag.messages([TF]) if stamp / 1e9 > times_between[1] + 1e-6]
             assert len(later) == 2
-        nothing = await saved(client, 1.0, 2.0)
-        assert "no messages arrived in that time" in nothing["problem"]
+        empty_result = await saved(client, 1.0, 2.0)
+        assert "no messages arrived in that time" in empty_result["problem"]
 
 
 @skipping
 async def test_saved_simulation_history_starts_at_last_time_reset():
-    async with open_world(config(), history=KEPT) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
         await client.until("recording_state")
         world.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
         clock = world.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
@@ -307,13 +307,13 @@ async def test_recording_can_be_downloaded_completely_and_repeatedly():
         address = world.viewer.url.split(f"?{TOKEN_PARAMETER}")[0].rstrip("/") + file["url"]
         async with aiohttp.ClientSession() as session:
             for _ in range(2):
-                async with session.get(address) as answer:
-                    assert answer.status == 200
-                    assert answer.headers["Content-Disposition"].endswith(path.name)
-                    assert await answer.read() == path.read_bytes()
+                async with session.get(address) as response:
+                    assert response.status == 200
+                    assert response.headers["Content-Disposition"].endswith(path.name)
+                    assert await response.read() == path.read_bytes()
             path.unlink()
-            async with session.get(address) as answer:
-                assert answer.status == 404
+            async with session.get(address) as response:
+                assert response.status == 404
 
 
 @skipping

@@ -1,3 +1,5 @@
+"""The Time panel: pauses, and synchronization with a topic."""
+
 from __future__ import annotations
 
 import asyncio
@@ -111,9 +113,9 @@ async def test_pause_stops_frames_and_messages_for_all_pages():
         await world.settle()
         drained = await first.drain()
         assert all(isinstance(message, dict) for message in drained)  # no transforms and no data
-        async with page(world.viewer) as late:
-            assert (await late.opened())["time_state"]["paused"] is True
-            await arrived(late, "tip", 1.0)
+        async with page(world.viewer) as late_client:
+            assert (await late_client.opened())["time_state"]["paused"] is True
+            await arrived(late_client, "tip", 1.0)
         await first.send("set_time", paused=False, mode="Off", source="")
         await arrived(first, "tip", 3.0)
         display = world.display("PointStamped")

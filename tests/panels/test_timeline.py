@@ -16,28 +16,34 @@ from tests.panels.test_time import POINT, arrived, config, point
 from tests.skipping import skipping
 from tests.viewer.scene import World, open_world, page
 
-START = 1_700_000_000
-SECOND = 1_000_000_000
+START_S = 1_700_000_000
+SECOND_NS = 1_000_000_000
 
 
 def recorded(folder: Path) -> Path:
-    """Record ten seconds: a point each second, and a frame with x = the seconds since the start."""
+    """Record ten seconds with a point each second.
+
+    The x of a frame is the seconds since the start.
+    """
     pytest.importorskip("rosbags", reason="rosbags has no wheel for Python 3.15")
     path = folder / "drive"
     with BagWriter(path) as writer:
         writer.add_topic("/p", POINT, [DEFAULT_QOS])
         writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
         for second in range(11):
-            stamp = (START + second) * SECOND
+            stamp = (START_S + second) * SECOND_NS
             batch = TransformBatch(("base",), ("tip",), stamp, np.array([[second, 0, 0, 0, 0, 0, 1.0]]))
             writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
-            writer.write("/p", stamp, serialize(point(float(second), START + second)))
+            writer.write("/p", stamp, serialize(point(float(second), START_S + second)))
     return path
 
 
 @asynccontextmanager
 async def open_recording(folder: Path, **other: str) -> AsyncIterator[World]:
-    """Show the recording in a viewer, in the recording's time, optionally with words of its files replaced."""
+    """Show the recording in a viewer, in the recording's time.
+
+    Words of its files can be replaced.
+    """
     path = recorded(folder)
     for file in path.iterdir():
         for word, instead in other.items():
@@ -57,11 +63,11 @@ async def open_recording(folder: Path, **other: str) -> AsyncIterator[World]:
 async def test_page_receives_timeline_and_playback_starts(tmp_path):
     async with open_recording(tmp_path) as world, page(world.viewer) as client:
         timeline = await client.until("timeline")
-        assert (timeline["name"], timeline["start"], timeline["end"]) == ("drive", START, START + 10)
+        assert (timeline["name"], timeline["start"], timeline["end"]) == ("drive", START_S, START_S + 10)
         assert {topic["name"]: sum(topic["counts"]) for topic in timeline["topics"]} == {"/p": 11, "/tf": 11}
         await client.until("playhead", playing=True)
         await arrived(client, "tip", 3)
-        await client.until("playhead", playing=False, position=START + 10)
+        await client.until("playhead", playing=False, position=START_S + 10)
 
 
 @skipping
@@ -71,11 +77,11 @@ async def test_seek_shows_data_of_that_time(tmp_path):
         await client.send("play", playing=False)
         await client.until("playhead", playing=False)
         for second in (7, 2, 9):
-            await client.send("seek_time", position=START + second)
-            await client.until("playhead", position=START + second, playing=False)
+            await client.send("seek_time", position=START_S + second)
+            await client.until("playhead", position=START_S + second, playing=False)
             await arrived(client, "tip", second)
         await client.send("step_time", forward=False)
-        await client.until("playhead", position=START + 8)
+        await client.until("playhead", position=START_S + 8)
         await arrived(client, "tip", 8)
 
 
@@ -99,7 +105,7 @@ async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
         async with page(world.viewer) as client:
             assert (await client.until("simulation_status"))["present"] is False
             state.publish(state.msg_type(state=1))
-            await client.until("playhead", playing=False, position=START + 10)
+            await client.until("playhead", playing=False, position=START_S + 10)
             messages = [
                 message
                 for message in client.messages

@@ -1,3 +1,5 @@
+"""The tools of RViz: their properties, and what they publish."""
+
 from __future__ import annotations
 
 import math

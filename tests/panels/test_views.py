@@ -1,3 +1,5 @@
+"""The views of RViz: their properties, values and files."""
+
 from __future__ import annotations
 
 import pytest
@@ -77,9 +79,9 @@ def test_view_of_each_class_survives_saving(cls):
     view.values |= {name: value + 0.25 for name, value in view.values.items() if isinstance(value, float)}
     view.values["Target Frame"] = "base_link"
     config.views.current = view
-    again = RvizConfig.parse(config.text())
-    assert again.views.current == view
-    assert again.warnings == []
+    reread = RvizConfig.parse(config.text())
+    assert reread.views.current == view
+    assert reread.warnings == []
     current = yaml.safe_load(config.text())["Visualization Manager"]["Views"]["Current"]
     assert current["Value"].startswith(cls.rpartition("/")[2])
 
@@ -177,8 +179,8 @@ def test_saved_views_are_renamed_changed_and_removed():
     ]
     assert saved[0]["Other"] == "kept"
     assert saved[1]["Position"] == {"X": 1, "Y": 2, "Z": 3}
-    again = RvizConfig.parse(config.text()).views
-    assert list(again.saved.values()) == [config.views.saved[above], config.views.saved[added]]
+    reread = RvizConfig.parse(config.text()).views
+    assert list(reread.saved.values()) == [config.views.saved[above], config.views.saved[added]]
 
 
 def test_view_can_be_saved_to_file_without_saved_views():

@@ -1,3 +1,5 @@
+"""Attitude from accelerometers, gyroscopes and magnetometers."""
+
 from __future__ import annotations
 
 from math import atan2, cos, pi, sin
@@ -16,7 +18,7 @@ from linkwright.geometry.single import (
 from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, WorldFrame, attitude_at_rest
 
 angles = st.floats(-1.4, 1.4)
-DIP = 1.0
+MAGNETIC_DIP_RAD = 1.0
 """The angle of the magnetic field below the horizon, in rad."""
 
 
@@ -27,9 +29,9 @@ def acceleration_at_rest(orientation, world=WorldFrame.ENU):
 
 def field(orientation, world=WorldFrame.ENU):
     """Return the reading of a magnetometer."""
-    level, down = cos(DIP), -sin(DIP) * world.up
+    level, vertical = cos(MAGNETIC_DIP_RAD), -sin(MAGNETIC_DIP_RAD) * world.up
     return rotate(
-        quaternion_inverse(orientation), (0.0, level, down) if world is WorldFrame.ENU else (level, 0.0, down)
+        quaternion_inverse(orientation), (0.0, level, vertical) if world is WorldFrame.ENU else (level, 0.0, vertical)
     )
 
 
@@ -49,8 +51,8 @@ def test_attitude_at_rest_matches_orientation(roll, pitch, yaw, world):
         )
         < 1e-6
     )
-    without = rpy_from_quaternion(attitude_at_rest(acceleration_at_rest(orientation, world), None, world))
-    assert without == pytest.approx((roll, pitch, 0.0), abs=1e-9)
+    rpy_without_field = rpy_from_quaternion(attitude_at_rest(acceleration_at_rest(orientation, world), None, world))
+    assert rpy_without_field == pytest.approx((roll, pitch, 0.0), abs=1e-9)
 
 
 def test_attitude_at_rest_without_direction_is_none():
@@ -112,18 +114,21 @@ def test_complementary_filter_estimates_bias_at_rest():
     for _ in range(1500):
         attitude_filter.update((0.0, 0.0, 0.05), (0.0, 0.0, GRAVITY), None, 0.01)
     assert attitude_filter.bias[2] == pytest.approx(0.05, abs=1e-3)
-    still = ComplementaryFilter(do_bias_estimation=False)
-    still.update((0.0, 0.0, 0.05), (0.0, 0.0, GRAVITY), None, 0.01)
-    assert still.bias == (0.0, 0.0, 0.0)
+    without_estimation = ComplementaryFilter(do_bias_estimation=False)
+    without_estimation.update((0.0, 0.0, 0.05), (0.0, 0.0, GRAVITY), None, 0.01)
+    assert without_estimation.bias == (0.0, 0.0, 0.0)
 
 
 def test_adaptive_gain_ignores_linear_acceleration():
-    careful, trusting = ComplementaryFilter(gain_acc=0.05), ComplementaryFilter(gain_acc=0.05, do_adaptive_gain=False)
+    fixed_gain, adaptive_gain = (
+        ComplementaryFilter(gain_acc=0.05),
+        ComplementaryFilter(gain_acc=0.05, do_adaptive_gain=False),
+    )
     for _ in range(100):
-        for attitude_filter in (careful, trusting):
+        for attitude_filter in (fixed_gain, adaptive_gain):
             attitude_filter.update((0.0, 0.0, 0.0), (8.0, 0.0, GRAVITY), None, 0.01)
-    assert abs(rpy_from_quaternion(careful.orientation)[1]) < 1e-9
-    assert abs(rpy_from_quaternion(trusting.orientation)[1]) > 0.5
+    assert abs(rpy_from_quaternion(fixed_gain.orientation)[1]) < 1e-9
+    assert abs(rpy_from_quaternion(adaptive_gain.orientation)[1]) > 0.5
 
 
 def test_madgwick_converges_from_half_turn():

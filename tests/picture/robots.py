@@ -26,11 +26,11 @@ def link(name: str, shape: str, color: str, origin: str = "0 0 0", rpy: str = "0
     )
 
 
-def joint(name: str, parent: str, child: str, kind: str = "fixed", xyz: str = "0 0 0", rest: str = "") -> str:
+def joint(name: str, parent: str, child: str, kind: str = "fixed", xyz: str = "0 0 0", content: str = "") -> str:
     """Return a joint."""
     return (
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
-        f'<origin xyz="{xyz}"/>{rest}</joint>'
+        f'<origin xyz="{xyz}"/>{content}</joint>'
     )
 
 
@@ -53,11 +53,11 @@ def image(text: str, view: str = "front", size: tuple[int, int] = (120, 90), **s
 def mostly(pixel: np.ndarray) -> str:
     """Return the channel that is by far the strongest, or ``gray`` if there is none."""
     red, green, blue = (int(value) for value in pixel[:3])
-    for name, value, others in (
+    for name, value, other_channels in (
         ("red", red, (green, blue)),
         ("green", green, (red, blue)),
         ("blue", blue, (red, green)),
     ):
-        if value > 60 + max(others):
+        if value > 60 + max(other_channels):
             return name
     return "grey"

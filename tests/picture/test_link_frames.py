@@ -28,8 +28,8 @@ def test_link_frames_match_kinematics(source: str) -> None:
 
 def test_joint_that_excludes_zero_starts_in_middle_of_limits() -> None:
     robot = load(ARM)
-    started, given = link_frames(robot, {}), link_frames(robot, {"bend": 1.2})
-    assert started == given
+    by_default, with_position = link_frames(robot, {}), link_frames(robot, {"bend": 1.2})
+    assert by_default == with_position
 
 
 def test_unknown_and_mimic_joints_are_rejected() -> None:

@@ -119,15 +119,15 @@ def test_mesh_sizes_and_colors_match_page(tmp_path: Path) -> None:
     shown = scene(robot_of(golden_links(tmp_path)))
     assert shown.problems == ()
     drawn = {body.name: surface for body, surface in zip(shown.mesh.bodies, shown.mesh.surfaces, strict=True)}
-    wrong = {}
-    for name, (_, _, _, _, (least, most), color, opacity) in GOLDEN.items():
+    mismatches = {}
+    for name, (_, _, _, _, (lower_corner, upper_corner), color, opacity) in GOLDEN.items():
         surface = drawn[name]
         hex_color = "#" + "".join(f"{round(value * 255):02x}" for value in surface.color)
         low, high = surface.points.min(axis=0).tolist(), surface.points.max(axis=0).tolist()
-        is_in_place = low == pytest.approx(least, abs=1e-5) and high == pytest.approx(most, abs=1e-5)
+        is_in_place = low == pytest.approx(lower_corner, abs=1e-5) and high == pytest.approx(upper_corner, abs=1e-5)
         if not is_in_place or hex_color != color or surface.alpha != pytest.approx(opacity):
-            wrong[name] = (low, high, hex_color, surface.alpha)
-    assert wrong == {}
+            mismatches[name] = (low, high, hex_color, surface.alpha)
+    assert mismatches == {}
 
 
 def test_robots_share_read_meshes(tmp_path: Path) -> None:

@@ -40,19 +40,19 @@ def test_nearest_triangle_is_kept_at_each_sample() -> None:
         buffer = DepthBuffer(20, 0, 20, 1.0, 0.0)
         for index in order:
             buffer.add(crossing, np.array([index]))
-        seen = buffer.visible_triangles(1)
-        assert seen is not None
-        row = seen.triangles[seen.y == 0.5]
+        visible = buffer.visible_triangles(1)
+        assert visible is not None
+        row = visible.triangles[visible.y == 0.5]
         assert row.tolist() == [1] * 10 + [0] * 10 or row.tolist() == [1] * 10 + [0] * 9
 
 
 def test_triangles_are_clipped_at_borders() -> None:
     buffer = DepthBuffer(10, 5, 8, 1.0, 0.0)
     buffer.add(triangles([(-1e6, -1e6, 0.5), (1e6, -1e6, 0.5), (0, 1e6, 0.5)]), np.array([0]))
-    seen = buffer.visible_triangles(1)
-    assert seen is not None
-    assert seen.mask.all()
-    assert seen.mask.shape == (3, 10)
+    visible = buffer.visible_triangles(1)
+    assert visible is not None
+    assert visible.mask.all()
+    assert visible.mask.shape == (3, 10)
 
 
 def test_triangle_seen_edge_on_has_no_samples() -> None:

@@ -40,7 +40,10 @@ def test_link_order_does_not_affect_visibility() -> None:
 
 
 def test_coplanar_surfaces_do_not_flicker() -> None:
-    """Two meshes contain the same face with different rounding. The first mesh is visible everywhere."""
+    """Two meshes contain the same face with different rounding.
+
+    The first mesh is visible everywhere.
+    """
     text = urdf(
         link("base", BOX, RED, rpy="0.3 0.2 0.4"),
         link("other", BOX, BLUE, rpy="0.3 0.2 0.4"),
@@ -91,11 +94,11 @@ def test_robot_fits_and_fills_image(view: View) -> None:
 
 
 def test_two_robots_share_camera() -> None:
-    small, large = scene(ONE), scene(urdf(link("base", '<box size="3 3 3"/>', RED)))
-    camera = camera_for(VIEWS["front"], (480, 360), small, large)
+    small_scene, large_scene = scene(ONE), scene(urdf(link("base", '<box size="3 3 3"/>', RED)))
+    camera = camera_for(VIEWS["front"], (480, 360), small_scene, large_scene)
     covered = [
         int((render(scene, style=Style(transparent=True), camera=camera)[:, :, 3] == 255).sum())
-        for scene in (small, large)
+        for scene in (small_scene, large_scene)
     ]
     assert covered[1] == pytest.approx(9 * covered[0], rel=0.1)
 
@@ -143,9 +146,9 @@ def test_outline_is_visible_behind_other_links() -> None:
 
 def test_ghost_is_translucent_without_shadow() -> None:
     moved = scene(urdf(link("base", BOX, RED, "0 1.5 0")), ghost=GHOST_COLOR)
-    both = Scene.__add__(scene(ONE), moved)
-    camera = camera_for(VIEWS["front"], (200, 100), both)
-    pixels = render(both, style=Style(transparent=True), camera=camera)
+    combined = Scene.__add__(scene(ONE), moved)
+    camera = camera_for(VIEWS["front"], (200, 100), combined)
+    pixels = render(combined, style=Style(transparent=True), camera=camera)
     x, y, _ = camera.project(np.array([(0.5, 1.5, 0.0), (0.5, 0.0, 0.0)]))
     ghost, solid = (pixels[int(row), int(column)] for row, column in zip(y, x, strict=True))
     assert 40 < ghost[3] < 200
@@ -171,9 +174,9 @@ def test_labels_are_dark_text_on_light_background(labels: str) -> None:
 
 def test_large_image_is_identical_when_rendered_in_bands(monkeypatch: pytest.MonkeyPatch) -> None:
     text = two_boxes(RED, "0.1 0.1 0.9 0.5")
-    whole = image(text, "iso", (160, 120), grid=True)
+    expected = image(text, "iso", (160, 120), grid=True)
     monkeypatch.setattr("linkwright.picture.rendering._BAND_SAMPLES", 20_000)
-    assert np.abs(image(text, "iso", (160, 120), grid=True).astype(int) - whole).max() <= 1
+    assert np.abs(image(text, "iso", (160, 120), grid=True).astype(int) - expected).max() <= 1
 
 
 def test_robot_without_visuals_gives_empty_image() -> None:
@@ -197,7 +200,9 @@ def test_shapes_without_size_are_ignored(shape: str) -> None:
 
 def test_out_of_range_link_is_omitted_with_finding() -> None:
     slide = '<axis xyz="1 0 0"/><limit lower="0" upper="1" effort="1" velocity="1"/>'
-    text = urdf(link("base", BOX, RED), link("other", BOX, BLUE), joint("j", "base", "other", "prismatic", rest=slide))
+    text = urdf(
+        link("base", BOX, RED), link("other", BOX, BLUE), joint("j", "base", "other", "prismatic", content=slide)
+    )
     for broken, positions in (
         (text, {"j": 1e300}),
         (text.replace('<box size="1 1 1"/>', '<box size="1e300 1 1"/>', 1), {}),
@@ -218,13 +223,13 @@ def test_bodies_cast_shadows_on_each_other() -> None:
     above = link("other", '<box size="0.5 0.5 0.5"/>', RED, "0 0 1")
     with_box = urdf(plate, above, joint("j", "base", "other"))
     camera = camera_for(View(0.0, 50.0), (240, 180), scene(with_box))
-    alone, shaded = (
+    unshaded, shaded = (
         render(scene(text), camera=camera)[:, :, :3].astype(int).sum(axis=2) for text in (urdf(plate), with_box)
     )
     x, y, _ = camera.project(
         np.stack(np.meshgrid(np.linspace(-1.4, 1.4, 57), np.linspace(-1.4, 1.4, 57), [0.05]), -1).reshape(-1, 3)
     )
-    darker = [(alone - shaded)[int(row), int(column)] for row, column in zip(y, x, strict=True)]
+    darker = [(unshaded - shaded)[int(row), int(column)] for row, column in zip(y, x, strict=True)]
     assert sum(40 < difference < 250 for difference in darker) > 20
 
 

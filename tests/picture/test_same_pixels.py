@@ -1,4 +1,6 @@
-"""The same pixels on every machine: digests of images, also in processes that disable features of the processor.
+"""The same pixels on every machine.
+
+The tests compare digests of images, also in processes that disable features of the processor.
 
 After an intended change of the pixels, copy the digests that the failing tests print.
 """

@@ -21,9 +21,9 @@ def test_run_coroutine_returns_result() -> None:
     async def seven() -> int:
         return 7
 
-    seen = []
-    assert run_coroutine(seven, lambda: seen.append(signal.getsignal(signal.SIGINT))) == 7
-    assert seen == [signal.default_int_handler]
+    observed = []
+    assert run_coroutine(seven, lambda: observed.append(signal.getsignal(signal.SIGINT))) == 7
+    assert observed == [signal.default_int_handler]
 
 
 def test_ctrl_c_cancels_coroutine_at_next_await() -> None:

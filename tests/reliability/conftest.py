@@ -1,3 +1,5 @@
+"""Fixtures of the reliability tests, which run after all other tests."""
+
 from __future__ import annotations
 
 from collections.abc import Iterator

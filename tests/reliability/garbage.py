@@ -24,9 +24,9 @@ from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
 from linkwright.wire.dds.settings import read_settings
-from tests.wire.ros_peer import as_bytes, make_type, text
+from tests.wire.ros_peer import as_bytes, make_type, read_text
 
-ROUNDS = 40
+ROUND_COUNT = 40
 HEADER = b"\0\1\0\0"
 RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
 LASTING = RELIABLE + Qos(Policy.Durability.TransientLocal)
@@ -37,8 +37,11 @@ def writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> 
 
 
 def bodies(lottery: random.Random) -> list[bytes]:
-    """Return bytes that are rarely a valid message, each with an encapsulation header that Cyclone accepts."""
-    packets = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUNDS)]
+    """Return bytes that are rarely a valid message.
+
+    Each has an encapsulation header that Cyclone accepts.
+    """
+    packets = [HEADER + lottery.randbytes(4 * lottery.randrange(1, 40)) for _ in range(ROUND_COUNT)]
     packets += [HEADER + struct.pack("<I", length) + bytes(4) for length in (2**32 - 1, 2**31, 10_000_000, 0)]
     packets += [HEADER + struct.pack("<I", 3) + bytes([0xFF, byte, 0, 0]) for byte in range(1, 60)]
     packets += [HEADER + b"\2\0\0\0\xff\0\0\0", HEADER]
@@ -46,7 +49,10 @@ def bodies(lottery: random.Random) -> list[bytes]:
 
 
 def announcements(participant: bytes) -> list[bytes]:
-    """Return possible announcements of a participant in the layout of Humble, with impossible node names."""
+    """Return possible announcements of a participant in the layout of Humble.
+
+    The node names are impossible.
+    """
 
     def name(value: bytes) -> bytes:
         return struct.pack("<I", len(value) + 1) + value + bytes(4 - len(value) % 4)
@@ -102,7 +108,7 @@ def main() -> None:
                 written += 1
         print("written", name, written, flush=True)
     time.sleep(0.5)
-    writers["rt/words"].write(string(HEADER + text("fine")))
+    writers["rt/words"].write(string(HEADER + read_text("fine")))
     print("last", flush=True)
     while not Path("leave").exists():  # gives receivers the time to read the last message
         time.sleep(0.01)

@@ -1,4 +1,7 @@
-"""Real processes: the `linkwright` command and users' programs, and the processes that they leave."""
+"""The processes of the `linkwright` command and of users' programs.
+
+The tests also check the processes that these leave.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ import psutil
 
 from linkwright.standins.process import environment
 from tests.begun import BEGUN, command_that_reports
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 LINKWRIGHT = str(Path(sys.executable).with_name("linkwright"))
 PROGRAM = """\
@@ -84,7 +87,7 @@ class Running:
         rows = [line.split() for line in tuple(self.lines) if line.split()[:1] == [word]]
         return int(rows[-1][1]) if rows else -1
 
-    def wait_for(self, text: str, seconds: float = SECONDS, times: int = 1) -> None:
+    def wait_for(self, text: str, seconds: float = TIMEOUT_S, times: int = 1) -> None:
         """Wait until a number of lines contain a text."""
         wait_until(lambda: self.count(text) >= times, seconds, lambda: f"'{text}' in\n{self.text}")
 
@@ -99,7 +102,7 @@ class Running:
         self.process.kill()
         self.process.wait()
 
-    def wait(self, seconds: float = SECONDS) -> int:
+    def wait(self, seconds: float = TIMEOUT_S) -> int:
         """Wait for the end of the process, and return its exit status."""
         status = self.process.wait(seconds)
         self._reader.join(60.0)
@@ -159,7 +162,7 @@ class Machine:
         running.lines.remove(f"{BEGUN}\n")
         return running
 
-    def verb(self, *words: object, seconds: float = SECONDS, **variables: str) -> str:
+    def verb(self, *words: object, seconds: float = TIMEOUT_S, **variables: str) -> str:
         """Return the output of ``linkwright WORDS``, which must succeed in time."""
         running = self.command(*words, **variables)
         status = running.wait(seconds)
@@ -200,7 +203,10 @@ def program(text: str) -> str:
 
 
 def launch_file(*actions: str) -> str:
-    """Return a launch file with actions; ``rclpy_node(name, path)`` runs a program with respawn."""
+    """Return a launch file with actions.
+
+    ``rclpy_node(name, path)`` runs a program with respawn.
+    """
     lines = ",\n        ".join(actions)
     return (
         "import sys\nfrom launch import LaunchDescription\nfrom launch.actions import *\n"

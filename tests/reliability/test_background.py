@@ -1,4 +1,7 @@
-"""Programs that a script starts with ``&`` inherit an ignored SIGINT; ``kill -INT`` ends them, as it ends ROS's."""
+"""Programs that a script starts with ``&`` inherit an ignored SIGINT.
+
+``kill -INT`` ends them, as it ends ROS's.
+"""
 
 from __future__ import annotations
 
@@ -52,7 +55,10 @@ def catches_interrupts(process: int) -> bool:
 
 
 def interrupt_when_ready(running: Running, text: str) -> int:
-    """Wait until a process handles SIGINT and has printed a text; interrupt it, and return its exit status."""
+    """Wait until a process handles SIGINT and has printed a text.
+
+    Interrupt it, and return its exit status.
+    """
     wait_until(lambda: catches_interrupts(running.process.pid), what=lambda: running.text)
     if text:
         running.wait_for(text)
@@ -81,7 +87,10 @@ def test_background_user_node_ends_on_sigint(background: Machine) -> None:
 
 
 def test_process_in_background_launch_can_be_interrupted_alone(background: Machine) -> None:
-    """The process has the system's default for SIGINT, as in a terminal, however the launch was started."""
+    """A process of a background launch can be interrupted.
+
+    It has the system's default for SIGINT, as in a terminal, however the launch was started.
+    """
     path = background.write("speaker.py", program(SPEAKING))
     action = f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], output='screen')"
     running = background.launch(background.write("a.launch.py", launch_file(action)))

@@ -112,7 +112,10 @@ def test_blocking_subscriber_does_not_delay_others(machine: Machine) -> None:
 
 @pytest.mark.parametrize("size", [10, 20_000])
 def test_reliable_messages_are_not_lost_with_slow_subscriber(machine: Machine, size: int) -> None:
-    """The queue is unlimited, and the flood ends long before the subscriber has read all messages."""
+    """Reliable messages are not lost without a limit of the queue.
+
+    The flood ends long before the subscriber has read all messages.
+    """
     listener = machine.program(
         """
         class Program(Node):
@@ -218,7 +221,10 @@ def test_service_answers_while_process_is_flooded(machine: Machine) -> None:
 
 
 def test_stopped_process_does_not_block_publisher(machine: Machine) -> None:
-    """While a process is stopped as by a debugger, the publisher continues. The resumed process gets new messages."""
+    """While a process is stopped as by a debugger, the publisher continues.
+
+    The resumed process gets new messages.
+    """
     talker = machine.program(
         """
         class Program(Node):

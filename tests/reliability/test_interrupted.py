@@ -1,4 +1,7 @@
-"""Ctrl-C at every moment: the program ends at once with the right status, and leaves nothing behind."""
+"""Ctrl-C at every moment.
+
+The program ends at once with the right status, and leaves nothing behind.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ import pytest
 
 from tests.begun import BEGUN, command_that_reports
 from tests.reliability.running import MARK, Machine, launch_file, program
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 TALKER = """
 class Program(Node):
@@ -64,16 +67,19 @@ def test_launch_interrupted_at_random_startup_moments_ends_cleanly(machine: Mach
         running = machine.start_handling_interrupts("launch", launch, "--no-open")
         time.sleep(delay)
         status = running.interrupt()
-        where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
-        assert status == 130, where
-        assert not re.search(r"^Traceback", running.text, re.MULTILINE), where
-        wait_until(lambda running=running: not running.left_behind(), what=where)
+        failure_text = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
+        assert status == 130, failure_text
+        assert not re.search(r"^Traceback", running.text, re.MULTILINE), failure_text
+        wait_until(lambda running=running: not running.left_behind(), what=failure_text)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("delay", [0.1, 0.2, 0.35, 0.6, 1.2])
 def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) -> None:
-    """Type Ctrl-C in the terminal of a launch, and in the terminal of a recording, which reads keys."""
+    """Ctrl-C restores the settings of a terminal.
+
+    It is typed in the terminal of a launch, and in the terminal of a recording, which reads keys.
+    """
     path = machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
     bag = machine.folder / f"bag_{delay}"
     for words in (["launch", str(path)], ["bag", "record", "-a", "-o", str(bag)]):
@@ -97,7 +103,7 @@ def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) ->
             wait_until(lambda heard=chunks: BEGUN.encode() in b"".join(heard))
             time.sleep(delay)
             os.write(main, b"\x03")
-            status = process.wait(SECONDS)
+            status = process.wait(TIMEOUT_S)
         finally:
             process.kill()
         text = b"".join(chunks).decode(errors="replace")
@@ -196,9 +202,9 @@ def test_topic_echo_interrupted_during_startup_exits_with_130(machine: Machine) 
         running = machine.start_handling_interrupts("topic", "echo", "/chatter", "std_msgs/msg/Int32")
         time.sleep(delay)
         status = running.interrupt()
-        where = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
-        assert status == 130, where
-        assert not traceback_in(running.text), where
+        failure_text = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
+        assert status == 130, failure_text
+        assert not traceback_in(running.text), failure_text
 
 
 def test_interrupted_recording_is_complete(machine: Machine) -> None:

@@ -1,4 +1,7 @@
-"""Ctrl-C while a command has much to do: it ends with the status for that, and without a traceback."""
+"""Ctrl-C while a command has much to do.
+
+It ends with the status for that, and without a traceback.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ import psutil
 import pytest
 
 from tests.begun import BEGUN, command_that_reports
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 MOMENTS = (0.0, 0.5, 1.0)
 """The times of the interrupts: seconds of processor time since the start of the command."""
@@ -46,7 +49,7 @@ COMMANDS = [
 def test_busy_command_ends_on_interrupt(words: list[str], tmp_path: Path) -> None:
     (tmp_path / "hard.xacro").write_text(HARD)
     (tmp_path / "endless.launch.py").write_text(ENDLESS)
-    for moment in MOMENTS:
+    for interrupt_point in MOMENTS:
         process = subprocess.Popen(
             command_that_reports("linkwright", *words),
             cwd=tmp_path,
@@ -58,10 +61,10 @@ def test_busy_command_ends_on_interrupt(words: list[str], tmp_path: Path) -> Non
             assert process.stdout is not None
             assert process.stdout.readline() == BEGUN + "\n"
             watched = psutil.Process(process.pid)
-            begun = _work(watched)
-            wait_until(lambda: _work(watched) >= begun + moment, what=words)  # noqa: B023 - called at once
+            work_before = _work(watched)
+            wait_until(lambda: _work(watched) >= work_before + interrupt_point, what=words)  # noqa: B023 - called at once
             process.send_signal(signal.SIGINT)
-            _, output = process.communicate(timeout=SECONDS)
+            _, output = process.communicate(timeout=TIMEOUT_S)
         finally:
             process.kill()
             process.wait()
@@ -74,6 +77,6 @@ def _work(process: psutil.Process) -> float:
     total = 0.0
     for worker in (process, *process.children(recursive=True)):
         with suppress(psutil.NoSuchProcess):
-            used = worker.cpu_times()
-            total += used.user + used.system
+            cpu_times = worker.cpu_times()
+            total += cpu_times.user + cpu_times.system
     return total

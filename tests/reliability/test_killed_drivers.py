@@ -1,4 +1,7 @@
-"""A robot that another process drives: it stops if the process is killed, and continues if the process leaves."""
+"""A robot that another process drives.
+
+It stops if the process is killed, and continues if the process leaves.
+"""
 
 from __future__ import annotations
 
@@ -21,12 +24,12 @@ class Program(Node):
         twist.linear.x = 0.3
         self.publisher.publish(twist)
 """
-AUDIENCE = """
+LISTENER = """
 from nav_msgs.msg import Odometry
 
 class Program(Node):
     def __init__(self):
-        super().__init__("audience")
+        super().__init__("listener")
         self.state, self.way = "", 0
         self.create_subscription(Odometry, "odom", self.hear, 10)
 
@@ -45,16 +48,16 @@ class Program(Node):
 
 def test_robot_stops_when_driver_is_killed_but_not_when_it_exits(machine: Machine) -> None:
     launch = machine.launch(LAUNCH_FILE)
-    audience = machine.program(AUDIENCE)
-    audience.wait_for("stands")
+    listener = machine.program(LISTENER)
+    listener.wait_for("stands")
     driver = machine.program(DRIVER)
-    audience.wait_for("moves")
+    listener.wait_for("moves")
     driver.kill()
-    audience.wait_for("stands", times=2)
+    listener.wait_for("stands", times=2)
     launch.wait_for("'/driver', which sent the commands on '/cmd_vel', was lost")
     machine.verb("topic", "pub", "--once", "/cmd_vel", "geometry_msgs/msg/Twist", "{linear: {x: 0.3}}")
-    audience.wait_for("moves", times=2)
-    audience.wait_for("way", times=audience.count("way") + 3)
-    assert audience.count("stands") == 2, audience.text
+    listener.wait_for("moves", times=2)
+    listener.wait_for("way", times=listener.count("way") + 3)
+    assert listener.count("stands") == 2, listener.text
     assert launch.count("was lost") == 1, launch.text
     assert launch.interrupt() == 130

@@ -47,7 +47,7 @@ def test_launch_starts_five_hundred_nodes(machine: Machine) -> None:
     launch.wait_for("started in the launcher's process", times=500)
     names = {f"/frames_{number}" for number in range(500)}
     wait_until(lambda: set(machine.verb("node", "list", seconds=30.0).split()) >= names)
-    late = machine.program(
+    late_program = machine.program(
         """
         from tf2_msgs.msg import TFMessage
 
@@ -65,7 +65,7 @@ def test_launch_starts_five_hundred_nodes(machine: Machine) -> None:
                 say("frames", len(self.frames))
         """
     )
-    late.wait_for("frames 500")
+    late_program.wait_for("frames 500")
     assert launch.interrupt() == 130
     wait_until(lambda: not launch.left_behind())
 
@@ -74,7 +74,7 @@ def test_late_subscriber_receives_description_and_static_transforms(machine: Mac
     model = ROBOT / "urdf" / "mbot_with_laser.urdf"
     launch = machine.launch(ROBOT / "launch" / "display.launch.py", f"model:={model}")
     launch.wait_for("Robot initialized")
-    late = machine.program(
+    late_program = machine.program(
         """
         from rclpy.time import Time
         from tf2_ros import Buffer, TransformListener
@@ -97,15 +97,18 @@ def test_late_subscriber_receives_description_and_static_transforms(machine: Mac
                         say("frame", name)
         """
     )
-    late.wait_for("described")
-    late.wait_for("frame laser_link")
-    assert late.count("described") == 1
+    late_program.wait_for("described")
+    late_program.wait_for("frame laser_link")
+    assert late_program.count("described") == 1
     echoed = machine.verb("topic", "echo", "/tf_static", "--once")
     assert "child_frame_id: laser_link" in echoed
 
 
 def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
-    """With LINKWRIGHT_DDS=0, a process works, has no socket for other processes, and discovers no nodes."""
+    """A process with LINKWRIGHT_DDS=0 works in isolation.
+
+    It has no socket for other processes, and discovers no nodes.
+    """
     path = machine.write(
         "a.launch.py",
         launch_file(
@@ -113,21 +116,24 @@ def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
             "Node(package='demo_nodes_cpp', executable='listener')",
         ),
     )
-    alone, seen = machine.launch(path, LINKWRIGHT_DDS="0"), machine.launch(path)
-    for process in (alone, seen):
+    isolated, connected = machine.launch(path, LINKWRIGHT_DDS="0"), machine.launch(path)
+    for process in (isolated, connected):
         process.wait_for("I heard: ", times=3)
-    sockets = psutil.Process(alone.process.pid).net_connections("udp")
+    sockets = psutil.Process(isolated.process.pid).net_connections("udp")
     assert sockets == []
     assert machine.verb("node", "list").split() == ["/listener", "/talker"]
     deaf = machine.command("node", "list", LINKWRIGHT_DDS="0")
     assert deaf.wait() == 1
     assert "unset LINKWRIGHT_DDS" in deaf.text
-    assert not alone.count("Another process")
-    assert alone.interrupt() == seen.interrupt() == 130
+    assert not isolated.count("Another process")
+    assert isolated.interrupt() == connected.interrupt() == 130
 
 
 def test_launch_leaves_no_threads_or_processes(machine: Machine) -> None:
-    """The threads and processes of a started launch, seen from outside after it was interrupted."""
+    """An interrupted launch leaves no threads or processes.
+
+    They are seen from outside.
+    """
     program = machine.write("p.py", "import time\nprint('up', flush=True)\ntime.sleep(60)\n")
     path = machine.write(
         "a.launch.py",

@@ -41,8 +41,8 @@ def test_malformed_packets_are_dropped_and_reported_once(machine: Machine) -> No
     assert "Traceback" not in listener.text, listener.text
     assert listener.count("Dropped a malformed message of topic '/words'") == 1
     assert listener.count("alformed request") <= 1
-    answer = machine.verb("service", "call", "/flip", "std_srvs/srv/SetBool", "{data: false}")
-    assert "success=True" in answer
+    response = machine.verb("service", "call", "/flip", "std_srvs/srv/SetBool", "{data: false}")
+    assert "success=True" in response
     assert "/listener" in machine.verb("node", "list").split()
     garbage.wait()
     wait_until(lambda: machine.verb("node", "list").split() == ["/listener"])

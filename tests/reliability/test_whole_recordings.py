@@ -1,4 +1,7 @@
-"""Recordings are whole however a signal ends them: an event loop that hangs, a second Ctrl-C, SIGTERM."""
+"""Recordings are complete after any signal.
+
+The tests cover an event loop that hangs, a second Ctrl-C, and SIGTERM.
+"""
 
 from __future__ import annotations
 

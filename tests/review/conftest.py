@@ -56,7 +56,10 @@ def breaking(result: Review) -> list[str]:
 
 @pytest.fixture
 def changes_of(repository, compare):
-    """Review a replacement in a launch file, and return the sentences of all changes and of the breaking ones."""
+    """Review a replacement in a launch file.
+
+    Return the sentences of all changes and of the breaking ones.
+    """
 
     def run(name: str, text: str, old: str, new: str):
         assert old in text

@@ -1,4 +1,7 @@
-"""Scenarios that run in both versions with the same seeds: noise, changes, bounds and errors."""
+"""Scenarios that run in both versions with the same seeds.
+
+The tests cover noise, changes, bounds and errors.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +27,7 @@ def drive(speed, seed):
 VALUES = {"FAILS": "False", "OFFSET": "0.0", "NOISE": "0.0", "BOUND": "99", "MODE": "'a'"}
 
 
-def text_with(**values: str) -> str:
+def scenario_text(**values: str) -> str:
     text = SCENARIO
     for name, value in {**VALUES, **values}.items():
         text = text.replace(name, value)
@@ -48,8 +51,8 @@ def compare_scenario(package):
 @pytest.fixture
 def compared(package, compare_scenario):
     def run(old: dict[str, str], new: dict[str, str], seeds: int | None = None):
-        package.commit({"tests/drive.py": text_with(**old)})
-        package.commit({"tests/drive.py": text_with(**new)})
+        package.commit({"tests/drive.py": scenario_text(**old)})
+        package.commit({"tests/drive.py": scenario_text(**new)})
         return compare_scenario(seeds)
 
     return run
@@ -94,7 +97,7 @@ def test_scenario_that_cannot_run_is_a_problem(compared):
     assert str(problem.text).startswith("the scenario cannot run in the new version: ")
 
 
-PATHS = """from linkwright.sweep import Uniform, scenario
+PATH_SCENARIO = """from linkwright.sweep import Uniform, scenario
 
 
 @scenario(speed=[1.0, 2.0], gain=Uniform(0.5, 1.0), seeds=3)
@@ -105,8 +108,8 @@ def drive(speed, gain, seed):
 
 
 def test_paths_are_compared_for_each_listed_parameter(package, compare_scenario):
-    package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.0")})
-    package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.01")})
+    package.commit({"tests/drive.py": PATH_SCENARIO.replace("OFFSET", "0.0")})
+    package.commit({"tests/drive.py": PATH_SCENARIO.replace("OFFSET", "0.01")})
     scenario_comparison = compare_scenario()
     assert sentences(scenario_comparison) == [
         "track, speed=2.0: paths up to 2.4 m apart (seed 2, after 4 s), median of 3 runs 1.6 m",
@@ -116,8 +119,8 @@ def test_paths_are_compared_for_each_listed_parameter(package, compare_scenario)
 
 
 def test_paths_are_in_all_reports_with_the_same_bytes_twice(package, compare_scenario):
-    package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.0")})
-    package.commit({"tests/drive.py": PATHS.replace("OFFSET", "0.01")})
+    package.commit({"tests/drive.py": PATH_SCENARIO.replace("OFFSET", "0.0")})
+    package.commit({"tests/drive.py": PATH_SCENARIO.replace("OFFSET", "0.01")})
     reviews = [Review("a", "b", [compare_scenario()]) for _ in range(2)]
     first, second = (as_html(review) for review in reviews)
     assert first == second
@@ -154,8 +157,8 @@ def drive():
 
 def test_scenarios_run_only_on_request(package, tmp_path, monkeypatch, capsys):
     mark = tmp_path / "ran"
-    package.commit({"tests/drive.py": text_with()})
-    package.commit({"tests/drive.py": f"open({str(mark)!r}, 'w')\n" + text_with(BOUND="3")})
+    package.commit({"tests/drive.py": scenario_text()})
+    package.commit({"tests/drive.py": f"open({str(mark)!r}, 'w')\n" + scenario_text(BOUND="3")})
     monkeypatch.chdir(package.root)
     assert main(["review", "HEAD~1..HEAD"]) == 0
     assert not mark.exists()

@@ -15,7 +15,10 @@ SEGMENT = "arm_description/urdf/segment.xacro"
 
 @pytest.fixture
 def history(package, monkeypatch) -> Repository:
-    """Twelve commits: the fourth makes the segments longer, the eighth renames the file, the ninth does not expand."""
+    """Create a history of twelve commits.
+
+    The fourth makes the segments longer, the eighth renames the file, and the ninth does not expand.
+    """
     monkeypatch.chdir(package.root)
     for number in range(2, 13):
         files: dict[str, str | None] = {"README.md": f"Commit {number}."}

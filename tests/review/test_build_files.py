@@ -320,7 +320,7 @@ DEPENDENCIES = EXPORTS.replace(
 )
 
 
-def changes_of_dependencies(repository, compare, *replacements):
+def find_dependency_changes(repository, compare, *replacements):
     repository.commit({"a/package.xml": DEPENDENCIES})
     text = DEPENDENCIES
     for old, new in replacements:
@@ -332,7 +332,7 @@ def changes_of_dependencies(repository, compare, *replacements):
 
 
 def test_dependencies_with_the_same_tags_are_one_line(repository, compare):
-    found, _ = changes_of_dependencies(repository, compare, (">gears<", ">wheels<"), (">levers<", ">cranks<"))
+    found, _ = find_dependency_changes(repository, compare, (">gears<", ">wheels<"), (">levers<", ">cranks<"))
     assert found == [
         "build_depend + exec_depend added: wheels, cranks",
         "build_depend + exec_depend removed: gears, levers",
@@ -346,7 +346,7 @@ def test_dependencies_with_the_same_tags_are_one_line(repository, compare):
 def test_added_and_removed_dependencies_have_their_conditions(repository, compare, attributes, shown):
     old = "  <exec_depend>gears</exec_depend>\n"
     new = f"  <exec_depend {attributes}>wheels</exec_depend>\n"
-    found, _ = changes_of_dependencies(repository, compare, (f"  <build_depend>gears</build_depend>\n{old}", new))
+    found, _ = find_dependency_changes(repository, compare, (f"  <build_depend>gears</build_depend>\n{old}", new))
     assert found[0] == f"exec_depend added: wheels ({shown})"
     text = DEPENDENCIES.replace(old, "").replace("  <build_depend>gears</build_depend>\n", "")
     repository.commit({"a/package.xml": text.replace("  <exec_depend>xacro", f"{new}  <exec_depend>xacro")})
@@ -376,7 +376,7 @@ def test_dependency_that_others_get_no_more_through_the_package_is_breaking(repo
 def test_all_conditions_of_a_dependency_are_compared(repository, compare):
     lines = [line for line in DEPENDENCIES.splitlines(keepends=True) if "bridge" in line]
     new = "  <exec_depend>bridge</exec_depend>\n"
-    found, breaking_ones = changes_of_dependencies(repository, compare, (lines[0], new), (lines[1], ""))
+    found, breaking_ones = find_dependency_changes(repository, compare, (lines[0], new), (lines[1], ""))
     assert found == [
         "exec_depend bridge: if $SIMULATOR == 'old'; if $SIMULATOR == 'new' -> always",
         "environment variable 'SIMULATOR' does not decide any more what is built",

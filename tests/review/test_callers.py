@@ -1,4 +1,4 @@
-"""The lines of a review about Python files that still import or call what a module no longer has so."""
+"""The lines of a review about Python files that use removed parts of a module."""
 
 from __future__ import annotations
 
@@ -32,7 +32,10 @@ CALLER = "from arm.plans import load, walk\nfrom . import plans\n\n\ndef main():
 
 @pytest.fixture
 def calls(repository, compare):
-    """Review a replacement in the module, and return the breaking lines of the caller with their places."""
+    """Review a replacement in the module.
+
+    Return the breaking lines of the caller with their places.
+    """
 
     def run(old, new, caller=CALLER, path="arm/arm/node.py", module="arm/arm/plans.py"):
         assert old in MODULE

@@ -185,10 +185,10 @@ def test_values_that_other_lines_tell_are_not_told_again(lines):
 
 @pytest.mark.parametrize(("is_new", "expected"), [(True, "new"), (False, "old")])
 def test_a_source_with_a_syntax_error_loses_no_names(repository, compare, is_new, expected):
-    good = 'import rospy\nrospy.Publisher("a", String, queue_size=1)\n'
-    bad = good + "def f(:\n"
-    repository.commit({"rover/a.py": good if is_new else bad})
-    repository.write({"rover/a.py": bad if is_new else good})
+    valid = 'import rospy\nrospy.Publisher("a", String, queue_size=1)\n'
+    invalid = valid + "def f(:\n"
+    repository.commit({"rover/a.py": valid if is_new else invalid})
+    repository.write({"rover/a.py": invalid if is_new else valid})
     result = compare(repository)
     (subject,) = result.subjects
     assert breaking(result) == ["cannot be parsed any more"] * is_new

@@ -1,4 +1,7 @@
-"""The lines of a review about targets, conditions, versions and interfaces of a CMakeLists.txt."""
+"""The lines of a review about changes of a CMakeLists.txt.
+
+The tests cover targets, conditions, versions and interfaces.
+"""
 
 from __future__ import annotations
 
@@ -131,8 +134,8 @@ def test_new_executable_under_a_condition_is_shown_with_it(repository, compare):
     repository.commit({**MANIFEST, "a/CMakeLists.txt": AMENT})
     install = "install(TARGETS tuner DESTINATION lib/arm)"
     target = "add_executable(tuner src/tuner.cpp)"
-    more = f"{target}\nif(WITH_TUNER AND UNIX)\n  {install}\nelse()\n  message(FATAL_ERROR no)\nendif()\n"
-    repository.write({"a/CMakeLists.txt": AMENT.replace("ament_package", more + "ament_package")})
+    with_condition = f"{target}\nif(WITH_TUNER AND UNIX)\n  {install}\nelse()\n  message(FATAL_ERROR no)\nendif()\n"
+    repository.write({"a/CMakeLists.txt": AMENT.replace("ament_package", with_condition + "ament_package")})
     (found,) = compare(repository).subjects
     assert sentences(found) == [
         "installed executables added: 'tuner (if WITH_TUNER AND UNIX)'",

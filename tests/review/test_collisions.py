@@ -11,7 +11,7 @@ pytest.importorskip("mujoco")
 
 PATH = "arm_description/urdf/arm.urdf.xacro"
 SEGMENT = "arm_description/urdf/segment.xacro"
-SOLID = MACRO.replace(
+SOLID_MACRO = MACRO.replace(
     "</link>",
     """<collision>
         <origin xyz="0 0 ${length / 2}"/>
@@ -23,53 +23,57 @@ SOLID = MACRO.replace(
 
 @pytest.fixture
 def solid(repository):
-    repository.commit({**PACKAGE, SEGMENT: SOLID})
+    repository.commit({**PACKAGE, SEGMENT: SOLID_MACRO})
     return repository
 
 
-def collisions(compare, repository, text: str) -> list[str]:
+def find_collisions(compare, repository, text: str) -> list[str]:
     repository.write({SEGMENT: text})
     return [sentence for sentence in sentences(subject(compare(repository), PATH)) if "collide" in sentence]
 
 
 def test_wider_joint_limits_report_new_self_collision(solid, compare):
-    (collision,) = collisions(compare, solid, SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"'))
+    (collision,) = find_collisions(
+        compare, solid, SOLID_MACRO.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
+    )
     assert collision.startswith("links 'upper' and 'lower' can collide: in ")
     assert collision.endswith(" % of 300 configurations, in none before")
 
 
 def test_collision_at_home_is_reported(solid, compare):
-    text = SOLID.replace(
+    text = SOLID_MACRO.replace(
         '<origin xyz="0 0 ${length}"/>', "<origin xyz=\"0 0 ${0.12 if name == 'lower' else length}\"/>"
     )
     text = text.replace('<origin xyz="0 0 ${0.12', "<origin xyz=\"0 0 ${-length if name == 'lower' else 0.12")
-    assert "links 'upper' and 'lower' collide at home" in collisions(compare, solid, text)
+    assert "links 'upper' and 'lower' collide at home" in find_collisions(compare, solid, text)
 
 
 @pytest.mark.parametrize("name", ["upper", "${prefix}upper"])
 def test_collision_that_a_semantic_description_disables_is_not_reported(solid, compare, name):
     text = f'<robot name="arm"><disable_collisions link1="{name}" link2="lower" reason="Never"/></robot>'
     solid.commit({"arm_description/srdf/arm.srdf.xacro": text})
-    assert collisions(compare, solid, SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')) == []
+    assert (
+        find_collisions(compare, solid, SOLID_MACRO.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')) == []
+    )
 
 
 def test_existing_collision_is_not_reported(solid, compare):
-    free = SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
+    free = SOLID_MACRO.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
     solid.commit({SEGMENT: free})
-    assert collisions(compare, solid, free.replace('mass value="2"', 'mass value="3"')) == []
-    assert collisions(compare, solid, SOLID) == []
+    assert find_collisions(compare, solid, free.replace('mass value="2"', 'mass value="3"')) == []
+    assert find_collisions(compare, solid, SOLID_MACRO) == []
 
 
 def test_connected_links_may_touch(solid, compare):
-    assert collisions(compare, solid, SOLID.replace("${length - 0.02}", "${length + 0.1}")) == []
+    assert find_collisions(compare, solid, SOLID_MACRO.replace("${length - 0.02}", "${length + 0.1}")) == []
 
 
 def test_renamed_links_and_joints_collide_as_before(solid, compare):
-    free = SOLID.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
+    free = SOLID_MACRO.replace('lower="-1.5" upper="1.5"', 'lower="-3" upper="3"')
     solid.commit({SEGMENT: free})
     text = free.replace('link name="${name}"', 'link name="${name}_link"').replace("${name}_joint", "${name}_axis")
     text = text.replace('child link="${name}"', 'child link="${name}_link"').replace(
         'parent link="${parent}"', "parent link=\"${parent}${'' if parent == 'base_link' else '_link'}\""
     )
     solid.write({PATH: ARM.replace('parent link="lower"', 'parent link="lower_link"')})
-    assert collisions(compare, solid, text) == []
+    assert find_collisions(compare, solid, text) == []

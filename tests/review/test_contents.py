@@ -1,4 +1,7 @@
-"""Contents of plugins, folders, templates and descriptions of packages in the lines about changes."""
+"""The lines of a review about the contents of changed elements.
+
+The tests cover plugins, folders, templates and descriptions of packages.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +20,13 @@ NEW_DRIVE = """<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-
 </plugin>"""
 
 
-def robot(plugin: str) -> str:
+def robot_with_plugin(plugin: str) -> str:
     return f'<robot name="r"><link name="base"/><gazebo>{plugin}</gazebo></robot>'
 
 
 def test_plugin_of_the_same_role_replaces_another_one(repository, compare):
-    repository.commit({URDF: robot(OLD_DRIVE.format(rate=9))})
-    repository.write({URDF: robot(NEW_DRIVE)})
+    repository.commit({URDF: robot_with_plugin(OLD_DRIVE.format(rate=9))})
+    repository.write({URDF: robot_with_plugin(NEW_DRIVE)})
     result = compare(repository)
     assert sentences(subject(result, URDF)) == [
         (
@@ -46,8 +49,8 @@ def test_replaced_plugin_without_a_topic_is_breaking(repository, compare):
 
 def test_topic_in_another_parameter_of_a_plugin_is_not_lost(repository, compare):
     plugin = '<plugin name="imu" filename="libimu.so">{}</plugin>'
-    repository.commit({URDF: robot(plugin.format("<topicName>imu</topicName>"))})
-    repository.write({URDF: robot(plugin.format("<ros><remapping>~/out:=imu</remapping></ros>"))})
+    repository.commit({URDF: robot_with_plugin(plugin.format("<topicName>imu</topicName>"))})
+    repository.write({URDF: robot_with_plugin(plugin.format("<ros><remapping>~/out:=imu</remapping></ros>"))})
     result = compare(repository)
     assert sentences(subject(result, URDF)) == [
         "extension 'gazebo': plugin imu ros added: remapping ~/out:=imu",

@@ -1,4 +1,7 @@
-"""Changes of descriptions in a review: arguments, moved parts, breaking changes, unreadable files."""
+"""Changes of descriptions in a review.
+
+The tests cover arguments, moved parts, breaking changes, unreadable files.
+"""
 
 from __future__ import annotations
 
@@ -243,11 +246,11 @@ def test_computed_include_is_followed(package, compare):
 
 
 def test_too_deeply_nested_description_is_a_problem_of_its_file_only(package, compare):
-    deep = "<robot name='d'><link name='a'/><gazebo>" + "<a>" * 3000 + "</a>" * 3000 + "</gazebo></robot>"
-    package.commit({"arm_description/urdf/deep.urdf": deep})
+    deeply_nested = "<robot name='d'><link name='a'/><gazebo>" + "<a>" * 3000 + "</a>" * 3000 + "</gazebo></robot>"
+    package.commit({"arm_description/urdf/deep.urdf": deeply_nested})
     package.write(
         {
-            "arm_description/urdf/deep.urdf": deep.replace("name='d'", "name='e'"),
+            "arm_description/urdf/deep.urdf": deeply_nested.replace("name='d'", "name='e'"),
             PATH: ARM.replace('name="arm"', 'name="other"'),
         }
     )

@@ -1,4 +1,7 @@
-"""The reach of a robot in a review: the largest distance, found by a search instead of chance."""
+"""The reach of a robot in a review.
+
+It is the largest distance, found by a search instead of chance.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ PATH = "arm_description/urdf/arm.urdf.xacro"
 SEGMENT = "arm_description/urdf/segment.xacro"
 
 
-def _reach(result):
+def _find_reach_figure(result):
     figures = {str(figure.name): figure for figure in subject(result, PATH).figures}
     return figures.get("reach of 'lower'")
 
@@ -21,18 +24,18 @@ def _reach(result):
 def test_tighter_limits_never_enlarge_the_reach(package, compare):
     for limit in (1.4, 1.0, 0.6, 0.3):
         package.write({SEGMENT: MACRO.replace('"-1.5" upper="1.5"', f'"-{limit}" upper="{limit}"')})
-        assert _reach(compare(package)) is None  # the stretched arm is within all of these limits
+        assert _find_reach_figure(compare(package)) is None  # the stretched arm is within all of these limits
 
 
 def test_reach_is_that_of_the_stretched_arm(package, compare):
     package.write({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")})
-    figure = _reach(compare(package))
+    figure = _find_reach_figure(compare(package))
     assert (figure.old, figure.new) == ("1.5", "1.8")
 
 
 def test_limits_that_bend_the_arm_reduce_the_reach(package, compare):
     package.write({SEGMENT: MACRO.replace('lower="-1.5"', 'lower="0.5"')})
-    figure = _reach(compare(package))
+    figure = _find_reach_figure(compare(package))
     assert float(figure.new) < float(figure.old)
 
 
@@ -42,7 +45,7 @@ def test_slide_reaches_farthest_at_a_limit(package, compare, upper):
     sliding = sliding.replace('"-1.5" upper="1.5"', '"0" upper="0"')
     package.commit({SEGMENT: sliding})
     package.write({SEGMENT: sliding.replace('upper="0"', f'upper="{upper}"')})
-    figure = _reach(compare(package))
+    figure = _find_reach_figure(compare(package))
     assert float(figure.new) == pytest.approx(1.5 + 3 * upper, abs=1e-3)
 
 

@@ -23,19 +23,19 @@ def generate_launch_description():
 """
 
 
-def launch(*packages: str) -> str:
+def launch_text(*packages: str) -> str:
     return LAUNCH.replace("{nodes}", ", ".join(f'Node(package="{name}", executable="run")' for name in packages))
 
 
-def codes(findings) -> list[str]:
+def finding_codes(findings) -> list[str]:
     return [finding.code for finding in findings]
 
 
 def test_new_and_fixed_findings_are_reported(package, compare):
     package.commit({SEGMENT: UNUSED, PATH: WITH_UNUSED})
-    assert codes(compare(package, "HEAD~1..HEAD").new_findings) == ["LW705"]
+    assert finding_codes(compare(package, "HEAD~1..HEAD").new_findings) == ["LW705"]
     package.commit({SEGMENT: MACRO, PATH: ARM})
-    assert codes(compare(package, "HEAD~1..HEAD").fixed_findings) == ["LW705"]
+    assert finding_codes(compare(package, "HEAD~1..HEAD").fixed_findings) == ["LW705"]
 
 
 def test_unreadable_robot_has_no_fixed_findings(package, compare):
@@ -52,7 +52,7 @@ def test_readable_robot_has_no_new_findings(package, compare):
     package.commit({PATH: WITH_UNUSED})
     result = compare(package, "HEAD~1..HEAD")
     assert result.new_findings == []
-    assert all(code.startswith("XML") for code in codes(result.fixed_findings))
+    assert all(code.startswith("XML") for code in finding_codes(result.fixed_findings))
 
 
 def test_missing_mesh_is_new_in_a_robot_whose_sensor_package_is_missing(package, compare):
@@ -62,43 +62,43 @@ def test_missing_mesh_is_new_in_a_robot_whose_sensor_package_is_missing(package,
     text = ARM.replace('<link name="base_link"/>', visual).replace("</robot>", sensor)
     package.commit({PATH: text, "arm_description/meshes/base.obj": "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"})
     package.commit({"arm_description/meshes/base.obj": None})
-    assert codes(compare(package, "HEAD~1..HEAD").new_findings) == ["LW424"]
+    assert finding_codes(compare(package, "HEAD~1..HEAD").new_findings) == ["LW424"]
 
 
 def test_findings_of_unchanged_part_that_a_new_robot_includes_are_not_new(repository, compare):
     repository.commit({"arm_description/package.xml": PACKAGE_XML, SEGMENT: UNUSED})
     repository.commit({PATH: WITH_UNUSED})
-    assert [code for code in codes(compare(repository, "HEAD~1..HEAD").new_findings) if code == "LW705"] == []
+    assert [code for code in finding_codes(compare(repository, "HEAD~1..HEAD").new_findings) if code == "LW705"] == []
 
 
 def test_findings_of_package_that_only_gets_files_are_not_new(repository, compare):
     manifest = PACKAGE_XML.replace("An arm.", "TODO: Package description")
     repository.commit({"arm_description/package.xml": manifest, SEGMENT: MACRO})
     repository.commit({PATH: ARM})
-    assert "LW808" not in codes(compare(repository, "HEAD~1..HEAD").new_findings)
+    assert "LW808" not in finding_codes(compare(repository, "HEAD~1..HEAD").new_findings)
 
 
 def test_only_new_names_of_a_list_are_reported(package, compare):
-    package.commit({"arm_description/launch/a.launch.py": launch("alpha", "beta")})
-    package.commit({"arm_description/launch/a.launch.py": launch("alpha", "beta", "gamma")})
+    package.commit({"arm_description/launch/a.launch.py": launch_text("alpha", "beta")})
+    package.commit({"arm_description/launch/a.launch.py": launch_text("alpha", "beta", "gamma")})
     result = compare(package, "HEAD~1..HEAD")
     (finding,) = [finding for finding in result.new_findings if finding.code == "LW848"]
     assert str(finding.message).endswith("does not depend: 'gamma'")
-    assert "LW848" not in codes(result.fixed_findings)
-    package.commit({"arm_description/launch/a.launch.py": launch("alpha", "gamma")})
+    assert "LW848" not in finding_codes(result.fixed_findings)
+    package.commit({"arm_description/launch/a.launch.py": launch_text("alpha", "gamma")})
     result = compare(package, "HEAD~1..HEAD")
     (finding,) = [finding for finding in result.fixed_findings if finding.code == "LW848"]
     assert str(finding.message).endswith("does not depend: 'beta'")
-    assert "LW848" not in codes(result.new_findings)
+    assert "LW848" not in finding_codes(result.new_findings)
 
 
 def test_finding_with_other_number_is_not_new(package, compare):
     text = MACRO.replace('upper="1.5"', 'upper="-2"')
     package.commit({SEGMENT: text})
-    assert codes(compare(package, "HEAD~1..HEAD").new_findings) != []
+    assert finding_codes(compare(package, "HEAD~1..HEAD").new_findings) != []
     package.commit({SEGMENT: text.replace('upper="-2"', 'upper="-3"')})
     result = compare(package, "HEAD~1..HEAD")
-    assert (codes(result.new_findings), codes(result.fixed_findings)) == ([], [])
+    assert (finding_codes(result.new_findings), finding_codes(result.fixed_findings)) == ([], [])
 
 
 def test_finding_that_names_a_renamed_file_is_not_new(package, compare):
@@ -106,7 +106,7 @@ def test_finding_that_names_a_renamed_file_is_not_new(package, compare):
     package.commit({PATH: text})
     package.commit({PATH: None, "arm_description/urdf/robot.urdf.xacro": text})
     result = compare(package, "HEAD~1..HEAD")
-    assert (codes(result.new_findings), codes(result.fixed_findings)) == ([], [])
+    assert (finding_codes(result.new_findings), finding_codes(result.fixed_findings)) == ([], [])
 
 
 def test_launch_file_that_names_a_renamed_file_is_breaking(package, compare):
@@ -123,13 +123,13 @@ def generate_launch_description():
     markup = '<launch><include file="$(find-pkg-share arm_description)/launch/arm_launch.py"/></launch>'
     package.commit(
         {
-            "arm_description/launch/arm_launch.py": launch("alpha"),
+            "arm_description/launch/arm_launch.py": launch_text("alpha"),
             "arm_description/launch/all.launch.py": include,
             "arm_description/launch/all.launch.xml": markup,
         }
     )
     package.commit(
-        {"arm_description/launch/arm_launch.py": None, "arm_description/launch/arm.launch.py": launch("alpha")}
+        {"arm_description/launch/arm_launch.py": None, "arm_description/launch/arm.launch.py": launch_text("alpha")}
     )
     result = compare(package, "HEAD~1..HEAD")
     sentence = "names 'launch/arm_launch.py' of 'arm_description', which does not exist any more"
@@ -150,16 +150,16 @@ def test_finding_that_moves_to_another_file_is_neither_new_nor_fixed(package, co
     package.commit({PATH: text.replace(call, unused + call), parts: f"{head}</robot>"})
     package.commit({PATH: text, parts: f"{head}{unused}</robot>"})
     result = compare(package, "HEAD~1..HEAD")
-    assert (codes(result.new_findings), codes(result.fixed_findings)) == ([], [])
+    assert (finding_codes(result.new_findings), finding_codes(result.fixed_findings)) == ([], [])
 
 
 def test_checks_that_stop_at_different_errors_find_nothing_new_in_unchanged_files(package, compare):
-    bare = MACRO.replace("</robot>", '<property name="length" value="1"/></robot>')
+    macro_with_property = MACRO.replace("</robot>", '<property name="length" value="1"/></robot>')
     broken = ARM.replace("<xacro:include", 30 * '<link name="${lost_name}"/>' + "<xacro:include", 1)
     missing_include = '<xacro:include filename="$(find lost_description)/lost.xacro"/>'
-    package.commit({PATH: broken, SEGMENT: bare})
+    package.commit({PATH: broken, SEGMENT: macro_with_property})
     package.commit({PATH: ARM.replace("<xacro:include", f"{missing_include}<xacro:include", 1)})
-    assert codes(compare(package, "HEAD~1..HEAD").new_findings) == ["PKG101"]
+    assert finding_codes(compare(package, "HEAD~1..HEAD").new_findings) == ["PKG101"]
 
 
 def test_share_folders_of_the_computer_become_uris():

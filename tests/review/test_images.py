@@ -1,4 +1,7 @@
-"""Images of robots in the page: only of those that look different, with the changed links outlined."""
+"""Images of robots in the page.
+
+Only robots that look different have images, with the changed links outlined.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +40,7 @@ def images_of(package):
     return run
 
 
-def orange(image: bytes) -> int:
+def count_orange_pixels(image: bytes) -> int:
     """Return the number of pixels with the color of outlines."""
     pil = pytest.importorskip("PIL.Image")
     pixels = np.asarray(pil.open(io.BytesIO(image)).convert("RGB")).astype(int)
@@ -47,14 +50,14 @@ def orange(image: bytes) -> int:
 
 def share_of_differing_pixels(first: bytes, second: bytes) -> float:
     pil = pytest.importorskip("PIL.Image")
-    pixels, others = (np.asarray(pil.open(io.BytesIO(image)).convert("RGB")) for image in (first, second))
-    return float((pixels != others).any(axis=-1).mean())
+    pixels, other_pixels = (np.asarray(pil.open(io.BytesIO(image)).convert("RGB")) for image in (first, second))
+    return float((pixels != other_pixels).any(axis=-1).mean())
 
 
 def test_moved_link_is_outlined_in_both_versions(images_of):
     result, images = images_of({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")})
     assert [view.name for view in images] == ["iso", "front", "left", "top"]
-    assert all(orange(image) > 50 for view in images[:3] for image in (view.old, view.new))
+    assert all(count_orange_pixels(image) > 50 for view in images[:3] for image in (view.old, view.new))
     assert images[1].old != images[1].new
     page = as_html(result)
     assert page.count("data:image/png;base64,") == 8
@@ -73,33 +76,33 @@ def test_added_link_is_outlined_only_in_new_version(images_of):
     sensor = """<link name="sensor"><visual><geometry><sphere radius="0.2"/></geometry></visual></link>
   <joint name="sensor_joint" type="fixed"><parent link="lower"/><child link="sensor"/></joint></robot>"""
     _, images = images_of({PATH: ARM.replace("</robot>", sensor)})
-    assert (orange(images[1].old), orange(images[1].new) > 50) == (0, True)
+    assert (count_orange_pixels(images[1].old), count_orange_pixels(images[1].new) > 50) == (0, True)
 
 
 def test_new_root_link_has_no_images(images_of):
-    lifted = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
-    <origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
-    assert images_of({PATH: ARM.replace('<link name="base_link"/>', lifted)})[1] == []
+    new_root = """<link name="foot"/><joint name="foot_joint" type="fixed">
+    <parent link="foot"/><child link="base_link"/><origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
+    assert images_of({PATH: ARM.replace('<link name="base_link"/>', new_root)})[1] == []
 
 
 @pytest.mark.parametrize("is_added", [True, False])
 def test_robots_with_other_root_links_are_in_the_same_place(images_of, package, is_added):
-    foot = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/><child link="base_link"/>
-    <origin xyz="0.2 0 0.3" rpy="0 0 0.5"/></joint><link name="base_link"/>"""
+    foot = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/>
+    <child link="base_link"/><origin xyz="0.2 0 0.3" rpy="0 0 0.5"/></joint><link name="base_link"/>"""
     with_foot = ARM.replace('<link name="base_link"/>', foot)
     package.commit({PATH: ARM if is_added else with_foot})
     ball = """<link name="ball"><visual><geometry><sphere radius="0.01"/></geometry></visual></link>
   <joint name="ball_joint" type="fixed"><parent link="base_link"/><child link="ball"/><origin xyz="0 0.1 1"/>
   </joint></robot>"""
     _, images = images_of({PATH: (with_foot if is_added else ARM).replace("</robot>", ball)})
-    assert [orange(view.old) for view in images] == [0, 0, 0, 0]
+    assert [count_orange_pixels(view.old) for view in images] == [0, 0, 0, 0]
     for view in images:
         assert 0.0 < share_of_differing_pixels(view.old, view.new) < 0.05
 
 
 def test_joint_limits_that_exclude_zero_move_link(images_of):
     _, images = images_of({SEGMENT: MACRO.replace('lower="-1.5"', 'lower="0.5"')})
-    assert orange(images[2].old) > 50
+    assert count_orange_pixels(images[2].old) > 50
     assert images[2].old != images[2].new
 
 

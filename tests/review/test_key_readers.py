@@ -30,7 +30,7 @@ FILES = {
 ECHO = "  echo:\n    code: 8\n"
 
 
-def found(repository, compare, files, old, new, changed=()):
+def find_breaking_changes(repository, compare, files, old, new, changed=()):
     assert old in SETTINGS
     repository.commit({**FILES, **files})
     repository.write({PATH: SETTINGS.replace(old, new), **dict(changed)})
@@ -40,7 +40,7 @@ def found(repository, compare, files, old, new, changed=()):
 
 def test_removed_key_that_an_unchanged_program_reads_is_breaking(repository, compare):
     reason = "'a/scripts/reader.py' reads the key 'echo' and does not find it"
-    changes = found(repository, compare, {"a/scripts/reader.py": READER}, ECHO, "")
+    changes = find_breaking_changes(repository, compare, {"a/scripts/reader.py": READER}, ECHO, "")
     assert changes == [("arm.echo.code 8 removed", reason)]
 
 
@@ -56,12 +56,12 @@ def test_removed_key_that_an_unchanged_program_reads_is_breaking(repository, com
     ],
 )
 def test_removed_key_that_no_program_is_sure_to_read_is_not_breaking(repository, compare, reader, old, new):
-    assert found(repository, compare, {"a/scripts/reader.py": reader}, old, new) == []
+    assert find_breaking_changes(repository, compare, {"a/scripts/reader.py": reader}, old, new) == []
 
 
 def test_removed_key_whose_reader_changed_is_not_breaking(repository, compare):
     changed = {"a/scripts/reader.py": f"{READER}print(code)\n"}
-    assert found(repository, compare, {"a/scripts/reader.py": READER}, ECHO, "", changed) == []
+    assert find_breaking_changes(repository, compare, {"a/scripts/reader.py": READER}, ECHO, "", changed) == []
 
 
 def test_removed_parameter_of_a_node_is_not_breaking(repository, compare):
@@ -72,7 +72,7 @@ def test_removed_parameter_of_a_node_is_not_breaking(repository, compare):
 
 
 def test_name_that_a_list_loses_is_breaking_if_an_unchanged_source_uses_it(repository, compare):
-    changes = found(repository, compare, {}, "[front, belly_camera]", "[front]")
+    changes = find_breaking_changes(repository, compare, {}, "[front, belly_camera]", "[front]")
     reason = "'a/src/viewer.cpp' still uses the name 'belly_camera'"
     assert changes == [("camera_names [front, belly_camera] -> [front]", reason)]
 
@@ -87,4 +87,4 @@ def test_name_that_a_list_loses_is_breaking_if_an_unchanged_source_uses_it(repos
     ],
 )
 def test_other_items_of_lists_are_not_breaking(repository, compare, files, old, new, changed):
-    assert found(repository, compare, files, old, new, changed) == []
+    assert find_breaking_changes(repository, compare, files, old, new, changed) == []

@@ -1,4 +1,7 @@
-"""Changes of ``if`` statements in Python launch files in a review: they are conditions of the actions in them."""
+"""Changes of ``if`` statements in Python launch files in a review.
+
+They are conditions of the actions in them.
+"""
 
 from __future__ import annotations
 
@@ -17,26 +20,28 @@ def generate_launch_description():
 """
 
 
-def launch(*lines: str) -> str:
+def launch_text(*lines: str) -> str:
     return LAUNCH.replace("PLACE", "\n    ".join(lines))
 
 
 CHECK = "'nav2' in get_packages_with_prefixes()"
-PLAIN = launch("actions.append(driver)")
-UNDER = launch(f"if {CHECK}:", "    actions.append(driver)")
+PLAIN = launch_text("actions.append(driver)")
+launch_in_condition = launch_text(f"if {CHECK}:", "    actions.append(driver)")
 
 
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        (PLAIN, UNDER, [f"node 'arm/driver': condition if `{CHECK}` added"]),
-        (UNDER, PLAIN, [f"node 'arm/driver': condition if `{CHECK}` removed"]),
-        (UNDER, UNDER.replace("'nav2'", "'nav3'"),
+        (PLAIN, launch_in_condition, [f"node 'arm/driver': condition if `{CHECK}` added"]),
+        (launch_in_condition, PLAIN, [f"node 'arm/driver': condition if `{CHECK}` removed"]),
+        (launch_in_condition, launch_in_condition.replace("'nav2'", "'nav3'"),
          [f"node 'arm/driver': condition if `{CHECK}` -> if `'nav3' in get_packages_with_prefixes()`"]),
-        (launch("actions += [Node(package='arm', executable='camera')]"),
-         launch(f"if {CHECK}:", "    pass", "else:", "    actions += [Node(package='arm', executable='camera')]"),
+        (launch_text("actions += [Node(package='arm', executable='camera')]"),
+         launch_text(f"if {CHECK}:", "    pass", "else:", "    actions += [Node(package='arm', executable='camera')]"),
          [f"node 'arm/camera': condition unless `{CHECK}` added"]),
-        (UNDER, UNDER.replace("    actions.append(driver)", "    actions.append(driver)\n        print('ready')"),
+        (launch_in_condition,
+         launch_in_condition.replace("    actions.append(driver)",
+                                     "    actions.append(driver)\n        print('ready')"),
          ["other code added: print('ready')"]),
     ],
 )  # fmt: skip
@@ -58,7 +63,7 @@ def test_if_statement_is_a_condition_of_the_actions_in_it(changes_of, old, new, 
     ],
 )
 def test_actions_outside_of_an_if_statement_have_no_condition(changes_of, lines):
-    new = launch(*lines)
+    new = launch_text(*lines)
     old = new.replace(f"if {CHECK}:", "if True:")
     found, breaking = changes_of("arm.launch.py", old, old, new)
     assert not [sentence for sentence in found if "arm/driver" in sentence]

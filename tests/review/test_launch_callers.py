@@ -1,4 +1,7 @@
-"""Changes of launch files that others include in a review: moved, with new requirements, or in another language."""
+"""Changes in a review of launch files that others include.
+
+The files are moved, have new requirements, or are in another language.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,10 @@ def generate_launch_description():
 
 @pytest.fixture
 def changes_with_reasons(repository, compare):
-    """Review new texts of two launch files of which one includes the other, and return sentences with their reasons."""
+    """Review new texts of two launch files, of which one includes the other.
+
+    Return sentences with their reasons.
+    """
 
     def run(new: str, new_part: str = PART, old: str = READING, old_part: str = PART):
         repository.commit({"arm/launch/arm.launch.py": old, "arm/launch/part.launch.py": old_part})

@@ -1,4 +1,7 @@
-"""Contents of added and removed launch actions, settings under conditions, and parameters of ROS 1."""
+"""Contents of added and removed launch actions in a review.
+
+The tests also cover settings under conditions, and parameters of ROS 1.
+"""
 
 from __future__ import annotations
 
@@ -12,11 +15,14 @@ PATH = "arm/launch/arm.launch"
 
 @pytest.fixture
 def changes_of(repository, compare):
-    """Review two contents of a launch file, and return the sentences of all changes and of the breaking ones."""
+    """Review two contents of a launch file.
+
+    Return the sentences of all changes and of the breaking ones.
+    """
 
     def run(old: str, new: str, **files: str):
-        others = {f"arm/{name}": text for name, text in files.items()}
-        repository.commit({"arm/package.xml": PACKAGE_XML, PATH: f"<launch>\n{old}\n</launch>\n", **others})
+        other_files = {f"arm/{name}": text for name, text in files.items()}
+        repository.commit({"arm/package.xml": PACKAGE_XML, PATH: f"<launch>\n{old}\n</launch>\n", **other_files})
         repository.write({PATH: f"<launch>\n{new}\n</launch>\n"})
         result = compare(repository)
         return sentences(subject(result, PATH)) if result.subjects else [], breaking(result)

@@ -1,4 +1,4 @@
-"""Dictionaries and flags that launch files in Python pass to functions of the repository, in a review."""
+"""Dictionaries and flags that Python launch files pass to functions, in a review."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Substitutions of launch files in Python that by default are the same text as before, in a review."""
+"""Substitutions in Python launch files that by default give the same text, in a review."""
 
 from __future__ import annotations
 

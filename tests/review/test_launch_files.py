@@ -1,4 +1,7 @@
-"""Changes of launch actions in Python, XML and YAML in a review, and of functions that create actions."""
+"""Changes of launch actions in Python, XML and YAML in a review.
+
+Functions that create actions are compared, too.
+"""
 
 from __future__ import annotations
 
@@ -382,19 +385,19 @@ def test_program_of_the_same_package_is_not_a_replacement(changes_of):
 )  # fmt: skip
 def test_reasons_of_changes_of_names_and_defaults(repository, compare, old, new, expected, reason):
     assert old in DEFAULTS
-    change = only_change(repository, compare, DEFAULTS.replace(old, new))
+    change = find_only_change(repository, compare, DEFAULTS.replace(old, new))
     assert str(change.sentence) == expected
     assert (None if change.reason is None else str(change.reason)) == reason
 
 
 def test_argument_under_a_new_name_is_renamed(repository, compare):
     new_text = DEFAULTS.replace('<arg name="ur"', '<arg name="model"').replace("$(var ur)", "$(var model)")
-    change = only_change(repository, compare, new_text)
+    change = find_only_change(repository, compare, new_text)
     assert str(change.sentence) == "argument 'ur' renamed to 'model'"
     assert str(change.reason) == "a value that a caller passes for 'ur' has no effect"
 
 
-def only_change(repository, compare, new_text):
+def find_only_change(repository, compare, new_text):
     """Return the only change from the launch file with defaults to a new text."""
     repository.commit({"arm/launch/arm.launch.xml": DEFAULTS})
     repository.write({"arm/launch/arm.launch.xml": new_text})

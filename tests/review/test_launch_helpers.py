@@ -1,4 +1,7 @@
-"""Lists that launch files in Python pass to functions, and lists that are put together, in a review."""
+"""Lists in Python launch files, in a review.
+
+They are passed to functions, or put together from other lists.
+"""
 
 from __future__ import annotations
 

@@ -28,7 +28,10 @@ CAMERA_STOPS = "by default, 'arm/camera.py' does not start any more"
 
 @pytest.fixture
 def reasons(repository, compare):
-    """Review a replacement in a launch file that includes others; return the changes with their reasons."""
+    """Review a replacement in a launch file that includes others.
+
+    Return the changes with their reasons.
+    """
 
     def run(old: str, new: str):
         assert old in FILE
@@ -90,7 +93,7 @@ DRIVER = """<launch>
 TARGET = '    <arg name="target" value="$(arg target)"/>\n'
 
 
-def _driver(repository, compare, text: str):
+def _find_driver_changes(repository, compare, text: str):
     repository.commit({"arm/launch/arm.launch": DRIVER})
     repository.write({"arm/launch/arm.launch": text})
     changes = subject(compare(repository), "arm/launch/arm.launch").changes
@@ -99,7 +102,9 @@ def _driver(repository, compare, text: str):
 
 def test_include_of_another_file_of_a_package_with_most_arguments_replaces_the_old_one(repository, compare):
     file = "$(find laser)/launch/sensor.launch"
-    found = _driver(repository, compare, DRIVER.replace("$(find laser)/old.launch", file).replace(TARGET, ""))
+    found = _find_driver_changes(
+        repository, compare, DRIVER.replace("$(find laser)/old.launch", file).replace(TARGET, "")
+    )
     assert found == {
         f"include of '$(find laser)/old.launch' replaced by include of '{file}'": None,
         f"include of '{file}': target $(arg target) removed": None,
@@ -115,13 +120,13 @@ def test_include_of_another_file_of_a_package_with_most_arguments_replaces_the_o
     ],
 )
 def test_include_of_another_package_or_with_other_arguments_does_not_replace_the_old_one(repository, compare, text):
-    assert STOPS in _driver(repository, compare, text).values()
+    assert STOPS in _find_driver_changes(repository, compare, text).values()
 
 
 @pytest.mark.parametrize("use", ["<!-- $(arg target) -->", "$(eval arg('target') == 'b')"])
 def test_argument_in_an_expression_is_used_and_one_in_a_comment_is_not(repository, compare, use):
     text = use if "<" in use else f'    <arg name="x" value="{use}"/>'
-    found = _driver(repository, compare, DRIVER.replace(TARGET, text))
+    found = _find_driver_changes(repository, compare, DRIVER.replace(TARGET, text))
     assert ("argument 'target' is not used any more" in found) is ("<" in use)
 
 

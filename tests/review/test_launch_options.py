@@ -22,7 +22,10 @@ LAUNCH = """<launch>
 
 @pytest.fixture
 def reasons(repository, compare):
-    """Review a new script and a new launch file, and return the breaking changes of the launch file with reasons."""
+    """Review a new script and a new launch file.
+
+    Return the breaking changes of the launch file with their reasons.
+    """
 
     def run(script: str, launch: str = LAUNCH):
         manifest = PACKAGE_XML.replace("arm_description", "arm")

@@ -17,20 +17,20 @@ free_thresh: 0.25
 """
 
 
-def image(suffix: str, rows: int = 40, wall: int = 0) -> bytes:
+def map_image(suffix: str, rows: int = 40, wall: int = 0) -> bytes:
     pixels = np.full((rows, 20), 254, dtype=np.uint8)
     pixels[wall] = 0
     return encode_pgm(pixels) if suffix == "pgm" else encode_with_pillow(pixels, suffix)
 
 
-def files(suffix: str) -> dict[str, str | bytes]:
-    return {"maps/house.yaml": MAP.format(suffix=suffix), f"maps/house.{suffix}": image(suffix)}
+def map_files(suffix: str) -> dict[str, str | bytes]:
+    return {"maps/house.yaml": MAP.format(suffix=suffix), f"maps/house.{suffix}": map_image(suffix)}
 
 
 @pytest.mark.parametrize("suffix", ["pgm", "png"])
 def test_added_and_removed_map_is_one_change(repository, compare, suffix):
     repository.commit({"README.md": "house\n"})
-    repository.commit(files(suffix))
+    repository.commit(map_files(suffix))
     result = compare(repository, "HEAD~1..HEAD")
     (found,) = result.subjects
     assert (found.path, result.other_files) == ("maps/house.yaml", [])
@@ -51,15 +51,15 @@ def test_added_and_removed_map_is_one_change(repository, compare, suffix):
     ],
 )
 def test_changed_settings_of_a_map_are_reported(repository, compare, old, new, expected):
-    repository.commit(files("pgm"))
+    repository.commit(map_files("pgm"))
     repository.write({"maps/house.yaml": MAP.format(suffix="pgm").replace(old, new)})
     assert [sentence for found in compare(repository).subjects for sentence in sentences(found)] == expected
 
 
 @pytest.mark.parametrize("suffix", ["pgm", "png"])
 def test_changed_image_is_a_change_of_the_map(repository, compare, suffix):
-    repository.commit(files(suffix))
-    repository.write({f"maps/house.{suffix}": image(suffix, wall=1)})
+    repository.commit(map_files(suffix))
+    repository.write({f"maps/house.{suffix}": map_image(suffix, wall=1)})
     result = compare(repository)
     (sentence,) = sentences(subject(result, "maps/house.yaml"))
     assert sentence.endswith("in columns 0 to 19 and rows 0 to 1 of the image")
@@ -67,7 +67,7 @@ def test_changed_image_is_a_change_of_the_map(repository, compare, suffix):
 
 
 def test_size_of_a_map_is_reported_in_cells_and_meters(repository, compare):
-    repository.commit(files("pgm"))
-    repository.write({"maps/house.pgm": image("pgm", rows=60)})
+    repository.commit(map_files("pgm"))
+    repository.write({"maps/house.pgm": map_image("pgm", rows=60)})
     (figure,) = subject(compare(repository), "maps/house.yaml").figures
     assert (figure.old, figure.new) == ("20 x 40 cells (1 x 2 m)", "20 x 60 cells (1 x 3 m)")

@@ -1,4 +1,7 @@
-"""Changes that a review lists once: names that are edited alike, and the values of one inertial."""
+"""Changes that a review lists once.
+
+These are names that are edited alike, and the values of one inertial.
+"""
 
 from __future__ import annotations
 
@@ -123,7 +126,7 @@ def test_topics_that_lose_the_same_part_are_one_line(package, compare):
     assert result.breaking_changes[0][1].other_names == ("gazebo fr_range",)
 
 
-def change(name: str, old: str, new: str) -> Change:
+def make_change(name: str, old: str, new: str) -> Change:
     sentence = phrase(
         "{subject} '{name}': {property} {old} -> {new}", subject="link", name=name, property="p", old=old, new=new
     )
@@ -141,7 +144,7 @@ def change(name: str, old: str, new: str) -> Change:
     ],
 )
 def test_names_with_the_same_edit_are_one_line_and_numbers_are_not(first, second, count):
-    assert len(merge_changes([change("one", *first), change("two", *second)])) == count
+    assert len(merge_changes([make_change("one", *first), make_change("two", *second)])) == count
 
 
 def test_edit_of_a_name_is_a_prefix_or_words():

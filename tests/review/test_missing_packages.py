@@ -30,7 +30,7 @@ def sensor_package(package):
     return package
 
 
-def notes(result) -> list[str]:
+def note_texts(result) -> list[str]:
     return [str(note) for note in result.notes]
 
 
@@ -43,7 +43,7 @@ def test_rest_of_robot_is_compared_with_one_note(sensor_package, compare):
         "values that need definitions of missing files are not compared: 'cover'"
     ]
     assert review_subject.figures == []
-    assert notes(result) == [
+    assert note_texts(result) == [
         f"'{PATH}' is compared without the packages and files that are not found: 'lidar_description'"
     ]
 
@@ -55,7 +55,9 @@ def test_note_does_not_call_a_file_missing_that_both_versions_have(package, comp
     package.commit({PATH: text.replace("/urdf/colors", "/colors"), "arm_description/urdf/colors.xacro": colors})
     package.write({PATH: text})
     result = compare(package)
-    assert notes(result) == [f"'{PATH}' is compared without the packages and files that are not found: 'colors.xacro'"]
+    assert note_texts(result) == [
+        f"'{PATH}' is compared without the packages and files that are not found: 'colors.xacro'"
+    ]
     assert [str(finding.message) for finding in result.fixed_findings]
 
 
@@ -116,7 +118,7 @@ def test_file_that_neither_version_has_is_left_out(package, compare):
     package.write({"arm_description/urdf/segment.xacro": MACRO.replace('mass value="2"', 'mass value="3"')})
     result = compare(package)
     assert "link 'upper': inertial mass 2 -> 3 kg" in sentences(subject(result, PATH))
-    assert "'absent.xacro'" in notes(result)[0]
+    assert "'absent.xacro'" in note_texts(result)[0]
 
 
 def test_mistake_beside_missing_package_is_breaking(sensor_package, compare):
@@ -141,6 +143,6 @@ def test_unreadable_robots_that_did_not_change_are_counted_in_a_note(package, co
     result = compare(package)
     (review_subject,) = result.subjects
     assert review_subject.path == "arm_description/urdf/segment.xacro"
-    (note,) = notes(result)
+    (note,) = note_texts(result)
     assert note.startswith("2 files that the changes may affect are not compared, such as ")
     assert "the property 'missing' is not defined" in note

@@ -1,4 +1,7 @@
-"""Files that move inside their package in a review, and plugin descriptions without an export."""
+"""Files that move inside their package in a review.
+
+The tests also cover plugin descriptions without an export.
+"""
 
 from __future__ import annotations
 
@@ -13,21 +16,21 @@ LAUNCH = "<launch>\n  <node pkg='arm' exec='{name}'/>\n</launch>\n"
 NAMES = ("arm", "gripper", "tool", "all")
 
 
-def cmake(folder: str) -> str:
+def cmake_text(folder: str) -> str:
     return f"project(arm)\ninstall(DIRECTORY {folder} DESTINATION share/arm)\nament_package()\n"
 
 
-def moved(repository, compare, old_rule: str, new_rule: str):
+def find_moved_files(repository, compare, old_rule: str, new_rule: str):
     texts = {name: LAUNCH.format(name=name) for name in NAMES}
     old = {f"arm/examples/launch/{name}.launch.xml": text for name, text in texts.items()}
     new = {f"arm/launch/{name}.launch.xml": text for name, text in texts.items()}
-    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake(old_rule), **old})
-    repository.commit({"arm/CMakeLists.txt": cmake(new_rule), **dict.fromkeys(old), **new})
+    repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": cmake_text(old_rule), **old})
+    repository.commit({"arm/CMakeLists.txt": cmake_text(new_rule), **dict.fromkeys(old), **new})
     return compare(repository, "HEAD~1..HEAD")
 
 
 def test_files_that_are_installed_at_the_same_place_are_one_line(repository, compare):
-    result = moved(repository, compare, "examples/launch", "launch")
+    result = find_moved_files(repository, compare, "examples/launch", "launch")
     assert result.subjects == []
     assert [(path, str(state)) for path, state in other_files(result)] == [
         ("arm/CMakeLists.txt", "None"),
@@ -36,7 +39,7 @@ def test_files_that_are_installed_at_the_same_place_are_one_line(repository, com
 
 
 def test_files_that_are_installed_at_another_place_are_breaking(repository, compare):
-    assert breaking(moved(repository, compare, "examples", "launch")) == [
+    assert breaking(find_moved_files(repository, compare, "examples", "launch")) == [
         (
             "folder renamed from arm/examples/ with 4 compared files: "
             "launch/all.launch.xml, launch/arm.launch.xml, launch/gripper.launch.xml, launch/tool.launch.xml"
@@ -59,7 +62,7 @@ PLUGINS = """<library path="arm">
     ],
 )
 def test_class_of_a_description_that_no_package_exports_breaks_nothing(repository, compare, command, is_breaking):
-    build = cmake("launch").replace("ament_package", f"{command}ament_package")
+    build = cmake_text("launch").replace("ament_package", f"{command}ament_package")
     repository.commit({"arm/package.xml": MANIFEST, "arm/CMakeLists.txt": build, "arm/plugins.xml": PLUGINS})
     repository.commit({"arm/plugins.xml": None})
     result = compare(repository, "HEAD~1..HEAD")

@@ -1,4 +1,7 @@
-"""Breaking changes of the parameter files of MoveIt: controllers, actions, planners and joints with limits."""
+"""Breaking changes of the parameter files of MoveIt.
+
+The tests cover controllers, actions, planners and joints with limits.
+"""
 
 from __future__ import annotations
 
@@ -35,7 +38,10 @@ RRT = "  RRT: {type: geometric::RRT, range: 0.0, delay: 1}\n"
 
 @pytest.fixture
 def changes_of(repository, compare):
-    """Review two versions of a file, and return all changes, the breaking ones, and the reasons of these."""
+    """Review two versions of a file.
+
+    Return all changes, the breaking ones, and the reasons of these.
+    """
 
     def run(text: str, changed: str):
         assert text != changed

@@ -78,8 +78,8 @@ FILES = {
 def test_changed_names_in_sources_are_reported(repository, compare, path, old, new, expected, is_breaking):
     text = FILES[path]
     assert old in text
-    others = {other: content for other, content in FILES.items() if other != path and other.endswith("xml")}
-    repository.commit({**others, path: text})
+    other_files = {other: content for other, content in FILES.items() if other != path and other.endswith("xml")}
+    repository.commit({**other_files, path: text})
     repository.write({path: text.replace(old, new)})
     result = compare(repository)
     assert [sentence for found in result.subjects for sentence in sentences(found)] == expected

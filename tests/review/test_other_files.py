@@ -1,4 +1,7 @@
-"""Changes of launch files, worlds, parameters, interfaces, manifests, maps and meshes in a review."""
+"""Changes of files other than descriptions in a review.
+
+The tests cover launch files, worlds, parameters, interfaces, manifests, maps and meshes.
+"""
 
 from __future__ import annotations
 
@@ -349,7 +352,7 @@ def test_renamed_package_is_breaking(package, compare):
     assert "package 'arm_description' renamed to 'robot_description'" in breaking(compare(package))
 
 
-def _stl(height: float) -> bytes:
+def _make_stl(height: float) -> bytes:
     import numpy as np
 
     record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -359,8 +362,8 @@ def _stl(height: float) -> bytes:
 
 
 def test_mesh_size_changes_are_reported(repository, compare):
-    repository.commit({"a/meshes/m.stl": _stl(1.0)})
-    repository.write({"a/meshes/m.stl": _stl(2.0)})
+    repository.commit({"a/meshes/m.stl": _make_stl(1.0)})
+    repository.write({"a/meshes/m.stl": _make_stl(2.0)})
     (figure,) = subject(compare(repository), "a/meshes/m.stl").figures
     assert (figure.old, figure.new) == ("1 1 1", "1 1 2")
     assert "highest corner" in figure.name
@@ -387,10 +390,10 @@ def test_map_changes_are_reported(repository, compare):
 
 def test_renamed_meshes_of_a_folder_are_one_breaking_line(repository, compare):
     names = ("wheel", "arm", "lid")
-    repository.commit({f"a/meshes/{name}-1.stl": _stl(size) for size, name in enumerate(names, 1)})
+    repository.commit({f"a/meshes/{name}-1.stl": _make_stl(size) for size, name in enumerate(names, 1)})
     repository.commit(
         {f"a/meshes/{name}-1.stl": None for name in names}
-        | {f"a/meshes/{name}.stl": _stl(size) for size, name in enumerate(names, 1)}
+        | {f"a/meshes/{name}.stl": _make_stl(size) for size, name in enumerate(names, 1)}
     )
     (review_subject,) = compare(repository, "HEAD~1..HEAD").subjects
     assert review_subject.path == "a/meshes/"
@@ -403,7 +406,7 @@ def test_renamed_meshes_of_a_folder_are_one_breaking_line(repository, compare):
 
 
 def test_removed_and_added_meshes_are_grouped(repository, compare):
-    repository.commit({f"a/meshes/m{number}.stl": _stl(number) for number in range(MAX_NAMES + 2)})
+    repository.commit({f"a/meshes/m{number}.stl": _make_stl(number) for number in range(MAX_NAMES + 2)})
     repository.commit({f"a/meshes/m{number}.stl": None for number in range(MAX_NAMES + 2)})
     result = compare(repository, "HEAD~1..HEAD")
     (change,) = result.subjects[0].changes

@@ -18,7 +18,10 @@ INIT = "import os\nfrom .driver import Driver\n"
 
 @pytest.fixture
 def lines(repository, compare):
-    """Review a replacement of ``arm/__init__.py``, and return the sentences except those about all imports."""
+    """Review a replacement of ``arm/__init__.py``.
+
+    Return the sentences except those about all imports.
+    """
 
     def run(old, new, files=FILES):
         repository.commit({**files, "arm/__init__.py": old})

@@ -1,4 +1,7 @@
-"""Changes of unexpanded descriptions in a review: macros, arguments, and elements that no robot uses."""
+"""Changes of unexpanded descriptions in a review.
+
+The tests cover macros, arguments, and elements that no robot uses.
+"""
 
 from __future__ import annotations
 

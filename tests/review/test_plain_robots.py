@@ -1,4 +1,7 @@
-"""Changes of plain URDF in a review: expressions for xacro, added links, and meshes under other paths."""
+"""Changes of plain URDF in a review.
+
+The tests cover expressions for xacro, added links, and meshes under other paths.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,7 @@ import pytest
 
 from linkwright.review import open_versions, review
 from tests.review.conftest import breaking, sentences, subject
-from tests.review.test_scene_images import stl
+from tests.review.test_scene_images import make_stl
 
 PATH = "w/urdf/arm.urdf"
 PACKAGE = {"w/package.xml": "<package format='3'><name>w</name><version>1.0.0</version></package>"}
@@ -26,11 +29,11 @@ WRAPPER = """<robot name="cell" xmlns:xacro="http://ros.org/wiki/xacro">
 <xacro:include filename="$(find w)/urdf/arm.urdf"/><link name="floor"/>
 <joint name="f" type="fixed"><parent link="floor"/><child link="base"/></joint></robot>
 """
-FILES = {**PACKAGE, PATH: ARM, "w/meshes/base.stl": stl(1.0)}
+FILES = {**PACKAGE, PATH: ARM, "w/meshes/base.stl": make_stl(1.0)}
 REASON = "programs that read the file without xacro do not find the file that it names"
 
 
-def reviewed(repository, replacement, *, files=FILES, with_images=False):
+def review_replacement(repository, replacement, *, files=FILES, with_images=False):
     old, new = replacement
     assert old in ARM
     repository.commit(files)
@@ -44,7 +47,7 @@ def reviewed(repository, replacement, *, files=FILES, with_images=False):
 
 @pytest.mark.parametrize("files", [FILES, {**FILES, "w/urdf/cell.urdf.xacro": WRAPPER}])
 def test_expression_in_plain_urdf_is_breaking(repository, files):
-    result = reviewed(repository, ("package://w", "$(find w)"), files=files)
+    result = review_replacement(repository, ("package://w", "$(find w)"), files=files)
     assert [str(change.reason) for change in subject(result, PATH).changes] == [REASON]
 
 
@@ -65,7 +68,7 @@ def test_expression_in_xacro_is_not_breaking(repository, compare):
 def test_robot_that_xacro_includes_is_compared_on_its_own(repository):
     link = '<link name="tip"/><joint name="t" type="fixed"><parent link="base"/><child link="tip"/></joint>'
     files = {**FILES, "w/urdf/cell.urdf.xacro": WRAPPER}
-    result = reviewed(repository, ("</robot>", f"{link}</robot>"), files=files)
+    result = review_replacement(repository, ("</robot>", f"{link}</robot>"), files=files)
     assert [each.path for each in result.subjects] == [PATH, "w/urdf/cell.urdf.xacro"]
 
 
@@ -78,7 +81,7 @@ LINK = (
 
 
 def test_added_link_is_one_line_with_its_place(repository):
-    result = reviewed(repository, ("</robot>", f"{LINK.format('tip')}</robot>"))
+    result = review_replacement(repository, ("</robot>", f"{LINK.format('tip')}</robot>"))
     (text,) = sentences(subject(result, PATH))
     assert text == (
         "link 'tip' added: fixed joint 'tip_joint' at 'base', xyz 0 0 0.5 m, "
@@ -90,13 +93,15 @@ def test_added_link_has_its_rotation_and_the_number_of_its_equal_shapes(reposito
     visual = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
     link = LINK.format("tip").replace("<visual>", f"{visual}{visual}<visual>", 1)
     link = link.replace('xyz="0 0 0.5"', 'xyz="0 0 0.5" rpy="-1.5708 0 0.5"')
-    (text,) = sentences(subject(reviewed(repository, ("</robot>", f"{link}</robot>")), PATH))
+    (text,) = sentences(subject(review_replacement(repository, ("</robot>", f"{link}</robot>")), PATH))
     assert "xyz 0 0 0.5 m, rpy -90 0 28.65°, visual sphere 0.1 (2 times), visual box 0.1 0.2 0.3," in text
 
 
 def test_many_added_links_are_named_only(repository):
     links = "".join(map(LINK.format, ("one", "two", "three", "four", "five")))
-    (links_change, joints_change) = subject(reviewed(repository, ("</robot>", f"{links}</robot>")), PATH).changes
+    (links_change, joints_change) = subject(
+        review_replacement(repository, ("</robot>", f"{links}</robot>")), PATH
+    ).changes
     assert (str(links_change.sentence), str(joints_change.sentence)) == (
         "link 'one' added",
         "joint 'one_joint' added",
@@ -106,7 +111,7 @@ def test_many_added_links_are_named_only(repository):
 
 def test_added_inertial_is_shown_without_products(repository):
     inertial = '<inertial><mass value="2"/><inertia ixx="1" iyy="2" izz="3" ixy="0.1" ixz="0" iyz="0"/></inertial>'
-    result = reviewed(repository, ("</link>", f"{inertial}</link>"))
+    result = review_replacement(repository, ("</link>", f"{inertial}</link>"))
     (text,) = sentences(subject(result, PATH))
     assert text.startswith("link 'base': inertial added: mass 2 kg, ")
     assert text.endswith("inertia ixx 1 kg m2, inertia iyy 2 kg m2, inertia izz 3 kg m2")
@@ -114,7 +119,7 @@ def test_added_inertial_is_shown_without_products(repository):
 
 
 def test_same_value_of_all_transmissions_is_one_line(repository):
-    (change,) = subject(reviewed(repository, (">Effort<", ">hardware/Effort<")), PATH).changes
+    (change,) = subject(review_replacement(repository, (">Effort<", ">hardware/Effort<")), PATH).changes
     assert str(change.sentence) == (
         "extension 'transmission a_trans': joint a hardwareInterface Effort -> hardware/Effort"
     )
@@ -123,8 +128,8 @@ def test_same_value_of_all_transmissions_is_one_line(repository):
 
 @pytest.mark.parametrize(("height", "count"), [(1.0, 0), (2.0, 4)])
 def test_equal_mesh_under_another_path_has_no_images(repository, height, count):
-    files = {**FILES, "w/meshes/other.stl": stl(height)}
-    result = reviewed(repository, ("base.stl", "other.stl"), files=files, with_images=True)
+    files = {**FILES, "w/meshes/other.stl": make_stl(height)}
+    result = review_replacement(repository, ("base.stl", "other.stl"), files=files, with_images=True)
     assert len(subject(result, PATH).images) == count
 
 

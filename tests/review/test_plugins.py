@@ -18,7 +18,7 @@ JOINT = '<joint name="{name}"><command_interface name="position"/><state_interfa
 HARDWARE = '<ros2_control name="arm" type="system"><hardware><plugin>a/B</plugin></hardware>{joint}</ros2_control>'
 
 
-def robot(*extensions: str) -> str:
+def robot_text(*extensions: str) -> str:
     return f'<robot name="r"><link name="base"/>{"".join(extensions)}</robot>'
 
 
@@ -41,8 +41,8 @@ def robot(*extensions: str) -> str:
     ],
 )  # fmt: skip
 def test_plugins_are_named_with_their_topics(repository, compare, old, new, expected, is_breaking):
-    repository.commit({PATH: robot(*old)})
-    repository.write({PATH: robot(*new)})
+    repository.commit({PATH: robot_text(*old)})
+    repository.write({PATH: robot_text(*new)})
     result = compare(repository)
     assert expected in sentences(subject(result, PATH))
     assert bool(breaking(result)) is is_breaking
@@ -50,14 +50,14 @@ def test_plugins_are_named_with_their_topics(repository, compare, old, new, expe
 
 def test_plugin_replaced_by_one_with_the_same_topics_is_not_breaking(repository, compare):
     other = DOCK.replace('name="dock" filename="libdock.so"', 'name="station" filename="libstation.so"')
-    repository.commit({PATH: robot(DOCK)})
-    repository.write({PATH: robot(other)})
+    repository.commit({PATH: robot_text(DOCK)})
+    repository.write({PATH: robot_text(other)})
     assert breaking(compare(repository)) == []
 
 
 def test_equal_numbers_of_extensions_are_no_change(repository, compare):
-    repository.commit({PATH: robot('<gazebo reference="base"><mu1>1.0</mu1></gazebo>')})
-    repository.write({PATH: robot('<gazebo reference="base"><mu1>1</mu1></gazebo>')})
+    repository.commit({PATH: robot_text('<gazebo reference="base"><mu1>1.0</mu1></gazebo>')})
+    repository.write({PATH: robot_text('<gazebo reference="base"><mu1>1</mu1></gazebo>')})
     assert compare(repository).subjects == []
 
 
@@ -75,8 +75,8 @@ NEW_BLOCKS = """
 
 
 def test_blocks_of_gazebo_for_a_link_are_compared_as_one(repository, compare):
-    repository.commit({PATH: robot(BLOCKS)})
-    repository.write({PATH: robot(NEW_BLOCKS)})
+    repository.commit({PATH: robot_text(BLOCKS)})
+    repository.write({PATH: robot_text(NEW_BLOCKS)})
     assert sorted(sentences(subject(compare(repository), PATH))) == [
         "extension 'gazebo base': mu1 added: 0.5",
         "extension 'gazebo base': sensor camera added: type=camera",
@@ -85,8 +85,8 @@ def test_blocks_of_gazebo_for_a_link_are_compared_as_one(repository, compare):
 
 
 def test_other_division_into_blocks_of_gazebo_is_no_change(repository, compare):
-    repository.commit({PATH: robot(BLOCKS)})
+    repository.commit({PATH: robot_text(BLOCKS)})
     repository.write(
-        {PATH: robot(BLOCKS.replace('<collision/></gazebo>\n    <gazebo reference="base">', "<collision/>"))}
+        {PATH: robot_text(BLOCKS.replace('<collision/></gazebo>\n    <gazebo reference="base">', "<collision/>"))}
     )
     assert compare(repository).subjects == []

@@ -13,7 +13,7 @@ from linkwright.packages import PackageFinder
 from linkwright.review import open_versions, review
 from linkwright.review.robots import figures
 from linkwright.sdf.resources import ResourceFinder
-from tests.review.test_scene_images import stl
+from tests.review.test_scene_images import make_stl
 
 CONFIG = "<model><name>{0}</name><sdf version='1.6'>model.sdf</sdf></model>"
 MODEL = "<sdf version='1.6'><model name='{0}'><link name='link'/></model></sdf>"
@@ -39,7 +39,7 @@ FILES = {
 CANDIDATES = [path for path in FILES if path.endswith(".sdf")]
 
 
-def counted(monkeypatch, owner, name):
+def record_calls(monkeypatch, owner, name):
     """Return a list to which each call of a function adds its arguments."""
     calls = []
     function = getattr(owner, name)
@@ -58,7 +58,7 @@ def test_unchanged_files_of_the_other_version_are_not_read(repository, monkeypat
     old = TextFiles(repository.root)
     changed = "w/models/box/model.config"
     assert old.affected([changed], CANDIDATES) == {"w/models/box/model.sdf", "w/worlds/w.sdf"}
-    reads = counted(monkeypatch, affected, "_read_beginning")
+    reads = record_calls(monkeypatch, affected, "_read_beginning")
     new = TextFiles(repository.root, old, {changed})
     assert new.affected([changed], CANDIDATES) == {"w/models/box/model.sdf", "w/worlds/w.sdf"}
     assert reads == [(repository.root / changed,)]
@@ -67,8 +67,8 @@ def test_unchanged_files_of_the_other_version_are_not_read(repository, monkeypat
 def test_model_that_a_world_includes_often_is_searched_for_once(repository, monkeypatch):
     repository.commit(FILES)
     repository.write({"w/worlds/w.sdf": WORLD.replace("b0", "c0")})
-    searches = counted(monkeypatch, ResourceFinder, "model")
-    reviewed(repository)
+    searches = record_calls(monkeypatch, ResourceFinder, "model")
+    review_change(repository)
     folders = [folder for _, _, folder in searches]
     assert folders
     assert all(folders.count(folder) <= 2 for folder in folders)  # findings, and the comparison
@@ -85,7 +85,7 @@ PARTS = """<link name="base"><visual><geometry><mesh filename="package://w/meshe
 )
 
 
-def reviewed(repository):
+def review_change(repository):
     versions = open_versions(repository.root, "HEAD")
     try:
         return review(versions, with_images=True)
@@ -95,10 +95,10 @@ def reviewed(repository):
 
 def test_mesh_that_both_versions_have_is_read_once(repository, monkeypatch):
     text = ARM.format(PARTS)
-    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": stl(4.75)})
+    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": make_stl(4.75)})
     repository.write({"w/urdf/arm.urdf": text.replace("<mass value='1'", "<mass value='2'").replace("0 0 1", "0 0 2")})
-    reads = counted(monkeypatch, meshes, "read_mesh")
-    (subject,) = reviewed(repository).subjects
+    reads = record_calls(monkeypatch, meshes, "read_mesh")
+    (subject,) = review_change(repository).subjects
     assert [str(figure.name) for figure in subject.figures] == ["reach of 'l3'"]
     assert len(reads) == 1
 
@@ -106,24 +106,24 @@ def test_mesh_that_both_versions_have_is_read_once(repository, monkeypatch):
 def test_reach_is_not_searched_for_if_no_joint_changed(repository, monkeypatch):
     monkeypatch.setattr("linkwright.review.robots.figures.compare_reaches", None)
     text = ARM.format(PARTS)
-    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": stl(1.0)})
+    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": make_stl(1.0)})
     repository.write({"w/urdf/arm.urdf": text.replace('<mass value="1"', '<mass value="2"')})
-    (subject,) = reviewed(repository).subjects
+    (subject,) = review_change(repository).subjects
     assert [str(figure.name) for figure in subject.figures] == ["mass"]
 
 
 @pytest.mark.parametrize("joint", ["lower='-1'", "0 1 0"])
 def test_reach_is_searched_for_if_a_joint_changed(repository, monkeypatch, joint):
-    searches = counted(monkeypatch, figures, "compare_reaches")
+    searches = record_calls(monkeypatch, figures, "compare_reaches")
     text = ARM.format(PARTS)
-    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": stl(1.0)})
+    repository.commit({"w/package.xml": PACKAGE, "w/urdf/arm.urdf": text, "w/meshes/base.stl": make_stl(1.0)})
     repository.write({"w/urdf/arm.urdf": text.replace(joint, joint.replace("1", "0.5"))})
-    reviewed(repository)
+    review_change(repository)
     assert len(searches) == (joint == "lower='-1'")
 
 
 def test_mesh_with_two_paths_fills_the_cache_once(repository):
-    repository.write({"w/package.xml": PACKAGE, "w/a.stl": stl(6.25), "w/b.stl": stl(6.25)})
+    repository.write({"w/package.xml": PACKAGE, "w/a.stl": make_stl(6.25), "w/b.stl": make_stl(6.25)})
     library = MeshLibrary(PackageFinder(start=[repository.root]), repository.root)
     first, second = (library.read(repository.root / f"w/{name}.stl") for name in "ab")
     assert first is second
@@ -134,7 +134,7 @@ def test_mesh_with_two_paths_fills_the_cache_once(repository):
 def test_files_are_not_searched_for_names_if_no_description_can_read_a_changed_file(repository, monkeypatch, name):
     repository.commit(FILES)
     repository.write({f"w/{name}": PACKAGE.replace("1.0.0", "1.1.0")})
-    reads = counted(monkeypatch, affected, "_read_beginning")
+    reads = record_calls(monkeypatch, affected, "_read_beginning")
     versions = open_versions(repository.root, "HEAD")
     review(versions)
     versions.close()

@@ -37,8 +37,11 @@ FILES = {
 }
 
 
-def renamed(new_folder: str, new_name: str, **replacements: str) -> dict[str, str | None]:
-    """Return the files of a commit that moves the package, with a new name in all texts but that of the topic."""
+def rename_package_files(new_folder: str, new_name: str, **replacements: str) -> dict[str, str | None]:
+    """Return the files of a commit that moves the package.
+
+    All texts but that of the topic have the new name.
+    """
     files: dict[str, str | None] = {}
     for path, text in FILES.items():
         new_text = text.replace("arm_tools", new_name).replace(f"{new_name}/cmd", "arm_tools/cmd")
@@ -53,7 +56,7 @@ def renamed(new_folder: str, new_name: str, **replacements: str) -> dict[str, st
 
 def test_what_follows_from_the_new_name_of_a_package_is_one_change(repository, compare):
     repository.commit(FILES)
-    repository.commit(renamed("arm_gear", "arm_gear"))
+    repository.commit(rename_package_files("arm_gear", "arm_gear"))
     result = compare(repository, "HEAD~1..HEAD")
     assert [(found.path, sentences(found)) for found in result.subjects] == [
         ("arm_gear/package.xml", ["package 'arm_tools' renamed to 'arm_gear'"])
@@ -81,13 +84,13 @@ def test_what_follows_from_the_new_name_of_a_package_is_one_change(repository, c
 )  # fmt: skip
 def test_other_changes_beside_a_new_name_are_reported(repository, compare, old, new, path, sentence):
     repository.commit(FILES)
-    repository.commit(renamed("arm_gear", "arm_gear", **{old: new}))
+    repository.commit(rename_package_files("arm_gear", "arm_gear", **{old: new}))
     assert sentence in sentences(subject(compare(repository, "HEAD~1..HEAD"), path))
 
 
 def test_package_that_moves_to_another_folder_is_one_change_and_breaks_nothing(repository, compare):
     repository.commit(FILES)
-    repository.commit(renamed("gear/arm_tools", "arm_tools"))
+    repository.commit(rename_package_files("gear/arm_tools", "arm_tools"))
     result = compare(repository, "HEAD~1..HEAD")
     assert [sentences(found) for found in result.subjects] == [["package 'arm_tools' moved from arm_tools/"]]
     assert breaking(result) == []

@@ -1,4 +1,7 @@
-"""Changes of YAML files whose values have another place: renamed and moved parts, and items of lists."""
+"""Changes of YAML files whose values have another place.
+
+The tests cover renamed and moved parts, and items of lists.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,10 @@ PATH = "arm/config/arm.yaml"
 
 @pytest.fixture
 def changes_of(repository, compare):
-    """Review two versions of a YAML file, and return the changes and the sentences of the breaking ones."""
+    """Review two versions of a YAML file.
+
+    Return the changes, and the sentences of the breaking ones.
+    """
 
     def run(old: str | None, new: str | None):
         repository.commit({"arm/package.xml": PACKAGE_XML, PATH: old})

@@ -1,4 +1,7 @@
-"""Reports: nothing of a repository becomes markup, and a change of a shared file is listed once."""
+"""Reports.
+
+Nothing of a repository becomes markup, and a change of a shared file is listed once.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,10 @@ HOSTILE = "<img src=x onerror=alert(1)> @octocat #12 [link](http://x) `code` | *
 
 @pytest.fixture
 def changed(package):
-    """Return a repository whose last commit changes a macro of two robots, and renames a link of one."""
+    """Return a repository whose last commit changes a macro of two robots.
+
+    It also renames a link of one.
+    """
     package.commit({"arm_description/urdf/other.urdf.xacro": OTHER})
     package.commit(
         {
@@ -102,7 +108,7 @@ def test_repository_names_are_escaped():
     assert "`" not in markdown.replace("```", "")
     assert "&commat;" not in markdown
     assert "&lt;" not in markdown
-    tags = _tags(page)
+    tags = _read_tags(page)
     assert "img" not in tags
     assert tags.count("script") == 1
 
@@ -147,8 +153,8 @@ def test_removed_part_has_no_line_in_new_version(changed, compare):
     result = compare(changed, "HEAD~1..HEAD")
     for subject, change in result.breaking_changes:
         if change.location is not None and change.location.is_old:
-            lone = replace(result, subjects=[replace(subject, changes=[change])], new_findings=[])
-            assert as_diagnostics(lone)[0].span is None
+            comparison = replace(result, subjects=[replace(subject, changes=[change])], new_findings=[])
+            assert as_diagnostics(comparison)[0].span is None
 
 
 # --- the command ----------------------------------------------------------------------------------------------------
@@ -224,7 +230,7 @@ def test_error_is_printed_without_traceback(run):
     assert "Traceback" not in errors
 
 
-def _tags(page: str) -> list[str]:
+def _read_tags(page: str) -> list[str]:
     class Reader(HTMLParser):
         def handle_starttag(self, tag, attrs):
             tags.append(tag)

@@ -1,4 +1,7 @@
-"""The lines of a review about manifests of rosbuild, and about dependencies that others have through a package."""
+"""The lines of a review about manifests of rosbuild.
+
+The tests also cover dependencies that others have through a package.
+"""
 
 from __future__ import annotations
 

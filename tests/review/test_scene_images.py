@@ -11,12 +11,12 @@ BOX = """<model name="{name}"><pose>{x} 0 0.5 0 0 0</pose><link name="link"><vis
   <box><size>1 1 1</size></box></geometry></visual></link></model>"""
 
 
-def world(*boxes: str, step: float = 0.001) -> str:
+def world_text(*boxes: str, step: float = 0.001) -> str:
     physics = f'<physics name="p" type="ode"><max_step_size>{step}</max_step_size></physics>'
     return f'<sdf version="1.9"><world name="w">{physics}{"".join(boxes)}</world></sdf>'
 
 
-def stl(height: float) -> bytes:
+def make_stl(height: float) -> bytes:
     record = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
     triangles = np.zeros(2, record)
     triangles["corners"] = [[[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 0, 0], [1, 0, 0], [0, 0, height]]]
@@ -41,27 +41,27 @@ def images_of(repository):
     return run
 
 
-@pytest.mark.parametrize("far", [3, 100])
-def test_moved_model_of_a_world_is_shown(images_of, far):
-    old, new = (world(FIXED, BOX.format(name="moved", x=x)) for x in (far, far + 1))
+@pytest.mark.parametrize("new_pose", [3, 100])
+def test_moved_model_of_a_world_is_shown(images_of, new_pose):
+    old, new = (world_text(FIXED, BOX.format(name="moved", x=x)) for x in (new_pose, new_pose + 1))
     images = images_of("w/worlds/w.sdf", old, new)
     assert [view.name for view in images] == ["iso", "front", "left", "top"]
     assert images[0].old != images[0].new
 
 
 def test_world_with_same_appearance_has_no_images(images_of):
-    assert images_of("w/worlds/w.sdf", world(FIXED), world(FIXED, step=0.002)) == []
+    assert images_of("w/worlds/w.sdf", world_text(FIXED), world_text(FIXED, step=0.002)) == []
 
 
 def test_changed_mesh_is_shown(images_of):
-    images = images_of("w/meshes/m.stl", stl(1.0), stl(2.0))
+    images = images_of("w/meshes/m.stl", make_stl(1.0), make_stl(2.0))
     assert len(images) == 4
     assert images[0].old != images[0].new
 
 
 def test_world_of_one_version_is_shown(repository):
     repository.commit({"README.md": "w"})
-    repository.commit({"w/worlds/w.sdf": world(FIXED)})
+    repository.commit({"w/worlds/w.sdf": world_text(FIXED)})
     repository.commit({"w/worlds/w.sdf": None})
     for revisions, names in (("HEAD~2..HEAD~1", ("new", "old")), ("HEAD~1..HEAD", ("old", "new"))):
         versions = open_versions(repository.root, revisions)

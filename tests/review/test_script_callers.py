@@ -1,4 +1,4 @@
-"""Arguments that shell scripts and launch files pass to programs which do not read them any more, in a review."""
+"""Arguments in scripts and launch files that programs no longer read, in a review."""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Changes of SDF models in a review: mass properties, totals, values of added elements, and images."""
+"""Changes of SDF models in a review.
+
+The tests cover mass properties, totals, values of added elements, and images.
+"""
 
 from __future__ import annotations
 
@@ -27,25 +30,25 @@ MODEL = f"""<sdf version="1.9"><model name="cart">
 BASE = "model cart link base"
 
 
-def changed(text, *replacements):
+def replace_in_model(text, *replacements):
     for old, new in replacements:
         assert old in text
         text = text.replace(old, new, 1)
     return text
 
 
-def reviewed(repository, compare, *replacements, text=MODEL):
+def review_model(repository, compare, *replacements, text=MODEL):
     repository.commit({PATH: text})
-    repository.write({PATH: changed(text, *replacements)})
+    repository.write({PATH: replace_in_model(text, *replacements)})
     return compare(repository)
 
 
-def lines(repository, compare, *replacements, text=MODEL):
-    return sentences(subject(reviewed(repository, compare, *replacements, text=text), PATH))
+def change_lines(repository, compare, *replacements, text=MODEL):
+    return sentences(subject(review_model(repository, compare, *replacements, text=text), PATH))
 
 
-def figures(repository, compare, *replacements):
-    changes = subject(reviewed(repository, compare, *replacements), PATH)
+def figure_texts(repository, compare, *replacements):
+    changes = subject(review_model(repository, compare, *replacements), PATH)
     return [f"{figure.name} {figure.old} -> {figure.new} {figure.unit}".strip() for figure in changes.figures]
 
 
@@ -76,7 +79,7 @@ SCALED = (
     ],
 )  # fmt: skip
 def test_inertial_of_a_link_is_one_line(repository, compare, replacements, expected):
-    assert lines(repository, compare, *replacements) == [f"{BASE} inertial: {expected}"]
+    assert change_lines(repository, compare, *replacements) == [f"{BASE} inertial: {expected}"]
 
 
 @pytest.mark.parametrize(
@@ -89,12 +92,12 @@ def test_inertial_of_a_link_is_one_line(repository, compare, replacements, expec
     ],
 )
 def test_rounding_is_no_change(repository, compare, old, new):
-    assert reviewed(repository, compare, (old, new)).subjects == []
+    assert review_model(repository, compare, (old, new)).subjects == []
 
 
 def test_counters_are_not_rounded(repository, compare):
-    text = changed(MODEL, ("</model>", "<plugin name='p' filename='f'><seed>10000000</seed></plugin></model>"))
-    assert lines(repository, compare, ("10000000", "10000001"), text=text) == [
+    text = replace_in_model(MODEL, ("</model>", "<plugin name='p' filename='f'><seed>10000000</seed></plugin></model>"))
+    assert change_lines(repository, compare, ("10000000", "10000001"), text=text) == [
         "model cart plugin p seed: 10000000 -> 10000001"
     ]
 
@@ -113,12 +116,12 @@ def test_counters_are_not_rounded(repository, compare):
     ],
 )  # fmt: skip
 def test_totals_of_a_model(repository, compare, replacements, expected):
-    assert figures(repository, compare, *replacements) == expected
+    assert figure_texts(repository, compare, *replacements) == expected
 
 
 def test_mass_that_the_simulator_computes_is_no_total(repository, compare):
     replacement = "</model>", "<link name='tip'><inertial auto='true'/></link></model>"
-    assert figures(repository, compare, replacement) == ["links 2 -> 3"]
+    assert figure_texts(repository, compare, replacement) == ["links 2 -> 3"]
 
 
 SURFACE = "<surface><friction><ode><mu>100</mu><mu2>50</mu2></ode></friction></surface>"
@@ -147,7 +150,7 @@ DYNAMICS = "<xyz>0 0 1</xyz><dynamics><damping>{}</damping><friction>3.48</frict
     ],
 )  # fmt: skip
 def test_added_elements_are_shown_with_their_values(repository, compare, old, new, expected):
-    assert lines(repository, compare, (old, new)) == expected
+    assert change_lines(repository, compare, (old, new)) == expected
 
 
 def test_joints_with_other_values_are_other_lines(repository, compare):
@@ -157,15 +160,15 @@ def test_joints_with_other_values_are_other_lines(repository, compare):
         (f"<xyz>0 0 {n}</xyz>", DYNAMICS.format(damping).replace("0 0 1", f"0 0 {n}"))
         for n, damping in enumerate((3, 3, 10, 10))
     ]
-    assert lines(repository, compare, *replacements, text=text) == [
+    assert change_lines(repository, compare, *replacements, text=text) == [
         "model arm joint j0, j1 axis dynamics added: damping 3, friction 3.48",
         "model arm joint j2, j3 axis dynamics added: damping 10, friction 3.48",
     ]
 
 
 def test_empty_values_are_shown(repository, compare):
-    text = changed(MODEL, ("</model>", "<plugin name='p' filename='f'><prefix>a</prefix></plugin></model>"))
-    assert lines(repository, compare, (">a<", "><"), text=text) == ["model cart plugin p prefix: a -> (empty)"]
+    text = replace_in_model(MODEL, ("</model>", "<plugin name='p' filename='f'><prefix>a</prefix></plugin></model>"))
+    assert change_lines(repository, compare, (">a<", "><"), text=text) == ["model cart plugin p prefix: a -> (empty)"]
 
 
 @pytest.mark.parametrize(
@@ -181,7 +184,7 @@ def test_changes_that_images_cannot_show_have_none(repository, monkeypatch, old,
     if not count:
         monkeypatch.setattr("linkwright.review.files.worlds.world_scenes", None)  # no mesh is read
     repository.commit({PATH: MODEL})
-    repository.write({PATH: changed(MODEL, (old, new))})
+    repository.write({PATH: replace_in_model(MODEL, (old, new))})
     versions = open_versions(repository.root, "HEAD")
     try:
         result = review(versions, with_images=True)

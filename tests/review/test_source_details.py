@@ -1,4 +1,7 @@
-"""The lines of a review about parameters, frames, options, rates and constants in the sources of nodes."""
+"""The lines of a review about values in the sources of nodes.
+
+The tests cover parameters, frames, options, rates and constants.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Topics and services of changed sources that unchanged sources of the same package use, too."""
+"""Topics and services of changed sources that unchanged sources use, too.
+
+The sources are in the same package.
+"""
 
 from __future__ import annotations
 
@@ -32,7 +35,7 @@ FILES = {
 RENAMED = "publisher 'chatter' (Float64) renamed to 'talk' (Float64)"
 
 
-def reasons(result):
+def breaking_reasons(result):
     return [str(change.reason) for _, change in result.breaking_changes]
 
 
@@ -54,7 +57,7 @@ def test_a_renamed_name_is_breaking_if_the_other_end_keeps_it(repository, compar
     repository.write({f"arm/src/{path}": FILES[f"arm/src/{path}"].replace(old, new)})
     result = compare(repository)
     assert breaking(result) == [sentence]
-    assert reasons(result) == [reason]
+    assert breaking_reasons(result) == [reason]
 
 
 def test_a_topic_that_another_node_publishes_is_not_lost(repository, compare):

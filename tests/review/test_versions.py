@@ -18,26 +18,26 @@ from tests.review.conftest import breaking, sentences, subject
 PATH = "arm_description/urdf/arm.urdf.xacro"
 
 
-def heavier(kilograms: int) -> str:
+def arm_with_mass(kilograms: int) -> str:
     return MACRO.replace('mass value="2"', f'mass value="{kilograms}"')
 
 
-def masses(result) -> list[str]:
+def mass_sentences(result) -> list[str]:
     return [sentence for sentence in sentences(subject(result, PATH)) if "mass" in sentence]
 
 
 def test_commit_ranges_are_resolved(package, compare):
     package.git("switch", "--quiet", "--create", "feature")
-    package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
+    package.commit({"arm_description/urdf/segment.xacro": arm_with_mass(3)})
     package.git("switch", "--quiet", "main")
     package.commit({PATH: ARM.replace('name="arm"', 'name="robot"')})
     package.git("switch", "--quiet", "feature")
-    package.write({"arm_description/urdf/segment.xacro": heavier(4)})
-    assert masses(compare(package, "main...feature")) == ["link 'upper': inertial mass 2 -> 3 kg"]
+    package.write({"arm_description/urdf/segment.xacro": arm_with_mass(4)})
+    assert mass_sentences(compare(package, "main...feature")) == ["link 'upper': inertial mass 2 -> 3 kg"]
     assert "robot 'arm': name robot -> arm" in sentences(subject(compare(package, "main..feature"), PATH))
-    assert masses(compare(package, "feature")) == ["link 'upper': inertial mass 3 -> 4 kg"]
-    assert masses(compare(package, "")) == ["link 'upper': inertial mass 2 -> 4 kg"]
-    assert masses(compare(package, "HEAD~1..")) == ["link 'upper': inertial mass 2 -> 3 kg"]
+    assert mass_sentences(compare(package, "feature")) == ["link 'upper': inertial mass 3 -> 4 kg"]
+    assert mass_sentences(compare(package, "")) == ["link 'upper': inertial mass 2 -> 4 kg"]
+    assert mass_sentences(compare(package, "HEAD~1..")) == ["link 'upper': inertial mass 2 -> 3 kg"]
 
 
 def test_package_of_a_file_is_its_nearest_folder_with_a_manifest(repository):
@@ -62,7 +62,7 @@ def test_untracked_files_are_new(package, compare):
 
 
 def test_review_does_not_change_repository(package, compare):
-    package.write({"arm_description/urdf/segment.xacro": heavier(3)})
+    package.write({"arm_description/urdf/segment.xacro": arm_with_mass(3)})
     before = package.git("status", "--porcelain=v2", "--branch")
     compare(package, "main")
     assert package.git("status", "--porcelain=v2", "--branch") == before
@@ -75,7 +75,7 @@ def test_review_can_be_limited_to_packages(package, compare):
     }
     package.commit(other)
     package.write(
-        {"arm_description/urdf/segment.xacro": heavier(3), "b/b.urdf": "<robot name='b'><link name='m'/></robot>"}
+        {"arm_description/urdf/segment.xacro": arm_with_mass(3), "b/b.urdf": "<robot name='b'><link name='m'/></robot>"}
     )
     assert [item.path for item in compare(package, "HEAD", ("b",)).subjects] == ["b/b.urdf"]
     assert [item.path for item in compare(package, "HEAD", ("arm_description/",)).subjects] == [PATH]
@@ -92,7 +92,7 @@ def test_missing_commits_are_errors(package, range_text, code):
 
 def test_shallow_clone_error_hints_at_fetching_base(package, tmp_path):
     base = package.git("rev-parse", "HEAD")
-    package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
+    package.commit({"arm_description/urdf/segment.xacro": arm_with_mass(3)})
     clone = tmp_path / "clone"
     subprocess.run(["git", "clone", "--quiet", "--depth=1", package.root.as_uri(), clone], check=True)
     with pytest.raises(LinkwrightError) as error:
@@ -146,8 +146,8 @@ def test_symlinks_out_of_repository_are_not_followed(package, compare, tmp_path,
 def test_symlink_loops_do_not_stop_review(package, compare):
     (package.root / "arm_description/urdf/a.xacro").symlink_to("b.xacro")
     (package.root / "arm_description/urdf/b.xacro").symlink_to("a.xacro")
-    package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
-    assert masses(compare(package, "HEAD~1..HEAD")) == ["link 'upper': inertial mass 2 -> 3 kg"]
+    package.commit({"arm_description/urdf/segment.xacro": arm_with_mass(3)})
+    assert mass_sentences(compare(package, "HEAD~1..HEAD")) == ["link 'upper': inertial mass 2 -> 3 kg"]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="file names of any bytes")
@@ -218,12 +218,12 @@ def test_submodule_change_is_a_note(package, compare, tmp_path):
 
 def test_missing_file_of_partial_clone_is_a_problem_of_that_file_only(package, compare, tmp_path):
     mesh = package.commit({"arm_description/meshes/a.stl": b"solid a\nendsolid a\n" * 1000})
-    package.commit({"arm_description/urdf/segment.xacro": heavier(3)})
+    package.commit({"arm_description/urdf/segment.xacro": arm_with_mass(3)})
     blob = package.git("rev-parse", f"{mesh}:arm_description/meshes/a.stl")
     (package.root / ".git/objects" / blob[:2] / blob[2:]).unlink()
     (package.root / "arm_description/meshes/a.stl").write_bytes(b"")
     result = compare(package, "HEAD~1..HEAD")
-    assert masses(result) == ["link 'upper': inertial mass 2 -> 3 kg"]
+    assert mass_sentences(result) == ["link 'upper': inertial mass 2 -> 3 kg"]
     assert "git cannot check out one file of 'HEAD~1', such as 'arm_description/meshes/a.stl'" in map(str, result.notes)
 
 

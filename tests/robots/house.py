@@ -1,4 +1,7 @@
-"""mbot in the house with nav2's servers, with the parameters of my_robot_navigation: all in one thread, in lock-step."""
+"""mbot in the house with nav2's servers, all in one thread, in lock-step.
+
+The servers use the parameters of my_robot_navigation.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ from tests.places import GAZEBO_PACKAGE, NAVIGATION_PACKAGE
 
 WORLD = GAZEBO_PACKAGE / "worlds" / "house.world"
 ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
-STEP = 0.1
+STEP_S = 0.1
 
 
 def flat(nested: dict[str, Any], prefix: str = "") -> dict[str, Any]:
@@ -55,18 +58,21 @@ class House(SteppedSimulation):
         self.advance_and_watch(3.0)
         return self
 
-    def _options(self, name: str, costmap: str = "", **more: Any) -> NodeOptions:
-        given = flat(self._told[name]["ros__parameters"])
-        options = NodeOptions(parameters={**given, "autostart_node": True, **more})
+    def _options(self, name: str, costmap: str = "", **parameters: Any) -> NodeOptions:
+        file_parameters = flat(self._told[name]["ros__parameters"])
+        options = NodeOptions(parameters={**file_parameters, "autostart_node": True, **parameters})
         if costmap:
             for key, value in flat(self._told[costmap][costmap]["ros__parameters"]).items():
                 options.parameters_of_others.set(f"/{costmap}/{costmap}", key, value)
         return options
 
     def advance_and_watch(self, seconds: float) -> None:
-        """Advance the time, and record the contacts of mbot's body and wheels except with the ground."""
-        for _ in range(round(seconds / STEP)):
-            self.advance(STEP)
+        """Advance the time, and record the contacts of mbot's body and wheels.
+
+        Contacts with the ground are left out.
+        """
+        for _ in range(round(seconds / STEP_S)):
+            self.advance(STEP_S)
             model, data = self.simulation.model, self.simulation.data
             for first, second in np.array(data.contact.geom[: data.ncon]).reshape(-1, 2):
                 names = [str(model.geom(int(geometry)).name) for geometry in (first, second)]
@@ -85,7 +91,7 @@ class House(SteppedSimulation):
 
         def accepted(future: Any) -> None:
             self.goal = future.result()
-            self.goal.get_result_async().add_done_callback(lambda answer: results.append(answer.result()))
+            self.goal.get_result_async().add_done_callback(lambda response: results.append(response.result()))
 
         self._client.send_goal_async(goal).add_done_callback(accepted)
         return results

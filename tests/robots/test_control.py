@@ -1,4 +1,7 @@
-"""The package of control nodes: each drives mbot through a simulated world, and its motion is checked."""
+"""The package of control nodes.
+
+Each drives mbot through a simulated world, and its motion is checked.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,7 @@ pytest.importorskip("mujoco")
 
 ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
 NODES = ("drive_square", "follow_wall", "go_to_pose", "follow_line", "avoid_obstacles")
-RADIUS = 0.2
+ROBOT_RADIUS_M = 0.2
 """The radius of mbot in meters."""
 
 
@@ -96,10 +99,10 @@ def test_follow_wall_goes_through_maze(load: Any) -> None:
             nearest.append(min(scans.last.ranges))
             beside.append(scans.last.ranges[90])  # 90 degrees to the right
         assert way > 8.0
-        assert min(nearest) > RADIUS + 0.1, "mbot touches nothing"
-        near = [distance for distance in beside if distance < 0.9]
-        assert len(near) > 40, "there is a wall on the right most of the time"
-        assert sorted(near)[len(near) // 2] == pytest.approx(0.5, abs=0.1)
+        assert min(nearest) > ROBOT_RADIUS_M + 0.1, "mbot touches nothing"
+        near_distances = [distance for distance in beside if distance < 0.9]
+        assert len(near_distances) > 40, "there is a wall on the right most of the time"
+        assert sorted(near_distances)[len(near_distances) // 2] == pytest.approx(0.5, abs=0.1)
         assert math.dist(place(test), (0.0, 0.0)) > 4.0, "mbot gets through the maze"
 
 
@@ -164,7 +167,7 @@ def test_avoid_obstacles_touches_nothing(load: Any) -> None:
         for _ in range(60):
             test.advance(1.0)
             way, before = way + math.dist(before, place(test)), place(test)
-            assert min(scans.last.ranges) > RADIUS + 0.05
+            assert min(scans.last.ranges) > ROBOT_RADIUS_M + 0.05
         assert way > 6.0
         assert any("m ahead" in text for text in logged(test))
 
@@ -176,8 +179,8 @@ def test_avoid_obstacles_stops_before_box(load: Any) -> None:
         scans, odometry = test.record("/scan"), test.record("/odom")
         test.advance(20.0)
         assert place(test)[0] > 2.0, "mbot drives toward the boxes, which are 3.6 m away"
-        ahead = min(distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) <= 40)
-        assert 0.35 < ahead < 0.6
+        distance_ahead = min(distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) <= 40)
+        assert 0.35 < distance_ahead < 0.6
         assert abs(odometry.last.twist.twist.linear.x) < 1e-3
 
 

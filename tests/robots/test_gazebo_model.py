@@ -1,4 +1,7 @@
-"""mbot as a simulator needs it: mbot_gazebo.xacro with every choice of sensors, for both Gazebos."""
+"""mbot as a simulator needs it.
+
+The tests cover mbot_gazebo.xacro with every choice of sensors, for both Gazebos.
+"""
 
 from __future__ import annotations
 
@@ -66,24 +69,24 @@ def test_laser_plane_is_above_all_other_parts(choice: dict[str, str]) -> None:
 @pytest.mark.parametrize("sensor", ALONE)
 def test_single_sensor_is_mounted_as_in_tutorial(sensor: str) -> None:
     link = f"{sensor}_link"
-    of_tutorial, ours = load(PACKAGE / "urdf" / ALONE[sensor]), robot_of({sensor: "true"})
-    assert ours.joints[f"{sensor}_joint"].origin == of_tutorial.joints[f"{sensor}_joint"].origin
-    assert [visual.geometry for visual in ours.links[link].visuals] == [
-        visual.geometry for visual in of_tutorial.links[link].visuals
+    tutorial_robot, full_robot = load(PACKAGE / "urdf" / ALONE[sensor]), robot_of({sensor: "true"})
+    assert full_robot.joints[f"{sensor}_joint"].origin == tutorial_robot.joints[f"{sensor}_joint"].origin
+    assert [visual.geometry for visual in full_robot.links[link].visuals] == [
+        visual.geometry for visual in tutorial_robot.links[link].visuals
     ]
 
 
 def test_base_matches_tutorial() -> None:
-    base, ours = load(PACKAGE / "urdf" / "mbot_base.urdf"), robot_of({})
+    base, full_robot = load(PACKAGE / "urdf" / "mbot_base.urdf"), robot_of({})
     for link in base.links.values():
-        assert [visual.geometry for visual in ours.links[link.name].visuals] == [
+        assert [visual.geometry for visual in full_robot.links[link.name].visuals] == [
             visual.geometry for visual in link.visuals
         ]
-        assert [collision.geometry for collision in ours.links[link.name].collisions] == [
+        assert [collision.geometry for collision in full_robot.links[link.name].collisions] == [
             visual.geometry for visual in link.visuals
         ]
     for joint in base.joints.values():
-        assert ours.joints[joint.name].origin == joint.origin
+        assert full_robot.joints[joint.name].origin == joint.origin
 
 
 @pytest.mark.parametrize(
@@ -114,7 +117,10 @@ def test_optical_frames_look_along_sensor_x_axis() -> None:
 
 
 def height(robot: Robot, link: str) -> float:
-    """Return the height of a link's frame above the footprint in meters; the model's fixed joints are not rotated."""
+    """Return the height of a link's frame above the footprint in meters.
+
+    The model's fixed joints are not rotated.
+    """
     by_child = {joint.child: joint for joint in robot.joints.values()}
     above = 0.0
     while link in by_child:
@@ -124,19 +130,22 @@ def height(robot: Robot, link: str) -> float:
 
 
 def extents(robot: Robot) -> dict[str, tuple[float, float]]:
-    """Return the lowest and the highest point of each link's collision above the ground, in meters."""
+    """Return the lowest and the highest point of each link's collision.
+
+    They are above the ground, in meters.
+    """
     extents_by_link = {}
     for link in robot.links.values():
         for collision in link.collisions:
-            middle = height(robot, link.name) + collision.origin.xyz[2]
+            center_height = height(robot, link.name) + collision.origin.xyz[2]
             lying = abs(collision.origin.rpy[0]) > 1.0
             shape = collision.geometry
             if isinstance(shape, Box):
-                half = shape.size[2] / 2
+                half_height = shape.size[2] / 2
             elif isinstance(shape, Sphere) or (isinstance(shape, Cylinder) and lying):
-                half = shape.radius
+                half_height = shape.radius
             else:
                 assert isinstance(shape, Cylinder)
-                half = shape.length / 2
-            extents_by_link[link.name] = (middle - half, middle + half)
+                half_height = shape.length / 2
+            extents_by_link[link.name] = (center_height - half_height, center_height + half_height)
     return extents_by_link

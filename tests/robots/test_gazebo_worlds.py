@@ -21,8 +21,8 @@ from tests.repository_tools import TOOLS, load_tool
 WORLDS = sorted((GAZEBO_PACKAGE / "worlds").glob("*.world"))
 MODELS = sorted((GAZEBO_PACKAGE / "models").iterdir())
 LAUNCH_FILES = sorted((GAZEBO_PACKAGE / "launch").glob("*.launch.py"))
-ROBOT_HEIGHT = 0.4
-START_RADIUS = 0.3
+ROBOT_HEIGHT_M = 0.4
+START_RADIUS_M = 0.3
 """The radius of the free area around the origin in meters; mbot's radius is 0.2."""
 
 
@@ -38,8 +38,8 @@ def test_files_match_generator_output(tool: ModuleType) -> None:
     for name, text in written.items():
         assert (GAZEBO_PACKAGE / name).read_text(encoding="utf-8") == text, name
     for folder in ("models", "worlds"):
-        there = {path.relative_to(GAZEBO_PACKAGE).as_posix() for path in (GAZEBO_PACKAGE / folder).rglob("*.*")}
-        assert there == {name for name in written if name.startswith(folder)}
+        existing_files = {path.relative_to(GAZEBO_PACKAGE).as_posix() for path in (GAZEBO_PACKAGE / folder).rglob("*.*")}
+        assert existing_files == {name for name in written if name.startswith(folder)}
 
 
 def test_generator_check_reports_stale_file(
@@ -67,16 +67,19 @@ def test_worlds_have_no_findings(path: Path, capsys: pytest.CaptureFixture[str])
 def test_robot_start_area_is_free(path: Path) -> None:
     for name, x, y, yaw, size in solid_boxes(path):
         # The origin in the axes of the box, and its distance from the box.
-        along, across = (-x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) - y * math.cos(yaw))
-        distance = math.hypot(max(abs(along) - size[0] / 2, 0), max(abs(across) - size[1] / 2, 0))
-        assert distance > START_RADIUS, name
+        forward, sideways = (-x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) - y * math.cos(yaw))
+        distance = math.hypot(max(abs(forward) - size[0] / 2, 0), max(abs(sideways) - size[1] / 2, 0))
+        assert distance > START_RADIUS_M, name
     for include in ET.parse(path).getroot().iter("include"):
         x, y = map(float, include.findtext("pose", "0 0").split()[:2])
-        assert math.hypot(x, y) > START_RADIUS + 0.4, include.findtext("name")
+        assert math.hypot(x, y) > START_RADIUS_M + 0.4, include.findtext("name")
 
 
 def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[float, ...]]]:
-    """Return the boxes of a world with which the robot can collide: name, x, y, yaw and size in meters and radians."""
+    """Return the boxes of a world with which the robot can collide.
+
+    Each has a name, x, y, yaw and size in meters and radians.
+    """
     for model in ET.parse(path).getroot().iter("model"):
         for collision in model.iter("collision"):
             text = collision.findtext("geometry/box/size")
@@ -84,7 +87,7 @@ def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[fl
                 continue
             x, y, z, _, _, yaw = map(float, collision.findtext("pose", "0 0 0 0 0 0").split())
             size = tuple(map(float, text.split()))
-            if z - size[2] / 2 < ROBOT_HEIGHT:
+            if z - size[2] / 2 < ROBOT_HEIGHT_M:
                 yield f"{model.get('name')}/{collision.get('name')}", x, y, yaw, size
 
 
@@ -96,24 +99,24 @@ def test_maze_cells_are_reachable_and_one_is_exit() -> None:
         x, y = ((a + b) / 2 * cell for a, b in zip(start, end, strict=True))
         for _, box_x, box_y, yaw, (length, width, _) in boxes:
             along_y = abs(math.sin(yaw)) > 0.5
-            half = (width / 2, length / 2) if along_y else (length / 2, width / 2)
-            if abs(x - box_x) < half[0] and abs(y - box_y) < half[1]:
+            half_size = (width / 2, length / 2) if along_y else (length / 2, width / 2)
+            if abs(x - box_x) < half_size[0] and abs(y - box_y) < half_size[1]:
                 return False
         return True
 
-    seen, waiting, ways_out = {(0, 0)}, [(0, 0)], []
-    while waiting:
-        here = waiting.pop()
+    reached, pending, ways_out = {(0, 0)}, [(0, 0)], []
+    while pending:
+        current_cell = pending.pop()
         for step in ((1, 0), (-1, 0), (0, 1), (0, -1)):
-            there = (here[0] + step[0], here[1] + step[1])
-            if not is_open(here, there):
+            neighbor = (current_cell[0] + step[0], current_cell[1] + step[1])
+            if not is_open(current_cell, neighbor):
                 continue
-            if not all(0 <= value < size for value in there):
-                ways_out.append(there)
-            elif there not in seen:
-                seen.add(there)
-                waiting.append(there)
-    assert len(seen) == size * size
+            if not all(0 <= value < size for value in neighbor):
+                ways_out.append(neighbor)
+            elif neighbor not in reached:
+                reached.add(neighbor)
+                pending.append(neighbor)
+    assert len(reached) == size * size
     assert ways_out == [(size, size - 1)]
 
 
@@ -156,7 +159,7 @@ def test_manifest_declares_launch_file_dependencies(path: Path) -> None:
     imported = {
         node.module.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module
     }
-    asked = {
+    required_packages = {
         node.args[0].value
         for node in ast.walk(tree)
         if isinstance(node, ast.Call)
@@ -171,4 +174,4 @@ def test_manifest_declares_launch_file_dependencies(path: Path) -> None:
         for keyword in node.keywords
         if keyword.arg == "package" and isinstance(keyword.value, ast.Constant)
     }
-    assert imported | asked | started <= named
+    assert imported | required_packages | started <= named

@@ -29,7 +29,10 @@ def tool() -> ModuleType:
 
 
 class Geometry:
-    """One <geometry>: triangles as positions and normals, each an array of shape (triangles, 3 corners, 3)."""
+    """The triangles of one <geometry>, as positions and normals.
+
+    Each is an array of shape (triangles, 3 corners, 3).
+    """
 
     def __init__(self, element: ET.Element) -> None:
         self.name = element.attrib["name"]

@@ -1,4 +1,7 @@
-"""mbot's five models are the tutorial's robot: recorded facts, and the published files if they exist."""
+"""mbot's five models are the tutorial's robot.
+
+They are compared with recorded facts, and with the published files if these exist.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Navigation of mbot in the house, with the parameters and the launch file of my_robot_navigation."""
+"""Navigation of mbot in the house.
+
+It uses the parameters and the launch file of my_robot_navigation.
+"""
 
 from __future__ import annotations
 

@@ -43,13 +43,13 @@ def test_manifest_is_valid(manifest: Package) -> None:
 
 
 def test_manifest_declares_launch_file_dependencies(manifest: Package) -> None:
-    needed = {dependency.name for dependency in manifest.exec_depends}
+    declared = {dependency.name for dependency in manifest.exec_depends}
     for name in LAUNCH_FILES:
         tree = ast.parse((PACKAGE / "launch" / name).read_text(encoding="utf-8"))
         imported = {
             node.module.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module
         }
-        assert imported | set(_node_words(tree, "package")) <= needed
+        assert imported | set(_node_words(tree, "package")) <= declared
 
 
 def test_setup_py_matches_manifest(manifest: Package) -> None:
@@ -107,18 +107,18 @@ def test_tutorial_values_match_published_file() -> None:
     assert yaml.safe_load((PUBLISHED / "rviz" / "urdf.rviz").read_text(encoding="utf-8")) == TUTORIAL["rviz"]
 
 
-def _assert_within(part: Any, whole: Any, place: str) -> None:
+def _assert_within(part: Any, other_items: Any, place: str) -> None:
     if isinstance(part, dict):
         for key, value in part.items():
-            assert key in whole, f"{place}/{key}"
-            _assert_within(value, whole[key], f"{place}/{key}")
+            assert key in other_items, f"{place}/{key}"
+            _assert_within(value, other_items[key], f"{place}/{key}")
     elif isinstance(part, list):
         for item in part:
-            same = [other for other in whole if other.get("Class") == item.get("Class")]
-            assert same, f"{place}/{item.get('Class')}"
-            _assert_within(item, same[0], f"{place}/{item.get('Class')}")
+            candidates = [other for other in other_items if other.get("Class") == item.get("Class")]
+            assert candidates, f"{place}/{item.get('Class')}"
+            _assert_within(item, candidates[0], f"{place}/{item.get('Class')}")
     else:
-        assert whole == part, place
+        assert other_items == part, place
 
 
 def _name(call: ast.Call) -> str:

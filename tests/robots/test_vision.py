@@ -1,4 +1,7 @@
-"""The package of vision nodes: its launch files, its checks, and the node that follows an object in a world."""
+"""The package of vision nodes.
+
+The tests cover its launch files, its checks, and the node that follows an object in a world.
+"""
 
 from __future__ import annotations
 

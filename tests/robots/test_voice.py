@@ -1,4 +1,7 @@
-"""Voice commands for mbot in the playground, with the commands and the launch file of my_robot_voice."""
+"""Voice commands for mbot in the playground.
+
+They use the commands and the launch file of my_robot_voice.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.testing import AsyncSteppedSimulation
 from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
 from tests.robots.workspaces import colcon_build, sourced
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 COMMANDS = VOICE_PACKAGE / "config" / "commands.yaml"
 WORLD = GAZEBO_PACKAGE / "worlds" / "playground.world"
@@ -26,13 +29,13 @@ STRING = get_message("std_msgs/msg/String")
 
 
 def test_commands_are_built_in_commands_with_rooms():
-    built_in, ours = read_command_file(DEFAULT_FILE), read_command_file(COMMANDS)
-    assert ours.commands == built_in.commands
-    assert set(ours.places) - set(built_in.places) == {"kitchen", "bedroom", "study"}
-    match = ours.match_command("go to the kitchen")
+    built_in, robot_commands = read_command_file(DEFAULT_FILE), read_command_file(COMMANDS)
+    assert robot_commands.commands == built_in.commands
+    assert set(robot_commands.places) - set(built_in.places) == {"kitchen", "bedroom", "study"}
+    match = robot_commands.match_command("go to the kitchen")
     assert match is not None
     assert match.values == {"place": "kitchen"}
-    assert "去厨房" in ours.phrases("zh")
+    assert "去厨房" in robot_commands.phrases("zh")
 
 
 @pytest.mark.parametrize("name", ["audio_capture", "voice_commander"])
@@ -52,8 +55,8 @@ def test_launch_file_declares_arguments(capsys):
 async def test_spoken_commands_drive_robot_through_playground():
     pytest.importorskip("mujoco")
     async with AsyncSteppedSimulation(WORLD, ROBOT, period=0.02) as playground:
-        given = {"engine": "", "commands_file": str(COMMANDS), "use_sim_time": True}
-        running = VoiceCommander(playground.graph, NodeOptions(parameters=given))
+        parameters = {"engine": "", "commands_file": str(COMMANDS), "use_sim_time": True}
+        running = VoiceCommander(playground.graph, NodeOptions(parameters=parameters))
         text = playground.node.create_publisher(STRING, "/voice/text_input", 10)
 
         async def tell(command, seconds):
@@ -91,7 +94,7 @@ def test_colcon_installs_package_and_program_runs(tmp_path: Path) -> None:
         env={**os.environ, "PYTHONPATH": sourced(tmp_path, "PYTHONPATH"), "LINKWRIGHT_DDS": "0"},
         capture_output=True,
         text=True,
-        timeout=SECONDS,
+        timeout=TIMEOUT_S,
         check=False,
     )
     assert ran.returncode == 1

@@ -1,4 +1,7 @@
-"""Images of image_transport's `compressed` and `compressedDepth`: unpacking, and the displays that show them."""
+"""Images of image_transport's `compressed` and `compressedDepth`.
+
+The tests cover unpacking, and the displays that show them.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +42,7 @@ def decode_compressed(message, transport: str = "compressedDepth"):
     return Unpacker().image(message, transport)
 
 
-def values(image, kind: str) -> list:
+def image_values(image, kind: str) -> list:
     return image.data.view(kind).reshape(image.height, image.width).tolist()
 
 
@@ -70,7 +73,7 @@ def test_image_source_resolves_transport_topic(topic, hint, expected):
 def test_integer_depths_are_decoded_losslessly(packing):
     image = decode_compressed(depth_message(MILLIMETERS, packing))
     assert (image.encoding, image.width, image.height, image.step) == ("16UC1", 3, 2, 6)
-    assert values(image, "<u2") == MILLIMETERS.tolist()
+    assert image_values(image, "<u2") == MILLIMETERS.tolist()
     assert image.header.frame_id == "base"
 
 
@@ -87,7 +90,7 @@ def test_depths_in_meters_are_decoded_within_quantization(packing):
     "form", ["16UC1", "16UC1; compressedDepth", "mono16; compressedDepth png", "16UC1;compressedDepth"]
 )
 def test_formats_of_older_publishers_are_read(form):
-    assert values(decode_compressed(packed(form, header() + png(MILLIMETERS))), "<u2") == MILLIMETERS.tolist()
+    assert image_values(decode_compressed(packed(form, header() + png(MILLIMETERS))), "<u2") == MILLIMETERS.tolist()
 
 
 def test_color_and_gray_images_are_decoded():
@@ -97,14 +100,14 @@ def test_color_and_gray_images_are_decoded():
     image = decode_compressed(packed("mono8; jpeg compressed ", jpeg(90, 4, 4)), "compressed")
     assert (image.encoding, image.data.tolist()) == ("mono8", [90] * 16)
     image = decode_compressed(packed("png", png(MILLIMETERS)), "compressed")
-    assert (image.encoding, values(image, "<u2")) == ("mono16", MILLIMETERS.tolist())
+    assert (image.encoding, image_values(image, "<u2")) == ("mono16", MILLIMETERS.tolist())
 
 
 def test_depths_are_decoded_from_compressed_transport():
     image = decode_compressed(packed("16UC1; png compressed ", png(MILLIMETERS)), "compressed")
-    assert (image.encoding, values(image, "<u2")) == ("16UC1", MILLIMETERS.tolist())
+    assert (image.encoding, image_values(image, "<u2")) == ("16UC1", MILLIMETERS.tolist())
     image = decode_compressed(packed("16UC1; jpeg compressed mono8", jpeg(4, 1, 1)), "compressed")
-    assert (image.encoding, values(image, "<u2")) == ("16UC1", [[1024]])
+    assert (image.encoding, image_values(image, "<u2")) == ("16UC1", [[1024]])
 
 
 @given(arrays(np.uint16, st.integers(1, 60), elements=st.sampled_from([0, 0, 0, 1, 2, 900, 901, 40000, 65535])))
@@ -189,8 +192,8 @@ def test_image_with_too_many_pixels_is_not_compressed():
 # --- displays --------------------------------------------------------------------------------------------------------
 
 
-def info(node):
-    node.create_publisher(CameraInfo, "/depth/camera_info", 5).publish(clouds.camera_info(2, 1))
+def publish_camera_info(node):
+    node.create_publisher(CameraInfo, "/depth/camera_info", 5).publish(clouds.make_camera_info(2, 1))
 
 
 @pytest.mark.parametrize("packing", ["png", "rvl"])
@@ -201,9 +204,9 @@ async def test_depth_cloud_follows_transport_hints(packing):
         "Color_Image_Topic": "/color/image",
         "Color_Transport_Hint": "compressed",
     }
-    async with open_world(clouds.config("DepthCloud", **topics)) as world:
+    async with open_world(clouds.make_config("DepthCloud", **topics)) as world:
         node = world.graph.create_node("camera")
-        info(node)
+        publish_camera_info(node)
         depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
         colors = node.create_publisher(CompressedImage, "/color/image/compressed", 5)
         depths.publish(depth_message(np.array([[2000, 4000]], np.uint16), packing))
@@ -212,16 +215,16 @@ async def test_depth_cloud_follows_transport_hints(packing):
         display = world.display("DepthCloud")
         (content,) = contents(display)
         assert content.fields["positions"].reshape(-1, 3).tolist() == [[0, 0, 2], [2, 0, 4]]
-        assert np.allclose(clouds.colors(display), [[0, 0, 250, 255]] * 2, atol=4)
+        assert np.allclose(clouds.drawn_colors(display), [[0, 0, 250, 255]] * 2, atol=4)
         status = world.status("DepthCloud")
         assert status["Message"] == ("ok", "Ok")
         assert (status["Depth Image Size"], status["Image Size"]) == (("ok", "2 x 1"), ("ok", "2 x 1"))
 
 
 async def test_depth_topic_may_name_its_transport():
-    async with open_world(clouds.config("DepthCloud", Depth_Map_Topic="/depth/image/compressedDepth")) as world:
+    async with open_world(clouds.make_config("DepthCloud", Depth_Map_Topic="/depth/image/compressedDepth")) as world:
         node = world.graph.create_node("camera")
-        info(node)
+        publish_camera_info(node)
         depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
         depths.publish(depth_message(np.array([[2.0, np.nan]])))
         await world.settle()
@@ -232,9 +235,9 @@ async def test_depth_topic_may_name_its_transport():
 
 async def test_malformed_depth_image_status_is_cleared_by_valid_image():
     topics = {"Depth_Map_Topic": "/depth/image", "Depth_Map_Transport_Hint": "compressedDepth"}
-    async with open_world(clouds.config("DepthCloud", **topics)) as world:
+    async with open_world(clouds.make_config("DepthCloud", **topics)) as world:
         node = world.graph.create_node("camera")
-        info(node)
+        publish_camera_info(node)
         depths = node.create_publisher(CompressedImage, "/depth/image/compressedDepth", 5)
         depths.publish(packed("16UC1; compressedDepth png", header() + b"\x89PNG\r\n\x1a\n"))
         await world.settle()
@@ -248,7 +251,7 @@ async def test_malformed_depth_image_status_is_cleared_by_valid_image():
 
 async def test_depth_cloud_reports_unsupported_theora_transport():
     topics = {"Depth_Map_Topic": "/depth/image", "Color_Image_Topic": "/c", "Color_Transport_Hint": "theora"}
-    async with open_world(clouds.config("DepthCloud", **topics)) as world:
+    async with open_world(clouds.make_config("DepthCloud", **topics)) as world:
         text = "Images of transport 'theora' are not supported: choose raw, compressed or compressedDepth"
         assert world.status("DepthCloud") == {"Color Transport Hint": ("error", text)}
         world.display("DepthCloud").set_property(("Color Transport Hint",), "compressed")
@@ -257,7 +260,7 @@ async def test_depth_cloud_reports_unsupported_theora_transport():
 
 
 async def test_image_display_shows_depths_in_gray():
-    async with open_world(images.config("Image", "/camera/depth/compressedDepth")) as world:
+    async with open_world(images.make_config("Image", "/camera/depth/compressedDepth")) as world:
         display = world.display("Image")
         publisher = world.graph.create_node("camera").create_publisher(
             CompressedImage, "/camera/depth/compressedDepth", 5
@@ -268,7 +271,7 @@ async def test_image_display_shows_depths_in_gray():
         fields = content.fields
         assert (fields["encoding"], fields["width"], fields["height"]) == ("gray", 3, 1)
         assert fields["data"].tolist() == [0, 127, 255]
-        assert images.names(display) == {"Topic", "Normalize Range", "Median window"}
+        assert images.row_names(display) == {"Topic", "Normalize Range", "Median window"}
         display.set_property(("Normalize Range",), False)
         display.set_property(("Max Value",), 2000.0)
         assert contents(display)[0].fields["data"].tolist() == [0, 63, 127]
@@ -279,7 +282,7 @@ async def test_image_display_shows_depths_in_gray():
 
 
 async def test_compressed_16_bit_images_have_range():
-    async with open_world(images.config("Image", "/camera/depth/compressed")) as world:
+    async with open_world(images.make_config("Image", "/camera/depth/compressed")) as world:
         publisher = world.graph.create_node("camera").create_publisher(CompressedImage, "/camera/depth/compressed", 5)
         publisher.publish(packed("16UC1; png compressed ", png(np.array([[0, 500, 1000]], np.uint16))))
         await world.settle()
@@ -287,9 +290,9 @@ async def test_compressed_16_bit_images_have_range():
 
 
 async def test_camera_display_shows_compressed_depths():
-    async with open_world(images.config("Camera", "/camera/depth/compressedDepth")) as world:
+    async with open_world(images.make_config("Camera", "/camera/depth/compressedDepth")) as world:
         node = world.graph.create_node("camera")
-        node.create_publisher(CameraInfo, "/camera/camera_info", 5).publish(images.info(2, 1))
+        node.create_publisher(CameraInfo, "/camera/camera_info", 5).publish(images.make_camera_info(2, 1))
         publisher = node.create_publisher(CompressedImage, "/camera/depth/compressedDepth", 5)
         publisher.publish(depth_message(np.array([[0, 9]], np.uint16)))
         await world.settle()
@@ -300,6 +303,6 @@ async def test_camera_display_shows_compressed_depths():
 
 @pytest.mark.parametrize("cls", ["Image", "Camera"])
 async def test_theora_image_status_names_supported_topics(cls):
-    async with open_world(images.config(cls, "/camera/image/theora")) as world:
+    async with open_world(images.make_config(cls, "/camera/image/theora")) as world:
         text = "Images of transport 'theora' are not supported: choose /camera/image or /camera/image/compressed"
         assert world.status(cls)["Topic"] == ("error", text)

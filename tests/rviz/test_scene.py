@@ -1,3 +1,5 @@
+"""Scenes from descriptions: shapes, poses, colors and meshes."""
+
 from __future__ import annotations
 
 import math
@@ -11,10 +13,10 @@ from linkwright.rviz.robot import SceneBuilder, frame_of
 from linkwright.urdf import read
 from linkwright.xacro import expand
 from linkwright.xmltree import parse
-from tests.page.test_files import package, write
+from tests.page.test_files import write_file, write_package
 
 
-def built(text: str, prefix: str = "", packages: dict[str, Path] | None = None, name: str = "<text>"):
+def build_scene_of(text: str, prefix: str = "", packages: dict[str, Path] | None = None, name: str = "<text>"):
     finder = PackageFinder(start=Path("/nonexistent"), environment={}, extra=packages or {})
     builder = SceneBuilder(MeshIndex(finder))
     reading = read(parse(text, name))
@@ -22,11 +24,11 @@ def built(text: str, prefix: str = "", packages: dict[str, Path] | None = None, 
     return {link.name: link for link in builder.links(reading.robot, prefix)}, builder
 
 
-def robot(visuals: str, materials: str = "") -> str:
+def robot_text(visuals: str, materials: str = "") -> str:
     return f'<robot name="r">{materials}<link name="base">{visuals}</link></robot>'
 
 
-def visual(geometry: str, material: str = "", tag: str = "visual") -> str:
+def visual_element(geometry: str, material: str = "", tag: str = "visual") -> str:
     return f"<{tag}><geometry>{geometry}</geometry>{material}</{tag}>"
 
 
@@ -39,20 +41,20 @@ def visual(geometry: str, material: str = "", tag: str = "visual") -> str:
     ],
 )
 def test_shapes_have_their_sizes(geometry, kind, size):
-    links, _ = built(robot(visual(geometry)))
+    links, _ = build_scene_of(robot_text(visual_element(geometry)))
     (shape,) = links["base"].visuals
     assert (shape.kind, shape.size) == (kind, size)
 
 
 def test_capsule_of_urdf_1_1_is_built():
-    text = robot(visual('<capsule radius="1" length="2"/>')).replace('name="r"', 'name="r" version="1.1"')
-    (shape,) = built(text)[0]["base"].visuals
+    text = robot_text(visual_element('<capsule radius="1" length="2"/>')).replace('name="r"', 'name="r" version="1.1"')
+    (shape,) = build_scene_of(text)[0]["base"].visuals
     assert (shape.kind, shape.size) == ("capsule", [1, 2])
 
 
 def test_visual_pose_matches_origin():
-    links, _ = built(
-        robot(
+    links, _ = build_scene_of(
+        robot_text(
             f'<visual><origin xyz="1 2 3" rpy="0 0 {math.pi / 2}"/><geometry><sphere radius="1"/></geometry></visual>'
         )
     )
@@ -63,13 +65,13 @@ def test_visual_pose_matches_origin():
 
 def test_visual_colors_follow_materials():
     box = '<box size="1 1 1"/>'
-    links, _ = built(
-        robot(
-            visual(box, '<material name="blue"/>')
-            + visual(box, '<material name="own"><color rgba="1 0 0 0.5"/></material>')
-            + visual(box)
-            + visual(box, '<material name="undefined"/>')
-            + visual(box, tag="collision"),
+    links, _ = build_scene_of(
+        robot_text(
+            visual_element(box, '<material name="blue"/>')
+            + visual_element(box, '<material name="own"><color rgba="1 0 0 0.5"/></material>')
+            + visual_element(box)
+            + visual_element(box, '<material name="undefined"/>')
+            + visual_element(box, tag="collision"),
             '<material name="blue"><color rgba="0 0 1 1"/></material>',
         )
     )
@@ -83,7 +85,7 @@ def test_links_have_frame_joint_and_source_location():
   <link name="tip"/>
   <joint name="j" type="fixed"><parent link="base"/><child link="tip"/></joint>
 </robot>"""
-    links, _ = built(text, prefix="one", name="/some/r.urdf")
+    links, _ = build_scene_of(text, prefix="one", name="/some/r.urdf")
     assert (links["base"].parent_joint, links["tip"].parent_joint) == (None, "j")
     assert (links["tip"].frame, frame_of("tip", "")) == ("one/tip", "tip")
     place = links["tip"].place
@@ -91,12 +93,12 @@ def test_links_have_frame_joint_and_source_location():
 
 
 def test_links_from_macros_have_macro_call_locations(tmp_path):
-    write(
+    write_file(
         tmp_path / "wheel.xacro",
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
         '  <xacro:macro name="wheel" params="side">\n    <link name="${side}_wheel"/>\n  </xacro:macro>\n</robot>\n',
     )
-    main = write(
+    main = write_file(
         tmp_path / "main.xacro",
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
         '  <xacro:include filename="wheel.xacro"/>\n  <xacro:wheel side="left"/>\n</robot>\n',
@@ -109,10 +111,10 @@ def test_links_from_macros_have_macro_call_locations(tmp_path):
 
 
 def test_meshes_have_url_format_and_scale(tmp_path):
-    share = package(tmp_path / "robot", "robot")
-    write(share / "meshes" / "arm.STL")
-    links, builder = built(
-        robot(visual('<mesh filename="package://robot/meshes/arm.STL" scale="0.001 0.001 0.001"/>')),
+    share = write_package(tmp_path / "robot", "robot")
+    write_file(share / "meshes" / "arm.STL")
+    links, builder = build_scene_of(
+        robot_text(visual_element('<mesh filename="package://robot/meshes/arm.STL" scale="0.001 0.001 0.001"/>')),
         packages={"robot": share},
     )
     (shape,) = links["base"].visuals
@@ -123,19 +125,19 @@ def test_meshes_have_url_format_and_scale(tmp_path):
 
 
 def test_relative_mesh_paths_are_resolved_from_naming_file(tmp_path):
-    write(tmp_path / "meshes" / "arm.obj")
-    text = robot(visual('<mesh filename="../meshes/arm.obj"/>'))
-    links, _ = built(text, name=str(tmp_path / "urdf" / "r.urdf"))
+    write_file(tmp_path / "meshes" / "arm.obj")
+    text = robot_text(visual_element('<mesh filename="../meshes/arm.obj"/>'))
+    links, _ = build_scene_of(text, name=str(tmp_path / "urdf" / "r.urdf"))
     assert links["base"].visuals[0].url
 
 
 def test_missing_meshes_are_reported_with_searched_paths(tmp_path):
-    share = package(tmp_path / "robot", "robot")
-    links, builder = built(
-        robot(
-            visual('<mesh filename="package://robot/meshes/gone.dae"/>')
-            + visual('<mesh filename="package://nobody/a.dae"/>', tag="collision")
-            + visual(
+    share = write_package(tmp_path / "robot", "robot")
+    links, builder = build_scene_of(
+        robot_text(
+            visual_element('<mesh filename="package://robot/meshes/gone.dae"/>')
+            + visual_element('<mesh filename="package://nobody/a.dae"/>', tag="collision")
+            + visual_element(
                 '<box size="1 1 1"/>', '<material name="w"><texture filename="package://robot/wood.png"/></material>'
             )
         ),
@@ -150,8 +152,8 @@ def test_missing_meshes_are_reported_with_searched_paths(tmp_path):
 
 
 def test_textures_have_url(tmp_path):
-    share = package(tmp_path / "robot", "robot")
-    write(share / "wood.png")
+    share = write_package(tmp_path / "robot", "robot")
+    write_file(share / "wood.png")
     material = '<material name="w"><color rgba="1 1 1 1"/><texture filename="package://robot/wood.png"/></material>'
-    links, _ = built(robot(visual('<box size="1 1 1"/>', material)), packages={"robot": share})
+    links, _ = build_scene_of(robot_text(visual_element('<box size="1 1 1"/>', material)), packages={"robot": share})
     assert "/wood.png?v=" in links["base"].visuals[0].texture

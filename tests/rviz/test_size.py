@@ -1,3 +1,5 @@
+"""The size of a robot, which sets the scale of the scene."""
+
 from __future__ import annotations
 
 import pytest
@@ -8,13 +10,13 @@ from linkwright.urdf import read
 from linkwright.xmltree import parse
 
 
-def measured(text: str):
+def measure_robot(text: str):
     reading = read(parse(f'<robot name="r">{text}</robot>', "<text>"))
     assert reading.robot is not None, reading.diagnostics
     return size_of(reading.robot)
 
 
-def joint(parent: str, child: str, xyz: str) -> str:
+def joint_element(parent: str, child: str, xyz: str) -> str:
     return (
         f'<joint name="{child}_joint" type="fixed"><parent link="{parent}"/><child link="{child}"/>'
         f'<origin xyz="{xyz}"/></joint>'
@@ -25,7 +27,7 @@ def test_size_includes_frames_and_primitive_shapes():
     box = '<visual><origin xyz="0 0 0.5"/><geometry><box size="2 2 1"/></geometry></visual>'
     ball = '<collision><geometry><sphere radius="0.5"/></geometry></collision>'
     links = f'<link name="a">{box}</link><link name="b">{ball}</link><link name="c"/>'
-    size = measured(links + joint("a", "b", "0 0 1.5") + joint("b", "c", "0 0 0.1"))
+    size = measure_robot(links + joint_element("a", "b", "0 0 1.5") + joint_element("b", "c", "0 0 0.1"))
     assert size is not None
     assert size.diagonal == pytest.approx((4 + 4 + 4) ** 0.5)
     assert size.spacing == pytest.approx(0.8)
@@ -33,13 +35,13 @@ def test_size_includes_frames_and_primitive_shapes():
 
 def test_size_ignores_meshes():
     mesh = '<visual><geometry><mesh filename="file:///nowhere.stl"/></geometry></visual>'
-    size = measured(f'<link name="a">{mesh}</link><link name="b"/>' + joint("a", "b", "0.3 0.4 0"))
+    size = measure_robot(f'<link name="a">{mesh}</link><link name="b"/>' + joint_element("a", "b", "0.3 0.4 0"))
     assert size is not None
     assert (size.diagonal, size.spacing) == pytest.approx((0.5, 0.5))
 
 
 def test_single_point_has_no_size():
-    assert measured('<link name="a"/><link name="b"/>' + joint("a", "b", "0 0 0")) is None
+    assert measure_robot('<link name="a"/><link name="b"/>' + joint_element("a", "b", "0 0 0")) is None
 
 
 def test_has_visuals_requires_drawable_visual(tmp_path):

@@ -9,11 +9,11 @@ import sys
 
 from tests.places import REPOSITORY
 
-SAME = {"RGB", "RGB8", "RGBF32", "X", "XY", "XYZ", "XZ", "Y", "YZ", "Z", "compressed", "compressedDepth"}
-SAME |= {"costmap", "map", "raw", "theora"}
+UNTRANSLATED_VALUES = {"RGB", "RGB8", "RGBF32", "X", "XY", "XYZ", "XZ", "Y", "YZ", "Z", "compressed", "compressedDepth"}
+UNTRANSLATED_VALUES |= {"costmap", "map", "raw", "theora"}
 """Names that are not translated: axes, fields of messages, transports, and ROS's names of color schemes."""
 
-OFFERED = """
+LIST_CHOICES = """
 import gc, importlib, json, pkgutil
 from linkwright.rviz import displays
 from linkwright.rviz import config
@@ -28,10 +28,10 @@ print(json.dumps([option for spec in specs for option in spec.options]))
 
 
 def test_property_choices_match_chinese_value_names():
-    run = subprocess.run([sys.executable, "-c", OFFERED], capture_output=True, text=True, check=True, timeout=120)
-    offered = set(json.loads(run.stdout))
+    run = subprocess.run([sys.executable, "-c", LIST_CHOICES], capture_output=True, text=True, check=True, timeout=120)
+    choices = set(json.loads(run.stdout))
     text = (REPOSITORY / "frontend/src/strings/zh/values.ts").read_text(encoding="utf-8")
-    named = {quoted or plain for quoted, plain in re.findall(r'^  (?:"([^"]+)"|(\w+)): "', text, re.MULTILINE)}
-    assert len(offered) > 40
-    assert sorted(offered - SAME - named) == []
-    assert sorted(named - offered) == []
+    named = {quoted or unquoted for quoted, unquoted in re.findall(r'^  (?:"([^"]+)"|(\w+)): "', text, re.MULTILINE)}
+    assert len(choices) > 40
+    assert sorted(choices - UNTRANSLATED_VALUES - named) == []
+    assert sorted(named - choices) == []

@@ -14,7 +14,7 @@ JOINT = "<joint name='{0}' type='revolute'><parent>a</parent><child>{0}</child><
 TURNING = "<link name='a'/><link name='b'/><link name='c'/>" + JOINT.format("b")
 
 
-def world(inside: str):
+def read_world(inside: str):
     document, _ = parse_as_gazebo(f"<sdf version='1.6'><world name='w'>{inside}</world></sdf>", "w")
     sdf = read(document).sdf
     assert sdf is not None
@@ -30,13 +30,13 @@ def world(inside: str):
 )
 def test_gui_camera_pose_is_read_like_gazebo(gui):
     half = math.sqrt(0.5)
-    assert camera_of(world(f"<gui>{gui}</gui>")) == pytest.approx([1, 2, 3, 0, 0, half, half], abs=1e-5)
+    assert camera_of(read_world(f"<gui>{gui}</gui>")) == pytest.approx([1, 2, 3, 0, 0, half, half], abs=1e-5)
 
 
 @pytest.mark.parametrize("pose", ["", "1 2 3", "1 2 3 0 0 x", "1 2 3 0 0 inf"])
 def test_invalid_camera_pose_is_none(pose):
-    assert camera_of(world(f"<gui><camera name='user'><pose>{pose}</pose></camera></gui>")) is None
-    assert camera_of(world("")) is None
+    assert camera_of(read_world(f"<gui><camera name='user'><pose>{pose}</pose></camera></gui>")) is None
+    assert camera_of(read_world("")) is None
 
 
 @pytest.mark.parametrize(
@@ -52,4 +52,4 @@ def test_invalid_camera_pose_is_none(pose):
     ],
 )
 def test_robots_of_world_are_movable_models_with_plugins_sensors_or_joints(inside, is_robot):
-    assert robots_of(world(f"<model name='m'>{inside}</model>")) == (["m"] if is_robot else [])
+    assert robots_of(read_world(f"<model name='m'>{inside}</model>")) == (["m"] if is_robot else [])

@@ -146,10 +146,10 @@ def test_written_document_reads_back():
     shed, _ = read(FULL)
     text = write(Document(write_element(SHED, shed)))
     assert 'length="1"' not in text  # the default is not written
-    again, words = read(text)
+    reread, words = read(text)
     assert words == []
-    assert again.tools == shed.tools
-    assert again.place == shed.place
+    assert reread.tools == shed.tools
+    assert reread.place == shed.place
 
 
 @pytest.mark.parametrize(

@@ -42,8 +42,8 @@ def poses(draw) -> Pose:
     return Pose(xyz, rpy_from_quaternion(quaternion), quaternion)
 
 
-def _workflow(others: tuple[str, ...]) -> SearchStrategy[Workflow | None]:
-    fields = {name: values_of(Workflow, name) for name in Workflow.__slots__ if name not in others}
+def _workflow(other_objects: tuple[str, ...]) -> SearchStrategy[Workflow | None]:
+    fields = {name: values_of(Workflow, name) for name in Workflow.__slots__ if name not in other_objects}
     return st.none() | st.builds(Workflow, **fields)
 
 
@@ -61,7 +61,7 @@ _SPECIAL: dict[tuple[type, str], SearchStrategy[Any]] = {
 
 
 @cache
-def _hints(kind: type) -> dict[str, Any]:
+def _field_hints(kind: type) -> dict[str, Any]:
     return get_type_hints(kind)
 
 
@@ -69,7 +69,7 @@ def values_of(kind: type, name: str) -> SearchStrategy[Any]:
     """Generate the values of a field; usual values are frequent."""
     if (kind, name) in _SPECIAL:
         return _SPECIAL[kind, name]
-    hint = _hints(kind)[name]
+    hint = _field_hints(kind)[name]
     if Element in (hint, *get_args(hint)):
         return st.none()
     usual = next(field.default for field in dataclasses.fields(kind) if field.name == name)
@@ -86,8 +86,8 @@ def _values(hint: Any) -> SearchStrategy[Any]:
         return st.one_of(*(_values(argument) for argument in arguments if argument is not Polyline))
     if get_origin(hint) is tuple:
         if arguments[-1] is Ellipsis:
-            least = 1 if arguments[0] is Polyline else 0
-            return st.lists(_values(arguments[0]), min_size=least, max_size=2).map(tuple)
+            min_count = 1 if arguments[0] is Polyline else 0
+            return st.lists(_values(arguments[0]), min_size=min_count, max_size=2).map(tuple)
         return st.tuples(*map(_values, arguments))
     return objects(hint)
 

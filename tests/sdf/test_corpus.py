@@ -50,9 +50,9 @@ def examine_item(item):
     )
 
 
-def _is_ours(known) -> bool:
+def _is_own_model(facts) -> bool:
     """Return whether a model of Fuel was replaced by one of Linkwright with another name."""
-    return known.get("include", "").lower().endswith(("/ground plane", "/sun"))
+    return facts.get("include", "").lower().endswith(("/ground plane", "/sun"))
 
 
 @pytest.mark.parametrize("item", FILES)
@@ -91,9 +91,11 @@ def test_corpus_model_poses_match_known_facts(item):
             assert place[:3] == pytest.approx(expected[:3], abs=1e-9)
             assert [sign * angle for angle in place[3:]] == pytest.approx(expected[3:], abs=1e-9)
     names = {model.name for model in (*world.models, *world.lights)}
-    left_out = {include.uri for include in world.includes}
+    omitted_uris = {include.uri for include in world.includes}
     assert {
-        name for name, model in facts_by_name.items() if model.get("include") not in left_out and not _is_ours(model)
+        name
+        for name, model in facts_by_name.items()
+        if model.get("include") not in omitted_uris and not _is_own_model(model)
     } <= names
 
 

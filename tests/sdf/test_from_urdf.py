@@ -24,24 +24,24 @@ SHARED = Path(__file__).parents[3] / "shared"
 INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
 
 
-def robot_of(elements):
+def make_robot(elements):
     description = examine(f'<robot name="r">{elements}</robot>')
     assert description.diagnostics == ()
     return description.robot
 
 
-def converted(elements, *, lump=False):
+def convert_robot(elements, *, lump=False):
     """Return the model of a robot without errors."""
-    conversion = model_from_robot(robot_of(elements), lump_fixed_joints=lump)
+    conversion = model_from_robot(make_robot(elements), lump_fixed_joints=lump)
     assert conversion.diagnostics == ()
     return conversion.model
 
 
-def link(name, elements="", *, inertial=INERTIAL):
+def link_xml(name, elements="", *, inertial=INERTIAL):
     return f'<link name="{name}">{inertial}{elements}</link>'
 
 
-def joint(name, parent, child, *, kind="fixed", origin="0 0 0", rpy="0 0 0", elements=""):
+def joint_xml(name, parent, child, *, kind="fixed", origin="0 0 0", rpy="0 0 0", elements=""):
     return (
         f'<joint name="{name}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
         f'<origin xyz="{origin}" rpy="{rpy}"/>{elements}</joint>'
@@ -49,12 +49,12 @@ def joint(name, parent, child, *, kind="fixed", origin="0 0 0", rpy="0 0 0", ele
 
 
 BOX = '<geometry><box size="1 2 3"/></geometry>'
-SHAPED = f"<visual>{BOX}</visual><collision>{BOX}</collision>"
-LIMIT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
+SHAPES = f"<visual>{BOX}</visual><collision>{BOX}</collision>"
+LIMIT_TEXT = '<limit lower="-1" upper="2" effort="3" velocity="4"/>'
 
 
 def test_links_are_placed_at_joints():
-    model = converted(link("a") + link("b") + joint("j", "a", "b", origin="1 2 3", rpy=f"0 0 {pi / 2}"))
+    model = convert_robot(link_xml("a") + link_xml("b") + joint_xml("j", "a", "b", origin="1 2 3", rpy=f"0 0 {pi / 2}"))
     assert [(link.name, link.pose.relative_to) for link in model.links] == [("a", ""), ("b", "j")]
     assert model.joints[0].pose == RawPose(Pose((1.0, 2.0, 3.0), (0.0, 0.0, pi / 2)), "a")
     assert (model.joints[0].type, model.joints[0].parent, model.joints[0].child) == ("fixed", "a", "b")
@@ -70,8 +70,10 @@ def test_links_are_placed_at_joints():
     ],
 )
 def test_movable_joint_has_axis_limits_and_dynamics(kind, expected, lower, upper):
-    elements = f'<axis xyz="0 1 0"/>{LIMIT}<dynamics damping="0.5" friction="0.25"/>'
-    converted_joint = converted(link("a") + link("b") + joint("j", "a", "b", kind=kind, elements=elements)).joints[0]
+    elements = f'<axis xyz="0 1 0"/>{LIMIT_TEXT}<dynamics damping="0.5" friction="0.25"/>'
+    converted_joint = convert_robot(
+        link_xml("a") + link_xml("b") + joint_xml("j", "a", "b", kind=kind, elements=elements)
+    ).joints[0]
     assert converted_joint.type == expected
     assert converted_joint.axis is not None
     assert converted_joint.axis.xyz == (0.0, 1.0, 0.0)
@@ -81,10 +83,14 @@ def test_movable_joint_has_axis_limits_and_dynamics(kind, expected, lower, upper
 
 
 def test_mimic_joint_is_converted():
-    leader = joint("j", "a", "b", kind="revolute", elements=LIMIT)
-    elements = LIMIT + '<mimic joint="j" multiplier="-2" offset="0.5"/>'
-    model = converted(
-        link("a") + link("b") + link("c") + leader + joint("k", "a", "c", kind="revolute", elements=elements)
+    leader = joint_xml("j", "a", "b", kind="revolute", elements=LIMIT_TEXT)
+    elements = LIMIT_TEXT + '<mimic joint="j" multiplier="-2" offset="0.5"/>'
+    model = convert_robot(
+        link_xml("a")
+        + link_xml("b")
+        + link_xml("c")
+        + leader
+        + joint_xml("k", "a", "c", kind="revolute", elements=elements)
     )
     axis = next(joint.axis for joint in model.joints if joint.name == "k")
     assert axis is not None
@@ -93,7 +99,9 @@ def test_mimic_joint_is_converted():
 
 
 def test_root_named_world_becomes_world():
-    model = converted('<link name="world"/>' + link("a") + joint("j", "world", "a", origin="0 0 1"), lump=True)
+    model = convert_robot(
+        '<link name="world"/>' + link_xml("a") + joint_xml("j", "world", "a", origin="0 0 1"), lump=True
+    )
     assert [link.name for link in model.links] == ["a"]
     assert (model.joints[0].parent, model.joints[0].pose.relative_to) == ("world", "__model__")
     assert Frames(model).pose("a")[:3] == (0.0, 0.0, 1.0)
@@ -101,9 +109,9 @@ def test_root_named_world_becomes_world():
 
 
 def test_floating_and_planar_links_move_freely():
-    robot = robot_of(
-        link("a") + link("b") + link("c")
-        + joint("f", "a", "b", kind="floating", origin="1 0 0") + joint("p", "a", "c", kind="planar")
+    robot = make_robot(
+        link_xml("a") + link_xml("b") + link_xml("c")
+        + joint_xml("f", "a", "b", kind="floating", origin="1 0 0") + joint_xml("p", "a", "c", kind="planar")
     )  # fmt: skip
     conversion = model_from_robot(robot, lump_fixed_joints=False)
     assert conversion.model.joints == ()
@@ -115,7 +123,9 @@ def test_floating_and_planar_links_move_freely():
 
 def test_shape_names_match_gz():
     elements = f"<visual>{BOX}</visual><visual>{BOX}</visual>" + f'<visual name="a_top">{BOX}</visual>'
-    model = converted(link("a", elements + f'<visual name="lid">{BOX}</visual>' + f"<collision>{BOX}</collision>"))
+    model = convert_robot(
+        link_xml("a", elements + f'<visual name="lid">{BOX}</visual>' + f"<collision>{BOX}</collision>")
+    )
     names = [visual.name for visual in model.links[0].visuals]
     assert names == ["a_visual", "a_visual_1", "a_top_visual_2", "a_fixed_joint_lump__lid_visual_3"]
     assert [collision.name for collision in model.links[0].collisions] == ["a_collision"]
@@ -124,23 +134,23 @@ def test_shape_names_match_gz():
 
 def test_mesh_uris_are_preserved():
     geometry = '<geometry><mesh filename="package://p/m.dae" scale="1 2 3"/></geometry>'
-    model = converted(link("a", f"<visual>{geometry}</visual>"))
+    model = convert_robot(link_xml("a", f"<visual>{geometry}</visual>"))
     assert model.links[0].visuals[0].geometry == Mesh("package://p/m.dae", (1.0, 2.0, 3.0))
 
 
 def test_colors_match_gz_and_gazebo_material_overrides():
     visual = f'<visual>{BOX}<material name="m"><color rgba="0.4 0.8 1 0.5"/></material></visual>'
-    material = converted(link("a", visual)).links[0].visuals[0].material
+    material = convert_robot(link_xml("a", visual)).links[0].visuals[0].material
     assert material is not None
     assert material.diffuse == material.ambient == pytest.approx((0.5, 1.0, 1.0, 0.5))
     text = '<gazebo reference="a"><visual><material><diffuse>1 0 0 1</diffuse></material></visual></gazebo>'
-    material = converted(link("a", visual) + text).links[0].visuals[0].material
+    material = convert_robot(link_xml("a", visual) + text).links[0].visuals[0].material
     assert material is not None
     assert (material.ambient, material.diffuse) == (None, (1.0, 0.0, 0.0, 1.0))
 
 
 def test_gazebo_material_becomes_script():
-    model = converted(link("a", SHAPED) + '<gazebo reference="a"><material>Gazebo/Blue</material></gazebo>')
+    model = convert_robot(link_xml("a", SHAPES) + '<gazebo reference="a"><material>Gazebo/Blue</material></gazebo>')
     material = model.links[0].visuals[0].material
     assert material is not None
     assert material.script == MaterialScript(("file://media/materials/scripts/gazebo.material",), "Gazebo/Blue")
@@ -150,7 +160,7 @@ def test_gazebo_material_becomes_script():
 def test_gazebo_material_overrides_visual_color():
     visual = f'<visual>{BOX}<material name="m"><color rgba="0.4 0.8 1 0.5"/></material></visual>'
     for name, diffuse in (("Gazebo/Red", (1, 0, 0, 1)), ("Mine/Red", (0.5, 1.0, 1.0, 0.5))):
-        model = converted(link("a", visual) + f'<gazebo reference="a"><material>{name}</material></gazebo>')
+        model = convert_robot(link_xml("a", visual) + f'<gazebo reference="a"><material>{name}</material></gazebo>')
         material = model.links[0].visuals[0].material
         assert material is not None
         assert material.diffuse == pytest.approx(diffuse)
@@ -163,7 +173,7 @@ def test_gazebo_elements_apply_to_links_and_collisions():
         "canonicalBody": "a",
     }  # fmt: skip
     elements = "".join(f"<{tag}>{text}</{tag}>" for tag, text in texts_by_tag.items())
-    converted_model = converted(link("a", SHAPED + f'<collision name="own">{BOX}</collision>')
+    converted_model = convert_robot(link_xml("a", SHAPES + f'<collision name="own">{BOX}</collision>')
                       + f'<gazebo reference="a">{elements}</gazebo>').links[0]  # fmt: skip
     for collision in converted_model.collisions:
         friction, contact = collision.surface.friction, collision.surface.contact
@@ -178,7 +188,7 @@ def test_gazebo_elements_apply_to_links_and_collisions():
 
 def test_gazebo_value_attribute_is_read_and_last_element_applies():
     text = '<gazebo reference="a"><mu1 value="0.1"/></gazebo><gazebo reference="a"><mu1> 0.3 </mu1></gazebo>'
-    friction = converted(link("a", SHAPED) + text).links[0].collisions[0].surface.friction
+    friction = convert_robot(link_xml("a", SHAPES) + text).links[0].collisions[0].surface.friction
     assert friction is not None
     assert friction.mu == 0.3
 
@@ -186,7 +196,7 @@ def test_gazebo_value_attribute_is_read_and_last_element_applies():
 def test_collision_surface_and_gazebo_elements_are_merged():
     surface = "<surface><friction><ode><mu>0.5</mu><mu2>0.6</mu2></ode></friction></surface>"
     text = f'<gazebo reference="a"><collision>{surface}</collision><mu1>0.1</mu1></gazebo>'
-    robot = robot_of(link("a", SHAPED) + text)
+    robot = make_robot(link_xml("a", SHAPES) + text)
     for _ in range(2):  # the conversion does not change the robot's elements
         friction = model_from_robot(robot, lump_fixed_joints=False).model.links[0].collisions[0].surface.friction
         assert friction is not None
@@ -216,8 +226,8 @@ def test_gazebo_elements_and_sensors_apply_to_joints():
         "<springReference>0.5</springReference><implicitSpringDamper>true</implicitSpringDamper><stopErp>0.2</stopErp>"
         '<sensor name="ft" type="force_torque"/></gazebo>'
     )
-    revolute = joint("j", "a", "b", kind="revolute", elements=LIMIT + '<dynamics damping="2"/>')
-    converted_joint = converted(link("a") + link("b") + revolute + text).joints[0]
+    revolute = joint_xml("j", "a", "b", kind="revolute", elements=LIMIT_TEXT + '<dynamics damping="2"/>')
+    converted_joint = convert_robot(link_xml("a") + link_xml("b") + revolute + text).joints[0]
     assert converted_joint.axis is not None
     dynamics = converted_joint.axis.dynamics
     assert (dynamics.spring_stiffness, dynamics.spring_reference, dynamics.damping) == (3.0, 0.5, 2.0)
@@ -227,7 +237,9 @@ def test_gazebo_elements_and_sensors_apply_to_joints():
 
 def test_gazebo_joint_can_close_loop():
     loop = '<gazebo><joint name="loop" type="revolute"><parent>a</parent><child>b</child></joint></gazebo>'
-    model = converted(link("a") + link("b") + joint("j", "a", "b", kind="revolute", elements=LIMIT) + loop)
+    model = convert_robot(
+        link_xml("a") + link_xml("b") + joint_xml("j", "a", "b", kind="revolute", elements=LIMIT_TEXT) + loop
+    )
     assert [joint.name for joint in model.joints] == ["j", "loop"]
 
 
@@ -247,19 +259,20 @@ def test_invalid_gazebo_elements_are_reported_with_location():
 
 
 def test_deeply_nested_gazebo_element_is_omitted():
-    deep = "<model>" * 300 + "</model>" * 300
-    robot = examine(f'<robot name="r">{link("a")}<gazebo>{deep}</gazebo></robot>').robot
+    deeply_nested = "<model>" * 300 + "</model>" * 300
+    robot = examine(f'<robot name="r">{link_xml("a")}<gazebo>{deeply_nested}</gazebo></robot>').robot
     conversion = model_from_robot(robot, lump_fixed_joints=False)
     assert [diagnostic.code for diagnostic in conversion.diagnostics] == ["SDF133"]
     assert conversion.model.models == ()
 
 
 def test_lumped_links_become_frames_and_move_shapes_and_sensors():
-    model = converted(
-        link("base", SHAPED) + link("arm") + link("camera", SHAPED) + link("optical", SHAPED, inertial="")
-        + joint("to_arm", "base", "arm", origin="1 0 0", rpy=f"0 0 {pi / 2}")
-        + joint("to_camera", "arm", "camera", origin="1 0 0")
-        + joint("to_optical", "camera", "optical", origin="0 0 1")
+    model = convert_robot(
+        link_xml("base", SHAPES) + link_xml("arm") + link_xml("camera", SHAPES)
+        + link_xml("optical", SHAPES, inertial="")
+        + joint_xml("to_arm", "base", "arm", origin="1 0 0", rpy=f"0 0 {pi / 2}")
+        + joint_xml("to_camera", "arm", "camera", origin="1 0 0")
+        + joint_xml("to_optical", "camera", "optical", origin="0 0 1")
         + '<gazebo reference="camera"><sensor name="s" type="camera"><pose>0 0 2 0 0 0</pose></sensor>'
         "<mu1>0.5</mu1></gazebo>",
         lump=True,
@@ -284,8 +297,9 @@ def test_lumped_links_become_frames_and_move_shapes_and_sensors():
 
 def test_lumped_masses_are_combined():
     point = '<inertial><mass value="2"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
-    model = converted(
-        link("a", inertial=point) + link("b", inertial=point) + joint("j", "a", "b", origin="2 0 0"), lump=True
+    model = convert_robot(
+        link_xml("a", inertial=point) + link_xml("b", inertial=point) + joint_xml("j", "a", "b", origin="2 0 0"),
+        lump=True,
     )
     inertial = model.links[0].inertial
     assert inertial is not None
@@ -299,8 +313,9 @@ def test_lumped_inertia_keeps_axes_of_first_link():
         '<inertia ixx="1" ixy="0" ixz="0" iyy="2" iyz="0" izz="2.5"/></inertial>'
     )
     no_inertia = '<inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial>'
-    model = converted(
-        link("a", inertial=rotated_link) + link("b", inertial=no_inertia) + joint("j", "a", "b"), lump=True
+    model = convert_robot(
+        link_xml("a", inertial=rotated_link) + link_xml("b", inertial=no_inertia) + joint_xml("j", "a", "b"),
+        lump=True,
     )
     inertial = model.links[0].inertial
     assert inertial is not None
@@ -308,8 +323,11 @@ def test_lumped_inertia_keeps_axes_of_first_link():
 
 
 def test_child_of_lumped_link_is_attached_to_merged_link():
-    revolute = joint("j", "b", "c", kind="revolute", origin="0 1 0", elements=LIMIT)
-    model = converted(link("a") + link("b") + link("c") + joint("k", "a", "b", origin="1 0 0") + revolute, lump=True)
+    revolute = joint_xml("j", "b", "c", kind="revolute", origin="0 1 0", elements=LIMIT_TEXT)
+    model = convert_robot(
+        link_xml("a") + link_xml("b") + link_xml("c") + joint_xml("k", "a", "b", origin="1 0 0") + revolute,
+        lump=True,
+    )
     assert [link.name for link in model.links] == ["a", "c"]
     assert (model.joints[0].parent, model.joints[0].pose.pose.xyz) == ("a", (1.0, 1.0, 0.0))
     assert Frames(model).pose("c")[:3] == (1.0, 1.0, 0.0)
@@ -318,17 +336,19 @@ def test_child_of_lumped_link_is_attached_to_merged_link():
 @pytest.mark.parametrize(("tag", "kind"), [("preserveFixedJoint", "fixed"), ("disableFixedJointLumping", "revolute")])
 def test_fixed_joint_can_be_preserved(tag, kind):
     text = f'<gazebo reference="j"><{tag}>true</{tag}></gazebo>'
-    converted_joint = converted(link("a") + link("b") + joint("j", "a", "b") + text, lump=True).joints[0]
+    converted_joint = convert_robot(link_xml("a") + link_xml("b") + joint_xml("j", "a", "b") + text, lump=True).joints[
+        0
+    ]
     assert converted_joint.type == kind
     if converted_joint.axis is not None:
         assert (converted_joint.axis.limit.lower, converted_joint.axis.limit.upper) == (0.0, 0.0)
 
 
 def test_massless_links_are_omitted_only_when_lumping():
-    robot = robot_of(
-        '<link name="footprint"/>' + link("base") + '<link name="ghost"/>' + link("tip")
-        + joint("f", "footprint", "base")
-        + joint("g", "base", "ghost", kind="continuous") + joint("h", "ghost", "tip", kind="continuous")
+    robot = make_robot(
+        '<link name="footprint"/>' + link_xml("base") + '<link name="ghost"/>' + link_xml("tip")
+        + joint_xml("f", "footprint", "base")
+        + joint_xml("g", "base", "ghost", kind="continuous") + joint_xml("h", "ghost", "tip", kind="continuous")
     )  # fmt: skip
     unlumped = model_from_robot(robot, lump_fixed_joints=False)
     assert [link.name for link in unlumped.model.links] == ["footprint", "base", "ghost", "tip"]
@@ -342,15 +362,18 @@ def test_massless_links_are_omitted_only_when_lumping():
 
 def test_sensor_of_lumped_joint_is_reported():
     text = '<gazebo reference="j"><sensor name="ft" type="force_torque"/></gazebo>'
-    conversion = model_from_robot(robot_of(link("a") + link("b") + joint("j", "a", "b") + text), lump_fixed_joints=True)
+    conversion = model_from_robot(
+        make_robot(link_xml("a") + link_xml("b") + joint_xml("j", "a", "b") + text), lump_fixed_joints=True
+    )
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in conversion.diagnostics] == [
         ("SDF171", "sensor 'ft' is left out, because the links of joint 'j' are merged")
     ]
 
 
 def test_joint_with_name_of_link_is_converted():
-    robot = robot_of(link("a") + link("b") + link("c") + joint("b", "a", "b", origin="1 0 0", kind="continuous")
-                     + joint("c", "b", "c", origin="0 1 0"))  # fmt: skip
+    robot = make_robot(link_xml("a") + link_xml("b") + link_xml("c")
+                     + joint_xml("b", "a", "b", origin="1 0 0", kind="continuous")
+                     + joint_xml("c", "b", "c", origin="0 1 0"))  # fmt: skip
     for lump in (False, True):
         conversion = model_from_robot(robot, lump_fixed_joints=lump)
         assert Frames(conversion.model).pose("c")[:3] == (1.0, 1.0, 0.0)
@@ -359,9 +382,9 @@ def test_joint_with_name_of_link_is_converted():
 
 def test_long_chain_of_links_is_converted():
     count = 3000
-    robot = robot_of(
-        "".join(link(f"l{i}") for i in range(count))
-        + "".join(joint(f"j{i}", f"l{i}", f"l{i + 1}", origin="1 0 0") for i in range(count - 1))
+    robot = make_robot(
+        "".join(link_xml(f"l{i}") for i in range(count))
+        + "".join(joint_xml(f"j{i}", f"l{i}", f"l{i + 1}", origin="1 0 0") for i in range(count - 1))
     )
     assert len(model_from_robot(robot, lump_fixed_joints=False).model.links) == count
     lumped = model_from_robot(robot, lump_fixed_joints=True).model
@@ -369,7 +392,7 @@ def test_long_chain_of_links_is_converted():
     assert lumped.links[0].inertial.mass == count
 
 
-def _robots():
+def _find_real_robots():
     """Return real robots outside the repository: name, file, arguments, packages, known facts."""
     for folder, subfolder in (("worlds", ""), ("corpus", "robots")):
         manifest = SHARED / folder / "manifest.json"
@@ -389,7 +412,7 @@ def _robots():
                 yield pytest.param(entry, arguments, packages, facts, id=f"{folder}/{item.get('name', entry.name)}")
 
 
-@pytest.mark.parametrize(("entry", "arguments", "packages", "facts"), list(_robots()))
+@pytest.mark.parametrize(("entry", "arguments", "packages", "facts"), list(_find_real_robots()))
 def test_corpus_robots_are_converted(entry, arguments, packages, facts):
     try:
         robot = examine(entry, arguments=arguments, packages=packages).robot
@@ -433,8 +456,10 @@ def test_kept_massless_link_gets_negligible_mass():
 
 
 def test_movable_massless_links_are_reported_once():
-    arms = "".join(link(name, inertial="") + joint(f"{name}_joint", "a", name, kind="floating") for name in "bc")
-    robot = robot_of(link("a") + link("plate", inertial="") + joint("fixed_joint", "a", "plate") + arms)
+    arms = "".join(
+        link_xml(name, inertial="") + joint_xml(f"{name}_joint", "a", name, kind="floating") for name in "bc"
+    )
+    robot = make_robot(link_xml("a") + link_xml("plate", inertial="") + joint_xml("fixed_joint", "a", "plate") + arms)
     (finding,) = model_from_robot(robot, lump_fixed_joints=False).diagnostics
     assert finding.code == "SDF172"
     assert str(finding.message).endswith("gz leaves them out: 'b', 'c'")

@@ -9,34 +9,34 @@ import pytest
 from linkwright.packages import PackageFinder
 from linkwright.sdf.frames import Frames, placed_links
 from linkwright.sdf.resources import Missing, ResourceFinder, model_file
-from tests.sdf.worlds import examine_world_in, write
+from tests.sdf.worlds import examine_world_in, write_files
 
 
-def sdf(elements: str, version: str = "1.9") -> str:
+def sdf_text(elements: str, version: str = "1.9") -> str:
     return f'<sdf version="{version}">{elements}</sdf>'
 
 
-BOX = sdf('<model name="box"><link name="l"/></model>')
+BOX = sdf_text('<model name="box"><link name="l"/></model>')
 
 
-def models(world_reading) -> list[str]:
+def model_names(world_reading) -> list[str]:
     return [model.name for model in world_reading.sdf.worlds[0].models]
 
 
 def test_model_is_found_through_each_environment_variable(tmp_path):
     for variable in ("GAZEBO_MODEL_PATH", "GZ_SIM_RESOURCE_PATH", "IGN_GAZEBO_RESOURCE_PATH", "SDF_PATH"):
-        write(tmp_path, {f"{variable}/box/model.sdf": BOX.replace("box", variable)})
+        write_files(tmp_path, {f"{variable}/box/model.sdf": BOX.replace("box", variable)})
         world_reading = examine_world_in(
             tmp_path, "<include><uri>model://box</uri></include>", **{variable: f"/nowhere:{tmp_path / variable}"}
         )
-        assert (models(world_reading), world_reading.diagnostics) == ([variable], ())
+        assert (model_names(world_reading), world_reading.diagnostics) == ([variable], ())
         assert world_reading.files[1] == tmp_path / variable / "box" / "model.sdf"
 
 
 def test_model_is_found_in_packages(tmp_path):
     manifest = "<package><name>{}</name>{}</package>"
     export = '<export><gazebo_ros gazebo_model_path="${prefix}/assets:${prefix}/more"/></export>'
-    write(
+    write_files(
         tmp_path,
         {
             "one/package.xml": manifest.format("one", export),
@@ -49,10 +49,12 @@ def test_model_is_found_in_packages(tmp_path):
     )
     addresses = ["model://in_assets", "model://in_more", "model://in_models", "model://two/any", "package://two/any"]
     addresses += ["two/any", "two/any/model.sdf", f"file://{tmp_path}/two/any/model.sdf"]
-    names = [f"<include><uri>{address}</uri><name>m{at}</name></include>" for at, address in enumerate(addresses)]
+    names = [
+        f"<include><uri>{address}</uri><name>m{number}</name></include>" for number, address in enumerate(addresses)
+    ]
     world_reading = examine_world_in(tmp_path, "".join(names))
     assert world_reading.diagnostics == ()
-    assert len(models(world_reading)) == len(addresses)
+    assert len(model_names(world_reading)) == len(addresses)
 
 
 @pytest.mark.parametrize(
@@ -70,29 +72,29 @@ def test_model_is_found_in_packages(tmp_path):
 def test_model_is_found_through_package_hook_or_export(tmp_path, file, text):
     files = {"one/package.xml": "<package><name>one</name></package>", "one/assets/box/model.sdf": BOX}
     file_text = f"<package><name>one</name>{text}</package>" if file == "package.xml" else text
-    write(tmp_path, {**files, f"one/{file}": file_text})
+    write_files(tmp_path, {**files, f"one/{file}": file_text})
     world_reading = examine_world_in(tmp_path, "<include><uri>model://box</uri></include>")
-    assert (models(world_reading), world_reading.diagnostics) == (["box"], ())
+    assert (model_names(world_reading), world_reading.diagnostics) == (["box"], ())
 
 
 def test_share_folder_hook_is_used_and_unreadable_hook_ignored(tmp_path):
     hook = "prepend-non-duplicate;GZ_SIM_RESOURCE_PATH;share\n"
-    write(tmp_path, {"one/package.xml": "<package><name>one</name></package>", "one/hooks/a.dsv": hook})
+    write_files(tmp_path, {"one/package.xml": "<package><name>one</name></package>", "one/hooks/a.dsv": hook})
     (tmp_path / "one/hooks/b.dsv").write_bytes(b"\xff;GZ_SIM_RESOURCE_PATH\x00")
     (tmp_path / "one/hooks/c.dsv").mkdir()
-    write(tmp_path, {"box/model.sdf": BOX})
-    assert models(examine_world_in(tmp_path, "<include><uri>model://box</uri></include>")) == ["box"]
+    write_files(tmp_path, {"box/model.sdf": BOX})
+    assert model_names(examine_world_in(tmp_path, "<include><uri>model://box</uri></include>")) == ["box"]
 
 
 def test_model_is_found_near_including_file(tmp_path):
-    write(tmp_path, {"models/box/model.sdf": BOX, "worlds/x": ""})
+    write_files(tmp_path, {"models/box/model.sdf": BOX, "worlds/x": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path / "worlds", environment={}), {"HOME": "/nowhere"})
     for folder in (tmp_path, tmp_path / "worlds", tmp_path / "models", tmp_path / "models/box"):
         assert finder.model("model://box", folder) == tmp_path / "models/box/model.sdf"
 
 
 def test_relative_file_uri_is_found_in_search_path(tmp_path):
-    write(tmp_path, {"a/models/box/meshes/m.stl": ""})
+    write_files(tmp_path, {"a/models/box/meshes/m.stl": ""})
     packages = PackageFinder(start=tmp_path / "b", environment={})
     mesh = tmp_path / "a/models/box/meshes/m.stl"
     for folder in ("a", "a/models"):
@@ -115,7 +117,7 @@ def test_newest_supported_model_version_is_used(tmp_path):
     config = "<model>{}</model>".format(
         "".join(f'<sdf version="{version}">{version}.sdf</sdf>' for version in ("1.4", "1.12", "1.99", "1.5"))
     )
-    write(
+    write_files(
         tmp_path, {"m/model.config": config, **{f"m/{version}.sdf": BOX for version in ("1.4", "1.12", "1.99", "1.5")}}
     )
     assert model_file(tmp_path / "m") == tmp_path / "m" / "1.12.sdf"
@@ -124,7 +126,7 @@ def test_newest_supported_model_version_is_used(tmp_path):
 
 def test_fuel_models_are_found_in_gz_cache(tmp_path):
     cache_path = "fuel.gazebosim.org/openrobotics/models/cafe table"
-    write(
+    write_files(
         tmp_path,
         {
             f".gz/fuel/{cache_path}/2/model.sdf": BOX.replace("box", "two"),
@@ -142,7 +144,7 @@ def test_fuel_models_are_found_in_gz_cache(tmp_path):
         ("https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane", "ground_plane"),
     ):
         world_reading = examine_world_in(tmp_path, f"<include><uri>{address}</uri></include>")
-        assert (models(world_reading), world_reading.diagnostics) == ([name], ())
+        assert (model_names(world_reading), world_reading.diagnostics) == ([name], ())
 
 
 def test_built_in_sun_and_ground_plane_are_included(tmp_path):
@@ -155,7 +157,9 @@ def test_built_in_sun_and_ground_plane_are_included(tmp_path):
 
 
 def test_include_overrides_name_pose_and_static(tmp_path):
-    write(tmp_path, {"box/model.sdf": sdf('<model name="box"><pose>1 1 1 0 0 0</pose><link name="l"/></model>')})
+    write_files(
+        tmp_path, {"box/model.sdf": sdf_text('<model name="box"><pose>1 1 1 0 0 0</pose><link name="l"/></model>')}
+    )
     world_reading = examine_world_in(
         tmp_path,
         """<include><uri>box</uri></include><include><uri>box</uri><name>other</name><pose>0 0 2 0 0 0</pose>
@@ -169,15 +173,15 @@ def test_include_overrides_name_pose_and_static(tmp_path):
 
 
 def test_nested_includes_are_placed(tmp_path):
-    write(
+    write_files(
         tmp_path,
         {
-            "models/car/model.sdf": sdf(
+            "models/car/model.sdf": sdf_text(
                 """<model name="car"><link name="body"/><include><uri>model://wheel</uri><name>left</name>
                 <pose relative_to="body">0 1 0 0 0 0</pose></include>
                 <joint name="j" type="revolute"><parent>body</parent><child>left::rim</child></joint></model>"""
             ),
-            "models/wheel/model.sdf": sdf('<model name="wheel"><link name="rim"/></model>'),
+            "models/wheel/model.sdf": sdf_text('<model name="wheel"><link name="rim"/></model>'),
         },
     )
     includes = "<include><uri>model://car</uri><pose>5 0 0 0 0 0</pose></include>"
@@ -189,10 +193,10 @@ def test_nested_includes_are_placed(tmp_path):
 
 
 def test_merged_include_joins_enclosing_model(tmp_path):
-    write(
+    write_files(
         tmp_path,
         {
-            "mast/model.sdf": sdf(
+            "mast/model.sdf": sdf_text(
                 """<model name="mast" placement_frame="foot"><link name="pole"><pose>0 0 1 0 0 0</pose></link>
                 <link name="lamp"><pose relative_to="pole">0 0 1 0 0 0</pose></link>
                 <frame name="foot"><pose>1 0 0 0 0 0</pose></frame>
@@ -218,7 +222,9 @@ def test_merged_include_joins_enclosing_model(tmp_path):
 
 
 def test_failed_include_in_merged_model_is_reported_once(tmp_path):
-    write(tmp_path, {"mast/model.sdf": sdf('<model name="mast"><include><uri>model://pole</uri></include></model>')})
+    write_files(
+        tmp_path, {"mast/model.sdf": sdf_text('<model name="mast"><include><uri>model://pole</uri></include></model>')}
+    )
     world_reading = examine_world_in(
         tmp_path,
         """<model name="m"><include merge="true"><uri>mast</uri></include>
@@ -228,7 +234,9 @@ def test_failed_include_in_merged_model_is_reported_once(tmp_path):
 
 
 def test_missing_placement_frame_of_merged_model_is_reported(tmp_path):
-    write(tmp_path, {"mast/model.sdf": sdf('<model name="mast" placement_frame="foot"><link name="pole"/></model>')})
+    write_files(
+        tmp_path, {"mast/model.sdf": sdf_text('<model name="mast" placement_frame="foot"><link name="pole"/></model>')}
+    )
     world_reading = examine_world_in(
         tmp_path,
         """<model name="m"><link name="base"/><include merge="true"><uri>mast</uri><pose>0 0 5 0 0 0</pose></include>
@@ -240,8 +248,8 @@ def test_missing_placement_frame_of_merged_model_is_reported(tmp_path):
 
 
 def test_lights_and_actors_can_be_included(tmp_path):
-    write(tmp_path, {"lamp/model.sdf": sdf('<light name="lamp" type="point"/>')})
-    write(tmp_path, {"walker/model.sdf": sdf('<actor name="walker"/>')})
+    write_files(tmp_path, {"lamp/model.sdf": sdf_text('<light name="lamp" type="point"/>')})
+    write_files(tmp_path, {"walker/model.sdf": sdf_text('<actor name="walker"/>')})
     world_reading = examine_world_in(
         tmp_path,
         """<include><uri>lamp</uri><name>l</name><pose>0 0 3 0 0 0</pose></include>
@@ -254,13 +262,13 @@ def test_lights_and_actors_can_be_included(tmp_path):
 
 
 def test_failed_includes_are_reported_once_and_rest_is_kept(tmp_path):
-    write(
+    write_files(
         tmp_path,
         {
-            "again/model.sdf": sdf('<model name="again"><include><uri>model.sdf</uri></include></model>'),
+            "again/model.sdf": sdf_text('<model name="again"><include><uri>model.sdf</uri></include></model>'),
             "broken/model.sdf": "<sdf",
-            "nothing/model.sdf": sdf('<world name="w"/>'),
-            "doubtful/model.sdf": sdf('<model name="d"><link name="l"/><lnk name="k"/></model>'),
+            "nothing/model.sdf": sdf_text('<world name="w"/>'),
+            "doubtful/model.sdf": sdf_text('<model name="d"><link name="l"/><lnk name="k"/></model>'),
         },
     )
     world_reading = examine_world_in(
@@ -275,7 +283,7 @@ def test_failed_includes_are_reported_once_and_rest_is_kept(tmp_path):
         "SDF161",
         "XML203",
     ]
-    assert models(world_reading) == ["m", "again", "d", "e"]
+    assert model_names(world_reading) == ["m", "again", "d", "e"]
     doubtful = next(diagnostic for diagnostic in world_reading.diagnostics if diagnostic.code == "SDF150")
     assert doubtful.span is not None
     assert doubtful.span.file.endswith("doubtful/model.sdf")
@@ -293,7 +301,7 @@ def test_names_in_missing_model_are_not_reported(tmp_path):
 
 
 def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
-    write(tmp_path, {"box/model.sdf": BOX, "box/model.config": "<model/>", "box/meshes/a.stl": ""})
+    write_files(tmp_path, {"box/model.sdf": BOX, "box/model.config": "<model/>", "box/meshes/a.stl": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     facts = {}
     for address in ("model://box/meshes/b.stl", "model://old_box/meshes/a.stl", "model://far/meshes/b.stl"):
@@ -309,8 +317,11 @@ def test_missing_file_of_known_or_renamed_model_is_warning(tmp_path):
 
 @pytest.mark.parametrize("name", ["boxed", "box_steel", "old_box"])
 def test_similar_model_name_is_not_reported_as_misspelled(tmp_path, name):
-    """Gazebo has many models, so a name that shares a word with a built-in model may be correct."""
-    write(tmp_path, {"box/model.sdf": BOX, "suv/model.sdf": BOX})
+    """A model name that shares a word with a built-in model may be correct.
+
+    Gazebo has many models.
+    """
+    write_files(tmp_path, {"box/model.sdf": BOX, "suv/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     finding = finder.file(f"model://{name}", tmp_path)
     assert isinstance(finding, Missing)
@@ -333,7 +344,7 @@ def test_similar_model_name_is_not_reported_as_misspelled(tmp_path, name):
 def test_model_is_found_from_each_folder_of_package(tmp_path, address, found):
     """Launch files add one of these folders to Gazebo's variables."""
     files = ["worlds/yard/shed.sdf", "sim/models/hut/model.sdf", "sim/models/hut/meshes/hut.stl", "tent/model.sdf"]
-    write(
+    write_files(
         tmp_path,
         {
             "arena/package.xml": "<package><name>arena</name></package>",
@@ -346,7 +357,7 @@ def test_model_is_found_from_each_folder_of_package(tmp_path, address, found):
 
 
 def test_misspelled_model_is_warning(tmp_path):
-    write(tmp_path, {"crate/model.sdf": BOX})
+    write_files(tmp_path, {"crate/model.sdf": BOX})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     finding = finder.file("model://craet", tmp_path)
     assert isinstance(finding, Missing)
@@ -363,7 +374,7 @@ def test_misspelled_uri_scheme_is_reported(tmp_path):
 @pytest.mark.parametrize("ending", [".jinja", ".em", ".erb", ".xacro"])
 def test_file_generated_from_template_is_info(tmp_path, ending):
     files = {f"plane/plane.sdf{ending}": "", "plane/model.config": "<model/>", f"plane/meshes/wing.stl{ending}": ""}
-    write(tmp_path, files)
+    write_files(tmp_path, files)
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {"GZ_SIM_RESOURCE_PATH": str(tmp_path)})
     model, mesh = finder.model("model://plane", tmp_path), finder.file("model://plane/meshes/wing.stl", tmp_path)
     assert isinstance(model, Missing)
@@ -374,16 +385,16 @@ def test_file_generated_from_template_is_info(tmp_path, ending):
 
 def test_missing_file_of_built_in_model_is_info(tmp_path):
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
-    ours = finder.model("model://person_standing", tmp_path)
-    assert isinstance(ours, Path)
-    for folder, severity in ((tmp_path, "INFO"), (ours.parent, "WARNING")):
+    own_model = finder.model("model://person_standing", tmp_path)
+    assert isinstance(own_model, Path)
+    for folder, severity in ((tmp_path, "INFO"), (own_model.parent, "WARNING")):
         finding = finder.file("model://person_standing/meshes/no.dae", folder)
         assert isinstance(finding, Missing)
         assert finding.severity.name == severity
 
 
 def test_file_uri_with_wrong_case_suggests_file(tmp_path):
-    write(tmp_path, {"models/lamp/meshes/lamp_visual.DAE": ""})
+    write_files(tmp_path, {"models/lamp/meshes/lamp_visual.DAE": ""})
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), {})
     finding = finder.file("file://models/lamp/meshes/Lamp_visual.DAE", tmp_path / "models" / "lamp")
     assert isinstance(finding, Missing)
@@ -391,11 +402,17 @@ def test_file_uri_with_wrong_case_suggests_file(tmp_path):
 
 
 def test_number_of_included_models_is_limited(tmp_path, monkeypatch):
-    """If each of thirty models includes the next one twice, the world has a thousand million models."""
+    """The number of included models is limited.
+
+    If each of thirty models includes the next one twice, the world has a thousand million models.
+    """
     monkeypatch.setattr("linkwright.sdf.includes._MAX_MODELS", 500)
-    twice = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
-    files = {f"m{at}/model.sdf": sdf(f'<model name="m{at}">{twice.format(at + 1)}</model>') for at in range(30)}
-    write(tmp_path, {**files, "m30/model.sdf": BOX})
+    two_includes = "<include><uri>model://m{0}</uri><name>a</name></include><include><uri>model://m{0}</uri><name>b</name></include>"
+    files = {
+        f"m{number}/model.sdf": sdf_text(f'<model name="m{number}">{two_includes.format(number + 1)}</model>')
+        for number in range(30)
+    }
+    write_files(tmp_path, {**files, "m30/model.sdf": BOX})
     world_reading = examine_world_in(
         tmp_path, "<include><uri>model://m0</uri></include>", GZ_SIM_RESOURCE_PATH=str(tmp_path)
     )
@@ -420,7 +437,9 @@ def test_world_is_expanded_with_xacro(tmp_path, name):
 
 
 def test_all_available_models_are_listed(tmp_path):
-    write(tmp_path, {"a/one/model.sdf": BOX, "b/one/model.sdf": BOX, "b/two/model.config": "<model/>", "b/x/y.txt": ""})
+    write_files(
+        tmp_path, {"a/one/model.sdf": BOX, "b/one/model.sdf": BOX, "b/two/model.config": "<model/>", "b/x/y.txt": ""}
+    )
     environment = {"GZ_SIM_RESOURCE_PATH": f"{tmp_path / 'a'}:{tmp_path / 'b'}"}
     finder = ResourceFinder(PackageFinder(start=tmp_path, environment={}), environment)
     models_found = finder.models()
@@ -439,8 +458,8 @@ def test_invalid_uri_is_missing(tmp_path):
 
 def test_unknown_elements_and_missing_models_are_reported_once(tmp_path):
     missing_include = "<include><uri>model://gone</uri></include>"
-    box_model = sdf('<model name="box"><static>true</static><mine/></model>')
-    write(tmp_path, {"box/model.sdf": box_model})
+    box_model = sdf_text('<model name="box"><static>true</static><mine/></model>')
+    write_files(tmp_path, {"box/model.sdf": box_model})
     box = "<include><uri>model://box</uri></include>"
     elements = f'<mine/><mine/><yours/>{missing_include * 2}{box}<model name="m"><static>1</static><mine/></model>'
     world_reading = examine_world_in(tmp_path, elements, GZ_SIM_RESOURCE_PATH=str(tmp_path))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.cli import main
-from tests.sdf.worlds import write
+from tests.sdf.worlds import write_files
 
 WORLD = """<sdf version="1.9"><world name="w">
 <include><uri>model://ground_plane</uri></include><include><uri>model://sun</uri></include>
@@ -16,7 +16,7 @@ WORLD = """<sdf version="1.9"><world name="w">
 def test_check_lists_world_contents(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
-    write(tmp_path, {"w.world": WORLD})
+    write_files(tmp_path, {"w.world": WORLD})
     assert main(["check", "w.world"]) == 0
     captured = capsys.readouterr()
     assert captured.out == (
@@ -30,7 +30,7 @@ def test_check_lists_world_contents(tmp_path, capsys, monkeypatch):
 def test_world_errors_exit_with_1_and_settings_apply(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
-    write(tmp_path, {"w.sdf": '<sdf version="1.6"><world name="w"><model name="m"/><lite/></world></sdf>'})
+    write_files(tmp_path, {"w.sdf": '<sdf version="1.6"><world name="w"><model name="m"/><lite/></world></sdf>'})
     assert main(["check", "w.sdf"]) == 1
     assert "SDF132" in capsys.readouterr().err
     assert main(["check", "--ignore", "SDF150", "."]) == 1
@@ -40,7 +40,7 @@ def test_world_errors_exit_with_1_and_settings_apply(tmp_path, capsys, monkeypat
 def test_folder_of_worlds_is_checked(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
-    write(
+    write_files(
         tmp_path,
         {"worlds/a.world": WORLD.replace("nowhere", "ground_plan"), "models/m/model.sdf": '<sdf version="1.6"/>'},
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import linkwright.sdf
-from tests.sdf.mistakes import describe
+from tests.sdf.mistakes import describe_findings
 
 PAGE = (Path(__file__).parent / "mistakes.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^### (.+?)\n\n```xml\n(.*?)\n```\n\n```text\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
@@ -21,7 +21,7 @@ def test_page_of_mistakes_is_parsed():
 
 @pytest.mark.parametrize(("text", "message"), MISTAKES)
 def test_mistake_gives_expected_message(text, message):
-    assert describe(text) == message
+    assert describe_findings(text) == message
 
 
 def test_every_sdf_code_is_covered_by_tests():

@@ -27,48 +27,51 @@ from linkwright.sdf.surfaces import Contact, Friction, Surface, TorsionalFrictio
 from linkwright.sdf.text import parse_as_gazebo
 from linkwright.sdf.worlds import SDF, World, gravity_of, physics_of
 from linkwright.xmltree import Comment, Element
-from tests.sdf.worlds import model, world
+from tests.sdf.worlds import make_model_text, make_world_text
 
 
-def rules(rule: ElementRule, seen: dict[int, ElementRule]) -> dict[int, ElementRule]:
+def collect_rules(rule: ElementRule, visited: dict[int, ElementRule]) -> dict[int, ElementRule]:
     """Return a rule and all rules below it by ID, each once."""
-    if id(rule) not in seen:
-        seen[id(rule)] = rule
+    if id(rule) not in visited:
+        visited[id(rule)] = rule
         for child in rule.children:
-            rules(child, seen)
-    return seen
+            collect_rules(child, visited)
+    return visited
 
 
-MADE = [rule for rule in rules(SDF, {}).values() if is_dataclass(rule.make)]
+OBJECT_RULES = [rule for rule in collect_rules(SDF, {}).values() if is_dataclass(rule.make)]
 
 
-@pytest.mark.parametrize("rule", MADE, ids=[f"{rule.tag}{number}" for number, rule in enumerate(MADE)])
+@pytest.mark.parametrize("rule", OBJECT_RULES, ids=[f"{rule.tag}{number}" for number, rule in enumerate(OBJECT_RULES)])
 def test_empty_element_has_class_defaults(rule: ElementRule):
     """The table and the classes have the same defaults, which are SDF's."""
     element = Element(rule.tag, {attribute.name: "n" for attribute in rule.attributes if attribute.required})
     element_object = reader_of(rule, NEWEST).read(element, element, SdfReport())
-    own = {field.name: field.default for field in fields(rule.make) if field.default is not MISSING}
+    own_defaults = {field.name: field.default for field in fields(rule.make) if field.default is not MISSING}
     if isinstance(rule.default, rule.make):
-        own = {name: getattr(rule.default, name) for name in own}
-    own.pop("element", None)
+        own_defaults = {name: getattr(rule.default, name) for name in own_defaults}
+    own_defaults.pop("element", None)
     written = {attribute.target for attribute in rule.attributes if attribute.required}
-    assert {name: getattr(element_object, name) for name in own if name not in written} == {
-        name: value for name, value in own.items() if name not in written
+    assert {name: getattr(element_object, name) for name in own_defaults if name not in written} == {
+        name: value for name, value in own_defaults.items() if name not in written
     }
 
 
 def test_pose_accepts_radians_degrees_and_quaternion():
-    assert model("<pose>1 2 3 0.1 0.2 0.3</pose>").pose == RawPose(Pose((1, 2, 3), (0.1, 0.2, 0.3)))
-    turned = model('<pose degrees="true">0 0 0 90 0 -45</pose>').pose.pose
+    assert make_model_text("<pose>1 2 3 0.1 0.2 0.3</pose>").pose == RawPose(Pose((1, 2, 3), (0.1, 0.2, 0.3)))
+    turned = make_model_text('<pose degrees="true">0 0 0 90 0 -45</pose>').pose.pose
     assert turned.rpy == (radians(90), 0, radians(-45))
-    half = model('<pose rotation_format="quat_xyzw">0 0 1  0 0 2 0</pose>').pose.pose
-    assert half.quaternion == (0, 0, 1, 0)
-    assert isclose(abs(half.rpy[2]), pi)
+    half_turn = make_model_text('<pose rotation_format="quat_xyzw">0 0 1  0 0 2 0</pose>').pose.pose
+    assert half_turn.quaternion == (0, 0, 1, 0)
+    assert isclose(abs(half_turn.rpy[2]), pi)
 
 
 def test_pose_accepts_old_frame_attribute():
-    assert model('<link name="a"/><link name="b"><pose frame="a"/></link>').links[1].pose.relative_to == "a"
-    assert model('<link name="a"/><link name="b"><pose relative_to="a"/></link>').links[1].pose.relative_to == "a"
+    assert make_model_text('<link name="a"/><link name="b"><pose frame="a"/></link>').links[1].pose.relative_to == "a"
+    assert (
+        make_model_text('<link name="a"/><link name="b"><pose relative_to="a"/></link>').links[1].pose.relative_to
+        == "a"
+    )
 
 
 @pytest.mark.parametrize(
@@ -100,12 +103,12 @@ def test_pose_accepts_old_frame_attribute():
     ],
 )
 def test_shapes_are_read(text, shape):
-    part = model(f'<link name="a"><collision name="c"><geometry>{text}</geometry></collision></link>')
+    part = make_model_text(f'<link name="a"><collision name="c"><geometry>{text}</geometry></collision></link>')
     assert part.links[0].collisions[0].geometry == shape
 
 
 def test_link_is_read():
-    link = model(
+    link = make_model_text(
         """<link name="a"><pose>0 0 1 0 0 0</pose><gravity>0</gravity><kinematic>true</kinematic>
         <inertial auto="TRUE"><mass>2</mass><pose>0 0 .5 0 0 0</pose><inertia><ixx>3</ixx><ixy>.1</ixy></inertia>
         <density>700</density></inertial>
@@ -122,7 +125,7 @@ def test_link_is_read():
 
 def test_material_is_read():
     material = (
-        model(
+        make_model_text(
             """<link name="a"><visual name="v"><transparency>.5</transparency><material>
         <ambient>1 0 0</ambient><diffuse>1 0 0 .5</diffuse><lighting>0</lighting>
         <script><uri>file://a</uri><uri>file://b</uri><name>Gazebo/Grey</name></script>
@@ -147,7 +150,7 @@ def test_material_is_read():
 
 def test_surface_is_read():
     surface = (
-        model(
+        make_model_text(
             """<link name="a"><collision name="c"><laser_retro>9</laser_retro><surface>
         <friction><ode><mu>.5</mu><fdir1 ignition:expressed_in="b">1 0 0</fdir1><slip2>.1</slip2></ode>
         <torsional><coefficient>2</coefficient></torsional></friction>
@@ -171,7 +174,7 @@ def test_surface_is_read():
 
 
 def test_joint_is_read():
-    joint = model(
+    joint = make_model_text(
         """<link name="a"/><link name="b"/><joint name="j" type="revolute"><parent> a </parent><child>b</child>
         <pose relative_to="a">0 0 1 0 0 0</pose><axis><xyz expressed_in="a">0 1 0</xyz>
         <limit><lower>-1e16</lower><upper>2</upper><effort>-1</effort><velocity>3</velocity></limit>
@@ -193,8 +196,8 @@ def test_joint_is_read():
 def test_screw_pitch_is_read_from_old_and_new_element():
     ends = "<parent>a</parent><child>b</child>"
     inside = '<link name="a"/><link name="b"/><joint name="j" type="screw">{}</joint>'
-    new = model(inside.format(f"{ends}<screw_thread_pitch>.01</screw_thread_pitch>")).joints[0]
-    old = model(inside.format(f"{ends}<thread_pitch>{-2 * pi / 0.01}</thread_pitch>")).joints[0]
+    new = make_model_text(inside.format(f"{ends}<screw_thread_pitch>.01</screw_thread_pitch>")).joints[0]
+    old = make_model_text(inside.format(f"{ends}<thread_pitch>{-2 * pi / 0.01}</thread_pitch>")).joints[0]
     assert new.thread_pitch == 0.01
     assert old.thread_pitch is not None
     assert isclose(old.thread_pitch, 0.01)
@@ -205,7 +208,7 @@ def test_lidar_is_read_from_ray_and_lidar_element():
         </scan><range><min>.1</min><max>8</max></range><noise><stddev>.01</stddev></noise>"""
     for word in ("ray", "lidar"):
         sensor = (
-            model(
+            make_model_text(
                 f"""<link name="a"><sensor name="s" type="gpu_lidar"><update_rate>5</update_rate><topic>scan</topic>
             <gz_frame_id>f</gz_frame_id><{word}>{scan}</{word}></sensor></link>"""
             )
@@ -223,7 +226,7 @@ def test_lidar_is_read_from_ray_and_lidar_element():
 
 def test_camera_is_read():
     camera = (
-        model(
+        make_model_text(
             """<link name="a"><sensor name="s" type="rgbd_camera"><camera name="c"><horizontal_fov>1</horizontal_fov>
         <image><width>64</width><height>48</height><format>L8</format></image><clip><near>.2</near></clip>
         <distortion><k1>.1</k1></distortion><depth_camera><clip><far>5</far></clip></depth_camera>
@@ -249,7 +252,7 @@ def test_camera_is_read():
 def test_imu_and_navsat_are_read():
     noise = '<noise type="gaussian"><stddev>{}</stddev></noise>'
     imu, gps = (
-        model(
+        make_model_text(
             f"""<link name="a"><sensor name="i" type="imu"><imu>
         <angular_velocity><x>{noise.format(1)}</x><z>{noise.format(3)}</z></angular_velocity>
         <orientation_reference_frame><localization>NED</localization></orientation_reference_frame></imu></sensor>
@@ -267,7 +270,7 @@ def test_imu_and_navsat_are_read():
 
 
 def test_light_is_read():
-    light = world(
+    light = make_world_text(
         """<light name="l" type="spot"><pose>0 0 5 0 0 0</pose><diffuse>1 .5 0 1</diffuse><cast_shadows>1</cast_shadows>
         <attenuation><range>20</range></attenuation><spot><inner_angle>.1</inner_angle><outer_angle>.5</outer_angle>
         <falloff>1</falloff></spot></light>"""
@@ -278,7 +281,7 @@ def test_light_is_read():
 
 
 def test_actor_is_read():
-    actor = world(
+    actor = make_world_text(
         """<actor name="a"><skin><filename>walk.dae</filename></skin><animation name="walking">
         <filename>walk.dae</filename><interpolate_x>true</interpolate_x></animation><script><loop>0</loop>
         <delay_start>2</delay_start><trajectory id="0" type="walking"><waypoint><time>0</time><pose>0 0 1 0 0 0</pose>
@@ -296,7 +299,7 @@ def test_actor_is_read():
 
 
 def test_plugins_keep_parameters():
-    plugin = model('<link name="a"/><plugin filename="libx.so" name="x"><rate>5</rate></plugin>').plugins[0]
+    plugin = make_model_text('<link name="a"/><plugin filename="libx.so" name="x"><rate>5</rate></plugin>').plugins[0]
     assert (plugin.filename, plugin.name) == ("libx.so", "x")
     assert plugin.element is not None
     rate = plugin.element.first("rate")
@@ -305,13 +308,13 @@ def test_plugins_keep_parameters():
 
 
 def test_equal_plugins_stay_separate():
-    same = '<plugin filename="libx.so" name="x"/>'
-    first, second = model(f'<link name="a"/>{same}{same}').plugins
+    plugin_text = '<plugin filename="libx.so" name="x"/>'
+    first, second = make_model_text(f'<link name="a"/>{plugin_text}{plugin_text}').plugins
     assert first.element is not second.element
 
 
 def test_world_is_read():
-    parsed_world = world(
+    parsed_world = make_world_text(
         """<gravity>0 0 -1.6</gravity><wind><linear_velocity>1 0 0</linear_velocity></wind>
         <physics type="ode"/><physics type="dart" default="1"><max_step_size>.004</max_step_size></physics>
         <scene><shadows>0</shadows></scene><spherical_coordinates><latitude_deg>48</latitude_deg>
@@ -328,8 +331,12 @@ def test_world_is_read():
 
 def test_gravity_falls_back_to_physics():
     assert gravity_of(World()) == (0.0, 0.0, -9.8)
-    assert gravity_of(world("<physics><gravity>0 0 -9</gravity></physics>")) == (0, 0, -9)
-    assert gravity_of(world("<gravity>0 0 -2</gravity><physics><gravity>0 0 -9</gravity></physics>")) == (0, 0, -2)
+    assert gravity_of(make_world_text("<physics><gravity>0 0 -9</gravity></physics>")) == (0, 0, -9)
+    assert gravity_of(make_world_text("<gravity>0 0 -2</gravity><physics><gravity>0 0 -9</gravity></physics>")) == (
+        0,
+        0,
+        -2,
+    )
 
 
 def test_comments_with_double_hyphens_are_read():
@@ -358,20 +365,25 @@ def test_empty_file_hints_at_sdf_root():
 
 
 def test_sdf_elements_without_effect_are_accepted():
-    world("<gui fullscreen='0'><camera name='c'/><anything/></gui><physics><ode><solver/></ode></physics>")
-    model('<link name="a"><must_be_base_link>1</must_be_base_link></link><plugin filename="p"><any/></plugin>')
+    make_world_text("<gui fullscreen='0'><camera name='c'/><anything/></gui><physics><ode><solver/></ode></physics>")
+    make_model_text(
+        '<link name="a"><must_be_base_link>1</must_be_base_link></link><plugin filename="p"><any/></plugin>'
+    )
 
 
 @given(st.text(alphabet="<>/=\"' sdfworlmk123.-", max_size=60), st.integers(0, 10**6))
-def test_random_worlds_are_read_without_exception(text, at):
-    """A random text is inserted into a world. If the result is XML, it is read without an exception."""
-    whole = (
+def test_random_worlds_are_read_without_exception(text, position):
+    """A random text is inserted into a world.
+
+    If the result is XML, it is read without an exception.
+    """
+    document_text = (
         '<sdf version="1.6"><world name="w"><model name="m"><pose>0 0 0 0 0 0</pose><link name="l"><visual name="v">'
         "<geometry><box><size>1 1 1</size></box></geometry></visual></link></model></world></sdf>"
     )
-    at %= len(whole)
+    position %= len(document_text)
     try:
-        document, _ = parse_as_gazebo(whole[:at] + text + whole[at:], "w.sdf")
+        document, _ = parse_as_gazebo(document_text[:position] + text + document_text[position:], "w.sdf")
     except LinkwrightError:
         return
     read(document)
@@ -387,8 +399,8 @@ def test_deeply_nested_models_are_rejected():
 
 def test_any_element_can_be_nested_in_any_other_without_exception():
     """Each element of the table is nested in each other element."""
-    tags = sorted({rule.tag for rule in rules(SDF, {}).values()})
-    for rule in rules(SDF, {}).values():
+    tags = sorted({rule.tag for rule in collect_rules(SDF, {}).values()})
+    for rule in collect_rules(SDF, {}).values():
         element = Element(rule.tag, {"name": "n"})
         element.children += [Element(tag, {"name": "n", "type": "x", "value": "y"}) for tag in tags]
         reader_of(rule, NEWEST).read(element, element, SdfReport())
@@ -427,7 +439,7 @@ def test_gazebo_root_and_scoped_link_names_are_read():
     assert [link.name for link in reading.sdf.models[0].links] == ["base", "laser::link"]
 
 
-OLD = """<gazebo version="1.0">
+OLD_WORLD = """<gazebo version="1.0">
   <world name="w">
     <scene><ambient rgba="1 0 0 1"/><shadows enabled="false"/></scene>
     <physics type="ode" update_rate="500"><gravity xyz="0 0 -1.6"/></physics>
@@ -463,7 +475,7 @@ OLD = """<gazebo version="1.0">
 
 
 def test_sdf_1_0_attributes_are_read():
-    document, _ = parse_as_gazebo(OLD, "old.world")
+    document, _ = parse_as_gazebo(OLD_WORLD, "old.world")
     reading = read(document)
     assert reading.diagnostics == ()
     assert reading.sdf is not None
@@ -502,7 +514,7 @@ def test_sdf_1_0_attributes_are_read():
 
 
 def test_invalid_sdf_1_0_attribute_is_reported():
-    text = OLD.replace('<box size="1 2 3"/>', '<box size="1 2"/>')
+    text = OLD_WORLD.replace('<box size="1 2 3"/>', '<box size="1 2"/>')
     document, _ = parse_as_gazebo(text, "old.world")
     (diagnostic,) = read(document).diagnostics
     assert diagnostic.code == "SDF121"
@@ -513,7 +525,7 @@ def test_invalid_sdf_1_0_attribute_is_reported():
 def test_frame_in_any_element_with_pose_is_accepted():
     frame = '<frame name="f"><pose>0 0 0 0 0 0</pose></frame>'
     box = "<geometry><box><size>1 1 1</size></box></geometry>"
-    model(f'<link name="a">{frame}<visual name="v">{frame}{box}</visual></link>')
+    make_model_text(f'<link name="a">{frame}<visual name="v">{frame}{box}</visual></link>')
 
 
 @pytest.mark.parametrize(("text", "expected"), [("0x0002", 2), ("0XFF", 255), ("2.5", 2), ("7 8", 7)])

@@ -8,22 +8,25 @@ import pytest
 
 from linkwright.sdf.frames import placed_links
 from linkwright.sdf.saved import with_saved_state
-from tests.sdf.worlds import world
+from tests.sdf.worlds import make_world_text
 
 MODEL = '<model name="m"><pose>9 9 9 0 0 0</pose><link name="a"/><link name="b"><pose>1 0 0 0 0 0</pose></link></model>'
 
 
-def poses_of(elements: str) -> dict[str, tuple[float, ...]]:
-    return {placed_link.name: placed_link.pose[:3] for placed_link in placed_links(with_saved_state(world(elements)))}
+def model_poses(elements: str) -> dict[str, tuple[float, ...]]:
+    return {
+        placed_link.name: placed_link.pose[:3]
+        for placed_link in placed_links(with_saved_state(make_world_text(elements)))
+    }
 
 
 def test_world_without_state_is_unchanged():
-    plain = world(MODEL)
+    plain = make_world_text(MODEL)
     assert with_saved_state(plain) is plain
 
 
 def test_state_sets_poses_of_models_and_links():
-    positions = poses_of(
+    positions = model_poses(
         MODEL
         + f"""<state world_name="w"><model name="m"><pose>1 0 0 0 0 {pi / 2}</pose>
         <link name="b"><pose>4 5 6 0 0 0</pose></link></model></state>"""
@@ -34,7 +37,7 @@ def test_state_sets_poses_of_models_and_links():
 
 def test_last_state_applies_and_other_models_keep_poses():
     second_model = MODEL.replace('"m"', '"n"')
-    positions = poses_of(
+    positions = model_poses(
         f"""{MODEL}{second_model}<state><model name="m"><pose>1 0 0 0 0 0</pose></model></state>
         <state><model name="m"><pose>2 0 0 0 0 0</pose></model></state>"""
     )
@@ -47,11 +50,11 @@ def test_state_applies_to_nested_models_and_lights():
         </model><light name="sun" type="point"><pose>0 0 9 0 0 0</pose></light>
         <state><model name="o"><pose>2 0 0 0 0 0</pose><model name="i"><pose>7 0 0 0 0 0</pose></model></model>
         <light name="sun"><pose>0 0 3 0 0 0</pose></light></state>"""
-    assert poses_of(elements) == {"o::i::l": pytest.approx((7, 0, 0))}
-    assert with_saved_state(world(elements)).lights[0].pose.pose.xyz == (0, 0, 3)
+    assert model_poses(elements) == {"o::i::l": pytest.approx((7, 0, 0))}
+    assert with_saved_state(make_world_text(elements)).lights[0].pose.pose.xyz == (0, 0, 3)
 
 
 def test_insertions_and_deletions_of_state_apply():
     elements = f"""{MODEL}<state><insertions><model name="new"><link name="l"/></model></insertions>
         <deletions><name>m</name></deletions></state>"""
-    assert list(poses_of(elements)) == ["new::l"]
+    assert list(model_poses(elements)) == ["new::l"]

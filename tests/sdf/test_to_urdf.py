@@ -29,7 +29,7 @@ SHARED = REPOSITORY.parent / "shared" / "worlds"
 BOX = "<geometry><box><size>1 2 3</size></box></geometry>"
 
 
-def reading_of(elements: str, start: str = "<model name='m'>"):
+def read_model(elements: str, start: str = "<model name='m'>"):
     text = f"<sdf version='1.11'>{start}{elements}</model></sdf>"
     document, _ = parse_as_gazebo(text.encode(), "robot.sdf")
     reading = read(document)
@@ -37,15 +37,15 @@ def reading_of(elements: str, start: str = "<model name='m'>"):
     return robot_from_sdf(reading.sdf, document.root)
 
 
-def robot_of(elements: str, start: str = "<model name='m'>") -> Robot:
-    reading = reading_of(elements, start)
+def convert_model(elements: str, start: str = "<model name='m'>") -> Robot:
+    reading = read_model(elements, start)
     assert reading.diagnostics == ()
     assert reading.robot is not None
     return reading.robot
 
 
 def test_link_frame_is_at_joint():
-    robot = robot_of(
+    robot = convert_model(
         "<link name='base'/>"
         f"<link name='arm'><pose>1 0 0 0 0 0</pose><visual name='v'>{BOX}<pose>0 0 0.5 0 0 0</pose></visual></link>"
         f"<joint name='j' type='prismatic'><pose>0 0 2 0 0 {pi / 2}</pose><parent>base</parent><child>arm</child>"
@@ -62,7 +62,7 @@ def test_link_frame_is_at_joint():
 
 
 def test_joints_attach_to_frames_and_keep_urdf_properties():
-    robot = robot_of(
+    robot = convert_model(
         "<link name='a'/><link name='b'/><link name='c'/><frame name='hand' attached_to='a'/>"
         "<joint name='j' type='revolute'><parent>hand</parent><child>b</child><axis><xyz>0 0 1</xyz>"
         "<dynamics><damping>0.5</damping><friction>0.25</friction></dynamics></axis></joint>"
@@ -78,7 +78,7 @@ def test_joints_attach_to_frames_and_keep_urdf_properties():
 
 
 def test_unsupported_joints_become_floating_and_mesh_uris_are_preserved():
-    robot = robot_of(
+    robot = convert_model(
         "<link name='a'><visual name='v'><geometry><mesh><uri>model://m/a.dae</uri><scale>2 2 2</scale></mesh>"
         "</geometry>"
         "<material><ambient>1 0 0 1</ambient><diffuse>0.5 0 0 1</diffuse></material></visual></link><link name='b'/>"
@@ -91,22 +91,26 @@ def test_unsupported_joints_become_floating_and_mesh_uris_are_preserved():
     assert list(robot.materials) == [visual.material_name] == ["av"]
 
 
-TWO = "<link name='a'/><link name='b'/>"
+TWO_LINKS = "<link name='a'/><link name='b'/>"
 
 
-def joint(parent: str, child: str, name: str = "j") -> str:
+def joint_text(parent: str, child: str, name: str = "j") -> str:
     return f"<joint name='{name}' type='fixed'><parent>{parent}</parent><child>{child}</child></joint>"
 
 
 @pytest.mark.parametrize(
     ("inside", "start", "message"),
     [
-        (TWO, "<model name='m'>", "neither link 'b' nor the root link 'a' has a parent"),
-        (TWO + joint("b", "a"), "<model name='m'>", "the canonical link 'a' is the child of joint 'j'"),
-        (TWO + joint("a", "b") + joint("a", "b", "k"), "<model name='m'>", "link 'b' is the child of two joints"),
-        (TWO + joint("world", "a"), "<model name='m'>", "joint 'j' connects the model to the world"),
+        (TWO_LINKS, "<model name='m'>", "neither link 'b' nor the root link 'a' has a parent"),
+        (TWO_LINKS + joint_text("b", "a"), "<model name='m'>", "the canonical link 'a' is the child of joint 'j'"),
         (
-            TWO + "<link name='c'/>" + joint("b", "c") + joint("c", "b", "k"),
+            TWO_LINKS + joint_text("a", "b") + joint_text("a", "b", "k"),
+            "<model name='m'>",
+            "link 'b' is the child of two joints",
+        ),
+        (TWO_LINKS + joint_text("world", "a"), "<model name='m'>", "joint 'j' connects the model to the world"),
+        (
+            TWO_LINKS + "<link name='c'/>" + joint_text("b", "c") + joint_text("c", "b", "k"),
             "<model name='m'>",
             "link 'b' is its own descendant in the tree of joints",
         ),
@@ -123,16 +127,16 @@ def joint(parent: str, child: str, name: str = "j") -> str:
             "'floor' has the shape <plane>",
         ),
         (
-            TWO + "<joint name='j' type='revolute'><parent>a</parent><child>b</child></joint>",
+            TWO_LINKS + "<joint name='j' type='revolute'><parent>a</parent><child>b</child></joint>",
             "<model name='m'>",
             "joint 'j' has no <axis>",
         ),
         ("<link name='a'/></model><model name='n'><link name='a'/>", "<model name='m'>", "it contains 2 models"),
-        (TWO + joint("a", "nowhere"), "<model name='m'>", "there is no frame 'nowhere'"),
+        (TWO_LINKS + joint_text("a", "nowhere"), "<model name='m'>", "there is no frame 'nowhere'"),
     ],
 )
 def test_model_unsuitable_as_robot_is_rejected_once_with_location(inside, start, message):
-    reading = reading_of(inside, start)
+    reading = read_model(inside, start)
     assert reading.robot is None
     (diagnostic,) = reading.diagnostics
     assert diagnostic.code == "SDF180"
@@ -141,13 +145,13 @@ def test_model_unsuitable_as_robot_is_rejected_once_with_location(inside, start,
 
 
 def test_canonical_link_becomes_root():
-    robot = robot_of(TWO + joint("b", "a"), "<model name='m' canonical_link='b'>")
+    robot = convert_model(TWO_LINKS + joint_text("b", "a"), "<model name='m' canonical_link='b'>")
     assert robot.root == "b"
 
 
 def test_description_topic_can_contain_sdf():
     library = DescriptionLibrary()
-    text = f"<?xml version='1.0'?>\n<sdf version='1.9'><model name='m'>{TWO}{joint('a', 'b')}</model></sdf>"
+    text = f"<?xml version='1.0'?>\n<sdf version='1.9'><model name='m'>{TWO_LINKS}{joint_text('a', 'b')}</model></sdf>"
     reading = library.read(text)
     assert reading.robot is not None
     assert list(reading.robot.links) == ["a", "b"]

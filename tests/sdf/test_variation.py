@@ -13,9 +13,9 @@ TEXT = """<model name="outer"><link name="bare"/>
 
 
 def test_mass_and_inertia_scale_together():
-    outer = with_mass(model(TEXT), 2.0)
-    assert outer.links[0].inertial.mass == 2.0
-    inertial = outer.models[0].links[0].inertial
+    scaled_text = with_mass(model(TEXT), 2.0)
+    assert scaled_text.links[0].inertial.mass == 2.0
+    inertial = scaled_text.models[0].links[0].inertial
     assert (inertial.mass, inertial.inertia.ixx, inertial.inertia.izz) == (4.0, 0.2, 0.6)
 
 

@@ -21,17 +21,17 @@ def read_sdf(text: str) -> Sdf:
     return reading.sdf
 
 
-def model(elements: str, attributes: str = "") -> Model:
+def make_model_text(elements: str, attributes: str = "") -> Model:
     """Return the model ``m`` with these elements."""
     return read_sdf(f'<sdf version="1.9"><model name="m" {attributes}>{elements}</model></sdf>').models[0]
 
 
-def world(elements: str) -> World:
+def make_world_text(elements: str) -> World:
     """Return the world ``w`` with these elements; includes are not resolved."""
     return read_sdf(f'<sdf version="1.9"><world name="w">{elements}</world></sdf>').worlds[0]
 
 
-def write(folder: Path, files: Mapping[str, str]) -> None:
+def write_files(folder: Path, files: Mapping[str, str]) -> None:
     """Write files below a folder, by their paths."""
     for name, text in files.items():
         path = folder / name
@@ -40,7 +40,10 @@ def write(folder: Path, files: Mapping[str, str]) -> None:
 
 
 def examine_world_in(folder: Path, elements: str, **environment: str) -> WorldDescription:
-    """Examine a world in a folder that includes files of the folder, which is also the home folder."""
+    """Examine a world in a folder that includes files of the folder.
+
+    The folder is also the home folder.
+    """
     path = folder / "w.world"
     path.write_text(f'<sdf version="1.9"><world name="w">{elements}</world></sdf>', encoding="utf-8")
     return examine_world(path, environment={"HOME": str(folder), **environment})

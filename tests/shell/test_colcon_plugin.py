@@ -61,12 +61,14 @@ def test_descriptions_scripts_and_interfaces_are_built(tmp_path: Path) -> None:
     built = in_shell(tmp_path, "colcon build")
     assert built.returncode == 0, built.stdout + built.stderr
     assert "2 packages finished" in built.stdout
-    used = in_shell(
+    output = in_shell(
         tmp_path,
         "source install/setup.bash && cd / && ros2 pkg prefix arm && ros2 interface show speeds/msg/Speed "
         "&& python3 -c 'import arm; print(arm.VALUE)' && ros2 run arm hello.py",
     )
-    assert used.stdout.splitlines() == [str(tmp_path / "install" / "arm"), "float64 value", "7", "hello 7"], used.stderr
+    assert output.stdout.splitlines() == [str(tmp_path / "install" / "arm"), "float64 value", "7", "hello 7"], (
+        output.stderr
+    )
     assert (tmp_path / "install/arm/share/arm/urdf/arm.urdf").is_file()
 
 
@@ -116,12 +118,12 @@ def test_environment_hooks_and_python_package_files_are_installed(tmp_path: Path
         (arm / name).write_text(text)
     built = in_shell(tmp_path, "colcon build")
     assert built.returncode == 0, built.stderr
-    used = in_shell(
+    output = in_shell(
         tmp_path,
         "source install/setup.bash && cd / && echo $GZ_SIM_RESOURCE_PATH && python3 -c 'import arm, extra, pathlib; "
         'print(extra.VALUE, pathlib.Path(arm.__file__).with_name("data").joinpath("table.csv").read_text().strip())\'',
     )
-    assert used.stdout.splitlines() == [str(tmp_path / "install/arm/share/arm/models"), "3 1,2"], used.stderr
+    assert output.stdout.splitlines() == [str(tmp_path / "install/arm/share/arm/models"), "3 1,2"], output.stderr
 
 
 def test_missing_install_folder_fails_build(tmp_path: Path) -> None:

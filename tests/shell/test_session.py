@@ -72,10 +72,10 @@ def test_nested_shell_does_not_extend_path_twice(tmp_path: Path) -> None:
     for folder in (first, second):
         folder.mkdir()
         write_programs(folder)
-    outer = shell_environment(first, {"PATH": BARE})
-    inner = shell_environment(second, outer)
-    assert str(first) not in inner["PATH"].split(os.pathsep)
-    assert inner["PATH"].split(os.pathsep)[-1] == str(second)
+    outer_environment = shell_environment(first, {"PATH": BARE})
+    inner_environment = shell_environment(second, outer_environment)
+    assert str(first) not in inner_environment["PATH"].split(os.pathsep)
+    assert inner_environment["PATH"].split(os.pathsep)[-1] == str(second)
 
 
 def test_exit_status_is_that_of_command() -> None:
@@ -155,7 +155,10 @@ def test_program_folders_are_on_path_once(tmp_path: Path, start: str) -> None:
 
 
 def in_shell(command: str, folder: Path) -> subprocess.Popen[str]:
-    """Run a command of sh in Linkwright's shell in its own session, so that both can receive Ctrl-C."""
+    """Run a command of sh in Linkwright's shell.
+
+    It runs in its own session, so that both can receive Ctrl-C.
+    """
     return subprocess.Popen(
         [sys.executable, "-m", "linkwright", "shell", "--", "sh", "-c", command],
         stdout=subprocess.PIPE,
@@ -188,7 +191,10 @@ def test_ctrl_c_reaches_command(tmp_path: Path) -> None:
 
 
 def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
-    """The signal comes from ``kill -INT``, or from the parent of the shell; a signal to the group arrives only once."""
+    """The signal comes from ``kill -INT``, or from the parent of the shell.
+
+    A signal to the group arrives only once.
+    """
     command = "trap 'echo heard' INT; echo ready; while :; do sleep 0.05; done"
     with in_shell(command, tmp_path) as process:
         assert process.stdout is not None

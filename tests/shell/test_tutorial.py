@@ -89,13 +89,13 @@ def launched(home: Path) -> str:
         text=True,
         start_new_session=True,
     )
-    guard = threading.Timer(60, lambda: os.killpg(process.pid, signal.SIGKILL))
-    guard.start()
+    watchdog = threading.Timer(60, lambda: os.killpg(process.pid, signal.SIGKILL))
+    watchdog.start()
     with process:
         assert process.stdout is not None
         assert process.stderr is not None
         address = process.stdout.readline().split()[-1]
-        guard.cancel()
+        watchdog.cancel()
         with urllib.request.urlopen(address, timeout=60) as page:
             assert page.status == 200
         text = ""

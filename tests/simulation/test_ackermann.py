@@ -9,21 +9,21 @@ import pytest
 from linkwright.control.odometry import yaw_of
 from linkwright.testing import Recording
 from tests.simulation.test_movers import drive
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 from tests.simulation.worlds import GROUND
 
-RADIUS, BASE, TRACK = 0.1, 0.6, 0.4
+WHEEL_RADIUS, WHEELBASE, TRACK_WIDTH = 0.1, 0.6, 0.4
 
 
 def _link(name: str, x: float, y: float, z: float, mass: float, shape: str = "", roll: float = 0.0) -> str:
-    moment = mass * 0.005
+    moment_of_inertia = mass * 0.005
     collision = (
         f'<collision name="collision"><geometry>{shape}</geometry><surface><friction><ode><mu>1</mu><mu2>1</mu2></ode>'
         "</friction></surface></collision>"
     )
     return (
         f'<link name="{name}"><pose>{x} {y} {z} {roll} 0 0</pose><inertial><mass>{mass}</mass>'
-        f"<inertia><ixx>{moment}</ixx><iyy>{moment}</iyy><izz>{moment}</izz></inertia></inertial>"
+        f"<inertia><ixx>{moment_of_inertia}</ixx><iyy>{moment_of_inertia}</iyy><izz>{moment_of_inertia}</izz></inertia></inertial>"
         f"{collision if shape else ''}</link>"
     )
 
@@ -36,15 +36,15 @@ def _joint(name: str, parent: str, child: str, axis: str, limit: float) -> str:
     )
 
 
-def car(plugin: str, wheel: str = f"<cylinder><radius>{RADIUS}</radius><length>0.05</length></cylinder>") -> str:
+def car(plugin: str, wheel: str = f"<cylinder><radius>{WHEEL_RADIUS}</radius><length>0.05</length></cylinder>") -> str:
     """Return a car of 12.4 kg whose frame is between its rear wheels."""
-    parts = [_link("base", 0.0, 0.0, 0.15, 4.0), _link("load", BASE / 2, 0.0, 0.15, 4.0)]
+    parts = [_link("base", 0.0, 0.0, 0.15, 4.0), _link("load", WHEELBASE / 2, 0.0, 0.15, 4.0)]
     parts.append('<joint name="fixed" type="fixed"><parent>base</parent><child>load</child></joint>')
-    for side, y in (("left", TRACK / 2), ("right", -TRACK / 2)):
+    for side, y in (("left", TRACK_WIDTH / 2), ("right", -TRACK_WIDTH / 2)):
         parts += [
-            _link(f"{side}_knuckle", BASE, y, RADIUS, 0.2),
-            _link(f"{side}_front", BASE, y, RADIUS, 1.0, wheel, 1.570796326794897),
-            _link(f"{side}_rear", 0.0, y, RADIUS, 1.0, wheel, 1.570796326794897),
+            _link(f"{side}_knuckle", WHEELBASE, y, WHEEL_RADIUS, 0.2),
+            _link(f"{side}_front", WHEELBASE, y, WHEEL_RADIUS, 1.0, wheel, 1.570796326794897),
+            _link(f"{side}_rear", 0.0, y, WHEEL_RADIUS, 1.0, wheel, 1.570796326794897),
             _joint(f"{side}_steering_joint", "base", f"{side}_knuckle", "0 0 1", 0.8),
             _joint(f"front_{side}_joint", f"{side}_knuckle", f"{side}_front", "0 1 0", 1e16),
             _joint(f"rear_{side}_joint", "base", f"{side}_rear", "0 1 0", 1e16),
@@ -81,11 +81,11 @@ async def test_car_turns_according_to_steering(forward):
         begin = yaw_of(server.simulation.model_pose("car"))
         await drive(server, graph, forward, yaw_rate=0.3, seconds=1.0)
         yaw = yaw_of(server.simulation.model_pose("car")) - begin
-        assert yaw == pytest.approx(0.5 * tan(0.3) / BASE, rel=0.05)
+        assert yaw == pytest.approx(0.5 * tan(0.3) / WHEELBASE, rel=0.05)
         left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
         assert abs(left - right) > 0.01
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.model_pose("car")[:2] == pytest.approx((0.0, 0.0), abs=5e-3)
         assert not log
 

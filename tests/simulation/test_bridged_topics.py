@@ -7,8 +7,8 @@ import pytest
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.simulation.nodes.bridge import ParameterBridge
-from tests.simulation.test_diff_drive import gz
-from tests.simulation.test_lost_commanders import advance, speed, warnings
+from tests.simulation.test_diff_drive import gz_plugin
+from tests.simulation.test_lost_commanders import advance, logged_warnings, robot_speed
 from tests.simulation.test_plugins import robot, running_server
 from tests.simulation.worlds import GROUND, model
 
@@ -20,7 +20,7 @@ BRIDGED = f"cmd_vel@{STAMPED}]gz.msgs.Twist"
 async def test_bridged_drive_accepts_stamped_velocities_on_single_type(first: str) -> None:
     async with running_server(GROUND) as (server, graph, log):
         bridge = ParameterBridge(graph, NodeOptions(arguments=[BRIDGED])) if first == "bridge" else None
-        server.spawn(model(robot(gz())), "mbot")
+        server.spawn(model(robot(gz_plugin())), "mbot")
         await advance(server, graph, 0.1)
         if bridge is None:
             assert graph.topics()["/cmd_vel"] == ["geometry_msgs/msg/Twist"]
@@ -32,6 +32,6 @@ async def test_bridged_drive_accepts_stamped_velocities_on_single_type(first: st
         driver = graph.create_node("driver").create_publisher(get_message(STAMPED), "/cmd_vel", 10)
         driver.publish(command)
         await advance(server, graph, 1.5)
-        assert speed(server) == pytest.approx(0.3, abs=0.02)
-        assert warnings(log) == []
+        assert robot_speed(server) == pytest.approx(0.3, abs=0.02)
+        assert logged_warnings(log) == []
         bridge.close()

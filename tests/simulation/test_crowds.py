@@ -10,7 +10,7 @@ from linkwright.simulation.server.worlds import load_world
 LINK = '<model name="m"><link name="l"/></model>'
 
 
-def world(elements: str, prologue: str = "") -> str:
+def world_text(elements: str, prologue: str = "") -> str:
     return f'<?xml version="1.0"?>{prologue}<sdf version="1.7"><world name="w">{elements}</world></sdf>'
 
 
@@ -22,8 +22,8 @@ def world(elements: str, prologue: str = "") -> str:
 def test_world_with_too_many_links_is_rejected_before_parsing(tmp_path, monkeypatch, elements):
     monkeypatch.delattr(linkwright.simulation.server.worlds, "examine_world")
     path = tmp_path / "crowd.world"
-    path.write_text(world(elements))
-    for text in (None, world(elements)):
+    path.write_text(world_text(elements))
+    for text in (None, world_text(elements)):
         with pytest.raises(LinkwrightError) as error:
             load_world(str(path), text)
         (finding,) = error.value.diagnostics

@@ -7,11 +7,11 @@ import pytest
 from linkwright.control.odometry import yaw_of
 from linkwright.messages import get_message
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND
 
 
-def classic(extra: str = "", source: int = 0) -> str:
+def classic_plugin(extra: str = "", source: int = 0) -> str:
     """Return the plugin of Gazebo classic for mbot."""
     return (
         '<plugin name="diff_drive" filename="libgazebo_ros_diff_drive.so"><left_joint>left_joint</left_joint>'
@@ -22,7 +22,7 @@ def classic(extra: str = "", source: int = 0) -> str:
     )
 
 
-def gz(extra: str = "<max_linear_acceleration>1</max_linear_acceleration>") -> str:
+def gz_plugin(extra: str = "<max_linear_acceleration>1</max_linear_acceleration>") -> str:
     """Return the plugin of gz for mbot."""
     return (
         '<plugin name="gz::sim::systems::DiffDrive" filename="gz-sim-diff-drive-system">'
@@ -49,7 +49,7 @@ class DrivenRobot:
         twist.linear.x, twist.angular.z = forward, yaw_rate
         self._publisher.publish(twist)
         await self._graph.settle()
-        self.server.advance(round(seconds * SECOND))
+        self.server.advance(round(seconds * SECOND_NS))
         await self._graph.settle()
 
     @property
@@ -58,7 +58,7 @@ class DrivenRobot:
         return self.server.simulation.model_pose("mbot")
 
 
-@pytest.mark.parametrize("plugin", [classic(), gz()], ids=["classic", "gz"])
+@pytest.mark.parametrize("plugin", [classic_plugin(), gz_plugin()], ids=["classic", "gz"])
 async def test_robot_drives_straight_with_correct_odometry(plugin):
     async with running_server(GROUND, robot(plugin)) as (server, graph, log):
         driven_robot = DrivenRobot(server, graph)
@@ -73,7 +73,7 @@ async def test_robot_drives_straight_with_correct_odometry(plugin):
         assert not [record for record in log if record.level > 20]
 
 
-@pytest.mark.parametrize("plugin", [classic(), gz()], ids=["classic", "gz"])
+@pytest.mark.parametrize("plugin", [classic_plugin(), gz_plugin()], ids=["classic", "gz"])
 async def test_robot_turns_in_place(plugin):
     async with running_server(GROUND, robot(plugin)) as (server, graph, _):
         driven_robot = DrivenRobot(server, graph)
@@ -85,7 +85,7 @@ async def test_robot_turns_in_place(plugin):
 
 
 async def test_world_odometry_reports_true_pose_and_backward_speed():
-    async with running_server(GROUND, robot(classic(source=1))) as (server, graph, _):
+    async with running_server(GROUND, robot(classic_plugin(source=1))) as (server, graph, _):
         driven_robot = DrivenRobot(server, graph)
         transforms = Recording(graph, server.node, "/tf")
         await driven_robot.drive(-0.3, 0.0, 2.0)
@@ -100,11 +100,11 @@ async def test_world_odometry_reports_true_pose_and_backward_speed():
 
 
 async def test_reset_stops_robot_at_start():
-    async with running_server(GROUND, robot(classic())) as (server, graph, _):
+    async with running_server(GROUND, robot(classic_plugin())) as (server, graph, _):
         driven_robot = DrivenRobot(server, graph)
         await driven_robot.drive(0.5, 0.5, 1.0)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert driven_robot.pose[:2] == pytest.approx((0.0, 0.0), abs=1e-3)
         assert driven_robot.odometry.last.pose.pose.position.x == pytest.approx(0.0, abs=1e-3)
@@ -113,9 +113,9 @@ async def test_reset_stops_robot_at_start():
 @pytest.mark.parametrize(
     ("plugin", "message"),
     [
-        (classic("<right_joint>front</right_joint>"), "1 left wheels, but 2 right wheels"),
-        (classic().replace("0.12", "0"), "must be positive"),
-        (classic().replace(">left_joint<", ">left_jiont<"), "there is no movable joint 'left_jiont'"),
+        (classic_plugin("<right_joint>front</right_joint>"), "1 left wheels, but 2 right wheels"),
+        (classic_plugin().replace("0.12", "0"), "must be positive"),
+        (classic_plugin().replace(">left_joint<", ">left_jiont<"), "there is no movable joint 'left_jiont'"),
     ],
 )
 async def test_invalid_parameters_are_reported(plugin, message):
@@ -125,10 +125,10 @@ async def test_invalid_parameters_are_reported(plugin, message):
 
 
 async def test_wheel_transforms_are_published_if_enabled():
-    plugin = classic("<publish_wheel_tf>true</publish_wheel_tf>")
+    plugin = classic_plugin("<publish_wheel_tf>true</publish_wheel_tf>")
     async with running_server(GROUND, robot(plugin)) as (server, graph, log):
         transforms = Recording(graph, server.node, "/tf")
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
         last = {transform.transforms[0].child_frame_id: transform.transforms[0] for transform in transforms}
         assert sorted(last) == ["base_footprint", "left_wheel", "right_wheel"]
@@ -138,26 +138,28 @@ async def test_wheel_transforms_are_published_if_enabled():
         assert not log
 
 
-@pytest.mark.parametrize("plugin", [classic(source=1), gz()], ids=["classic", "gz"])
+@pytest.mark.parametrize("plugin", [classic_plugin(source=1), gz_plugin()], ids=["classic", "gz"])
 async def test_world_poses_are_computed_only_for_subscribers(plugin, monkeypatch):
     async with running_server(GROUND, robot(plugin)) as (server, graph, _):
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         refresh_times: list[int] = []
         refresh = server.simulation.refresh
         monkeypatch.setattr(
             server.simulation, "refresh", lambda: (refresh_times.append(server.simulation.time), refresh())
         )
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         assert not refresh_times
         recording = Recording(graph, server.node, "/odom")
         await graph.settle()
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
         assert recording.last.header.stamp.nanosec == 300_000_000
 
 
 async def test_world_with_many_drives_is_compiled_once():
-    robots = (robot(classic(f"<ros><namespace>/{name}</namespace></ros>"), name=name) for name in ("a", "b", "c"))
+    robots = (
+        robot(classic_plugin(f"<ros><namespace>/{name}</namespace></ros>"), name=name) for name in ("a", "b", "c")
+    )
     async with running_server(GROUND, *robots) as (server, _graph, _log):
         assert [len(server.plugins(name)) for name in ("a", "b", "c")] == [1, 1, 1]
         assert server.simulation.revision == 1

@@ -1,4 +1,7 @@
-"""Plugins and sensors whose code fails: they stop, with one line in the log, and everything else continues."""
+"""Plugins and sensors whose code fails.
+
+They stop, with one line in the log, and everything else continues.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +21,7 @@ from linkwright.testing import Recording, SteppedSimulation
 from tests.remote_publishers import RemotePublisher, RemoteTransport
 from tests.simulation.sensors.rooms import block
 from tests.simulation.sensors.test_topics import CAMERA, RAYS, plugin, robot_with, sensor
-from tests.simulation.test_plugins import SECOND, joint_states, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, joint_states, robot, running_server
 from tests.simulation.worlds import GROUND
 
 STRING, TRIGGER = "std_msgs/msg/String", "std_srvs/srv/Trigger"
@@ -135,7 +138,7 @@ async def _advance(server, graph) -> None:
     """Advance one second in steps, and deliver messages between them."""
     for _ in range(10):
         await graph.settle()
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
 
 
@@ -176,7 +179,7 @@ OF_GZ = {kind: sensor(kind, CAMERA if kind.startswith(_PICTURES) else "", "a") f
 
 @pytest.mark.parametrize("text", (CLASSIC | OF_GZ).values(), ids=(CLASSIC | OF_GZ).keys())
 async def test_sensor_survives_changing_subscriptions(text, monkeypatch):
-    chance = Random(7)
+    rng = Random(7)
     if 'type="force_torque"' in text:
         joint = '<joint name="wrist" type="continuous"><parent>head</parent><child>arm</child>{}</joint>'
         robot = robot_with(extra=f'<link name="arm"/>{joint.format(text)}').replace("<static>true</static>", "")
@@ -184,7 +187,7 @@ async def test_sensor_survives_changing_subscriptions(text, monkeypatch):
         robot = robot_with(text)
     async with running_server(block("wall", "2.5 0 0 0 0 0", "1 20 20"), robot) as (server, _, log):
         assert len(server.plugins("robot")) == 1
-        monkeypatch.setattr(Publisher, "get_subscription_count", lambda _: chance.randrange(2))
-        server.advance(4 * SECOND)
+        monkeypatch.setattr(Publisher, "get_subscription_count", lambda _: rng.randrange(2))
+        server.advance(4 * SECOND_NS)
         assert len(server.plugins("robot")) == 1
         assert not [record.text for record in log if record.level >= LogLevel.ERROR]

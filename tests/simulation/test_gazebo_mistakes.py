@@ -11,8 +11,8 @@ from linkwright.messages import get_message
 from linkwright.simulation.plugins.sensors.clouds import fill_camera_cloud
 from linkwright.simulation.server.server import ServerOptions
 from linkwright.testing import Recording
-from tests.simulation.test_diff_drive import classic
-from tests.simulation.test_movers import drive, moving_box, planar
+from tests.simulation.test_diff_drive import classic_plugin
+from tests.simulation.test_movers import drive, moving_box_model, planar_plugin
 from tests.simulation.test_plugins import robot, running_server
 from tests.simulation.worlds import GROUND
 
@@ -22,7 +22,7 @@ BOTH = pytest.mark.parametrize("with_mistake", [False, True])
 @BOTH
 async def test_backward_velocity_sign_mistake_is_optional(with_mistake):
     options = ServerOptions(gazebo_mistakes=with_mistake)
-    async with running_server(GROUND, robot(classic(source=0)), options=options) as (server, graph, _):
+    async with running_server(GROUND, robot(classic_plugin(source=0)), options=options) as (server, graph, _):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, -0.3, seconds=2.0)
         message = odometry.last
@@ -38,7 +38,7 @@ async def test_p3d_velocity_frame_mistake_is_optional(with_mistake):
     )
     frame = f'<link name="frame"><pose>0 0 0 0 0 {pi / 2}</pose></link>'
     joint = '<joint name="held" type="fixed"><parent>world</parent><child>frame</child></joint>'
-    text = moving_box(planar() + p3d).replace("</model>", f"{frame}{joint}</model>")
+    text = moving_box_model(planar_plugin() + p3d).replace("</model>", f"{frame}{joint}</model>")
     async with running_server(GROUND, text, options=ServerOptions(gazebo_mistakes=with_mistake)) as (server, graph, _):
         recording = Recording(graph, server.node, "/told")
         await drive(server, graph, 0.5)

@@ -18,7 +18,7 @@ WALL = (
 )
 
 
-def height(*parts: str, z: float) -> float:
+def height_after_rest(*parts: str, z: float) -> float:
     """Return the height of a box of 0.2 m after it was placed and lifted."""
     simulation = make_simulation(*parts)
     simulation.spawn(model(box("crate", "0 0 0 0 0 0", "0.2 0.2 0.2")), "crate", (0.0, 0.0, z, 0.0, 0.0, 0.0, 1.0))
@@ -28,16 +28,16 @@ def height(*parts: str, z: float) -> float:
 
 @pytest.mark.parametrize(("ground", "top"), [(GROUND, 0.0), (PLATE, 0.05)])
 def test_box_inside_ground_is_lifted_onto_it(ground: str, top: float) -> None:
-    assert height(ground, z=0.07) == pytest.approx(top + 0.1, abs=1e-6)
+    assert height_after_rest(ground, z=0.07) == pytest.approx(top + 0.1, abs=1e-6)
 
 
 def test_box_above_ground_is_not_moved() -> None:
-    assert height(GROUND, z=0.1) == pytest.approx(0.1)
-    assert height(GROUND, z=0.5) == pytest.approx(0.5)
+    assert height_after_rest(GROUND, z=0.1) == pytest.approx(0.1)
+    assert height_after_rest(GROUND, z=0.5) == pytest.approx(0.5)
 
 
 def test_box_inside_wall_is_not_lifted() -> None:
-    assert height(GROUND, WALL, z=0.1) == pytest.approx(0.1)
+    assert height_after_rest(GROUND, WALL, z=0.1) == pytest.approx(0.1)
 
 
 def test_lifted_box_rests_on_ground() -> None:

@@ -1,4 +1,7 @@
-"""Drives of gz except the differential drive: cars and mecanum wheels, and the limits of all drives."""
+"""Drives of gz except the differential drive.
+
+The tests cover cars and mecanum wheels, and the limits of all drives.
+"""
 
 from __future__ import annotations
 
@@ -10,29 +13,29 @@ from linkwright.control.odometry import yaw_of
 from linkwright.messages import get_message
 from linkwright.simulation.plugins.limits import SpeedLimits
 from linkwright.testing import Recording
-from tests.simulation.test_ackermann import BASE, RADIUS, TRACK, car
+from tests.simulation.test_ackermann import TRACK_WIDTH, WHEEL_RADIUS, WHEELBASE, car
 from tests.simulation.test_movers import drive
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, box
 
-WHEEL = f"<cylinder><radius>{RADIUS}</radius><length>0.05</length></cylinder>"
+WHEEL = f"<cylinder><radius>{WHEEL_RADIUS}</radius><length>0.05</length></cylinder>"
 LENGTH, WIDTH = 0.4, 0.5
 
 
-def steering(extra: str = "") -> str:
+def steering_plugin(extra: str = "") -> str:
     """Return the plugin of gz for the car."""
     return (
         '<plugin name="gz::sim::systems::AckermannSteering" filename="gz-sim-ackermann-steering-system">'
         "<left_joint>rear_left_joint</left_joint><right_joint>rear_right_joint</right_joint>"
         "<left_steering_joint>left_steering_joint</left_steering_joint>"
         "<right_steering_joint>right_steering_joint</right_steering_joint>"
-        f"<wheel_separation>{TRACK}</wheel_separation><kingpin_width>{TRACK}</kingpin_width>"
-        f"<wheel_base>{BASE}</wheel_base><wheel_radius>{RADIUS}</wheel_radius><steer_p_gain>10</steer_p_gain>"
+        f"<wheel_separation>{TRACK_WIDTH}</wheel_separation><kingpin_width>{TRACK_WIDTH}</kingpin_width>"
+        f"<wheel_base>{WHEELBASE}</wheel_base><wheel_radius>{WHEEL_RADIUS}</wheel_radius><steer_p_gain>10</steer_p_gain>"
         f"<topic>cmd_vel</topic><odom_topic>odom</odom_topic><tf_topic>tf</tf_topic>{extra}</plugin>"
     )
 
 
-def mecanum(extra: str = "", name: str = "robot") -> str:
+def mecanum_robot(extra: str = "", name: str = "robot") -> str:
     """Return a robot of 9 kg with four mecanum wheels and the plugin of gz."""
     text = box(name, "0 0 0.2 0 0 0", "0.6 0.3 0.1", 5.0)
     corners = [(end, side) for end in ("front", "back") for side in ("left", "right")]
@@ -50,7 +53,7 @@ def mecanum(extra: str = "", name: str = "robot") -> str:
     plugin = (
         f'<plugin name="gz::sim::systems::MecanumDrive" filename="gz-sim-mecanum-drive-system">{names}'
         f"<wheel_separation>{WIDTH}</wheel_separation><wheelbase>{LENGTH}</wheelbase>"
-        f"<wheel_radius>{RADIUS}</wheel_radius><topic>cmd_vel</topic><odom_topic>odom</odom_topic>{extra}</plugin>"
+        f"<wheel_radius>{WHEEL_RADIUS}</wheel_radius><topic>cmd_vel</topic><odom_topic>odom</odom_topic>{extra}</plugin>"
     )
     return text.replace("</model>", plugin + "</model>")
 
@@ -64,7 +67,7 @@ def test_speed_limits_apply_to_velocity_acceleration_and_jerk():
 
 
 async def test_car_drives_commanded_circle_with_correct_odometry():
-    async with running_server(GROUND, car(steering())) as (server, graph, log):
+    async with running_server(GROUND, car(steering_plugin())) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, yaw_rate=0.3, seconds=2.0)
         begin = yaw_of(server.simulation.model_pose("car"))
@@ -78,18 +81,22 @@ async def test_car_drives_commanded_circle_with_correct_odometry():
         assert message.twist.twist.angular.z == pytest.approx(0.3, rel=0.05)
         assert len(odometry) == len(transforms) == 150
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.model_pose("car")[:2] == pytest.approx((0.0, 0.0), abs=5e-3)
         assert not log
 
 
 async def test_car_respects_steering_limit_backward():
-    async with running_server(GROUND, car(steering("<steering_limit>0.3</steering_limit>"))) as (server, graph, log):
+    async with running_server(GROUND, car(steering_plugin("<steering_limit>0.3</steering_limit>"))) as (
+        server,
+        graph,
+        log,
+    ):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, -0.5, yaw_rate=5.0, seconds=2.0)
         left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
-        radius = BASE / 0.29552020666133955
-        expected = (atan(BASE / (-radius - TRACK / 2)), atan(BASE / (-radius + TRACK / 2)))
+        radius = WHEELBASE / 0.29552020666133955
+        expected = (atan(WHEELBASE / (-radius - TRACK_WIDTH / 2)), atan(WHEELBASE / (-radius + TRACK_WIDTH / 2)))
         assert (left, right) == pytest.approx(expected, abs=0.01)
         assert odometry.last.twist.twist.linear.x == pytest.approx(-0.5, abs=0.02)
         assert odometry.last.twist.twist.angular.z > 0.2
@@ -97,20 +104,20 @@ async def test_car_respects_steering_limit_backward():
 
 
 async def test_steering_only_follows_angle():
-    only = steering("<steering_only>true</steering_only>").replace("<topic>cmd_vel</topic>", "")
-    async with running_server(GROUND, car(only)) as (server, graph, log):
+    steering_only = steering_plugin("<steering_only>true</steering_only>").replace("<topic>cmd_vel</topic>", "")
+    async with running_server(GROUND, car(steering_only)) as (server, graph, log):
         node = graph.create_node("driver")
         publisher = node.create_publisher("std_msgs/msg/Float64", "/model/car/steer_angle", 10)
         publisher.publish(get_message("std_msgs/msg/Float64")(data=0.4))
         await graph.settle()
-        server.advance(2 * SECOND)
+        server.advance(2 * SECOND_NS)
         left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
         assert left > 0.4 > right > 0.3
         assert not log
 
 
 async def test_car_without_wheel_joints_is_reported():
-    none = steering().replace("<left_joint>rear_left_joint</left_joint>", "")
+    none = steering_plugin().replace("<left_joint>rear_left_joint</left_joint>", "")
     async with running_server(GROUND, car(none)) as (server, _, log):
         assert not server.plugins("car")
         assert [
@@ -124,7 +131,7 @@ async def test_car_without_wheel_joints_is_reported():
     ids=["forward", "sideways", "turning"],
 )
 async def test_mecanum_drive_moves_in_any_direction_with_correct_odometry(command, displacement):
-    async with running_server(GROUND, mecanum()) as (server, graph, log):
+    async with running_server(GROUND, mecanum_robot()) as (server, graph, log):
         odometry = Recording(graph, server.node, "/odom")
         await drive(server, graph, *command, seconds=1.0)
         begin, message = server.simulation.model_pose("robot"), odometry.last.pose.pose.position
@@ -142,17 +149,17 @@ async def test_mecanum_drive_moves_in_any_direction_with_correct_odometry(comman
 
 
 async def test_mecanum_wheels_turn_oppositely_sideways_and_stop_on_reset():
-    async with running_server(GROUND, mecanum("<max_linear_velocity>0.2</max_linear_velocity>")) as (
+    async with running_server(GROUND, mecanum_robot("<max_linear_velocity>0.2</max_linear_velocity>")) as (
         server,
         graph,
         log,
     ):
         await drive(server, graph, 0.0, 1.0, seconds=1.0)
         names = ("front_left", "front_right", "back_left", "back_right")
-        speeds = [server.simulation.joint_state(f"robot::{name}_joint")[1] * RADIUS for name in names]
+        speeds = [server.simulation.joint_state(f"robot::{name}_joint")[1] * WHEEL_RADIUS for name in names]
         assert speeds == pytest.approx([-0.2, 0.2, 0.2, -0.2], abs=0.01)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.model_pose("robot")[:2] == pytest.approx((0.0, 0.0), abs=2e-3)
         assert not log
 
@@ -164,14 +171,14 @@ async def test_velocity_control_sets_velocity_in_model_frame():
     )
     text = box("drone", f"0 0 5 0 0 {pi / 2}").replace("</model>", f"{plugin}</model>")
     async with running_server(GROUND, text) as (server, graph, log):
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.model_pose("drone")[2] == pytest.approx(5.5, abs=0.02)
         twist = get_message("geometry_msgs/msg/Twist")()
         twist.linear.x, twist.angular.z = 0.3, 0.1
         node = graph.create_node("pilot")
         node.create_publisher("geometry_msgs/msg/Twist", "/model/drone/cmd_vel", 10).publish(twist)
         await graph.settle()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         x, y, z, *_ = server.simulation.model_pose("drone")
         assert (x, y, z) == pytest.approx((-0.015, 0.3, 5.5), abs=0.02)
         assert yaw_of(server.simulation.model_pose("drone")) == pytest.approx(pi / 2 + 0.1, abs=1e-3)
@@ -191,7 +198,7 @@ async def test_disabled_drive_comes_to_rest():
         publisher = node.create_publisher("std_msgs/msg/Bool", "/model/mbot/enable", 10)
         publisher.publish(get_message("std_msgs/msg/Bool")(data=False))
         await graph.settle()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         begin = server.simulation.model_pose("mbot")[0]
         await drive(server, graph, 0.5, seconds=1.0)
         assert begin > 0.8

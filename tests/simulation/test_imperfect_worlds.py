@@ -31,7 +31,7 @@ def start_simulation(*parts: str, version: str = "1.9") -> Simulation:
     return simulation
 
 
-def codes_of(simulation: Simulation) -> list[str]:
+def diagnostic_codes(simulation: Simulation) -> list[str]:
     return [diagnostic.code for diagnostic in simulation.scene.diagnostics]
 
 
@@ -46,7 +46,7 @@ def codes_of(simulation: Simulation) -> list[str]:
 def test_model_without_valid_pose_is_omitted(invalid):
     simulation = start_simulation(CRATE, invalid)
     assert list(simulation.scene.models) == ["ground", "crate"]
-    assert codes_of(simulation) == ["SIM116"]
+    assert diagnostic_codes(simulation) == ["SIM116"]
 
 
 def test_model_rejected_by_mujoco_is_omitted():
@@ -56,7 +56,7 @@ def test_model_rejected_by_mujoco_is_omitted():
         CRATE, f'<model name="m"><link name="l"><collision name="c">{shape}</collision></link></model>'
     )
     assert list(simulation.scene.models) == ["ground", "crate"]
-    assert codes_of(simulation) == ["SIM117"]
+    assert diagnostic_codes(simulation) == ["SIM117"]
 
 
 def test_collision_with_unknown_frame_is_placed_in_its_link():
@@ -70,7 +70,7 @@ def test_tiny_link_moves():
     tensor = "<ixx>1e-20</ixx><iyy>1e-20</iyy><izz>1e-20</izz>"
     inertial = f"<inertial><mass>1e-5</mass><inertia>{tensor}</inertia></inertial>"
     simulation = start_simulation(f'<model name="m"><pose>0 0 5 0 0 0</pose><link name="l">{inertial}</link></model>')
-    assert codes_of(simulation) == []
+    assert diagnostic_codes(simulation) == []
     simulation.advance(100_000_000)
     assert simulation.model_pose("m")[2] < 5.0
 
@@ -78,7 +78,7 @@ def test_tiny_link_moves():
 def test_zero_step_size_falls_back_to_one_millisecond():
     simulation = start_simulation(CRATE, "<physics type='ode'><max_step_size>0</max_step_size></physics>")
     assert simulation.step == 1_000_000
-    assert codes_of(simulation) == ["SIM106"]
+    assert diagnostic_codes(simulation) == ["SIM106"]
 
 
 def test_collisions_and_joints_with_duplicate_names_are_kept():
@@ -86,8 +86,12 @@ def test_collisions_and_joints_with_duplicate_names_are_kept():
     joints = "".join(
         f'<joint name="j" type="revolute"><parent>a</parent><child>{child}</child><axis/></joint>' for child in "bd"
     )
-    twice = f'<link name="e"><collision name="c">{BOX}</collision><collision name="c">{BOX}</collision></link>'
-    simulation = start_simulation(f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{twice}{joints}</model>')
+    link_with_duplicates = (
+        f'<link name="e"><collision name="c">{BOX}</collision><collision name="c">{BOX}</collision></link>'
+    )
+    simulation = start_simulation(
+        f'<model name="m"><pose>0 0 3 0 0 0</pose>{links}{link_with_duplicates}{joints}</model>'
+    )
     assert simulation.model.body("m::e").geomnum == 2
     assert sorted(simulation.scene.joints) == ["m::j", "m::j~"]
 

@@ -23,7 +23,7 @@ MOTOR = (
 )
 
 
-def arm(limit: str, plugin: str = "", axis: str = "0 1 0", extra: str = "") -> str:
+def arm_model(limit: str, plugin: str = "", axis: str = "0 1 0", extra: str = "") -> str:
     """Return a link of 1 kg, 1 m from its axis."""
     inertia = "<inertia><ixx>1e-3</ixx><iyy>1e-3</iyy><izz>1e-3</izz></inertia>"
     return (
@@ -45,7 +45,7 @@ def speed_when_pushed(simulation: Simulation, force: float, seconds: float = 0.5
 
 async def test_controller_effort_is_limited():
     async with running_server(
-        arm("<effort>5</effort>", CONTROLLER, extra="<dynamics><damping>5</damping></dynamics>")
+        arm_model("<effort>5</effort>", CONTROLLER, extra="<dynamics><damping>5</damping></dynamics>")
     ) as (
         server,
         graph,
@@ -62,19 +62,19 @@ async def test_controller_effort_is_limited():
 
 @pytest.mark.parametrize("force", [3.0, -3.0])
 def test_push_is_limited_by_joint_effort(force: float):
-    simulation = make_simulation(arm("<effort>2</effort>"), gravity="0 0 0")
+    simulation = make_simulation(arm_model("<effort>2</effort>"), gravity="0 0 0")
     expected = 2.0 * 0.5 / 1.001
     assert abs(speed_when_pushed(simulation, force)) == pytest.approx(expected, rel=0.01)
 
 
 @pytest.mark.parametrize("force", [2.0, 100.0, 1e5, -1e5])
 def test_push_stops_at_joint_velocity_limit(force: float):
-    simulation = make_simulation(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
+    simulation = make_simulation(arm_model("<velocity>0.8</velocity>"), gravity="0 0 0")
     assert abs(speed_when_pushed(simulation, force)) == pytest.approx(0.8, rel=0.01)
 
 
 def test_joint_above_velocity_limit_is_not_braked():
-    simulation = make_simulation(arm("<velocity>0.8</velocity>"), gravity="0 0 0")
+    simulation = make_simulation(arm_model("<velocity>0.8</velocity>"), gravity="0 0 0")
     simulation.data.joint("arm::turn").qvel[0] = 3.0
     simulation.mark_moved()
     assert speed_when_pushed(simulation, 5.0, 0.1) == pytest.approx(3.0)
@@ -85,13 +85,13 @@ def test_joint_above_velocity_limit_is_not_braked():
     "limit", ["", "<effort>0</effort><velocity>0</velocity>", "<effort>-1</effort><velocity>-1</velocity>"]
 )
 def test_nonpositive_limits_are_ignored(limit: str):
-    simulation = make_simulation(arm(limit), gravity="0 0 0")
+    simulation = make_simulation(arm_model(limit), gravity="0 0 0")
     assert speed_when_pushed(simulation, 10.0) == pytest.approx(5.0, rel=0.01)
 
 
 @pytest.mark.parametrize(("velocity", "expected"), [(1.5, 1.5), (inf, 4.0)])
 async def test_gz_motor_respects_joint_velocity_limit(velocity: float, expected: float):
     limit = f"<velocity>{velocity}</velocity>"
-    async with running_server(arm(limit, MOTOR, axis="0 0 1")) as (server, _, _log):
+    async with running_server(arm_model(limit, MOTOR, axis="0 0 1")) as (server, _, _log):
         server.advance(NANOSECONDS_PER_SECOND)
         assert server.simulation.joint_state("arm::turn")[1] == pytest.approx(expected, rel=0.01)

@@ -1,4 +1,7 @@
-"""Joints that follow other joints, and links without dynamics: the plugins of roboticsgroup_gazebo_plugins."""
+"""Joints that follow other joints, and links without dynamics.
+
+Both are plugins of roboticsgroup_gazebo_plugins.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import LogLevel
 from linkwright.sdf.from_urdf import model_from_robot
 from tests.simulation.ros2_control.test_plugin import ControlledRobot
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 from tests.simulation.worlds import GROUND, box
 
 LIBRARIES = (
@@ -24,22 +27,27 @@ DISABLING = ("libroboticsgroup_gazebo_disable_link_plugin.so", "libroboticsgroup
 GAINS = "{node}: {{ros__parameters: {{pid_gains: {{{joint}: {{p: 40.0, d: 1.0}}}}}}}}\n"
 
 
-def finger(name: str, inner: str = "", effort: float = 5.0) -> str:
-    """Return a finger whose joint turns about the vertical axis, so that gravity does not move it."""
+def finger_link(name: str, plugin_text: str = "", effort: float = 5.0) -> str:
+    """Return a finger whose joint turns about the vertical axis.
+
+    Gravity does not move it.
+    """
     return f"""
   <link name="{name}"><inertial><origin xyz="0.1 0 0"/><mass value="0.1"/>
     <inertia ixx="0.001" iyy="0.001" izz="0.001" ixy="0" ixz="0" iyz="0"/></inertial></link>
   <joint name="{name}_joint" type="revolute"><parent link="world"/><child link="{name}"/><axis xyz="0 0 1"/>
-    <limit lower="-2" upper="2" effort="{effort}" velocity="10"/>{inner}</joint>"""
+    <limit lower="-2" upper="2" effort="{effort}" velocity="10"/>{plugin_text}</joint>"""
 
 
-def gripper(plugin: str, library: str = LIBRARIES[0], mimic: str = "", others: str = "", effort: float = 5.0) -> str:
-    return f"""<robot name="gripper"><link name="world"/>{finger("left")}{finger("right", mimic, effort)}
+def gripper_model(
+    plugin: str, library: str = LIBRARIES[0], mimic: str = "", other_joints: str = "", effort: float = 5.0
+) -> str:
+    return f"""<robot name="gripper"><link name="world"/>{finger_link("left")}{finger_link("right", mimic, effort)}
   <gazebo><plugin name="follow" filename="{library}"><joint>left_joint</joint><mimicJoint>right_joint</mimicJoint>
-    {plugin}</plugin></gazebo>{others}</robot>"""
+    {plugin}</plugin></gazebo>{other_joints}</robot>"""
 
 
-class Gripper:
+class RunningGripper:
     """The running gripper, whose left joint the test sets."""
 
     def __init__(self, server, log) -> None:
@@ -50,7 +58,7 @@ class Gripper:
         """Move the left joint, and return the position of the right one after a time."""
         for _ in range(round(seconds * 100)):
             self._servo.move(position, 0.01)
-            self.server.advance(SECOND // 100)
+            self.server.advance(SECOND_NS // 100)
         return self.server.simulation.joint_state("gripper::right_joint")[0]
 
     @property
@@ -59,15 +67,15 @@ class Gripper:
 
 
 @asynccontextmanager
-async def running(text: str):
+async def run_gripper(text: str):
     async with running_server() as (server, _, log):
         robot = DescriptionLibrary().read(text).robot
         assert robot is not None
         server.spawn(model_from_robot(robot, lump_fixed_joints=True).model, "gripper")
-        yield Gripper(server, log)
+        yield RunningGripper(server, log)
 
 
-def gains(folder: Path, node: str = "gazebo_ros_control", joint: str = "right_joint") -> str:
+def write_gains(folder: Path, node: str = "gazebo_ros_control", joint: str = "right_joint") -> str:
     path = folder / "gains.yaml"
     path.write_text(GAINS.format(node=node, joint=joint))
     return f"<parameters>{path}</parameters>"
@@ -75,37 +83,41 @@ def gains(folder: Path, node: str = "gazebo_ros_control", joint: str = "right_jo
 
 @pytest.mark.parametrize("library", LIBRARIES)
 async def test_joint_follows_with_multiplier_and_offset(library):
-    async with running(gripper("<multiplier>-2</multiplier><offset>0.1</offset>", library)) as robot:
+    async with run_gripper(gripper_model("<multiplier>-2</multiplier><offset>0.1</offset>", library)) as robot:
         assert robot.close(0.4) == pytest.approx(-0.7, abs=0.01)
         assert robot.warnings == []
-    async with running(gripper("", library)) as robot:
+    async with run_gripper(gripper_model("", library)) as robot:
         assert robot.close(0.4) == pytest.approx(0.4, abs=0.01)
 
 
 async def test_sensitiveness_is_the_deviation_that_is_left():
-    async with running(gripper("<sensitiveness>0.2</sensitiveness>")) as robot:
+    async with run_gripper(gripper_model("<sensitiveness>0.2</sensitiveness>")) as robot:
         assert robot.close(0.1) == pytest.approx(0.0, abs=0.01)
         assert robot.close(0.5) > 0.25
 
 
 async def test_sensitiveness_applies_to_pid_controllers(tmp_path):
-    async with running(gripper(f"<sensitiveness>0.2</sensitiveness><hasPID/>{gains(tmp_path)}")) as robot:
+    async with run_gripper(
+        gripper_model(f"<sensitiveness>0.2</sensitiveness><hasPID/>{write_gains(tmp_path)}")
+    ) as robot:
         assert robot.close(0.1) == pytest.approx(0.0, abs=0.01)
         assert robot.server.simulation.data.joint("gripper::right_joint").qfrc_applied[0] == 0.0
 
 
 async def test_pid_controller_pushes_the_joint(tmp_path):
-    async with running(gripper(f"<hasPID/>{gains(tmp_path)}")) as robot:
-        early = robot.close(0.5, 0.05)
-        assert 0.0 < early < 0.45
+    async with run_gripper(gripper_model(f"<hasPID/>{write_gains(tmp_path)}")) as robot:
+        early_force = robot.close(0.5, 0.05)
+        assert 0.0 < early_force < 0.45
         assert robot.close(0.5, 2.0) == pytest.approx(0.5, abs=0.05)
         assert robot.warnings == []
 
 
-@pytest.mark.parametrize(("given", "effort", "force"), [("<maxEffort>0.5</maxEffort>", 5.0, 0.5), ("", 1.5, 1.5)])
-async def test_max_effort_limits_the_force_of_the_pid_controller(tmp_path, given, effort, force):
-    async with running(
-        gripper(f"<hasPID/><multiplier>10</multiplier>{given}{gains(tmp_path)}", effort=effort)
+@pytest.mark.parametrize(
+    ("plugin_parameters", "effort", "force"), [("<maxEffort>0.5</maxEffort>", 5.0, 0.5), ("", 1.5, 1.5)]
+)
+async def test_max_effort_limits_the_force_of_the_pid_controller(tmp_path, plugin_parameters, effort, force):
+    async with run_gripper(
+        gripper_model(f"<hasPID/><multiplier>10</multiplier>{plugin_parameters}{write_gains(tmp_path)}", effort=effort)
     ) as robot:
         assert robot.close(1.5, 1.0) == pytest.approx(2.0, abs=0.02)  # the limit of the joint, far from its target
         assert robot.server.simulation.data.joint("gripper::right_joint").qfrc_applied[0] == pytest.approx(force)
@@ -130,7 +142,7 @@ async def test_max_effort_limits_the_force_of_the_pid_controller(tmp_path, given
 )
 async def test_gains_are_found_by_namespace_and_name(tmp_path, has_pid, namespace, node, joint):
     for written, is_found in ((node, True), ("/other/gazebo_ros_control", False)):
-        async with running(gripper(has_pid + namespace + gains(tmp_path, written, joint))) as robot:
+        async with run_gripper(gripper_model(has_pid + namespace + write_gains(tmp_path, written, joint))) as robot:
             robot.close(0.4)
             missing = [text for text in robot.warnings if "so it follows without a PID controller" in text]
             assert (missing == []) is is_found, robot.warnings
@@ -139,9 +151,9 @@ async def test_gains_are_found_by_namespace_and_name(tmp_path, has_pid, namespac
 async def test_gains_are_shared_with_gazebo_ros_control(tmp_path):
     control = (
         '<gazebo><plugin name="gazebo_ros_control" filename="libgazebo_ros_control.so">'
-        f"{gains(tmp_path)}</plugin></gazebo>"
+        f"{write_gains(tmp_path)}</plugin></gazebo>"
     )
-    async with running(gripper("<hasPID/>", others=control)) as robot:
+    async with run_gripper(gripper_model("<hasPID/>", other_joints=control)) as robot:
         assert 0.0 < robot.close(0.5, 0.05) < 0.45
 
 
@@ -151,21 +163,21 @@ async def test_transmission_does_not_hold_a_joint_that_follows():
         "<hardwareInterface>PositionJointInterface</hardwareInterface></joint></transmission>"
     )
     control = '<gazebo><plugin name="control" filename="libgazebo_ros_control.so"/></gazebo>'
-    text = gripper("", others=transmission + control)
-    async with running(text) as robot:
+    text = gripper_model("", other_joints=transmission + control)
+    async with run_gripper(text) as robot:
         await ControlledRobot(robot.server, robot.server.node.graph).describe(text)
         assert robot.server.plugins("gripper")[1]._systems
         assert robot.close(0.4) == pytest.approx(0.4, abs=0.01)
 
 
 async def test_gains_may_be_written_in_the_plugin():
-    async with running(gripper("<hasPID><p>40</p><d>1</d></hasPID>")) as robot:
+    async with run_gripper(gripper_model("<hasPID><p>40</p><d>1</d></hasPID>")) as robot:
         assert 0.0 < robot.close(0.5, 0.05) < 0.45
         assert robot.warnings == []
 
 
 async def test_joint_without_gains_follows_without_pid_controller():
-    async with running(gripper("<hasPID/>")) as robot:
+    async with run_gripper(gripper_model("<hasPID/>")) as robot:
         assert robot.close(0.4) == pytest.approx(0.4, abs=0.01)
         (warning,) = robot.warnings
         assert warning.startswith("joint 'right_joint' has no gain p in 'pid_gains' of '/gazebo_ros_control', so it")
@@ -174,29 +186,29 @@ async def test_joint_without_gains_follows_without_pid_controller():
 async def test_mimic_element_couples_joints_once_and_has_priority():
     mimic = "<mimic joint='left_joint' multiplier='-1'/>"
     for multiplier, count in (("-1", 0), ("2", 1)):
-        async with running(gripper(f"<multiplier>{multiplier}</multiplier>", mimic=mimic)) as robot:
+        async with run_gripper(gripper_model(f"<multiplier>{multiplier}</multiplier>", mimic=mimic)) as robot:
             assert robot.close(0.4) == pytest.approx(-0.4, abs=0.01)
             differing = [text for text in robot.warnings if "follows its <mimic>, which differs" in text]
             assert len(differing) == count
 
 
 async def test_missing_joint_is_reported():
-    async with running(gripper("").replace("<mimicJoint>right", "<mimicJoint>wrong")) as robot:
+    async with run_gripper(gripper_model("").replace("<mimicJoint>right", "<mimicJoint>wrong")) as robot:
         (warning,) = robot.warnings
         assert "there is no movable joint 'wrong_joint'" in warning
 
 
 async def test_joint_does_not_jump_when_world_restarts():
-    async with running(gripper("")) as robot:
+    async with run_gripper(gripper_model("")) as robot:
         assert robot.close(0.5) == pytest.approx(0.5, abs=0.01)
         robot.server.reset()
-        robot.server.advance(SECOND // 1000)
+        robot.server.advance(SECOND_NS // 1000)
         assert robot.server.simulation.joint_state("gripper::right_joint") == pytest.approx((0.0, 0.0), abs=0.01)
 
 
 async def test_world_restart_restarts_the_pid_controller():
-    given = "<hasPID><p>1</p><i>1</i><i_clamp>5</i_clamp></hasPID>"
-    async with running(gripper(given)) as robot:
+    plugin_parameters = "<hasPID><p>1</p><i>1</i><i_clamp>5</i_clamp></hasPID>"
+    async with run_gripper(gripper_model(plugin_parameters)) as robot:
         robot.close(0.5)
         (plugin,) = robot.server.plugins("gripper")
         assert plugin._pid.integral != 0.0
@@ -204,7 +216,7 @@ async def test_world_restart_restarts_the_pid_controller():
         assert plugin._pid.integral == 0.0
 
 
-def ball(library: str, link: str = "link") -> str:
+def ball_model(library: str, link: str = "link") -> str:
     plugin = f'<plugin name="disable" filename="{library}"><link>{link}</link></plugin>'
     return box("crate", "0 0 3 0 0 0").replace("</model>", f"{plugin}</model>")
 
@@ -212,20 +224,20 @@ def ball(library: str, link: str = "link") -> str:
 @pytest.mark.parametrize("library", DISABLING)
 async def test_disabled_link_floats_until_something_touches_it(library):
     hammer = box("hammer", "0 0 5 0 0 0")
-    async with running_server(GROUND, ball(library), hammer) as (server, _, log):
-        server.advance(SECOND // 4)
+    async with running_server(GROUND, ball_model(library), hammer) as (server, _, log):
+        server.advance(SECOND_NS // 4)
         assert server.simulation.model_pose("crate")[2] == pytest.approx(3.0, abs=1e-6)
-        server.advance(2 * SECOND)  # the other box falls on it
+        server.advance(2 * SECOND_NS)  # the other box falls on it
         assert server.simulation.model_pose("crate")[2] < 1.0
         server.reset()
-        server.advance(SECOND // 4)
+        server.advance(SECOND_NS // 4)
         assert server.simulation.model_pose("crate")[2] == pytest.approx(3.0, abs=1e-6)
         assert log == []
 
 
 async def test_link_with_joints_is_not_disabled():
     plugin = f'<gazebo><plugin name="disable" filename="{DISABLING[0]}"><link>left</link></plugin></gazebo>'
-    async with running(gripper("", others=plugin)) as robot:
+    async with run_gripper(gripper_model("", other_joints=plugin)) as robot:
         assert robot.close(0.4) == pytest.approx(0.4, abs=0.01)
         (warning,) = robot.warnings
         assert warning.startswith("link 'left' is not disabled")

@@ -1,4 +1,7 @@
-"""Plugins that move whole robots, in a plane or by skid steering, and that publish the true pose."""
+"""Plugins that move whole robots, in a plane or by skid steering.
+
+They publish the true pose.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ import pytest
 from linkwright.control.odometry import yaw_of
 from linkwright.messages import get_message
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, box
 
 FRICTIONLESS = "<surface><friction><ode><mu>0</mu><mu2>0</mu2></ode></friction></surface>"
@@ -22,23 +25,27 @@ async def drive(server, graph, forward=0.0, sideways=0.0, yaw_rate=0.0, seconds=
     node = graph.create_node("driver")
     node.create_publisher(get_message("geometry_msgs/msg/Twist"), "/cmd_vel", 10).publish(twist)
     await graph.settle()
-    server.advance(round(seconds * SECOND))
+    server.advance(round(seconds * SECOND_NS))
     await graph.settle()
     node.destroy_node()
 
 
-def moving_box(plugin: str, pose: str = "0 0 0.1 0 0 0") -> str:
+def moving_box_model(plugin: str, pose: str = "0 0 0.1 0 0 0") -> str:
     """Return a box on the ground with a plugin."""
     return box("mbot", pose, "0.4 0.4 0.2", 5.0, FRICTIONLESS).replace("</model>", f"{plugin}</model>")
 
 
-def planar(extra: str = "") -> str:
+def planar_plugin(extra: str = "") -> str:
     """Return the plugin of Gazebo classic."""
     return f'<plugin name="move" filename="libgazebo_ros_planar_move.so">{extra}</plugin>'
 
 
 async def test_planar_move_drives_in_any_direction_with_robot_frame_odometry():
-    async with running_server(GROUND, moving_box(planar(), f"0 0 0.1 0 0 {pi / 2}")) as (server, graph, log):
+    async with running_server(GROUND, moving_box_model(planar_plugin(), f"0 0 0.1 0 0 {pi / 2}")) as (
+        server,
+        graph,
+        log,
+    ):
         odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, 0.25)
         x, y, _, *_ = server.simulation.model_pose("mbot")
@@ -54,19 +61,19 @@ async def test_planar_move_drives_in_any_direction_with_robot_frame_odometry():
 
 
 async def test_planar_move_overcomes_wheel_friction_and_resets():
-    async with running_server(GROUND, robot(planar("<update_rate>50</update_rate>"))) as (server, graph, log):
+    async with running_server(GROUND, robot(planar_plugin("<update_rate>50</update_rate>"))) as (server, graph, log):
         await drive(server, graph, sideways=0.5)
         assert server.simulation.model_pose("mbot")[1] == pytest.approx(0.5, abs=0.03)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert server.simulation.model_pose("mbot")[:2] == pytest.approx((0.0, 0.0), abs=1e-3)
         assert not log
 
 
 async def test_planar_move_of_static_model_is_reported():
-    text = moving_box(planar()).replace("<link", "<static>true</static><link", 1)
+    text = moving_box_model(planar_plugin()).replace("<link", "<static>true</static><link", 1)
     async with running_server(GROUND, text) as (server, _, log):
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         assert not server.plugins("mbot")
         assert [record.text for record in log if "fixed to the world" in record.text]
 
@@ -97,7 +104,7 @@ async def test_p3d_publishes_pose_in_world_or_other_link_frame():
         )
 
     plugins = [p3d("truth", "<xyz_offset>0 0 1</xyz_offset>"), p3d("inside", "<frame_name>base_link</frame_name>")]
-    async with running_server(GROUND, robot(*plugins, planar())) as (server, graph, log):
+    async with running_server(GROUND, robot(*plugins, planar_plugin())) as (server, graph, log):
         truth, inside = (Recording(graph, server.node, topic) for topic in ("/truth", "/inside"))
         await drive(server, graph, 0.5)
         link = server.simulation.link_pose("mbot::left_wheel")
@@ -119,7 +126,9 @@ async def test_gz_odometry_publisher_matches_model_pose(dimensions):
         '<plugin name="gz::sim::systems::OdometryPublisher" filename="gz-sim-odometry-publisher-system">'
         f"<odom_frame>odom</odom_frame><dimensions>{dimensions}</dimensions></plugin>"
     )
-    async with running_server(GROUND, moving_box(plugin + planar("<publish_odom_tf>0</publish_odom_tf>"))) as (
+    async with running_server(
+        GROUND, moving_box_model(plugin + planar_plugin("<publish_odom_tf>0</publish_odom_tf>"))
+    ) as (
         server,
         graph,
         log,

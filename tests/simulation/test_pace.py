@@ -6,7 +6,10 @@ from linkwright.simulation.server.pace import PaceWatch
 
 
 def codes_after(measurements, requested=1.0):
-    """Return the code of each report, None for a recovery. A measurement is a factor and its duration in s."""
+    """Return the code of each report, None for a recovery.
+
+    A measurement is a factor and its duration in s.
+    """
     reports = []
     watch = PaceWatch(reports.append)
     for factor, seconds in measurements:

@@ -1,4 +1,7 @@
-"""Plugins: how they are found, their parameters, their nodes, and the messages about errors."""
+"""Plugins.
+
+The tests cover how they are found, their parameters, their nodes, and the messages about errors.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +33,7 @@ from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.testing import Recording
 from tests.simulation.worlds import GROUND, box, make_simulation, mbot, model
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 CLASSIC_SYSTEMS = ("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin")
 """Plugins that tests/simulation/test_server.py and test_classic_services.py test."""
 UNSIMULATED = (
@@ -166,7 +169,7 @@ def joint_states(name: str = "joints", extra: str = "") -> str:
 async def test_advance_delivers_messages_published_until_then():
     async with running_server(GROUND, robot(joint_states())) as (server, graph, log):
         recording = Recording(graph, server.node, "/joint_states")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 10
         assert [(message.header.stamp.sec, message.header.stamp.nanosec) for message in recording][-1] == (1, 0)
@@ -218,7 +221,7 @@ async def test_deleted_model_removes_its_nodes():
     async with running_server(GROUND, robot(joint_states())) as (server, graph, log):
         server.delete("mbot")
         assert ("joints", "/") not in graph.get_node_names_and_namespaces()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         server.spawn(model(robot(joint_states())), "mbot")
         assert ("joints", "/") in graph.get_node_names_and_namespaces()
         assert not log
@@ -227,12 +230,12 @@ async def test_deleted_model_removes_its_nodes():
 async def test_unplaceable_model_leaves_world_unchanged():
     unplaceable = '<model name="lost"><link name="a"><pose relative_to="nowhere">0 0 0 0 0 0</pose></link></model>'
     async with running_server(GROUND, box("one", "0 0 5 0 0 0")) as (server, _, __):
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         with pytest.raises(LinkwrightError, match="the pose of 'nowhere' is not defined"):
             server.spawn(model(unplaceable), "lost")
         with pytest.raises(LinkwrightError, match="a model 'one' already exists"):
             server.spawn(model(box("one", "0 0 5 0 0 0")), "one")
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         assert list(server.simulation.scene.models) == ["ground", "one"]
 
 
@@ -240,7 +243,7 @@ async def test_gz_joint_state_publisher_uses_gz_topic():
     plugin = '<plugin name="gz::sim::systems::JointStatePublisher" filename="gz-sim-joint-state-publisher-system"/>'
     async with running_server(GROUND, robot(plugin)) as (server, graph, _):
         recording = Recording(graph, server.node, "/world/test/model/mbot/joint_state")
-        server.advance(SECOND // 100)
+        server.advance(SECOND_NS // 100)
         await graph.settle()
         assert len(recording) == 10
         assert recording.last.name == ["left_joint", "right_joint"]
@@ -254,7 +257,7 @@ async def test_magnetometer_measures_field_in_its_axes():
     text = box("one", "0 0 5 0 0 0").replace("</link>", sensor + "</link>")
     async with running_server("<magnetic_field>1 2 3</magnetic_field>", text) as (server, graph, _):
         recording = Recording(graph, server.node, "/mag")
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
         field = recording.last.magnetic_field
         assert (field.x, field.y, field.z) == pytest.approx((2.0, -1.0, 3.0))

@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, box
 
 
-def poses(extra: str = "") -> str:
+def pose_plugin(extra: str = "") -> str:
     """Return the plugin."""
     name = "gz::sim::systems::PosePublisher"
     return f'<plugin name="{name}" filename="gz-sim-pose-publisher-system">{extra}</plugin>'
@@ -21,9 +21,13 @@ def _translation(transform):
 
 
 async def test_link_poses_are_published_as_separate_messages():
-    async with running_server(GROUND, robot(poses("<update_frequency>10</update_frequency>"))) as (server, graph, log):
+    async with running_server(GROUND, robot(pose_plugin("<update_frequency>10</update_frequency>"))) as (
+        server,
+        graph,
+        log,
+    ):
         recording = Recording(graph, server.node, "/model/mbot/pose")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 5 * 10
         assert [transform.child_frame_id for transform in recording][-5:] == [
@@ -46,9 +50,9 @@ async def test_static_poses_have_separate_topic():
         "<publish_link_pose>true</publish_link_pose><update_frequency>50</update_frequency>"
         "<static_update_frequency>1</static_update_frequency>"
     )
-    async with running_server(GROUND, robot(poses(settings))) as (server, graph, log):
+    async with running_server(GROUND, robot(pose_plugin(settings))) as (server, graph, log):
         moving, resting = (Recording(graph, server.node, f"/model/mbot/{topic}") for topic in ("pose", "pose_static"))
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert (len(moving), len(resting)) == (50, 1)
         assert [transform.child_frame_id for transform in moving.last.transforms] == [
@@ -66,16 +70,18 @@ async def test_static_poses_have_separate_topic():
 
 
 async def test_nested_model_poses_are_published():
-    inner = box("inner", "0 0 0.5 0 0 0", "0.2 0.2 0.2")
+    inner_model = box("inner", "0 0 0.5 0 0 0", "0.2 0.2 0.2")
     joint = '<joint name="j" type="fixed"><parent>link</parent><child>inner::link</child></joint>'
     settings = (
         "<publish_nested_model_pose>true</publish_nested_model_pose><publish_model_pose>false</publish_model_pose>"
         "<use_pose_vector_msg>true</use_pose_vector_msg>"
     )
-    outer = box("outer", "1 0 3 0 0 0", "0.2 0.2 0.2").replace("</model>", f"{inner}{joint}{poses(settings)}</model>")
-    async with running_server(outer) as (server, graph, log):
+    outer_model = box("outer", "1 0 3 0 0 0", "0.2 0.2 0.2").replace(
+        "</model>", f"{inner_model}{joint}{pose_plugin(settings)}</model>"
+    )
+    async with running_server(outer_model) as (server, graph, log):
         recording = Recording(graph, server.node, "/model/outer/pose")
-        server.advance(SECOND // 100)
+        server.advance(SECOND_NS // 100)
         await graph.settle()
         assert len(recording) == 10
         poses_by_frame = {
@@ -92,10 +98,10 @@ async def test_nested_model_poses_are_published():
 
 async def test_static_model_publishes_poses():
     fixed_model = box("one", "0 0 1 0 0 0").replace("<link", "<static>true</static><link", 1)
-    text = fixed_model.replace("</model>", poses("<publish_model_pose>1</publish_model_pose>") + "</model>")
+    text = fixed_model.replace("</model>", pose_plugin("<publish_model_pose>1</publish_model_pose>") + "</model>")
     async with running_server(text) as (server, graph, log):
         recording = Recording(graph, server.node, "/model/one/pose")
-        server.advance(SECOND // 1000)
+        server.advance(SECOND_NS // 1000)
         await graph.settle()
         assert [(transform.child_frame_id, _translation(transform)) for transform in recording] == [
             ("one", pytest.approx((0.0, 0.0, 1.0))),

@@ -26,7 +26,7 @@ UPRIGHT = (
 )
 
 
-def free_body(name: str, shape: str, pose: str) -> str:
+def free_body_model(name: str, shape: str, pose: str) -> str:
     return (
         f'<model name="{name}"><pose>{pose}</pose><link name="link"><inertial><mass>2</mass><inertia><ixx>0.2</ixx>'
         f"<iyy>0.2</iyy><izz>0.2</izz></inertia></inertial><collision name='c'><geometry>{SHAPES[shape]}</geometry>"
@@ -47,7 +47,7 @@ def max_speed(simulation: Simulation, seconds: float, *links: str) -> float:
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("depth", [0.2, 0.6])
 def test_body_starting_inside_ground_rises_slowly_onto_it(shape: str, depth: float, step: float):
-    simulation = make_simulation(GROUND, free_body("thing", shape, f"0 0 {0.5 - depth} 0 0 0"), step=step)
+    simulation = make_simulation(GROUND, free_body_model("thing", shape, f"0 0 {0.5 - depth} 0 0 0"), step=step)
     assert max_speed(simulation, 3.5, "thing::link") < SEPARATION_SPEED_LIMIT
     assert simulation.link_pose("thing::link")[2] == pytest.approx(0.5, abs=0.01)
 
@@ -55,7 +55,9 @@ def test_body_starting_inside_ground_rises_slowly_onto_it(shape: str, depth: flo
 @pytest.mark.parametrize("shape", SHAPES)
 def test_overlapping_bodies_separate_slowly(shape: str):
     simulation = make_simulation(
-        free_body("one", shape, "0 0 5 0 0 0"), free_body("other", shape, "0.1 0.05 5 0 0 0"), gravity="0 0 0"
+        free_body_model("one", shape, "0 0 5 0 0 0"),
+        free_body_model("other", shape, "0.1 0.05 5 0 0 0"),
+        gravity="0 0 0",
     )
     assert max_speed(simulation, 4.0, "one::link", "other::link") < SEPARATION_SPEED_LIMIT
     assert not overlaps(simulation)
@@ -63,7 +65,7 @@ def test_overlapping_bodies_separate_slowly(shape: str):
 
 def test_body_moved_into_wall_leaves_it_slowly():
     wall = box("wall", "3 0 1 0 0 0", "1 4 2").replace("<link", "<static>true</static><link", 1)
-    simulation = make_simulation(GROUND, wall, free_body("crate", "box", "0 0 0.5 0 0 0"))
+    simulation = make_simulation(GROUND, wall, free_body_model("crate", "box", "0 0 0.5 0 0 0"))
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     simulation.set_model_pose("crate", (2.6, 0.0, 0.5, 0.0, 0.0, 0.0, 1.0))
     assert max_speed(simulation, 3.0, "crate::link") < SEPARATION_SPEED_LIMIT
@@ -94,7 +96,7 @@ def test_joint_beyond_its_limit_returns_slowly():
 def test_servo_keeps_speed_while_other_bodies_separate():
     simulation = make_simulation(
         GROUND,
-        free_body("deep", "box", "9 0 -0.4 0 0 0"),
+        free_body_model("deep", "box", "9 0 -0.4 0 0 0"),
         hinged_link("<limit><lower>-9</lower><upper>9</upper></limit>"),
     )
     servo = simulation.add_servo("arm::turn", speed=3.0)
@@ -106,7 +108,8 @@ def test_servo_keeps_speed_while_other_bodies_separate():
 
 def test_recovery_is_bitwise_reproducible():
     simulation = make_simulation(
-        GROUND, *[free_body(f"t{number}", shape, f"0.{number} 0 0 0.2 0 0") for number, shape in enumerate(SHAPES)]
+        GROUND,
+        *[free_body_model(f"t{number}", shape, f"0.{number} 0 0 0.2 0 0") for number, shape in enumerate(SHAPES)],
     )
     simulation.advance(NANOSECONDS_PER_SECOND)
     first_run = simulation.data.qpos.tobytes()
@@ -116,7 +119,7 @@ def test_recovery_is_bitwise_reproducible():
 
 
 def test_recovery_ends_when_no_body_overlaps():
-    simulation = make_simulation(GROUND, free_body("thing", "box", "0 0 0.3 0 0 0"))
+    simulation = make_simulation(GROUND, free_body_model("thing", "box", "0 0 0.3 0 0 0"))
     assert simulation._stepper._recovery.is_expected
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     assert not simulation._stepper._recovery.is_expected
@@ -125,10 +128,10 @@ def test_recovery_ends_when_no_body_overlaps():
 def test_overlapping_models_are_reported_deepest_first():
     simulation = make_simulation(
         GROUND,
-        free_body("low", "box", "0 0 0.2 0 0 0"),
-        free_body("lower", "box", "5 0 0.1 0 0 0"),
-        free_body("beside", "ball", "5.9 0 0.5 0 0 0"),
-        free_body("fine", "box", "9 0 0.495 0 0 0"),
+        free_body_model("low", "box", "0 0 0.2 0 0 0"),
+        free_body_model("lower", "box", "5 0 0.1 0 0 0"),
+        free_body_model("beside", "ball", "5.9 0 0.5 0 0 0"),
+        free_body_model("fine", "box", "9 0 0.495 0 0 0"),
     )
     texts = [str(overlap.message) for overlap in overlaps(simulation)]
     assert texts == [
@@ -141,7 +144,7 @@ def test_overlapping_models_are_reported_deepest_first():
 
 def test_excess_overlaps_are_counted():
     simulation = make_simulation(
-        GROUND, *[free_body(f"b{index}", "box", f"{2 * index} 0 0.2 0 0 0") for index in range(11)]
+        GROUND, *[free_body_model(f"b{index}", "box", f"{2 * index} 0 0.2 0 0 0") for index in range(11)]
     )
     result = overlaps(simulation)
     assert len(result) == 9
@@ -149,7 +152,7 @@ def test_excess_overlaps_are_counted():
 
 
 async def test_overlaps_are_logged_at_start_and_on_spawn():
-    async with running_server(GROUND, free_body("low", "box", "0 0 0.2 0 0 0")) as (server, _, log):
+    async with running_server(GROUND, free_body_model("low", "box", "0 0 0.2 0 0 0")) as (server, _, log):
         assert any("'low' starts 0.30 m inside 'ground'" in line.text for line in log)
-        server.spawn(model(free_body("new", "ball", "0 0 0 0 0 0")), "new", (0.0, 0.0, 0.6, 0.0, 0.0, 0.0, 1.0))
+        server.spawn(model(free_body_model("new", "ball", "0 0 0 0 0 0")), "new", (0.0, 0.0, 0.6, 0.0, 0.0, 0.0, 1.0))
         assert any("'new' starts 0.60 m inside 'low'" in line.text for line in log)

@@ -11,7 +11,7 @@ from linkwright.simulation.nodes.simulator import GzServer, Simulator
 from linkwright.simulation.plugins.registry import DEFAULT_GZ_SYSTEMS
 from linkwright.simulation.server.server import ServerOptions
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, box, model
 
 BROADCASTER = '<plugin name="gz::sim::systems::SceneBroadcaster" filename="gz-sim-scene-broadcaster-system"/>'
@@ -19,11 +19,11 @@ ALL, DYNAMIC = "/world/test/pose/info", "/world/test/dynamic_pose/info"
 LINKS = ["base_link", "left_wheel", "right_wheel", "front_caster", "back_caster"]
 
 
-def names(message):
+def frame_names(message):
     return [transform.child_frame_id for transform in message.transforms]
 
 
-def translation(message, name):
+def translation_of(message, name):
     position = next(
         transform for transform in message.transforms if transform.child_frame_id == name
     ).transform.translation
@@ -33,14 +33,14 @@ def translation(message, name):
 async def test_dynamic_poses_list_models_before_links():
     async with running_server(GROUND, robot(), BROADCASTER) as (server, graph, log):
         recording = Recording(graph, server.node, DYNAMIC)
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert 59 <= len(recording) <= 61
-        assert names(recording.last) == ["mbot", *LINKS]
-        assert translation(recording.last, "mbot") == pytest.approx((0.0, 0.0, 0.11), abs=2e-3)
-        assert translation(recording.last, "left_wheel") == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
+        assert frame_names(recording.last) == ["mbot", *LINKS]
+        assert translation_of(recording.last, "mbot") == pytest.approx((0.0, 0.0, 0.11), abs=2e-3)
+        assert translation_of(recording.last, "left_wheel") == pytest.approx((0.0, 0.19, -0.05), abs=1e-3)
         assert {transform.header.frame_id for transform in recording.last.transforms} == {""}
-        assert recording.last.transforms[0].header.stamp.nanosec > 0.9 * SECOND
+        assert recording.last.transforms[0].header.stamp.nanosec > 0.9 * SECOND_NS
         assert not log
 
 
@@ -56,11 +56,11 @@ async def test_all_poses_include_visuals_and_lights():
         log,
     ):
         recording = Recording(graph, server.node, ALL)
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
-        assert names(recording.last) == ["ground", "crate", "link", "link", "lid", "sun"]
-        assert translation(recording.last, "lid") == (0.0, 0.0, 0.5)
-        assert translation(recording.last, "sun") == (0.0, 0.0, 10.0)
+        assert frame_names(recording.last) == ["ground", "crate", "link", "link", "lid", "sun"]
+        assert translation_of(recording.last, "lid") == (0.0, 0.0, 0.5)
+        assert translation_of(recording.last, "sun") == (0.0, 0.0, 10.0)
         assert not log
 
 
@@ -68,22 +68,22 @@ async def test_spawned_models_are_included_and_deleted_ones_removed():
     async with running_server(GROUND, BROADCASTER) as (server, graph, _):
         recording = Recording(graph, server.node, DYNAMIC)
         server.spawn(model(box("box", "0 0 0.5 0 0 0", "1 1 1")), "crate")
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
-        assert names(recording.last) == ["crate", "link"]
+        assert frame_names(recording.last) == ["crate", "link"]
         server.delete("crate")
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
-        assert names(recording.last) == []
+        assert frame_names(recording.last) == []
 
 
 async def test_model_without_links_is_included():
     empty_model = '<model name="mark"><static>true</static><pose>1 2 3 0 0 0</pose></model>'
     async with running_server(GROUND, empty_model, BROADCASTER) as (server, graph, log):
         recording = Recording(graph, server.node, ALL)
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
-        assert translation(recording.last, "mark") == (1.0, 2.0, 3.0)
+        assert translation_of(recording.last, "mark") == (1.0, 2.0, 3.0)
         assert not log
 
 
@@ -91,7 +91,7 @@ async def test_dynamic_pose_rate_is_configurable():
     slow = BROADCASTER.replace("/>", "><dynamic_pose_hertz>10</dynamic_pose_hertz></plugin>")
     async with running_server(GROUND, robot(), slow) as (server, graph, log):
         recording = Recording(graph, server.node, DYNAMIC)
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 10
         assert not log
@@ -121,7 +121,7 @@ async def test_bridge_forwards_poses(message_type):
         bridge = ParameterBridge(graph, NodeOptions(arguments=[argument], remappings=[(DYNAMIC, "/truth")]))
         recording = Recording(graph, server.node, "/truth")
         for _ in range(10):
-            server.advance(SECOND // 20)
+            server.advance(SECOND_NS // 20)
             await graph.settle()
         last = recording.last
         assert len(last.transforms if message_type.startswith("tf2") else last.poses) == 1 + len(LINKS)

@@ -76,10 +76,10 @@ PYRAMID = {"URDF": "<pyramid> in <geometry>", "SDF": "the <geometry> of visual '
 async def test_model_with_unknown_shape_is_rejected_with_reason(tmp_path, language):
     async with simulator(tmp_path) as session:
         text = SHAPES[language].format("<pyramid/>")
-        answer = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
-        assert not answer.success
-        assert PYRAMID[language] in answer.status_message
-        assert "is not a shape" in answer.status_message
+        response = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
+        assert not response.success
+        assert PYRAMID[language] in response.status_message
+        assert "is not a shape" in response.status_message
         assert "one" not in session.simulator.server.simulation.scene.models
 
 
@@ -87,9 +87,9 @@ async def test_model_with_unknown_shape_is_rejected_with_reason(tmp_path, langua
 async def test_robot_with_shape_without_dimensions_is_rejected(tmp_path, shape):
     async with simulator(tmp_path) as session:
         text = SHAPES["URDF"].format(shape)
-        answer = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
-        assert not answer.success
-        assert "of link 'base'" in answer.status_message
+        response = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=text)
+        assert not response.success
+        assert "of link 'base'" in response.status_message
 
 
 async def test_models_are_spawned_and_deleted_by_services(tmp_path):
@@ -97,17 +97,17 @@ async def test_models_are_spawned_and_deleted_by_services(tmp_path):
         sent = {"name": "one", "xml": URDF, "robot_namespace": ""}
         pose = get_message("geometry_msgs/msg/Pose")()
         pose.position.z = 4.0
-        answer = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", initial_pose=pose, **sent)
-        assert (answer.success, answer.status_message) == (True, "SpawnEntity: Successfully spawned entity [one]")
-        answer = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
-        assert sorted(answer.model_names) == ["ground_plane", "one"]
-        answer = await session.call("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")
-        assert answer.success
-        assert answer.state.pose.position.z == 4.0
-        answer = await session.call("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
-        assert answer.success
-        answer = await session.call("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
-        assert (answer.success, answer.status_message) == (False, "there is no model 'one'")
+        response = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", initial_pose=pose, **sent)
+        assert (response.success, response.status_message) == (True, "SpawnEntity: Successfully spawned entity [one]")
+        response = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        assert sorted(response.model_names) == ["ground_plane", "one"]
+        response = await session.call("gazebo_msgs/srv/GetEntityState", "/get_entity_state", name="one")
+        assert response.success
+        assert response.state.pose.position.z == 4.0
+        response = await session.call("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        assert response.success
+        response = await session.call("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="one")
+        assert (response.success, response.status_message) == (False, "there is no model 'one'")
 
 
 @pytest.mark.parametrize(
@@ -122,18 +122,18 @@ async def test_models_are_spawned_and_deleted_by_services(tmp_path):
 )
 async def test_invalid_spawn_request_is_rejected_with_reason(tmp_path, xml, reason):
     async with simulator(tmp_path, box("one", "0 0 1 0 0 0")) as session:
-        answer = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=xml)
-        assert not answer.success
-        assert reason in answer.status_message
-        answer = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
-        assert sorted(answer.model_names) == ["ground_plane", "one"]
+        response = await session.call("gazebo_msgs/srv/SpawnEntity", "/spawn_entity", name="one", xml=xml)
+        assert not response.success
+        assert reason in response.status_message
+        response = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        assert sorted(response.model_names) == ["ground_plane", "one"]
 
 
 async def test_step_service_advances_paused_simulation(tmp_path):
     async with simulator(tmp_path, box("one", "0 0 9 0 0 0"), publish_rate=100.0) as session:
         clock = session.record("rosgraph_msgs/msg/Clock", "/clock", CLOCK_QOS)
-        answer = await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=25)
-        assert answer.result.result == answer.result.RESULT_OK
+        response = await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=25)
+        assert response.result.result == response.result.RESULT_OK
         assert session.simulator.server.simulation.time == 25_000_000
         await eventually(lambda: bool(clock))
         assert clock[-1].clock.nanosec == 20_000_000
@@ -155,8 +155,8 @@ async def test_simulation_runs_in_thread_and_ends_after_duration(tmp_path):
         assert session.simulator.server.simulation.time == 1_000_000_000
         await eventually(lambda: bool(states) and states[-1].state == states[-1].STATE_PAUSED)
         await eventually(lambda: bool(messages) and messages[-1].header.stamp.sec == 1)
-        answer = await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
-        assert answer.result.result == answer.result.RESULT_OK
+        response = await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
+        assert response.result.result == response.result.RESULT_OK
 
 
 async def test_failed_simulation_ends_before_its_duration(tmp_path):
@@ -168,8 +168,8 @@ async def test_failed_simulation_ends_before_its_duration(tmp_path):
 
 async def test_running_simulation_rejects_steps(tmp_path):
     async with simulator(tmp_path, pause=False) as session:
-        answer = await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
-        assert answer.result.result == answer.result.RESULT_INCORRECT_STATE
+        response = await session.call("simulation_interfaces/srv/StepSimulation", "/step_simulation", steps=1)
+        assert response.result.result == response.result.RESULT_INCORRECT_STATE
         await session.call("std_srvs/srv/Empty", "/pause_physics")
         assert session.simulator.runner.is_paused
         await session.call("std_srvs/srv/Empty", "/unpause_physics")
@@ -181,18 +181,18 @@ async def test_unstable_simulation_is_paused(tmp_path):
         wrench = get_message("geometry_msgs/msg/Wrench")()
         wrench.force.x = float("inf")
         duration = get_message("builtin_interfaces/msg/Duration")(sec=-1)
-        answer = await session.call(
+        response = await session.call(
             "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", link_name="link", wrench=wrench, duration=duration
         )
-        assert not answer.success
-        answer = await session.call(
+        assert not response.success
+        response = await session.call(
             "gazebo_msgs/srv/ApplyLinkWrench",
             "/apply_link_wrench",
             link_name="one::link",
             wrench=wrench,
             duration=duration,
         )
-        assert answer.success
+        assert response.success
         await eventually(lambda: session.simulator.runner.is_paused)
 
 
@@ -348,13 +348,13 @@ async def test_findings_of_model_last_while_it_is_in_world(tmp_path):
 async def test_world_can_be_given_as_text_or_ros_gz_parameter(tmp_path):
     text = f'<sdf version="1.7"><world name="told">{box("crate", "0 0 1 0 0 0")}</world></sdf>'
     async with simulator(tmp_path, world_sdf_string=text) as session:
-        answer = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
-        assert answer.model_names == ["crate"]
+        response = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        assert response.model_names == ["crate"]
     path = tmp_path / "other.sdf"
     path.write_text(text.replace("crate", "chest"), encoding="utf-8")
     async with simulator(tmp_path, world_sdf_file=str(path)) as session:
-        answer = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
-        assert answer.model_names == ["chest"]
+        response = await session.call("gazebo_msgs/srv/GetModelList", "/get_model_list")
+        assert response.model_names == ["chest"]
 
 
 async def test_malformed_world_text_is_rejected(tmp_path):

@@ -13,7 +13,7 @@ from tests.simulation.worlds import GROUND, box, make_simulation
 NO_GRAVITY = "0 0 0"
 
 
-def pendulum(*, stiffness: float = 0.0, damping: float = 0.0, kind: str = "revolute", axis: str = "0 1 0") -> str:
+def pendulum_model(*, stiffness: float = 0.0, damping: float = 0.0, kind: str = "revolute", axis: str = "0 1 0") -> str:
     """Return a bob of 1 kg, 1 m below a fixed joint."""
     spring = f"<spring_stiffness>{stiffness}</spring_stiffness><spring_reference>0</spring_reference>"
     inertia = "<inertia><ixx>1e-6</ixx><iyy>1e-6</iyy><izz>1e-6</izz></inertia>"
@@ -32,7 +32,7 @@ def are_asleep(simulation: Simulation) -> bool:
 
 @pytest.mark.parametrize("amplitude", [0.1, 0.02, 0.005, 0.001])
 def test_pendulum_keeps_swinging(amplitude: float):
-    simulation = make_simulation(pendulum())
+    simulation = make_simulation(pendulum_model())
     simulation.set_joint_position("swing::joint", amplitude)
     half_period = round(pi / sqrt(9.81) * NANOSECONDS_PER_SECOND)
     simulation.advance(9 * half_period)
@@ -41,7 +41,7 @@ def test_pendulum_keeps_swinging(amplitude: float):
 
 @pytest.mark.parametrize("damping", [2.0, 40.0])
 def test_mass_on_spring_rests_at_equilibrium(damping: float):
-    simulation = make_simulation(pendulum(kind="prismatic", axis="0 0 1", stiffness=100.0, damping=damping))
+    simulation = make_simulation(pendulum_model(kind="prismatic", axis="0 0 1", stiffness=100.0, damping=damping))
     simulation.advance(15 * NANOSECONDS_PER_SECOND)
     assert simulation.joint_state("swing::joint")[0] == pytest.approx(-0.0981, abs=1e-5)
     assert are_asleep(simulation)

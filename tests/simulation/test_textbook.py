@@ -14,10 +14,10 @@ from linkwright.simulation.simulation import Simulation
 from tests.simulation.worlds import GROUND, box, make_simulation, mbot
 
 MILLISECOND = NANOSECONDS_PER_SECOND // 1000
-G = 9.81
+GRAVITY = 9.81
 
 
-def part(mass: float, moment: float, geometry: str = "", surface: str = "") -> str:
+def link_with_shape(mass: float, moment: float, geometry: str = "", surface: str = "") -> str:
     collision = f'<collision name="c"><geometry>{geometry}</geometry>{surface}</collision>' if geometry else ""
     return (
         f"<inertial><mass>{mass}</mass><inertia><ixx>{moment}</ixx><iyy>{moment}</iyy><izz>{moment}</izz></inertia>"
@@ -25,21 +25,22 @@ def part(mass: float, moment: float, geometry: str = "", surface: str = "") -> s
     )
 
 
-def friction(mu: float) -> str:
+def friction_element(mu: float) -> str:
     return f"<surface><friction><ode><mu>{mu}</mu><mu2>{mu}</mu2></ode></friction></surface>"
 
 
-def slope(angle: float, mu: float = 1.0) -> str:
+def slope_model(angle: float, mu: float = 1.0) -> str:
     """Return a plane that slopes down toward x."""
     return (
         '<model name="slope"><static>true</static><link name="l"><collision name="c"><geometry><plane>'
-        f"<normal>{sin(angle)} 0 {cos(angle)}</normal></plane></geometry>{friction(mu)}</collision></link></model>"
+        f"<normal>{sin(angle)} 0 {cos(angle)}</normal></plane></geometry>{friction_element(mu)}"
+        "</collision></link></model>"
     )
 
 
 def test_pendulum_has_textbook_period():
     length, angle = 0.5, 0.1
-    bob = part(1.0, 1e-6)
+    bob = link_with_shape(1.0, 1e-6)
     pendulum = f"""
     <model name="p"><pose>0 0 2 0 {angle} 0</pose>
       <link name="bob"><pose>0 0 -{length} 0 0 0</pose>{bob}</link>
@@ -56,7 +57,7 @@ def test_pendulum_has_textbook_period():
             crossings.append(simulation.seconds - 0.001 * angle_now / (angle_now - last))
         last = angle_now
     periods = [later - earlier for earlier, later in itertools.pairwise(crossings)]
-    expected = 2 * pi * sqrt(length / G) * (1 + angle**2 / 16)
+    expected = 2 * pi * sqrt(length / GRAVITY) * (1 + angle**2 / 16)
     assert len(periods) >= 3
     assert periods == pytest.approx([expected] * len(periods), rel=1e-3)
 
@@ -66,13 +67,13 @@ def test_block_on_slope_sticks_or_slides(mu, slides):
     angle = atan(0.5)
     height = 0.05 / cos(angle)
     simulation = make_simulation(
-        slope(angle, mu), box("block", f"0 0 {height} 0 {angle} 0", "0.1 0.1 0.1", surface=friction(2.0))
+        slope_model(angle, mu), box("block", f"0 0 {height} 0 {angle} 0", "0.1 0.1 0.1", surface=friction_element(2.0))
     )
     simulation.advance(NANOSECONDS_PER_SECOND)
     x, _, z = simulation.model_pose("block")[:3]
     distance = hypot(x, z - height)
     if slides:
-        assert distance == pytest.approx(G * (sin(angle) - mu * cos(angle)) / 2, rel=0.05)
+        assert distance == pytest.approx(GRAVITY * (sin(angle) - mu * cos(angle)) / 2, rel=0.05)
     else:
         assert distance < 2e-3
 
@@ -80,12 +81,12 @@ def test_block_on_slope_sticks_or_slides(mu, slides):
 def test_ball_rolls_down_slope():
     angle, radius = 0.2, 0.1
     shape = f"<sphere><radius>{radius}</radius></sphere>"
-    link = part(1.0, 0.4 * radius**2, shape, friction(1.0))
+    link = link_with_shape(1.0, 0.4 * radius**2, shape, friction_element(1.0))
     ball = f'<model name="ball"><pose>0 0 {radius / cos(angle)} 0 0 0</pose><link name="l">{link}</link></model>'
-    simulation = make_simulation(slope(angle), ball)
+    simulation = make_simulation(slope_model(angle), ball)
     simulation.advance(NANOSECONDS_PER_SECOND)
     speed = simulation.link_velocity("ball::l")[0]
-    assert hypot(*speed) == pytest.approx(5 / 7 * G * sin(angle), rel=0.01)
+    assert hypot(*speed) == pytest.approx(5 / 7 * GRAVITY * sin(angle), rel=0.01)
 
 
 def test_collision_conserves_momentum():
@@ -104,13 +105,13 @@ def test_collision_conserves_momentum():
 
 def test_four_bar_linkage_stays_closed():
     bars = "".join(
-        f'<link name="{name}"><pose>{pose}</pose>{part(0.2, 1e-3)}</link>'
+        f'<link name="{name}"><pose>{pose}</pose>{link_with_shape(0.2, 1e-3)}</link>'
         for name, pose in (("crank", "0 0 1 0 0 0"), ("coupler", "0 0 1.3 0 0 0"), ("rocker", "0.5 0 1 0 0 0"))
     )
     joints = "".join(
-        f'<joint name="{name}" type="revolute"><pose relative_to="{at}">{pose}</pose><parent>{parent}</parent>'
+        f'<joint name="{name}" type="revolute"><pose relative_to="{anchor}">{pose}</pose><parent>{parent}</parent>'
         f"<child>{child}</child><axis><xyz>0 1 0</xyz></axis></joint>"
-        for name, at, pose, parent, child in (
+        for name, anchor, pose, parent, child in (
             ("a", "crank", "0 0 0 0 0 0", "world", "crank"),
             ("b", "crank", "0 0 0.3 0 0 0", "crank", "coupler"),
             ("d", "rocker", "0 0 0 0 0 0", "world", "rocker"),
@@ -136,7 +137,10 @@ def test_robot_at_rest_does_not_drift():
 
 
 class Driver:
-    """A driver that turns mbot's wheels 100 times a second, as a node would, with 1 m/s2 at the rims."""
+    """A driver that turns mbot's wheels 100 times a second, as a node would.
+
+    The wheels accelerate with 1 m/s2 at the rims.
+    """
 
     def __init__(self, forward: float, yaw_rate: float) -> None:
         self.simulation: Simulation = make_simulation(GROUND, mbot())

@@ -8,12 +8,12 @@ from linkwright.messages import get_message
 from linkwright.simulation.plugins.protobuf_text import TextFormatError, message_of, parse_fields
 from linkwright.testing import Recording
 from tests.simulation.fluids.server import running_server
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 
 EMPTY_OUTPUT = '<output type="gz.msgs.Empty" topic="/out"/>'
 
 
-def trigger(match: str = "", kind: str = "Boolean", output: str = EMPTY_OUTPUT) -> str:
+def trigger_plugin(match: str = "", kind: str = "Boolean", output: str = EMPTY_OUTPUT) -> str:
     return (
         '<plugin name="gz::sim::systems::TriggeredPublisher" filename="gz-sim-triggered-publisher-system">'
         f'<input type="gz.msgs.{kind}" topic="in">{match}</input>{output}</plugin>'
@@ -28,7 +28,7 @@ async def count_triggers(text: str, type_name: str, *messages) -> int:
         for message in messages:
             publisher.publish(message)
         await graph.settle()
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
         assert not log
         return len(recording)
@@ -48,7 +48,7 @@ async def count_triggers(text: str, type_name: str, *messages) -> int:
 async def test_all_matches_must_hold(match, count):
     message = get_message("std_msgs/msg/Bool")
     messages = (message(data=True), message(data=False))
-    assert await count_triggers(trigger(match), "std_msgs/msg/Bool", *messages) == count
+    assert await count_triggers(trigger_plugin(match), "std_msgs/msg/Bool", *messages) == count
 
 
 @pytest.mark.parametrize(
@@ -56,7 +56,7 @@ async def test_all_matches_must_hold(match, count):
 )
 async def test_numbers_match_within_tolerance(match, count):
     attributes, _, value = match.rpartition(">")
-    text = trigger(f'<match field="vertical_position" {attributes}>{value}</match>', "Altimeter")
+    text = trigger_plugin(f'<match field="vertical_position" {attributes}>{value}</match>', "Altimeter")
     type_name = "ros_gz_interfaces/msg/Altimeter"
     messages = [get_message(type_name)(vertical_position=position) for position in (-7.4, -7.6, -7.8)]
     assert await count_triggers(text, type_name, *messages) == count
@@ -65,11 +65,12 @@ async def test_numbers_match_within_tolerance(match, count):
 async def test_nested_fields_and_numbers_of_32_bits_match():
     twist = get_message("geometry_msgs/msg/Twist")()
     twist.linear.x = 3.0
-    text = trigger('<match field="linear.x">3</match><match>linear: {x: 3.0}</match>', "Twist")
+    text = trigger_plugin('<match field="linear.x">3</match><match>linear: {x: 3.0}</match>', "Twist")
     assert await count_triggers(text, "geometry_msgs/msg/Twist", twist) == 1
     number = get_message("std_msgs/msg/Float32")(data=123456.789)
     assert (
-        await count_triggers(trigger("<match>data: 123456.789</match>", "Float"), "std_msgs/msg/Float32", number) == 1
+        await count_triggers(trigger_plugin("<match>data: 123456.789</match>", "Float"), "std_msgs/msg/Float32", number)
+        == 1
     )
 
 
@@ -81,7 +82,7 @@ async def test_repeated_field_contains_values_or_equals_all():
         ("<match>velocity: 1 velocity: 2</match>", 1),
         ("<match>velocity: [2, 1]</match>", 0),
     ):
-        assert await count_triggers(trigger(match, "Actuators"), "actuator_msgs/msg/Actuators", message) == count
+        assert await count_triggers(trigger_plugin(match, "Actuators"), "actuator_msgs/msg/Actuators", message) == count
 
 
 async def test_outputs_are_published_after_delay():
@@ -89,22 +90,22 @@ async def test_outputs_are_published_after_delay():
         '<delay_ms>500</delay_ms><output type="gz.msgs.Twist" topic="/a">linear: {x: 3}, angular { z: -1 }</output>'
         '<output type="ignition.msgs.StringMsg" topic="/b">data: "go"</output>'
     )
-    async with running_server(trigger(output=output)) as (server, graph, _):
+    async with running_server(trigger_plugin(output=output)) as (server, graph, _):
         twists, texts = (Recording(graph, server.node, topic) for topic in ("/a", "/b"))
         publisher = graph.create_node("operator").create_publisher("std_msgs/msg/Bool", "/in", 10)
         publisher.publish(get_message("std_msgs/msg/Bool")())
         await graph.settle()
-        server.advance(SECOND // 10 * 4)
+        server.advance(SECOND_NS // 10 * 4)
         await graph.settle()
         assert not len(twists)
-        server.advance(SECOND // 10 * 2)
+        server.advance(SECOND_NS // 10 * 2)
         await graph.settle()
         assert (twists.last.linear.x, twists.last.angular.z, texts.last.data) == (3.0, -1.0, "go")
         publisher.publish(get_message("std_msgs/msg/Bool")())
         await graph.settle()
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         server.reset()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(twists) == 1
 
@@ -112,12 +113,12 @@ async def test_outputs_are_published_after_delay():
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        (trigger(kind="Marker"), "the type 'gz.msgs.Marker' has no ROS type"),
-        (trigger("<match>data: {</match>"), "'data: {' is not a message"),
-        (trigger('<match field="flag">1</match>'), "flag"),
-        (trigger().replace('topic="in"', ""), "<input> needs a topic"),
+        (trigger_plugin(kind="Marker"), "the type 'gz.msgs.Marker' has no ROS type"),
+        (trigger_plugin("<match>data: {</match>"), "'data: {' is not a message"),
+        (trigger_plugin('<match field="flag">1</match>'), "flag"),
+        (trigger_plugin().replace('topic="in"', ""), "<input> needs a topic"),
         ('<plugin name="a" filename="gz-sim-triggered-publisher-system"/>', "<input> is missing"),
-        (trigger(output='<service name="/a"/>'), "calls of a <service> are not simulated"),
+        (trigger_plugin(output='<service name="/a"/>'), "calls of a <service> are not simulated"),
     ],
 )
 async def test_mistakes_are_reported(text, problem):

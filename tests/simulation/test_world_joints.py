@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkwright.simulation.server.unsimulated import unsimulated_elements
-from tests.simulation.test_loading import load, step
+from tests.simulation.test_loading import load_world, step_simulation
 from tests.simulation.test_server import simulator
 from tests.simulation.worlds import box, make_simulation
 
@@ -82,13 +82,13 @@ def test_ball_and_universal_joints_keep_distance():
 
 def test_loop_joint_is_closed_or_reported():
     ends = [box(name, f"{x} 0 3 0 0 0") for name, x in (("a", 0), ("b", 2))]
-    middle = box("bridge", "1 0 3 0 0 0")
+    bridge = box("bridge", "1 0 3 0 0 0")
     anchors = [joint("fixed", "world", name, name=f"hold_{name}") for name in "ab"]
     loop = [joint("fixed", name, "bridge", name=f"on_{name}") for name in "ab"]
-    simulation = make_simulation(*ends, middle, *anchors, *loop)
+    simulation = make_simulation(*ends, bridge, *anchors, *loop)
     simulation.advance(500_000_000)
     assert simulation.model_pose("bridge")[:3] == pytest.approx((1, 0, 3), abs=1e-3)
-    simulation = make_simulation(*ends, middle, *anchors, loop[0], joint("prismatic", "b", "bridge", "<axis/>", "rail"))
+    simulation = make_simulation(*ends, bridge, *anchors, loop[0], joint("prismatic", "b", "bridge", "<axis/>", "rail"))
     assert [(diagnostic.code, str(diagnostic.message)) for diagnostic in simulation.scene.diagnostics] == [
         ("SIM118", "joint 'rail' is left out: a joint of type prismatic cannot close a loop")
     ]
@@ -135,11 +135,11 @@ async def test_attached_model_falls_when_its_parent_is_deleted(tmp_path):
     joints = joint("fixed", "world", "base", name="anchor"), joint("fixed", "base", "load", name="rope")
     async with simulator(tmp_path, *parts, *joints) as session:
         simulation = session.simulator.server.simulation
-        await step(session, 200)
+        await step_simulation(session, 200)
         assert simulation.model_pose("load")[2] == 7.5
         await session.call("gazebo_msgs/srv/DeleteEntity", "/delete_entity", name="base")
         assert simulation.model_pose("load")[2] == 7.5
-        await step(session, 200)
+        await step_simulation(session, 200)
         assert simulation.model_pose("load")[2] == pytest.approx(7.5 - 0.5 * 9.8 * 0.04, abs=0.01)
         await session.call("std_srvs/srv/Empty", "/reset_world")
         assert simulation.model_pose("load")[2] == 7.5
@@ -151,17 +151,17 @@ async def test_load_world_updates_world_joints(tmp_path):
     swing = joint("revolute", "base", "bob", HINGE.format(at="base"), name="swing")
     async with simulator(tmp_path, base, bob, anchor, swing) as session:
         simulation = session.simulator.server.simulation
-        await step(session, 300)
+        await step_simulation(session, 300)
         swing_state = simulation.joint_state("swing")
         assert swing_state[0] > 0.1
-        await load(session, tmp_path, base.replace("<mass>", "<mass>1"), bob, anchor, swing)
+        await load_world(session, tmp_path, base.replace("<mass>", "<mass>1"), bob, anchor, swing)
         assert simulation.joint_state("swing") == swing_state, "a model on a changed model keeps moving"
-        await load(session, tmp_path, box("base", "3 0 9 0 0 0"), bob.replace("1 0 9", "4 0 9"), anchor, swing)
+        await load_world(session, tmp_path, box("base", "3 0 9 0 0 0"), bob.replace("1 0 9", "4 0 9"), anchor, swing)
         assert simulation.model_pose("base")[:3] == (3, 0, 9)
         assert simulation.joint_state("swing") == swing_state
-        await load(session, tmp_path, base, bob, anchor)
+        await load_world(session, tmp_path, base, bob, anchor)
         assert simulation.moves_freely("bob")
-        await load(session, tmp_path, base, bob, anchor, swing)
+        await load_world(session, tmp_path, base, bob, anchor, swing)
         assert not simulation.moves_freely("bob")
 
 

@@ -44,8 +44,8 @@ def engine(path):
 
 def results_of(engine, samples, block=BLOCK):
     results = []
-    for at in range(0, len(samples), block):
-        results += engine.hear(samples[at : at + block])
+    for start in range(0, len(samples), block):
+        results += engine.hear(samples[start : start + block])
     return results
 
 
@@ -71,9 +71,12 @@ def test_word_is_recognized_in_noise(engine, name):
 
 
 def with_reverberation(samples, direct_db, seed):
-    """Add a reverberation of 0.4 s; its energy is `direct` dB below the energy of the direct sound."""
-    at = np.arange(int(0.4 * RATE)) / RATE
-    decay = np.random.default_rng(seed).normal(size=len(at)) * 10 ** (-3 * at / 0.4)
+    """Add a reverberation of 0.4 s.
+
+    Its energy is `direct` dB below the energy of the direct sound.
+    """
+    times = np.arange(int(0.4 * RATE)) / RATE
+    decay = np.random.default_rng(seed).normal(size=len(times)) * 10 ** (-3 * times / 0.4)
     decay *= 10 ** (-direct_db / 20) / np.sqrt(np.sum(decay**2))
     decay[0] = 1.0
     size = len(samples) + len(decay)
@@ -166,13 +169,13 @@ def test_similar_utterance_reports_nearest_word(engine, path):
 @pytest.mark.parametrize("kind", ["silence", "noise", "hum", "click", "chirp"])
 def test_sound_without_speech_is_not_recognized(engine, kind):
     rng = np.random.default_rng(12)
-    at = np.arange(10 * RATE) / RATE
+    times = np.arange(10 * RATE) / RATE
     sound = {
-        "silence": np.zeros(len(at)),
-        "noise": 500 * rng.normal(size=len(at)) * (at > 3),
-        "hum": 3000 * np.sin(2 * np.pi * 50 * at) + 1000 * np.sin(2 * np.pi * 150 * at),
-        "click": 20_000.0 * (np.arange(len(at)) % RATE < 30) + rng.normal(size=len(at)),
-        "chirp": 3000 * np.sin(2 * np.pi * (200 * at + 300 * at**2)) + rng.normal(size=len(at)),
+        "silence": np.zeros(len(times)),
+        "noise": 500 * rng.normal(size=len(times)) * (times > 3),
+        "hum": 3000 * np.sin(2 * np.pi * 50 * times) + 1000 * np.sin(2 * np.pi * 150 * times),
+        "click": 20_000.0 * (np.arange(len(times)) % RATE < 30) + rng.normal(size=len(times)),
+        "chirp": 3000 * np.sin(2 * np.pi * (200 * times + 300 * times**2)) + rng.normal(size=len(times)),
     }[kind]
     assert not [result.text for result in results_of(engine, sound.astype(np.int16)) if result.text]
 
@@ -181,10 +184,10 @@ def test_partial_is_reported_within_300_ms_of_word(engine):
     samples = say(WORDS["stop"], silence=0.8, seed=13)
     end = len(samples) - int(0.8 * RATE)
     partial_time = None
-    for at in range(0, len(samples), BLOCK):
-        results = engine.hear(samples[at : at + BLOCK])
+    for start in range(0, len(samples), BLOCK):
+        results = engine.hear(samples[start : start + BLOCK])
         if partial_time is None and any(result.text == "stop" for result in results):
-            partial_time = at + BLOCK
+            partial_time = start + BLOCK
             assert not results[0].final
     assert partial_time is not None
     assert partial_time - end <= 0.3 * RATE
@@ -227,8 +230,8 @@ def test_long_speech_is_not_recognized(engine):
 
 
 def test_single_enrolled_word_is_recognized(words, tmp_path):
-    alone = Words({"stop": words.takes("stop")[:1]})
-    alone.write(tmp_path / "words.json")
+    single_word = Words({"stop": words.takes("stop")[:1]})
+    single_word.write(tmp_path / "words.json")
     engine = EnrolledEngine(EngineOptions(("stop",), model=tmp_path / "words.json"))
     assert final_texts(engine, say(WORDS["stop"], silence=0.8, seed=17)) == ["stop"]
     assert final_texts(engine, say("mumi", silence=0.8, seed=18)) == [""]

@@ -44,9 +44,9 @@ def test_words_file_round_trip_is_exact(tmp_path):
     words_read = Words.read(path)
     assert words_read.names == words.names
     for name in words.names:
-        for ours, theirs in zip(words.takes(name), words_read.takes(name), strict=True):
-            assert np.array_equal(ours.powers, theirs.powers)
-            assert np.array_equal(ours.noise, theirs.noise)
+        for original_take, read_take in zip(words.takes(name), words_read.takes(name), strict=True):
+            assert np.array_equal(original_take.powers, read_take.powers)
+            assert np.array_equal(original_take.noise, read_take.noise)
 
 
 def test_word_names_in_any_language_are_kept(tmp_path):

@@ -102,8 +102,8 @@ def test_missing_wav_is_reported(tmp_path):
 def test_resampling_keeps_tone(rate):
     resampled = resample(tone(1000, rate), rate)
     assert abs(len(resampled) - RATE // 2) <= 2
-    middle = slice(500, 7000)
-    assert np.abs(resampled / 32768 - tone(1000)[: len(resampled)])[middle].max() < 1e-3
+    inner_samples = slice(500, 7000)
+    assert np.abs(resampled / 32768 - tone(1000)[: len(resampled)])[inner_samples].max() < 1e-3
 
 
 @pytest.mark.parametrize("hertz", [8_200, 9_000, 12_000, 20_000])
@@ -207,21 +207,21 @@ def test_steady_noise_beside_word_is_not_unsteady(name, level):
 
 
 def test_wavering_hum_and_soft_onset_are_not_unsteady_noise():
-    at = np.arange(2 * RATE) / RATE
-    hum = (1.0 + 0.3 * np.sin(2 * np.pi * 11 * at)) * np.sin(2 * np.pi * 100 * at)
+    times = np.arange(2 * RATE) / RATE
+    hum = (1.0 + 0.3 * np.sin(2 * np.pi * 11 * times)) * np.sin(2 * np.pi * 100 * times)
     samples = say(WORDS["forward"], level=3000.0)
     assert floor_and_unsteady_noise(add_noise(samples, hum, 10.0, 3000.0))[1] is None
-    softly = samples * np.clip((at[: len(samples)] - 0.5) / 0.3, 0.02, 1.0)
+    softly = samples * np.clip((times[: len(samples)] - 0.5) / 0.3, 0.02, 1.0)
     assert floor_and_unsteady_noise(np.rint(softly).astype(np.int16))[1] is None
 
 
 def test_babble_beside_word_is_unsteady_noise_above_floor():
     samples = say(WORDS["forward"], level=3000.0)
-    talk = babble(len(samples) / RATE + 0.1, np.random.default_rng(5))
-    floor, noise = floor_and_unsteady_noise(add_noise(samples, talk, 15.0, 3000.0))
+    babble_samples = babble(len(samples) / RATE + 0.1, np.random.default_rng(5))
+    floor, noise = floor_and_unsteady_noise(add_noise(samples, babble_samples, 15.0, 3000.0))
     assert noise is not None
     assert (noise >= floor).all()
-    before = mel_frames(add_noise(np.zeros_like(samples), talk, 15.0, 3000.0))
+    before = mel_frames(add_noise(np.zeros_like(samples), babble_samples, 15.0, 3000.0))
     assert np.mean(before <= noise) > 0.85
     assert np.mean(before <= floor) < 0.5
 

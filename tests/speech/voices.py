@@ -59,13 +59,13 @@ def say(
     ends = np.cumsum(durations)
     count = int(ends[-1] * RATE)
     times = np.arange(count) / RATE
-    middles = ends - np.array(durations) / 2
-    voiced = np.interp(times, middles, [share for _, share in targets])
+    phone_centers = ends - np.array(durations) / 2
+    voiced = np.interp(times, phone_centers, [share for _, share in targets])
     phase = 2 * np.pi * np.cumsum(pitch * (1.1 - 0.2 * times / ends[-1])) / RATE
     sound = np.zeros(count)
     breath = rng.normal(size=count)
     for formant in range(3):
-        hertz = np.interp(times, middles, [formants[formant] for formants, _ in targets]) / size
+        hertz = np.interp(times, phone_centers, [formants[formant] for formants, _ in targets]) / size
         carrier = np.cos(2 * np.pi * np.cumsum(hertz) / RATE)
         hum = np.exp(6.0 * (np.cos(phase) - 1.0))
         hiss = np.convolve(breath, np.ones(12) / 3.5, "same")
@@ -75,14 +75,17 @@ def say(
     sound += 0.05 * breath * np.maximum(voiced, 0.0)
     sound *= np.clip((voiced + 1.0) * 3.0, 0.0, 1.0)
     sound *= level / np.sqrt(np.mean(sound**2))
-    quiet = np.zeros(int(silence * RATE))
-    recording = np.concatenate((quiet, sound, quiet))
+    silence_samples = np.zeros(int(silence * RATE))
+    recording = np.concatenate((silence_samples, sound, silence_samples))
     recording += noise * rng.normal(size=len(recording))
     return np.clip(np.rint(recording), -32_768, 32_767).astype(np.int16)
 
 
 def babble(seconds: float, rng: np.random.Generator) -> np.ndarray:
-    """Return three simultaneous speakers with pauses between their words, at an effective value of 1."""
+    """Return three simultaneous speakers with pauses between their words.
+
+    The effective value is 1.
+    """
     count = int(seconds * RATE)
     total = np.zeros(count)
     sounds = [phone for phone in _PHONES if phone != "."]

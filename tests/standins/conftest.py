@@ -1,3 +1,5 @@
+"""Fixtures of the stand-in tests: fresh modules, and programs to import."""
+
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator

@@ -1,4 +1,7 @@
-"""Assign values to fields of messages, and print the results as JSON; for real ROS 2 and for ours."""
+"""Assign values to fields of messages, and print the results as JSON.
+
+The program runs with real ROS 2 and with Linkwright.
+"""
 
 import json
 from array import array
@@ -72,7 +75,7 @@ CASES = {
 }
 
 
-def came_of(assign, field):
+def outcome_of(assign, field):
     try:
         value = getattr(assign(), field)
     except AssertionError as error:
@@ -83,7 +86,7 @@ def came_of(assign, field):
     return [type(value).__name__, values]
 
 
-def with_setter(message_class, field, value):
+def message_with_field(message_class, field, value):
     message = message_class()
     setattr(message, field, value)
     return message
@@ -94,10 +97,10 @@ def main():
     for (message_class, field), values in CASES.items():
         for name, value in values.items():
             for way, assign in (
-                ("set", lambda: with_setter(message_class, field, value)),  # noqa: B023 - called at once
+                ("set", lambda: message_with_field(message_class, field, value)),  # noqa: B023 - called at once
                 ("made", lambda: message_class(**{field: value})),  # noqa: B023
             ):
-                facts[f"{message_class.__name__}.{field} {way} of {name}"] = came_of(assign, field)
+                facts[f"{message_class.__name__}.{field} {way} of {name}"] = outcome_of(assign, field)
     print(json.dumps(facts))
 
 

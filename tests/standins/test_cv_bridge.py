@@ -14,7 +14,7 @@ RED = np.array([[[0, 0, 255], [0, 0, 255]]], np.uint8)
 """Two red pixels; the first channel is blue."""
 
 
-def image(array, encoding, **fields):
+def make_image(array, encoding, **fields):
     message = BRIDGE.cv2_to_imgmsg(np.asarray(array), encoding)
     for name, value in fields.items():
         setattr(message, name, value)
@@ -89,7 +89,7 @@ class TestImages:
 
 class TestConversions:
     @pytest.mark.parametrize(
-        ("wanted", "pixel"),
+        ("target_encoding", "pixel"),
         [
             ("rgb8", [255, 0, 0]),
             ("bgra8", [0, 0, 255, 255]),
@@ -100,28 +100,28 @@ class TestConversions:
             ("32FC3", [0.0, 0.0, 255.0]),
         ],
     )
-    def test_bgr8_is_converted_to_other_encodings(self, wanted, pixel):
-        assert BRIDGE.imgmsg_to_cv2(image(RED, "bgr8"), wanted)[0, 0].tolist() == pixel
+    def test_bgr8_is_converted_to_other_encodings(self, target_encoding, pixel):
+        assert BRIDGE.imgmsg_to_cv2(make_image(RED, "bgr8"), target_encoding)[0, 0].tolist() == pixel
 
     def test_depth_values_are_scaled_and_clamped(self):
-        deep = image(np.array([[0, 65535, 32896]], np.uint16), "mono16")
-        assert BRIDGE.imgmsg_to_cv2(deep, "mono8").tolist() == [[0, 255, 128]]
-        assert BRIDGE.imgmsg_to_cv2(deep, "bgr8")[0, 1].tolist() == [255, 255, 255]
-        meters = image(np.array([[1.6, np.nan, 1e9]], np.float32), "32FC1")
+        image_16_bit = make_image(np.array([[0, 65535, 32896]], np.uint16), "mono16")
+        assert BRIDGE.imgmsg_to_cv2(image_16_bit, "mono8").tolist() == [[0, 255, 128]]
+        assert BRIDGE.imgmsg_to_cv2(image_16_bit, "bgr8")[0, 1].tolist() == [255, 255, 255]
+        meters = make_image(np.array([[1.6, np.nan, 1e9]], np.float32), "32FC1")
         assert BRIDGE.imgmsg_to_cv2(meters, "16UC1").tolist() == [[2, 0, 65535]]
 
     def test_bayer_image_is_demosaiced(self):
         mosaic = np.full((4, 4), 10, np.uint8)
         mosaic[::2, ::2] = 200
-        assert BRIDGE.imgmsg_to_cv2(image(mosaic, "bayer_rggb8"), "rgb8")[2, 2].tolist() == [200, 10, 10]
-        assert BRIDGE.imgmsg_to_cv2(image(mosaic, "bayer_rggb8"), "bgr8")[2, 2].tolist() == [10, 10, 200]
+        assert BRIDGE.imgmsg_to_cv2(make_image(mosaic, "bayer_rggb8"), "rgb8")[2, 2].tolist() == [200, 10, 10]
+        assert BRIDGE.imgmsg_to_cv2(make_image(mosaic, "bayer_rggb8"), "bgr8")[2, 2].tolist() == [10, 10, 200]
 
     def test_yuv422_is_converted(self):
         gray = np.array([[[128, 100], [128, 200]]], np.uint8)
-        assert BRIDGE.imgmsg_to_cv2(image(gray, "yuv422"), "bgr8")[0, 0].tolist() == pytest.approx([98] * 3, abs=3)
+        assert BRIDGE.imgmsg_to_cv2(make_image(gray, "yuv422"), "bgr8")[0, 0].tolist() == pytest.approx([98] * 3, abs=3)
 
     @pytest.mark.parametrize(
-        ("source", "wanted", "words"),
+        ("source", "target_encoding", "words"),
         [
             ("32FC1", "bgr8", "is not a color format, and"),
             ("bgr8", "32FC1", "same number of channels"),
@@ -129,13 +129,13 @@ class TestConversions:
             ("bgr8", "nonsense", "nonsense"),
         ],
     )
-    def test_impossible_conversions_are_rejected(self, source, wanted, words):
+    def test_impossible_conversions_are_rejected(self, source, target_encoding, words):
         array = RED if source == "bgr8" else np.zeros((2, 2), np.float32)
         with pytest.raises(CvBridgeError, match=words):
-            BRIDGE.imgmsg_to_cv2(image(array, source), wanted)
+            BRIDGE.imgmsg_to_cv2(make_image(array, source), target_encoding)
 
     def test_converted_image_is_a_copy(self):
-        message = image(RED, "bgr8")
+        message = make_image(RED, "bgr8")
         BRIDGE.imgmsg_to_cv2(message, "bgr8")[:] = 7
         assert 7 not in message.data
 

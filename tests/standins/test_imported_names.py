@@ -1,4 +1,7 @@
-"""Names that modules offer only because ROS's modules import them. Many programs use these names."""
+"""Names that modules offer only because ROS's modules import them.
+
+Many programs use these names.
+"""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ MANIFEST = """<?xml version="1.0"?>
 """
 
 
-def run(program, folder):
+def run_program(program, folder):
     """Return the output of a program in a folder."""
     result = subprocess.run(
         [sys.executable, "-c", PREAMBLE + textwrap.dedent(program)],
@@ -70,7 +70,7 @@ def test_messages_services_and_actions_are_importable(tmp_path):
         from tf2_msgs.msg import *
         assert TFMessage is messages.TFMessage
     """
-    assert run(program, tmp_path) == "<class 'nav_msgs.msg._odometry.Odometry'> 0.0 True\n"
+    assert run_program(program, tmp_path) == "<class 'nav_msgs.msg._odometry.Odometry'> 0.0 True\n"
 
 
 def test_missing_names_raise_import_error_with_suggestion(tmp_path):
@@ -85,7 +85,7 @@ def test_missing_names_raise_import_error_with_suggestion(tmp_path):
         import std_msgs.msg
         print(hasattr(std_msgs.msg, "something"), hasattr(std_msgs, "other"))
     """
-    lines = run(program, tmp_path).splitlines()
+    lines = run_program(program, tmp_path).splitlines()
     assert lines[0] == "ImportError cannot import name 'Strng' from 'std_msgs.msg': did you mean 'String'?"
     assert lines[1].startswith("ImportError cannot import name 'JointState' from 'std_msgs.msg': it has Bool, Byte, ")
     assert lines[2] == "ModuleNotFoundError No module named 'nomsgs'"
@@ -110,7 +110,7 @@ def test_workspace_package_is_importable_without_build(workspace, below):
         except ImportError as error:
             print(error)
     """
-    first, second = run(program, workspace / below).splitlines()
+    first, second = run_program(program, workspace / below).splitlines()
     assert first == "my_msgs.msg.Count(n=5)"
     assert second.endswith("Wrong.msg:1:7: 'X' is not a valid name for a field")
 
@@ -138,7 +138,7 @@ def test_installed_package_takes_precedence(tmp_path):
         from std_msgs.msg import String
         print(String.installed)
     """
-    assert run(program, tmp_path) == "True\n"
+    assert run_program(program, tmp_path) == "True\n"
 
 
 def test_python_package_and_messages_can_share_a_name(workspace):
@@ -151,7 +151,7 @@ def test_python_package_and_messages_can_share_a_name(workspace):
         from my_msgs.msg import Count
         print(my_msgs.helper, Count().n)
     """
-    assert run(program, workspace) == "1 5\n"
+    assert run_program(program, workspace) == "1 5\n"
 
 
 def test_rosidl_runtime_py_functions_work(tmp_path):
@@ -184,7 +184,7 @@ def test_rosidl_runtime_py_functions_work(tmp_path):
             except kind as error:
                 print(error)
     """
-    assert run(program, tmp_path).splitlines() == [
+    assert run_program(program, tmp_path).splitlines() == [
         "stamp:",
         "  sec: 0",
         "  nanosec: 0",

@@ -1,4 +1,7 @@
-"""The linter tests that `linkwright pkg create` writes, run by plain pytest, which can import our rclpy too."""
+"""The linter tests that `linkwright pkg create` writes.
+
+Plain pytest runs them, and can import Linkwright's rclpy, too.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ import pytest
 
 from linkwright.cli import main
 
-GOOD = '''\
+VALID_FILE = '''\
 # Copyright 2026 Ada
 # SPDX-License-Identifier: MIT
 
@@ -35,8 +38,11 @@ def package(tmp_path: Path) -> Path:
     return tmp_path / "my_nodes"
 
 
-def plain_pytest(package: Path, *words: str, **variables: str) -> tuple[int, str]:
-    """Return the status and output of ``python -m pytest``, without the settings of Linkwright's shell."""
+def run_pytest(package: Path, *words: str, **variables: str) -> tuple[int, str]:
+    """Return the status and output of ``python -m pytest``.
+
+    The settings of Linkwright's shell are removed.
+    """
     environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "LINKWRIGHT_SITE")}
     result = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-rs", "-p", "no:cacheprovider", "-p", "no:asyncio", *words],
@@ -50,7 +56,7 @@ def plain_pytest(package: Path, *words: str, **variables: str) -> tuple[int, str
     return result.returncode, result.stdout + result.stderr
 
 
-def hide(folder: Path, *names: str) -> str:
+def hide_modules(folder: Path, *names: str) -> str:
     """Return a folder for PYTHONPATH that hides modules of these names."""
     folder.mkdir()
     code = f"import sys\nsys.modules.update(dict.fromkeys({names!r}))\n"
@@ -59,7 +65,7 @@ def hide(folder: Path, *names: str) -> str:
 
 
 def test_new_package_passes_its_linter_tests(package: Path) -> None:
-    status, output = plain_pytest(package)
+    status, output = run_pytest(package)
     assert status == 0, output
     assert "2 passed, 1 skipped" in output
     assert "no copyright header yet" in output
@@ -81,13 +87,13 @@ def test_rclpy_and_messages_are_importable_in_plain_pytest(package: Path) -> Non
             assert LaunchDescription().entities == []
         """)
     )
-    status, output = plain_pytest(package, "test/test_node.py")
+    status, output = run_pytest(package, "test/test_node.py")
     assert status == 0, output
 
 
 def test_style_errors_fail_flake8_test(package: Path) -> None:
-    (package / "my_nodes" / "first.py").write_text(f"{GOOD}    x = {'1 + ' * 40}1\n")
-    status, output = plain_pytest(package, "test/test_flake8.py")
+    (package / "my_nodes" / "first.py").write_text(f"{VALID_FILE}    x = {'1 + ' * 40}1\n")
+    status, output = run_pytest(package, "test/test_flake8.py")
     assert status == 1
     assert "2 findings about code style" in output
     assert "first.py:12:100: E501 line too long" in output
@@ -95,22 +101,22 @@ def test_style_errors_fail_flake8_test(package: Path) -> None:
 
 
 def test_docstring_without_period_fails_pep257_test(package: Path) -> None:
-    (package / "my_nodes" / "first.py").write_text(GOOD.replace("Start it.", "Start it"))
-    status, output = plain_pytest(package, "test/test_pep257.py")
+    (package / "my_nodes" / "first.py").write_text(VALID_FILE.replace("Start it.", "Start it"))
+    status, output = run_pytest(package, "test/test_pep257.py")
     assert status == 1
     assert "D400" in output
 
 
 def test_missing_copyright_headers_fail_without_skip(package: Path) -> None:
-    (package / "my_nodes" / "first.py").write_text(GOOD)
+    (package / "my_nodes" / "first.py").write_text(VALID_FILE)
     test = package / "test" / "test_copyright.py"
     test.write_text("\n".join(line for line in test.read_text().splitlines() if "skip" not in line) + "\n")
     for path in package.rglob("test_*.py"):
         path.write_text("# Copyright 2026 Ada. Licensed under the MIT License.\n" + path.read_text())
-    assert plain_pytest(package, "test/test_copyright.py")[0] == 0
+    assert run_pytest(package, "test/test_copyright.py")[0] == 0
     (package / "my_nodes" / "second.py").write_text("x = 1\n")
     (package / "my_nodes" / "third.py").write_text("# Copyright 2026 Ada\nx = 1\n")
-    status, output = plain_pytest(package, "test/test_copyright.py")
+    status, output = run_pytest(package, "test/test_copyright.py")
     assert status == 1
     assert "second.py: could not find copyright notice" in output
     assert "third.py: could not find a license that is known" in output
@@ -121,13 +127,13 @@ def test_folders_ignored_by_ament_are_ignored(package: Path, name: str) -> None:
     (package / name).parent.mkdir()
     (package / name).touch()
     (package / name).with_name("bad.py").write_text("import os\n")
-    status, output = plain_pytest(package, "test/test_flake8.py")
+    status, output = run_pytest(package, "test/test_flake8.py")
     assert status == 0, output
 
 
 def test_missing_linter_skips_its_test_with_install_hint(package: Path, tmp_path: Path) -> None:
-    hidden = hide(tmp_path / "hidden", "flake8", "pydocstyle")
-    status, output = plain_pytest(package, PYTHONPATH=hidden)
+    hidden = hide_modules(tmp_path / "hidden", "flake8", "pydocstyle")
+    status, output = run_pytest(package, PYTHONPATH=hidden)
     assert status == 0, output
     assert "3 skipped" in output
     assert "flake8 is not installed beside pytest" in output

@@ -13,7 +13,7 @@ from std_msgs.msg import Header
 NAN = float("nan")
 
 
-def field(name, offset, datatype=PointField.FLOAT32, count=1):
+def make_field(name, offset, datatype=PointField.FLOAT32, count=1):
     return PointField(name=name, offset=offset, datatype=datatype, count=count)
 
 
@@ -56,7 +56,7 @@ def test_cloud_from_matrix_can_be_organized():
 
 
 def test_mixed_field_types_with_gaps_are_read():
-    fields = [field("x", 0), field("rgb", 8, PointField.UINT8, 3), field("", 12, PointField.FLOAT64)]
+    fields = [make_field("x", 0), make_field("rgb", 8, PointField.UINT8, 3), make_field("", 12, PointField.FLOAT64)]
     cloud = point_cloud2.create_cloud(Header(), fields, [(1.5, 1, 2, 3, 0.25)], step=32)
     assert (cloud.point_step, len(cloud.data)) == (32, 32)
     read = point_cloud2.read_points(cloud)
@@ -64,9 +64,9 @@ def test_mixed_field_types_with_gaps_are_read():
     assert read.tolist() == [(1.5, 1, 2, 3, 0.25)]
     with pytest.raises(AssertionError, match="different types"):
         point_cloud2.read_points_numpy(cloud)
-    again = point_cloud2.create_cloud(Header(), fields, read)
-    assert again.data == cloud.data[:20]
-    assert not any(again.data[4:8]), "bytes without a field are zero"
+    round_trip = point_cloud2.create_cloud(Header(), fields, read)
+    assert round_trip.data == cloud.data[:20]
+    assert not any(round_trip.data[4:8]), "bytes without a field are zero"
 
 
 def test_padded_rows_and_big_endian_are_read():

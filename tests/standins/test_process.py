@@ -15,7 +15,7 @@ from linkwright.diagnostics import package_hint
 from linkwright.standins import process, table
 
 
-def run(*arguments, cwd=None, env=None, **variables):
+def run_python(*arguments, cwd=None, env=None, **variables):
     base = {"PATH": os.environ["PATH"], "HOME": str(cwd or "/"), "LINKWRIGHT_DDS": "0", **variables}
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
@@ -28,8 +28,8 @@ def run(*arguments, cwd=None, env=None, **variables):
     )
 
 
-def output_of(*arguments, **options):
-    ended = run(*arguments, **options)
+def run_and_read(*arguments, **options):
+    ended = run_python(*arguments, **options)
     assert ended.returncode == 0, ended.stderr
     return ended.stdout.strip()
 
@@ -54,30 +54,30 @@ if __name__ == "__main__":
 class TestRunning:
     def test_file_is_run_with_standins(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
-        assert output_of("my_node.py", cwd=tmp_path) == "hello"
+        assert run_and_read("my_node.py", cwd=tmp_path) == "hello"
 
     @pytest.mark.parametrize("module", ["launch", "xacro"])
     def test_folder_with_same_name_does_not_hide_standin(self, tmp_path, module):
         (tmp_path / module).mkdir()
         program = f"import {module}; print({module}.__spec__.origin)"
-        assert output_of("-c", program, cwd=tmp_path).endswith(f"{module}.txt")
+        assert run_and_read("-c", program, cwd=tmp_path).endswith(f"{module}.txt")
 
     def test_package_with_same_name_takes_precedence(self, tmp_path):
         (tmp_path / "launch").mkdir()
         (tmp_path / "launch" / "__init__.py").write_text("mine = 1")
-        assert output_of("-c", "import launch; print(launch.mine)", cwd=tmp_path) == "1"
+        assert run_and_read("-c", "import launch; print(launch.mine)", cwd=tmp_path) == "1"
 
     def test_pythonpath_alone_enables_standins(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
         variables = {"PATH": os.environ["PATH"], "PYTHONPATH": process.standin_path(), "LINKWRIGHT_DDS": "0"}
-        assert output_of("my_node.py", cwd=tmp_path, env=variables) == "hello"
+        assert run_and_read("my_node.py", cwd=tmp_path, env=variables) == "hello"
 
     def test_module_is_run_with_standins(self, tmp_path):
         package = tmp_path / "my_package"
         package.mkdir()
         (package / "__init__.py").touch()
         (package / "my_node.py").write_text(NODE)
-        assert output_of("-m", "my_package.my_node", cwd=tmp_path) == "hello"
+        assert run_and_read("-m", "my_package.my_node", cwd=tmp_path) == "hello"
 
     def test_entry_point_script_is_run_with_standins(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
@@ -86,12 +86,12 @@ class TestRunning:
         script.write_text(
             f"import sys\nsys.path.insert(0, {str(tmp_path)!r})\nfrom my_node import main\nsys.exit(main())\n"
         )
-        assert output_of(script) == "hello"
+        assert run_and_read(script) == "hello"
 
     def test_child_process_inherits_standins(self, tmp_path):
         (tmp_path / "my_node.py").write_text(NODE)
         parent = "import subprocess, sys; sys.exit(subprocess.call([sys.executable, 'my_node.py']))"
-        assert output_of("-c", parent, cwd=tmp_path) == "hello"
+        assert run_and_read("-c", parent, cwd=tmp_path) == "hello"
 
     @pytest.mark.slow
     def test_virtual_environment_finds_standins(self, tmp_path):
@@ -116,11 +116,11 @@ class TestRunning:
             names
         )
         imports = "; ".join(f"import {name}; assert {name}.__file__" for name in names)
-        assert output_of("-c", f"{imports}; print('all')") == "all"
+        assert run_and_read("-c", f"{imports}; print('all')") == "all"
 
     def test_interfaces_can_be_imported(self, tmp_path):
         code = "from sensor_msgs.msg import JointState; from std_srvs.srv import SetBool; print(JointState.__name__)"
-        assert output_of("-c", code, cwd=tmp_path) == "JointState"
+        assert run_and_read("-c", code, cwd=tmp_path) == "JointState"
 
     def test_workspace_interfaces_are_importable_without_build(self, tmp_path):
         package = tmp_path / "src" / "my_robot"
@@ -131,16 +131,16 @@ class TestRunning:
             "<maintainer email='a@example.com'>a</maintainer><license>MIT</license></package>"
         )
         code = "from my_robot.msg import Count; print(Count(number=3, names=['a']))"
-        assert output_of("-c", code, cwd=tmp_path) == "my_robot.msg.Count(number=3, names=['a'])"
+        assert run_and_read("-c", code, cwd=tmp_path) == "my_robot.msg.Count(number=3, names=['a'])"
         # In src, Python itself would import the folders as packages.
-        assert output_of("-c", code, cwd=tmp_path / "src") == "my_robot.msg.Count(number=3, names=['a'])"
+        assert run_and_read("-c", code, cwd=tmp_path / "src") == "my_robot.msg.Count(number=3, names=['a'])"
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows cannot send SIGINT")
 class TestInterrupt:
     def interrupted(self, tmp_path, code):
         (tmp_path / "node.py").write_text("import rclpy, signal\n" + textwrap.dedent(code))
-        ended = run("node.py", cwd=tmp_path)
+        ended = run_python("node.py", cwd=tmp_path)
         assert ended.returncode == -signal.SIGINT
         return ended.stderr
 
@@ -180,13 +180,15 @@ class TestProcessEffects:
                     pass
             print([name for name in sys.modules if "linkwright" in name or name in ("numpy", "importlib.util")])
             """
-        plain = {"PATH": os.environ["PATH"]}
+        minimal_environment = {"PATH": os.environ["PATH"]}
         # Ubuntu has a sitecustomize of its own.
-        others = output_of("-c", "import sys; print('sitecustomize' in sys.modules)", env=plain) == "True"
-        assert output_of("-c", textwrap.dedent(code)) == ("['importlib.util']" if others else "[]")
+        has_site_customization = (
+            run_and_read("-c", "import sys; print('sitecustomize' in sys.modules)", env=minimal_environment) == "True"
+        )
+        assert run_and_read("-c", textwrap.dedent(code)) == ("['importlib.util']" if has_site_customization else "[]")
 
     def test_similar_missing_module_is_not_found(self):
-        ended = run("-c", "import rclpy_of_another_kind")
+        ended = run_python("-c", "import rclpy_of_another_kind")
         assert "ModuleNotFoundError: No module named 'rclpy_of_another_kind'" in ended.stderr
 
     @pytest.mark.parametrize(
@@ -199,7 +201,7 @@ class TestProcessEffects:
         ],
     )
     def test_missing_module_has_hint(self, module, hint):
-        last = run("-c", f"import {module}").stderr.splitlines()[-1]
+        last = run_python("-c", f"import {module}").stderr.splitlines()[-1]
         assert last.startswith(hint)
 
     @pytest.mark.parametrize(
@@ -211,13 +213,13 @@ class TestProcessEffects:
         ],
     )
     def test_missing_name_in_module_has_hint(self, line, hint):
-        last = run("-c", line).stderr.splitlines()[-1]
+        last = run_python("-c", line).stderr.splitlines()[-1]
         assert last.startswith(hint)
 
     def test_next_sitecustomize_is_run(self, tmp_path):
         (tmp_path / "sitecustomize.py").write_text("WAS_RUN = 'yes'\n")
         code = "import sitecustomize; print(sitecustomize.WAS_RUN); import rclpy"
-        assert output_of("-c", code, PYTHONPATH=str(tmp_path)) == "yes"
+        assert run_and_read("-c", code, PYTHONPATH=str(tmp_path)) == "yes"
 
     def test_real_rclpy_disables_all_standins(self, tmp_path):
         for name in ("rclpy", "std_msgs"):
@@ -233,7 +235,7 @@ class TestProcessEffects:
                     print(error)
             import tf_transformations
             """
-        assert output_of("-c", textwrap.dedent(code), PYTHONPATH=str(tmp_path)).splitlines() == [
+        assert run_and_read("-c", textwrap.dedent(code), PYTHONPATH=str(tmp_path)).splitlines() == [
             "True True",
             "No module named 'tf2_ros'",
             "No module named 'sensor_msgs'",
@@ -241,10 +243,10 @@ class TestProcessEffects:
         ]
 
     def test_environment_prepends_standin_path_once(self, tmp_path):
-        once = process.environment({"PYTHONPATH": str(tmp_path), "OTHER": "kept"})
-        assert once["PYTHONPATH"] == os.pathsep.join([process.standin_path(), str(tmp_path)])
-        assert once["OTHER"] == "kept"
-        assert process.environment(once) == once
+        process_environment = process.environment({"PYTHONPATH": str(tmp_path), "OTHER": "kept"})
+        assert process_environment["PYTHONPATH"] == os.pathsep.join([process.standin_path(), str(tmp_path)])
+        assert process_environment["OTHER"] == "kept"
+        assert process.environment(process_environment) == process_environment
         modules = {path.name for path in Path(process.standin_path()).glob("*.py")}
         assert modules == {"linkwright_pytest.py", "sitecustomize.py"}
 

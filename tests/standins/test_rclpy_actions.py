@@ -37,14 +37,14 @@ def _ros(monkeypatch):
     rclpy.try_shutdown()
 
 
-def fibonacci(order):
+def fibonacci_sequence(order):
     sequence = [0, 1]
     while len(sequence) <= order:
         sequence.append(sequence[-1] + sequence[-2])
     return sequence
 
 
-class Server(Node):
+class FibonacciServer(Node):
     """An action server that counts, sends feedback, and can be canceled."""
 
     def __init__(self, pause=0.005, **options):
@@ -66,15 +66,15 @@ class Server(Node):
         for length in range(2, goal_handle.request.order + 2):
             if goal_handle.is_cancel_requested:
                 goal_handle.canceled()
-                return Fibonacci.Result(sequence=fibonacci(length - 2))
-            feedback.sequence = fibonacci(length - 1)
+                return Fibonacci.Result(sequence=fibonacci_sequence(length - 2))
+            feedback.sequence = fibonacci_sequence(length - 1)
             goal_handle.publish_feedback(feedback)
             time.sleep(self.pause)  # noqa: ASYNC251  # as users write it
         goal_handle.succeed()
-        return Fibonacci.Result(sequence=fibonacci(goal_handle.request.order))
+        return Fibonacci.Result(sequence=fibonacci_sequence(goal_handle.request.order))
 
 
-class Client(Node):
+class FibonacciClient(Node):
     """An action client that continues in callbacks."""
 
     def __init__(self):
@@ -108,7 +108,7 @@ class Client(Node):
 
 
 @pytest.fixture
-def spun():
+def spin_nodes():
     """Spin nodes in one of several threads."""
     executor = MultiThreadedExecutor(4)
     thread = threading.Thread(target=executor.spin, daemon=True)
@@ -119,53 +119,53 @@ def spun():
 
 
 class TestActions:
-    def test_goal_succeeds_with_feedback_and_result(self, spun):
-        server, client = Server(), Client()
-        spun(server, client)
+    def test_goal_succeeds_with_feedback_and_result(self, spin_nodes):
+        server, client = FibonacciServer(), FibonacciClient()
+        spin_nodes(server, client)
         client.send_goal(6)
         assert client.outcome.wait(60.0)
         outcome = client.outcome.result()
         assert outcome.status == GoalStatus.STATUS_SUCCEEDED
-        assert outcome.result.sequence.tolist() == fibonacci(6)
-        assert client.feedback == [fibonacci(length) for length in range(1, 7)]
+        assert outcome.result.sequence.tolist() == fibonacci_sequence(6)
+        assert client.feedback == [fibonacci_sequence(length) for length in range(1, 7)]
 
     def test_server_and_client_share_one_executor(self):
-        server, client = Server(), Client()
+        server, client = FibonacciServer(), FibonacciClient()
         executor = SingleThreadedExecutor()
         executor.add_node(server)
         executor.add_node(client)
         client.send_goal(4)
         executor.spin_until_future_complete(client.outcome, timeout_sec=60.0)
-        assert client.outcome.result().result.sequence.tolist() == fibonacci(4)
+        assert client.outcome.result().result.sequence.tolist() == fibonacci_sequence(4)
 
-    def test_goal_is_canceled(self, spun):
-        server, client = Server(pause=0.02), Client()
-        spun(server, client)
+    def test_goal_is_canceled(self, spin_nodes):
+        server, client = FibonacciServer(pause=0.02), FibonacciClient()
+        spin_nodes(server, client)
         client.send_goal(90 // 2, cancel_after=3)
         assert client.outcome.wait(60.0)
         assert client.outcome.result().status == GoalStatus.STATUS_CANCELED
         assert client.canceling == 1
         assert len(client.feedback) < 40
 
-    def test_goal_is_rejected(self, spun):
-        server, client = Server(), Client()
-        spun(server, client)
+    def test_goal_is_rejected(self, spin_nodes):
+        server, client = FibonacciServer(), FibonacciClient()
+        spin_nodes(server, client)
         client.send_goal(200)
         assert client.outcome.wait(60.0)
         assert client.outcome.result() == "rejected"
 
-    def test_goal_without_final_state_is_aborted(self, spun):
-        node, client = Node("silent"), Client()
+    def test_goal_without_final_state_is_aborted(self, spin_nodes):
+        node, client = Node("silent"), FibonacciClient()
         ActionServer(node, Fibonacci, "fibonacci", lambda _handle: Fibonacci.Result())
-        spun(node, client)
+        spin_nodes(node, client)
         client.send_goal(1)
         assert client.outcome.wait(60.0)
         assert client.outcome.result().status == GoalStatus.STATUS_ABORTED
 
-    def test_accepted_goal_is_executed_later(self, spun):
+    def test_accepted_goal_is_executed_later(self, spin_nodes):
         waiting = []
-        server, client = Server(handle_accepted_callback=waiting.append), Client()
-        spun(server, client)
+        server, client = FibonacciServer(handle_accepted_callback=waiting.append), FibonacciClient()
+        spin_nodes(server, client)
         client.send_goal(2)
         wait_until(lambda: waiting)
         assert not client.outcome.wait(0.1)
@@ -173,8 +173,8 @@ class TestActions:
         assert client.outcome.wait(60.0)
         assert client.outcome.result().status == GoalStatus.STATUS_SUCCEEDED
 
-    def test_queued_goals_run_one_after_another(self, spun):
-        class Queued(Server):
+    def test_queued_goals_run_one_after_another(self, spin_nodes):
+        class Queued(FibonacciServer):
             def __init__(self):
                 self.queue, self.current, self.lock, self.most = deque(), None, threading.Lock(), 0
                 super().__init__(handle_accepted_callback=self.handle_accepted)
@@ -196,16 +196,16 @@ class TestActions:
                         if self.current is not None:
                             self.current.execute()
 
-        server, clients = Queued(), [Client() for _ in range(3)]
-        spun(server, *clients)
+        server, clients = Queued(), [FibonacciClient() for _ in range(3)]
+        spin_nodes(server, *clients)
         for client in clients:
             client.send_goal(3)
         for client in clients:
             assert client.outcome.wait(60.0)
-            assert client.outcome.result().result.sequence.tolist() == fibonacci(3)
+            assert client.outcome.result().result.sequence.tolist() == fibonacci_sequence(3)
 
-    def test_new_goal_aborts_previous_goal(self, spun):
-        class Single(Server):
+    def test_new_goal_aborts_previous_goal(self, spin_nodes):
+        class Single(FibonacciServer):
             goal = None
 
             def __init__(self):
@@ -225,8 +225,8 @@ class TestActions:
                 goal_handle.succeed()
                 return Fibonacci.Result()
 
-        server, first, second = Single(), Client(), Client()
-        spun(server, first, second)
+        server, first, second = Single(), FibonacciClient(), FibonacciClient()
+        spin_nodes(server, first, second)
         first.send_goal(1)
         wait_until(lambda: server.goal is not None)
         second.send_goal(1)
@@ -235,14 +235,14 @@ class TestActions:
         assert first.outcome.result().status == GoalStatus.STATUS_ABORTED
         assert second.outcome.result().status == GoalStatus.STATUS_SUCCEEDED
 
-    def test_send_goal_blocks_beside_spinning_thread(self, spun):
-        server, client = Server(), Client()
-        spun(server, client)
+    def test_send_goal_blocks_beside_spinning_thread(self, spin_nodes):
+        server, client = FibonacciServer(), FibonacciClient()
+        spin_nodes(server, client)
         result = client.client.send_goal(Fibonacci.Goal(order=3))
-        assert result.result.sequence.tolist() == fibonacci(3)
+        assert result.result.sequence.tolist() == fibonacci_sequence(3)
 
-    def test_goal_and_result_are_awaited_in_coroutine(self, spun):
-        server, client = Server(), Client()
+    def test_goal_and_result_are_awaited_in_coroutine(self, spin_nodes):
+        server, client = FibonacciServer(), FibonacciClient()
         results = []
 
         async def work():
@@ -251,24 +251,24 @@ class TestActions:
             results.append((await handle.get_result_async()).result.sequence.tolist())
 
         timer = client.create_timer(0.01, work, callback_group=ReentrantCallbackGroup())
-        spun(server, client)
+        spin_nodes(server, client)
         wait_until(lambda: results)
-        assert results == [fibonacci(2)]
+        assert results == [fibonacci_sequence(2)]
 
     def test_action_names_and_types_are_listed(self):
-        server = Server()
+        server = FibonacciServer()
         assert ("/fibonacci", ["example_interfaces/action/Fibonacci"]) in get_action_names_and_types(server)
         assert get_action_server_names_and_types_by_node(server, "fibonacci_server", "/") == [
             ("/fibonacci", ["example_interfaces/action/Fibonacci"])
         ]
 
     def test_wait_for_server_times_out(self):
-        client = Client()
+        client = FibonacciClient()
         assert not client.client.wait_for_server(timeout_sec=0.05)
         assert not client.client.server_is_ready()
 
 
-class Managed(LifecycleNode):
+class ManagedNode(LifecycleNode):
     """Publishes while it is active."""
 
     def __init__(self, name, **options):
@@ -296,7 +296,7 @@ class Managed(LifecycleNode):
 
 class TestLifecycle:
     def test_transitions_are_triggered_by_methods(self):
-        node = Managed("managed", enable_communication_interface=False)
+        node = ManagedNode("managed", enable_communication_interface=False)
         assert node.trigger_configure() == TransitionCallbackReturn.SUCCESS
         assert node.trigger_activate() == TransitionCallbackReturn.SUCCESS
         assert node.trigger_deactivate() == TransitionCallbackReturn.SUCCESS
@@ -305,7 +305,7 @@ class TestLifecycle:
         assert node.seen == ["unconfigured", "inactive"]
 
     def test_lifecycle_publisher_is_silent_unless_active(self):
-        node, heard = Managed("managed", enable_communication_interface=False), []
+        node, heard = ManagedNode("managed", enable_communication_interface=False), []
         listener = rclpy.create_node("listener")
         listener.create_subscription(String, "lifecycle_chatter", heard.append, 10)
         executor = SingleThreadedExecutor()
@@ -320,9 +320,9 @@ class TestLifecycle:
             executor.spin_once(timeout_sec=0.05)
         assert heard
 
-    def test_transitions_are_triggered_by_services(self, spun):
-        node, client = Managed("managed"), rclpy.create_node("client")
-        spun(node, client)
+    def test_transitions_are_triggered_by_services(self, spin_nodes):
+        node, client = ManagedNode("managed"), rclpy.create_node("client")
+        spin_nodes(node, client)
         change = client.create_client(ChangeState, "/managed/change_state")
         state = client.create_client(GetState, "/managed/get_state")
         assert change.wait_for_service(timeout_sec=60.0)

@@ -123,17 +123,17 @@ class TestParameters:
         handler, received = ParameterEventHandler(node), []
         first = handler.add_parameter_callback("a", "", lambda parameter: received.append(("first", parameter.name)))
         handler.add_parameter_callback("a", "node", lambda parameter: received.append(("second", parameter.name)))
-        everything = handler.add_parameter_event_callback(lambda event: received.append(("event", event.node)))
+        event_handle = handler.add_parameter_event_callback(lambda event: received.append(("event", event.node)))
         assert set(handler._callbacks.parameter_callbacks) == {("a", "/ns/node")}
         event = ParameterEvent(node="/ns/node", new_parameters=[Parameter("a", value=1).to_parameter_msg()])
         handler._callbacks.event_callback(event)
         assert received == [("second", "a"), ("first", "a"), ("event", "/ns/node")]
         handler.remove_parameter_callback(first)
-        handler.remove_parameter_event_callback(everything)
+        handler.remove_parameter_event_callback(event_handle)
         with pytest.raises(RuntimeError, match="doesn't exist"):
             handler.remove_parameter_callback(first)
         with pytest.raises(RuntimeError, match="doesn't exist"):
-            handler.remove_parameter_event_callback(everything)
+            handler.remove_parameter_event_callback(event_handle)
 
     @pytest.mark.parametrize("accepts", [True, False])
     def test_qos_override_callback_can_reject(self, node, accepts):
@@ -205,12 +205,12 @@ class TestTime:
         publisher = node.create_publisher(ClockMessage, CLOCK_TOPIC, 1)
         publisher.publish(ClockMessage(clock=Time(seconds=3).to_msg()))
         rclpy.spin_once(node, timeout_sec=60)
-        late = ROSClock()
-        late._set_ros_time_is_active(False)
-        source.attach_clock(late)
-        assert clock.now() == late.now() == Time(seconds=3, clock_type=ClockType.ROS_TIME)
+        late_clock = ROSClock()
+        late_clock._set_ros_time_is_active(False)
+        source.attach_clock(late_clock)
+        assert clock.now() == late_clock.now() == Time(seconds=3, clock_type=ClockType.ROS_TIME)
         node.set_parameters([Parameter("use_sim_time", value=False)])
-        assert not late.ros_time_is_active
+        assert not late_clock.ros_time_is_active
         assert [jump.clock_change for jump in jumps] == [ClockChange.ROS_TIME_DEACTIVATED]
         assert source._clock_sub is None
 
@@ -269,13 +269,13 @@ def test_feedback_arrives_before_goal_response(node):
 
     ActionServer(node, Fibonacci, "fibonacci", execute)
     client = ActionClient(node, Fibonacci, "fibonacci")
-    answer = client.send_goal_async(Fibonacci.Goal(), feedback_callback=lambda _: order.append("feedback"))
-    answer.add_done_callback(lambda _: order.append("answer"))
+    response = client.send_goal_async(Fibonacci.Goal(), feedback_callback=lambda _: order.append("feedback"))
+    response.add_done_callback(lambda _: order.append("answer"))
     result = None
     while result is None or not result.done():
         rclpy.spin_once(node, timeout_sec=60)
-        if answer.done() and result is None:
-            result = answer.result().get_result_async()
+        if response.done() and result is None:
+            result = response.result().get_result_async()
     assert order == ["feedback", "answer"]
 
 

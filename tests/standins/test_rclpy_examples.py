@@ -1,4 +1,7 @@
-"""The advanced public examples: custom executors and groups, asyncio, events, reused messages."""
+"""The advanced public examples.
+
+The tests cover custom executors and groups, asyncio, events, reused messages.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +24,7 @@ from rclpy.parameter import Parameter
 from rclpy.subscription_content_filter_options import ContentFilterOptions
 from std_msgs.msg import Int64MultiArray, String
 
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 
 @pytest.fixture(autouse=True)
@@ -48,7 +51,7 @@ class TestMessageSnapshots:
             message.data = word
             publisher.publish(message)
         for _ in range(3):
-            rclpy.spin_once(node, timeout_sec=SECONDS)
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert texts == ["one", "two", "three"]
 
     def test_subscription_callbacks_receive_separate_copies(self, node):
@@ -63,7 +66,7 @@ class TestMessageSnapshots:
         sent = Int64MultiArray(data=[7])
         node.create_publisher(Int64MultiArray, "topic", 10).publish(sent)
         for _ in range(2):
-            rclpy.spin_once(node, timeout_sec=SECONDS)
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert sequences == [[7, 1], [7, 1]]
         assert sent.data.tolist() == [7]
 
@@ -79,7 +82,7 @@ class TestMessageSnapshots:
             request.a = number
             futures.append(client.call_async(request))
         for future in futures:
-            rclpy.spin_until_future_complete(node, future, timeout_sec=SECONDS)
+            rclpy.spin_until_future_complete(node, future, timeout_sec=TIMEOUT_S)
         assert [future.result().sum for future in futures] == [0, 1, 2]
 
     def test_growing_feedback_is_sent_as_snapshot(self, node):
@@ -88,8 +91,8 @@ class TestMessageSnapshots:
         def execute(goal_handle):
             feedback = Fibonacci.Feedback()
             feedback.sequence = [0, 1]
-            for at in range(1, 4):
-                feedback.sequence.append(feedback.sequence[at] + feedback.sequence[at - 1])
+            for length in range(1, 4):
+                feedback.sequence.append(feedback.sequence[length] + feedback.sequence[length - 1])
                 goal_handle.publish_feedback(feedback)
             goal_handle.succeed()
             return Fibonacci.Result(sequence=feedback.sequence)
@@ -164,7 +167,7 @@ class TestOwnParts:
         urgent = rclpy.create_node("urgent")
 
         def block(_message):
-            slow.wait(SECONDS)
+            slow.wait(TIMEOUT_S)
             order.append("slow")
 
         node.create_subscription(String, "slow", block, 10)
@@ -174,7 +177,7 @@ class TestOwnParts:
         executor.add_node(node)
         for topic in ("slow", "urgent"):
             node.create_publisher(String, topic, 10).publish(String())
-        deadline = time.monotonic() + SECONDS
+        deadline = time.monotonic() + TIMEOUT_S
         while len(order) < 2 and time.monotonic() < deadline:
             executor.spin_once(timeout_sec=0.1)
         for pool in (executor.high, executor.low):
@@ -182,46 +185,50 @@ class TestOwnParts:
         assert order == ["urgent", "slow"]
 
     def test_custom_callback_group_throttles_timer(self, node):
-        group, begun = ThrottledCallbackGroup(node), []
-        node.create_timer(0.001, lambda: begun.append(time.monotonic()), callback_group=group)
+        group, start_times = ThrottledCallbackGroup(node), []
+        node.create_timer(0.001, lambda: start_times.append(time.monotonic()), callback_group=group)
         end = rclpy.create_node("end").create_timer(0.28, lambda: None)
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        while group.refills < 4 or len(begun) < 4:
+        while group.refills < 4 or len(start_times) < 4:
             executor.spin_once(timeout_sec=0.02)
         assert end.timer_period_ns == 280_000_000
-        assert len(begun) <= 2 * (group.refills + 1)
+        assert len(start_times) <= 2 * (group.refills + 1)
 
     def test_events_executor_completes_task(self, node):
         executor = EventsExecutor()
         executor.add_node(node)
         future = executor.create_task(lambda: "done")
-        executor.spin_until_future_complete(future, timeout_sec=SECONDS)
+        executor.spin_until_future_complete(future, timeout_sec=TIMEOUT_S)
         assert future.result() == "done"
 
 
 class TestEvents:
     def test_matched_events_report_endpoint_counts(self, node):
-        seen = []
+        event_counts = []
         node.create_publisher(
             String,
             "topic",
             10,
-            event_callbacks=PublisherEventCallbacks(matched=lambda info: seen.append(("out", info.current_count))),
+            event_callbacks=PublisherEventCallbacks(
+                matched=lambda info: event_counts.append(("out", info.current_count))
+            ),
         )
         subscription = node.create_subscription(
             String,
             "topic",
             lambda _message: None,
             10,
-            event_callbacks=SubscriptionEventCallbacks(matched=lambda info: seen.append(("in", info.current_count))),
+            event_callbacks=SubscriptionEventCallbacks(
+                matched=lambda info: event_counts.append(("in", info.current_count))
+            ),
         )
         for _ in range(2):
-            rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert sorted(seen) == [("in", 1), ("out", 1)]
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
+        assert sorted(event_counts) == [("in", 1), ("out", 1)]
         node.destroy_subscription(subscription)
-        rclpy.spin_once(node, timeout_sec=SECONDS)
-        assert seen[-1] == ("out", 0)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
+        assert event_counts[-1] == ("out", 0)
 
 
 class TestAsyncio:

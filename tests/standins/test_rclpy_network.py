@@ -127,7 +127,7 @@ def surroundings(tmp_path):
     )
 
 
-def start(folder, name, program, surroundings):
+def start_program(folder, name, program, surroundings):
     file = folder / f"{name}.py"
     file.write_text(textwrap.dedent(program))
     return subprocess.Popen(
@@ -136,11 +136,11 @@ def start(folder, name, program, surroundings):
 
 
 def test_all_interfaces_work_between_two_processes(tmp_path, surroundings):
-    server = start(tmp_path, "server", SERVER, surroundings)
+    server = start_program(tmp_path, "server", SERVER, surroundings)
     with server:
         printed = server.stdout.readline()
         assert printed == "ready\n", server.communicate(timeout=60)[1]
-        client = start(tmp_path, "client", CLIENT, surroundings)
+        client = start_program(tmp_path, "client", CLIENT, surroundings)
         output, errors = client.communicate(timeout=60)
         server.send_signal(signal.SIGINT)
         ended, server_errors = server.communicate(timeout=60)
@@ -158,7 +158,7 @@ def test_all_interfaces_work_between_two_processes(tmp_path, surroundings):
 
 def test_message_published_right_after_match_arrives(tmp_path, surroundings):
     """A reliable reader gets all messages that are published after the match."""
-    listener = start(
+    listener = start_program(
         tmp_path,
         "listener",
         """\
@@ -178,7 +178,7 @@ def test_message_published_right_after_match_arrives(tmp_path, surroundings):
     )
     with listener:
         assert listener.stdout.readline() == "ready\n"
-        talker = start(
+        talker = start_program(
             tmp_path,
             "talker",
             """\

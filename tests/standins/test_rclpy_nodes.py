@@ -30,7 +30,7 @@ from rclpy.task import Future
 from std_msgs.msg import Int64, String
 from std_srvs.srv import Trigger
 
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 
 class Counter(Node):
@@ -54,9 +54,9 @@ class Counter(Node):
 
 
 class Listener(Node):
-    def __init__(self, wanted):
+    def __init__(self, message_count):
         super().__init__("listener")
-        self.heard, self.wanted, self.finished = [], wanted, Future()
+        self.heard, self.wanted, self.finished = [], message_count, Future()
         self.subscription = self.create_subscription(String, "topic", self.listener_callback, 10)
 
     def listener_callback(self, msg):
@@ -66,7 +66,7 @@ class Listener(Node):
 
 
 @pytest.fixture(autouse=True)
-def _alone(monkeypatch):
+def _isolated(monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
 
 
@@ -90,7 +90,7 @@ class TestMinimal:
         talker, listener = Counter(), Listener(5)
         executor.add_node(talker)
         executor.add_node(listener)
-        executor.spin_until_future_complete(listener.finished, timeout_sec=SECONDS)
+        executor.spin_until_future_complete(listener.finished, timeout_sec=TIMEOUT_S)
         assert listener.heard == [f"Hello {number}" for number in range(5)]
         executor.shutdown()
         talker.destroy_node()
@@ -104,23 +104,23 @@ class TestMinimal:
         assert subscription.topic_name == "/topic"
         while rclpy.ok() and len(texts) < 3:
             publisher.publish(String(data="hi"))
-            rclpy.spin_once(node, timeout_sec=SECONDS)
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert texts == ["hi"] * 3
         node.destroy_node()
 
     def test_timer_callback_can_be_a_closure(self, node):
-        i, seen = 0, []
+        i, events = 0, []
 
         def timer_callback():
             nonlocal i
             i += 1
-            seen.append(i)
+            events.append(i)
             if i == 3:
                 rclpy.shutdown()
 
         node.create_timer(0.005, timer_callback)
         rclpy.spin(node)
-        assert seen == [1, 2, 3]
+        assert events == [1, 2, 3]
         assert not rclpy.ok()
 
     def test_service_returns_response_to_client(self, ros):
@@ -137,7 +137,7 @@ class TestMinimal:
             def __init__(self):
                 super().__init__("minimal_client")
                 self.cli = self.create_client(AddTwoInts, "add_two_ints")
-                while not self.cli.wait_for_service(timeout_sec=SECONDS):
+                while not self.cli.wait_for_service(timeout_sec=TIMEOUT_S):
                     self.get_logger().info("service not available, waiting again...")
                 self.req = AddTwoInts.Request()
 
@@ -157,96 +157,96 @@ class TestMinimal:
         rclpy.spin_until_future_complete(client, client.future)
         assert client.future.result().sum == 42
         rclpy.shutdown()
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
     def test_synchronous_call_works_beside_spinning_thread(self, node):
-        node.create_service(AddTwoInts, "add", _sum)
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         client = node.create_client(AddTwoInts, "add")
         executor = SingleThreadedExecutor()
         executor.add_node(node)
         thread = threading.Thread(target=executor.spin, daemon=True)
         thread.start()
-        assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=SECONDS).sum == 3
+        assert client.call(AddTwoInts.Request(a=1, b=2), timeout_sec=TIMEOUT_S).sum == 3
         executor.shutdown()
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
 
     def test_synchronous_call_works_in_callback_of_reentrant_group(self, node):
-        answers = []
-        node.create_service(AddTwoInts, "add", _sum)
+        responses = []
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         client = node.create_client(AddTwoInts, "add", callback_group=ReentrantCallbackGroup())
 
         def ask():
-            answers.append(client.call(AddTwoInts.Request(a=2, b=3)).sum)
+            responses.append(client.call(AddTwoInts.Request(a=2, b=3)).sum)
             timer.cancel()
 
         timer = node.create_timer(0.01, ask, callback_group=MutuallyExclusiveCallbackGroup())
         executor = MultiThreadedExecutor(3)
         executor.add_node(node)
-        end = time.monotonic() + SECONDS
-        while not answers and time.monotonic() < end:
+        end = time.monotonic() + TIMEOUT_S
+        while not responses and time.monotonic() < end:
             executor.spin_once(timeout_sec=0.1)
         executor.shutdown()
-        assert answers == [5]
+        assert responses == [5]
 
     def test_deadlocking_call_raises_runtime_error(self, node):
-        node.create_service(AddTwoInts, "add", _sum)
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         client = node.create_client(AddTwoInts, "add")
         node.create_timer(0.01, lambda: client.call(AddTwoInts.Request()))
         with pytest.raises(RuntimeError, match="call_async"):
-            rclpy.spin_once(node, timeout_sec=SECONDS)
+            rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
 
     def test_coroutine_awaits_service_call(self, node):
-        answers = []
-        node.create_service(AddTwoInts, "add", _sum)
+        responses = []
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         client = node.create_client(AddTwoInts, "add")
 
         async def ask():
             timer.cancel()
             response = await client.call_async(AddTwoInts.Request(a=3, b=4))
-            answers.append(response.sum)
+            responses.append(response.sum)
 
         timer = node.create_timer(0.01, ask, callback_group=ReentrantCallbackGroup())
-        end = time.monotonic() + SECONDS
-        while not answers and time.monotonic() < end:
+        end = time.monotonic() + TIMEOUT_S
+        while not responses and time.monotonic() < end:
             rclpy.spin_once(node, timeout_sec=0.1)
-        assert answers == [7]
+        assert responses == [7]
 
     def test_service_callback_can_be_a_coroutine(self, node):
-        async def answer(request, response):
+        async def multiply(request, response):
             response.sum = request.a * request.b
             return response
 
-        node.create_service(AddTwoInts, "multiply", answer)
+        node.create_service(AddTwoInts, "multiply", multiply)
         future = node.create_client(AddTwoInts, "multiply").call_async(AddTwoInts.Request(a=6, b=7))
-        rclpy.spin_until_future_complete(node, future, timeout_sec=SECONDS)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=TIMEOUT_S)
         assert future.result().sum == 42
 
     def test_done_callbacks_run_in_executor(self, node):
-        seen = []
-        node.create_service(AddTwoInts, "add", _sum)
+        events = []
+        node.create_service(AddTwoInts, "add", _add_two_ints)
         future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
-        future.add_done_callback(lambda future: seen.append(future.result().sum))
-        end = time.monotonic() + SECONDS
-        while not seen and time.monotonic() < end:
+        future.add_done_callback(lambda future: events.append(future.result().sum))
+        end = time.monotonic() + TIMEOUT_S
+        while not events and time.monotonic() < end:
             rclpy.spin_once(node, timeout_sec=0.1)
-        assert seen == [2]
+        assert events == [2]
 
     def test_two_nodes_share_multithreaded_executor(self, ros):
         talker, listener = Counter(), Listener(3)
         with MultiThreadedExecutor(num_threads=4) as executor:
             executor.add_node(talker)
             executor.add_node(listener)
-            executor.spin_until_future_complete(listener.finished, timeout_sec=SECONDS)
+            executor.spin_until_future_complete(listener.finished, timeout_sec=TIMEOUT_S)
         assert len(listener.heard) >= 3
 
     def test_guard_condition_calls_callback(self, node):
         called = []
-        guard = node.create_guard_condition(lambda: called.append(1))
-        guard.trigger()
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        guard_condition = node.create_guard_condition(lambda: called.append(1))
+        guard_condition.trigger()
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert called == [1]
-        assert node.destroy_guard_condition(guard)
+        assert node.destroy_guard_condition(guard_condition)
 
     def test_rate_sleeps_beside_spinning_thread(self, node):
         thread = threading.Thread(target=rclpy.spin, args=(node,), daemon=True)
@@ -257,7 +257,7 @@ class TestMinimal:
             rate.sleep()
         assert time.monotonic() - start >= 0.08
         rclpy.shutdown()
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
 
@@ -345,7 +345,7 @@ class TestNode:
         executor = SingleThreadedExecutor()
         executor.add_node(node)
         while not texts:
-            executor.spin_once(timeout_sec=SECONDS)
+            executor.spin_once(timeout_sec=TIMEOUT_S)
         node.destroy_timer(timer)
         assert node.count_subscribers("topic") == 1
         assert node.get_parameter("speed").value == 1.0
@@ -414,7 +414,7 @@ class TestNode:
         deliveries = []
         node.create_subscription(String, "chatter", lambda msg, info: deliveries.append((msg.data, info)), 1)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert deliveries[0][0] == "x"
         assert deliveries[0][1].source_timestamp > 0
 
@@ -422,7 +422,7 @@ class TestNode:
         payloads = []
         node.create_subscription(String, "chatter", payloads.append, 1, raw=True)
         node.create_publisher(String, "chatter", 1).publish(String(data="x"))
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert payloads == [b"\x00\x01\x00\x00\x02\x00\x00\x00x\x00"]
 
     def test_late_subscription_receives_latched_message(self, node):
@@ -430,7 +430,7 @@ class TestNode:
         profile = QoSProfile(depth=1, durability=QoSDurabilityPolicy.TRANSIENT_LOCAL)
         node.create_publisher(String, "latched", profile).publish(String(data="kept"))
         node.create_subscription(String, "latched", lambda msg: texts.append(msg.data), profile)
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert texts == ["kept"]
 
     def test_nodes_and_publishers_are_context_managers(self, ros):
@@ -445,7 +445,7 @@ class TestNode:
         messages = []
         node.create_subscription(Log, "/rosout", messages.append, 10)
         node.get_logger().warning("careful")
-        rclpy.spin_once(node, timeout_sec=SECONDS)
+        rclpy.spin_once(node, timeout_sec=TIMEOUT_S)
         assert (messages[0].name, messages[0].msg, messages[0].level) == ("ns.tested", "careful", logging.WARNING)
         assert messages[0].file == __file__
 
@@ -522,6 +522,6 @@ class TestParameters:
         assert publisher.qos_profile.depth == 7
 
 
-def _sum(request, response):
+def _add_two_ints(request, response):
     response.sum = request.a + request.b
     return response

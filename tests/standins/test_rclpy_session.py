@@ -29,7 +29,7 @@ from linkwright.standins import process
 
 
 @pytest.fixture(autouse=True)
-def _alone(monkeypatch):
+def _isolated(monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
 
 

@@ -1,4 +1,7 @@
-"""The tables against real modules of Jazzy, where LINKWRIGHT_ROS_PYTHON names an interpreter that has them."""
+"""The tables of names, compared with real modules of Jazzy.
+
+LINKWRIGHT_ROS_PYTHON names an interpreter that has these modules.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 GONE_SINCE_HUMBLE = {"rclpy.time.CONVERSION_CONSTANT", "rclpy.qos_overriding_options._declare_qos_parameteres"}
 AFTER_JAZZY = ("kilted", "rolling")
 
-LOOK = """
+INSPECTION_PROGRAM = """
 import importlib, json, sys
 lacking = []
 for module, names in json.load(sys.stdin).items():
@@ -30,14 +33,14 @@ print(json.dumps(lacking))
 @pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 @pytest.mark.parametrize("package", ["rclpy", "ament_index_python", "rosidl_parser"])
 def test_real_modules_have_names_of_tables(package):
-    asked = {
+    requested_names = {
         module.name: [name for name, origin in module.names.items() if origin.since not in AFTER_JAZZY]
         for module in table.read(package).values()
         if module.since not in AFTER_JAZZY
     }
     result = subprocess.run(
-        [PYTHON, "-c", LOOK],
-        input=json.dumps(asked),
+        [PYTHON, "-c", INSPECTION_PROGRAM],
+        input=json.dumps(requested_names),
         env={**os.environ, "PYTHONPATH": ""},
         capture_output=True,
         text=True,

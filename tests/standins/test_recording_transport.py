@@ -27,7 +27,7 @@ def node():
     rclpy.shutdown()
 
 
-def write(path: Path, *, writer=None, **options) -> Path:
+def write_recording(path: Path, *, writer=None, **options) -> Path:
     writer = writer or rosbag2_py.SequentialWriter()
     writer.open(StorageOptions(uri=str(path), storage_id="mcap", **options))
     profiles = [QoSProfile(depth=3)]
@@ -42,7 +42,7 @@ def write(path: Path, *, writer=None, **options) -> Path:
     return path
 
 
-def words(path: Path) -> list[str]:
+def recorded_words(path: Path) -> list[str]:
     reader = rosbag2_py.SequentialReader()
     reader.open_uri(str(path))
     texts = []
@@ -73,7 +73,7 @@ def test_recorder_records_until_canceled(node, tmp_path) -> None:
     finally:
         rosbag2_py.Recorder.cancel()
         recording.join()
-    assert set(words(tmp_path / "drive")) == {"x" * 2000}
+    assert set(recorded_words(tmp_path / "drive")) == {"x" * 2000}
 
 
 def test_recorder_canceled_before_start_ends_at_once(tmp_path) -> None:
@@ -93,7 +93,7 @@ def test_player_plays_until_canceled(node, tmp_path) -> None:
     options = rosbag2_py.PlayOptions()
     options.loop = True
     options.topic_remapping_options = ["--ros-args", "--remap", "/words:=/other_words"]
-    storage = StorageOptions(uri=str(write(tmp_path / "drive")))
+    storage = StorageOptions(uri=str(write_recording(tmp_path / "drive")))
     playing = threading.Thread(target=lambda: rosbag2_py.Player("warn").play(storage, options))
     playing.start()
 
@@ -110,13 +110,13 @@ def test_player_plays_until_canceled(node, tmp_path) -> None:
 
 def test_player_ends_with_recording_and_reports_missing_file(tmp_path) -> None:
     player = rosbag2_py.Player("warn")
-    player.play(StorageOptions(uri=str(write(tmp_path / "drive"))), rosbag2_py.PlayOptions())
+    player.play(StorageOptions(uri=str(write_recording(tmp_path / "drive"))), rosbag2_py.PlayOptions())
     with pytest.raises(RuntimeError, match="no recording"):
         player.play(StorageOptions(uri=str(tmp_path / "none")), rosbag2_py.PlayOptions())
 
 
 def test_reindexer_restores_metadata(tmp_path) -> None:
-    path = write(tmp_path / "drive")
+    path = write_recording(tmp_path / "drive")
     (path / "metadata.yaml").unlink()
     rosbag2_py.Reindexer().reindex(StorageOptions(uri=str(path), storage_id="mcap"))
     assert rosbag2_py.Info().read_metadata(str(path), "mcap").relative_file_paths == ["drive_0.mcap"]
@@ -128,8 +128,8 @@ def test_reindexer_restores_metadata(tmp_path) -> None:
 def test_bag_rewrite_converts_recording(tmp_path) -> None:
     options = tmp_path / "options.yaml"
     options.write_text(f"output_bags: [{{uri: {tmp_path / 'new'}, storage_id: sqlite3, all: true}}]", encoding="utf-8")
-    rosbag2_py.bag_rewrite([StorageOptions(uri=str(write(tmp_path / "drive")))], str(options))
-    assert words(tmp_path / "new") == WORDS
+    rosbag2_py.bag_rewrite([StorageOptions(uri=str(write_recording(tmp_path / "drive")))], str(options))
+    assert recorded_words(tmp_path / "new") == WORDS
     with pytest.raises(RuntimeError, match="at least one input"):
         rosbag2_py.bag_rewrite([], str(options))
 
@@ -142,9 +142,9 @@ def test_writer_takes_snapshots_splits_and_compresses(tmp_path) -> None:
     writer.close()
     assert (tmp_path / "a" / "a_1.mcap").exists()
     options = CompressionOptions(compression_format="zstd", compression_mode=CompressionMode.FILE)
-    path = write(tmp_path / "b", writer=rosbag2_py.SequentialCompressionWriter(options))
+    path = write_recording(tmp_path / "b", writer=rosbag2_py.SequentialCompressionWriter(options))
     assert (path / "b_0.mcap.zstd").exists()
-    assert words(path) == WORDS
+    assert recorded_words(path) == WORDS
     with pytest.raises(RuntimeError, match="cache size"):
         rosbag2_py.SequentialWriter().open(StorageOptions(uri=str(tmp_path / "c"), snapshot_mode=True))
 

@@ -29,7 +29,7 @@ pytestmark = needs_rosbags
 CDR = ConverterOptions("cdr", "cdr")
 
 
-def write(path, storage="mcap", writer_class=SequentialWriter):
+def write_recording(path, storage="mcap", writer_class=SequentialWriter):
     writer = writer_class()
     writer.open(StorageOptions(uri=str(path), storage_id=storage), CDR)
     writer.create_topic(
@@ -42,7 +42,7 @@ def write(path, storage="mcap", writer_class=SequentialWriter):
     writer.close()
 
 
-def opened(path):
+def open_reader(path):
     reader = SequentialReader()
     reader.open(StorageOptions(str(path), "mcap"), ConverterOptions("", ""))
     return reader
@@ -58,8 +58,8 @@ def read_rest(reader):
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_written_messages_are_read(tmp_path, storage):
-    write(tmp_path / "bag", storage)
-    reader = opened(tmp_path / "bag")
+    write_recording(tmp_path / "bag", storage)
+    reader = open_reader(tmp_path / "bag")
     types = {topic.name: topic.type for topic in reader.get_all_topics_and_types()}
     assert types == {"/numbers": "std_msgs/msg/Int32", "/words": "std_msgs/msg/String"}
     topic, data, stamp_ns = reader.read_next()
@@ -71,8 +71,8 @@ def test_written_messages_are_read(tmp_path, storage):
 
 
 def test_topics_are_filtered_and_seek_moves_to_time(tmp_path):
-    write(tmp_path / "bag")
-    reader = opened(tmp_path / "bag")
+    write_recording(tmp_path / "bag")
+    reader = open_reader(tmp_path / "bag")
     reader.set_filter(StorageFilter(topics=["/words"]))
     assert read_rest(reader) == [("/words", 1005 + 10 * number) for number in range(4)]
     reader.seek(1020)
@@ -94,7 +94,7 @@ def test_changed_filter_neither_repeats_nor_skips_messages(tmp_path, storage):
     for name, stamp_ns in ("a", 1), ("b", 2), ("a", 2), ("c", 2), ("b", 3), ("a", 9):
         writer.write(f"/{name}", serialize_message(Int32()), stamp_ns)
     writer.close()
-    reader = opened(tmp_path / "bag")
+    reader = open_reader(tmp_path / "bag")
     reader.set_filter(StorageFilter(topics=["/a"]))
     reader.read_next()
     assert reader.read_next()[::2] == ("/a", 2)
@@ -104,8 +104,8 @@ def test_changed_filter_neither_repeats_nor_skips_messages(tmp_path, storage):
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
 def test_messages_are_read_in_reverse(tmp_path, storage):
-    write(tmp_path / "bag", storage)
-    reader = opened(tmp_path / "bag")
+    write_recording(tmp_path / "bag", storage)
+    reader = open_reader(tmp_path / "bag")
     forwards = read_rest(reader)
     reader.set_read_order(rosbag2_py.ReadOrder(reverse=True))
     reader.seek(2_000_000_000_000)
@@ -137,7 +137,7 @@ def test_storage_filter_selects_topics(storage_filter, admitted):
 
 
 def test_metadata_is_read_without_messages(tmp_path):
-    write(tmp_path / "bag", writer_class=rosbag2_py.SequentialCompressionWriter)
+    write_recording(tmp_path / "bag", writer_class=rosbag2_py.SequentialCompressionWriter)
     metadata = rosbag2_py.Info().read_metadata(str(tmp_path / "bag"), "mcap")
     assert (metadata.message_count, metadata.storage_identifier) == (8, "mcap")
     assert metadata.starting_time.nanoseconds == 1000
@@ -148,12 +148,14 @@ def test_metadata_is_read_without_messages(tmp_path):
 
 
 def test_metadata_is_written_and_read(tmp_path):
-    write(tmp_path / "bag")
-    reader, metadata_io = opened(tmp_path / "bag"), rosbag2_py.MetadataIo()
+    write_recording(tmp_path / "bag")
+    reader, metadata_io = open_reader(tmp_path / "bag"), rosbag2_py.MetadataIo()
     metadata = metadata_io.read_metadata(str(tmp_path / "bag"))
     for entry in metadata.topics_with_message_count:
-        (known,) = (topic for topic in reader.get_all_topics_and_types() if topic.name == entry.topic_metadata.name)
-        assert entry.topic_metadata == dataclasses.replace(known, id=0)
+        (topic_entry,) = (
+            topic for topic in reader.get_all_topics_and_types() if topic.name == entry.topic_metadata.name
+        )
+        assert entry.topic_metadata == dataclasses.replace(topic_entry, id=0)
     assert [(file.path, file.message_count) for file in metadata.files] == [("bag_0.mcap", 8)]
     assert reader.get_metadata().files == metadata.files
     assert metadata_io.deserialize_metadata(metadata_io.serialize_metadata(metadata)).files == metadata.files
@@ -170,9 +172,9 @@ def test_metadata_is_written_and_read(tmp_path):
 
 
 def test_message_definitions_are_returned(tmp_path):
-    write(tmp_path / "bag")
+    write_recording(tmp_path / "bag")
     definitions = {
-        definition.topic_type: definition for definition in opened(tmp_path / "bag").get_all_message_definitions()
+        definition.topic_type: definition for definition in open_reader(tmp_path / "bag").get_all_message_definitions()
     }
     local = rosbag2_py.LocalMessageDefinitionSource()
     assert definitions["std_msgs/msg/Int32"] == local.get_full_text("std_msgs/msg/Int32")
@@ -198,7 +200,7 @@ def test_topic_metadata_accepts_humble_and_later_arguments():
 
 def test_invalid_use_raises_runtime_errors(tmp_path):
     with pytest.raises(RuntimeError, match="there is no recording"):
-        opened(tmp_path / "nowhere")
+        open_reader(tmp_path / "nowhere")
     with pytest.raises(RuntimeError, match="not open"):
         SequentialReader().get_all_topics_and_types()
     writer = SequentialWriter()
@@ -228,4 +230,4 @@ writer.create_topic(TopicMetadata(name="chatter", type="std_msgs/msg/String", se
 writer.write("chatter", serialize_message(String(data="hello")), 5)
 """
     subprocess.run([sys.executable, "-c", program], cwd=tmp_path, env=process.environment(), check=True)
-    assert read_rest(opened(tmp_path / "bag")) == [("chatter", 5)]
+    assert read_rest(open_reader(tmp_path / "bag")) == [("chatter", 5)]

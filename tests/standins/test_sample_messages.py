@@ -1,3 +1,5 @@
+"""The sample messages of `test_msgs`, and the conversions of `rosidl_runtime_py`."""
+
 from __future__ import annotations
 
 from collections import OrderedDict
@@ -25,9 +27,9 @@ def test_sample_messages_survive_serialization(name):
 
 
 def test_sample_messages_have_expected_values():
-    default, small, extreme = message_fixtures.get_msg_basic_types()
+    default, minimal, extreme = message_fixtures.get_msg_basic_types()
     assert default == BasicTypes()
-    assert (small.bool_value, small.byte_value, small.uint8_value) == (True, b"\x17", 23)
+    assert (minimal.bool_value, minimal.byte_value, minimal.uint8_value) == (True, b"\x17", 23)
     assert (extreme.int64_value, extreme.uint64_value) == (-(2**63), 2**64 - 1)
     assert len(message_fixtures.get_msg_bounded_sequences()[2].basic_types_values) == 3
     assert len(message_fixtures.get_msg_empty()) == 1

@@ -17,7 +17,7 @@ from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 
 
 class Servers(Node):
@@ -113,42 +113,45 @@ def navigator(servers):
     return BasicNavigator()
 
 
-def pose(x):
+def make_pose(x):
     message = PoseStamped()
     message.header.frame_id = "map"
     message.pose.position.x = x
     return message
 
 
-def finished(navigator):
+def wait_until_finished(navigator):
     while not navigator.isTaskComplete():
         pass
     return navigator.getResult()
 
 
 def test_navigator_sets_initial_pose_and_goes_to_pose(navigator):
-    navigator.setInitialPose(pose(0.0))
+    navigator.setInitialPose(make_pose(0.0))
     navigator.waitUntilNav2Active()
-    assert navigator.goToPose(pose(1.0))
-    assert finished(navigator) == TaskResult.SUCCEEDED
+    assert navigator.goToPose(make_pose(1.0))
+    assert wait_until_finished(navigator) == TaskResult.SUCCEEDED
     assert navigator.getFeedback().distance_remaining == 1.5
 
 
 def test_failed_and_canceled_goals_are_reported(navigator):
-    assert navigator.goToPose(pose(-9.0))
-    assert finished(navigator) == TaskResult.FAILED
+    assert navigator.goToPose(make_pose(-9.0))
+    assert wait_until_finished(navigator) == TaskResult.FAILED
     assert navigator.status == GoalStatus.STATUS_ABORTED
-    assert navigator.goToPose(pose(9.0))
+    assert navigator.goToPose(make_pose(9.0))
     assert not navigator.isTaskComplete()
     assert navigator.getResult() == TaskResult.UNKNOWN
     navigator.cancelTask()
-    assert finished(navigator) == TaskResult.CANCELED
+    assert wait_until_finished(navigator) == TaskResult.CANCELED
 
 
 def test_navigator_spins_plans_and_clears_costmaps(navigator, servers):
     assert navigator.spin(spin_dist=1.57, time_allowance=10)
-    assert finished(navigator) == TaskResult.SUCCEEDED
-    assert [waypoint.pose.position.x for waypoint in navigator.getPath(pose(0.0), pose(2.0)).poses] == [0.0, 2.0]
+    assert wait_until_finished(navigator) == TaskResult.SUCCEEDED
+    assert [waypoint.pose.position.x for waypoint in navigator.getPath(make_pose(0.0), make_pose(2.0)).poses] == [
+        0.0,
+        2.0,
+    ]
     navigator.clearAllCostmaps()
     assert servers.cleared == ["local", "global"]
     navigator.destroyNode()
@@ -156,7 +159,7 @@ def test_navigator_spins_plans_and_clears_costmaps(navigator, servers):
 
 @pytest.mark.parametrize("page", [DOCS / "tutorial-navigation.md", DOCS / "zh" / "tutorial-navigation.md"])
 def test_tutorial_patrol_program_visits_all_rooms(page, servers, monkeypatch, capsys):
-    (program,) = [block for block in blocks(page) if block.title == "patrol.py"]
+    (program,) = [block for block in read_blocks(page) if block.title == "patrol.py"]
     monkeypatch.setattr(rclpy, "init", lambda: None)
     monkeypatch.setattr(rclpy, "shutdown", lambda: None)
     names = {"__name__": "patrol"}

@@ -1,4 +1,7 @@
-"""The modules that tables of names describe: they have exactly those names, and behave like Python's own modules."""
+"""The modules that tables of names describe.
+
+They have exactly those names, and behave like Python's own modules.
+"""
 
 from __future__ import annotations
 
@@ -29,8 +32,8 @@ def test_table_names_can_be_imported(name):
 def test_names_missing_from_table_are_not_exported(name):
     module = importlib.import_module(name)
     described = MODULES[name]
-    elsewhere = NAMES[name.partition(".")[0]] - described.names.keys() - set(described.submodules)
-    for attribute in {*elsewhere, *described.absent, "NoSuchName"}:
+    missing_names = NAMES[name.partition(".")[0]] - described.names.keys() - set(described.submodules)
+    for attribute in {*missing_names, *described.absent, "NoSuchName"}:
         assert not hasattr(module, attribute), f"from {name} import {attribute}"
 
 
@@ -86,10 +89,10 @@ class TestModules:
         import launch.conditions
 
         assert {"IfCondition", "if_condition", "__path__"} <= set(dir(launch.conditions))
-        everything = {}
-        exec("from launch.conditions import *", everything)
-        assert "IfCondition" in everything
-        assert "if_condition" not in everything
+        exported = {}
+        exec("from launch.conditions import *", exported)
+        assert "IfCondition" in exported
+        assert "if_condition" not in exported
 
     def test_classes_can_be_pickled_and_inspected(self):
         from rclpy.time import Time

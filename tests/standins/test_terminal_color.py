@@ -1,3 +1,5 @@
+"""Colors of a terminal, by the stand-in of osrf_pycommon."""
+
 from __future__ import annotations
 
 import pytest
@@ -5,7 +7,7 @@ from osrf_pycommon import terminal_color
 
 
 @pytest.fixture(autouse=True)
-def _switched_on():
+def _restored_colors():
     yield
     terminal_color.enable_ansi_color_substitution_globally()
 

@@ -1,4 +1,7 @@
-"""Transforms as nodes use them: broadcasters, listeners, buffers, transformed messages, a buffer server's clients."""
+"""Transforms as nodes use them.
+
+The tests cover broadcasters, listeners, buffers, transformed messages, a buffer server's clients.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +42,7 @@ def node():
     return rclpy.create_node("tested")
 
 
-def transform(parent, child, stamp, x=1.0, yaw=0.0):
+def make_transform(parent, child, stamp, x=1.0, yaw=0.0):
     message = TransformStamped()
     message.header.frame_id, message.child_frame_id = parent, child
     message.header.stamp = stamp.to_msg()
@@ -49,7 +52,7 @@ def transform(parent, child, stamp, x=1.0, yaw=0.0):
     return message
 
 
-def spin(node, times=6):
+def spin_node(node, times=6):
     for _ in range(times):
         rclpy.spin_once(node, timeout_sec=0.01)
 
@@ -64,7 +67,9 @@ class FramePublisher(Node):
         self.timer = self.create_timer(0.01, self.handle_pose)
 
     def handle_pose(self):
-        self.tf_broadcaster.sendTransform(transform("world", self.turtlename, self.get_clock().now(), 2.0, math.pi / 2))
+        self.tf_broadcaster.sendTransform(
+            make_transform("world", self.turtlename, self.get_clock().now(), 2.0, math.pi / 2)
+        )
 
 
 class FrameListener(Node):
@@ -105,32 +110,35 @@ class TestTopics:
 
     def test_late_listener_receives_static_transforms(self, node):
         broadcaster = StaticTransformBroadcaster(node)
-        broadcaster.sendTransform(transform("base", "laser", Time()))
-        broadcaster.sendTransform(transform("base", "camera", Time()))
+        broadcaster.sendTransform(make_transform("base", "laser", Time()))
+        broadcaster.sendTransform(make_transform("base", "camera", Time()))
         buffer = Buffer()
         TransformListener(buffer, node)
-        spin(node)
+        spin_node(node)
         for frame in ("laser", "camera"):
             assert buffer.lookup_transform("base", frame, Time()).transform.translation.x == 1.0
 
     def test_listener_with_own_thread_receives_transforms(self, node):
         buffer = Buffer()
         listener = TransformListener(buffer, node, spin_thread=True)
-        TransformBroadcaster(rclpy.create_node("other")).sendTransform(transform("a", "b", Time(seconds=5)))
+        TransformBroadcaster(rclpy.create_node("other")).sendTransform(make_transform("a", "b", Time(seconds=5)))
         assert buffer.can_transform("a", "b", Time(), timeout=Duration(seconds=2.0))
         before = threading.active_count()
         listener.unregister()
         assert threading.active_count() == before - 1
 
     def test_lookup_waits_in_callback_of_same_node(self, node):
-        """The listener's callbacks are in a reentrant group, so that a second thread processes them meanwhile."""
+        """The listener's callbacks are in a reentrant group.
+
+        A second thread processes them during the wait.
+        """
         buffer, transforms = Buffer(), []
         TransformListener(buffer, node)
         broadcaster = TransformBroadcaster(node)
 
         def look():
             timer.cancel()
-            threading.Timer(0.05, broadcaster.sendTransform, [transform("a", "b", Time(seconds=5))]).start()
+            threading.Timer(0.05, broadcaster.sendTransform, [make_transform("a", "b", Time(seconds=5))]).start()
             transforms.append(buffer.lookup_transform("a", "b", Time(), timeout=Duration(seconds=2.0)))
 
         timer = node.create_timer(0.01, look)
@@ -152,18 +160,18 @@ class TestTopics:
             transforms.append(await buffer.lookup_transform_async("a", "b", Time()))
 
         timer = node.create_timer(0.01, look)
-        spin(node)
+        spin_node(node)
         assert transforms == []
-        TransformBroadcaster(node).sendTransform(transform("a", "b", Time(seconds=5)))
-        spin(node)
+        TransformBroadcaster(node).sendTransform(make_transform("a", "b", Time(seconds=5)))
+        spin_node(node)
         assert transforms[0].child_frame_id == "b"
 
 
 class TestBuffer:
     def test_lookup_errors_have_specific_exceptions(self):
         buffer = Buffer()
-        buffer.set_transform(transform("a", "b", Time(seconds=5)), "test")
-        buffer.set_transform(transform("x", "y", Time(seconds=5)), "test")
+        buffer.set_transform(make_transform("a", "b", Time(seconds=5)), "test")
+        buffer.set_transform(make_transform("x", "y", Time(seconds=5)), "test")
         with pytest.raises(tf2_ros.LookupException, match="does not exist"):
             buffer.lookup_transform("a", "nowhere", Time())
         with pytest.raises(tf2_ros.ConnectivityException, match="not part of the same tree"):
@@ -176,14 +184,14 @@ class TestBuffer:
 
     def test_message_stamp_is_accepted_as_time(self):
         buffer = Buffer()
-        message = transform("a", "b", Time(seconds=5))
+        message = make_transform("a", "b", Time(seconds=5))
         assert buffer.set_transform(message, "test") is None
         assert buffer.lookup_transform("a", "b", message.header.stamp).header.stamp.sec == 5
 
     def test_messages_are_transformed_to_other_frames(self):
         assert tf2_geometry_msgs.do_transform_point is not None
         buffer = Buffer()
-        buffer.set_transform(transform("map", "base", Time(seconds=5), 1.0, math.pi / 2), "test")
+        buffer.set_transform(make_transform("map", "base", Time(seconds=5), 1.0, math.pi / 2), "test")
         point = PointStamped()
         point.header.frame_id, point.header.stamp = "base", Time(seconds=5).to_msg()
         point.point.x = 2.0
@@ -227,9 +235,9 @@ class TestClient:
     def client(self, node):
         """Return a client of a buffer server that knows one transform."""
         buffer = tf2_ros.BufferCore()
-        buffer.set_transform_static(transform("a", "b", Time()), "test")
+        buffer.set_transform_static(make_transform("a", "b", Time()), "test")
 
-        def answer(handle):
+        def response(handle):
             result = LookupTransform.Result()
             goal = handle.request
             try:
@@ -241,7 +249,7 @@ class TestClient:
             handle.succeed()
             return result
 
-        rclpy.action.ActionServer(node, LookupTransform, "lookup", answer)
+        rclpy.action.ActionServer(node, LookupTransform, "lookup", response)
         executor = MultiThreadedExecutor(2)
         executor.add_node(node)
         thread = threading.Thread(target=executor.spin, daemon=True)

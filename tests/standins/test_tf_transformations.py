@@ -16,7 +16,7 @@ ANGLES = st.floats(-3.0, 3.0)
 UNIT = st.floats(0.0, 1.0)
 
 
-def turn(axis: int, angle: float) -> np.ndarray:
+def rotation_matrix(axis: int, angle: float) -> np.ndarray:
     cosine, sine = math.cos(angle), math.sin(angle)
     b, c = (axis + 1) % 3, (axis + 2) % 3
     matrix = np.eye(3)
@@ -37,7 +37,9 @@ def test_all_24_axis_conventions_are_supported():
 @pytest.mark.parametrize("axes", AXES)
 @given(i=ANGLES, j=ANGLES, k=ANGLES)
 def test_euler_matrix_rotates_about_axes_in_order(axes, i, j, k):
-    first, second, third = (turn("xyz".index(letter), angle) for letter, angle in zip(axes[1:], (i, j, k), strict=True))
+    first, second, third = (
+        rotation_matrix("xyz".index(letter), angle) for letter, angle in zip(axes[1:], (i, j, k), strict=True)
+    )
     expected = third @ second @ first if axes[0] == "s" else first @ second @ third
     assert tf.euler_matrix(i, j, k, axes)[:3, :3] == pytest.approx(expected, abs=1e-9)
 
@@ -50,18 +52,18 @@ def test_euler_angles_round_trip_through_matrix(axes, u, v, w):
 
 
 @pytest.mark.parametrize("axes", AXES)
-@pytest.mark.parametrize("middle", [0.0, math.pi / 2, -math.pi / 2, math.pi])
-def test_euler_angles_round_trip_in_gimbal_lock(axes, middle):
-    matrix = tf.euler_matrix(0.3, middle, 0.4, axes)
+@pytest.mark.parametrize("middle_angle", [0.0, math.pi / 2, -math.pi / 2, math.pi])
+def test_euler_angles_round_trip_in_gimbal_lock(axes, middle_angle):
+    matrix = tf.euler_matrix(0.3, middle_angle, 0.4, axes)
     assert tf.euler_matrix(*tf.euler_from_matrix(matrix, axes), axes) == pytest.approx(matrix, abs=1e-6)
 
 
 @given(u=UNIT, v=UNIT, w=UNIT)
 def test_quaternion_round_trips_through_matrix(u, v, w):
     quaternion = tf.random_quaternion((u, v, w))
-    again = tf.quaternion_from_matrix(tf.quaternion_matrix(quaternion))
-    assert abs(float(again @ quaternion)) == pytest.approx(1.0)
-    assert again[3] >= 0
+    round_trip = tf.quaternion_from_matrix(tf.quaternion_matrix(quaternion))
+    assert abs(float(round_trip @ quaternion)) == pytest.approx(1.0)
+    assert round_trip[3] >= 0
 
 
 def test_quaternion_multiply_applies_right_operand_first():
@@ -83,11 +85,11 @@ def test_slerp_interpolates_halfway():
 def test_matrix_is_decomposed_and_composed(u, v, w):
     angles = tf.euler_from_quaternion(tf.random_quaternion((u, v, w)))
     matrix = tf.compose_matrix((1.5, 2.0, 0.5), (0.2, -0.3, 0.4), angles, (1, 2, 3))
-    scale, shear, again, translate, perspective = tf.decompose_matrix(matrix)
+    scale, shear, recovered_angles, translate, perspective = tf.decompose_matrix(matrix)
     assert scale == pytest.approx([1.5, 2.0, 0.5])
     assert shear == pytest.approx([0.2, -0.3, 0.4])
     assert translate == pytest.approx([1, 2, 3])
-    assert tf.compose_matrix(scale, shear, again, translate, perspective) == pytest.approx(matrix, abs=1e-6)
+    assert tf.compose_matrix(scale, shear, recovered_angles, translate, perspective) == pytest.approx(matrix, abs=1e-6)
 
 
 def test_rotation_matrix_about_offset_axis():
@@ -99,11 +101,13 @@ def test_rotation_matrix_about_offset_axis():
 
 
 def test_matrices_are_concatenated_inverted_and_compared():
-    there = tf.concatenate_matrices(tf.translation_matrix((1, 2, 3)), tf.euler_matrix(0.1, 0.2, 0.3))
-    assert tf.concatenate_matrices(there, tf.inverse_matrix(there)) == pytest.approx(tf.identity_matrix())
-    assert tf.translation_from_matrix(there) == pytest.approx([1, 2, 3])
-    assert tf.is_same_transform(there, 2 * there)
-    assert not tf.is_same_transform(there, tf.identity_matrix())
+    transformation = tf.concatenate_matrices(tf.translation_matrix((1, 2, 3)), tf.euler_matrix(0.1, 0.2, 0.3))
+    assert tf.concatenate_matrices(transformation, tf.inverse_matrix(transformation)) == pytest.approx(
+        tf.identity_matrix()
+    )
+    assert tf.translation_from_matrix(transformation) == pytest.approx([1, 2, 3])
+    assert tf.is_same_transform(transformation, 2 * transformation)
+    assert not tf.is_same_transform(transformation, tf.identity_matrix())
     assert tf.scale_matrix(2.0, (1, 1, 1)) @ [1, 1, 2, 1] == pytest.approx([1, 1, 3, 1])
     assert tf.reflection_matrix((0, 0, 1), (0, 0, 1)) @ [5, 6, 3, 1] == pytest.approx([5, 6, -1, 1])
 

@@ -58,13 +58,13 @@ def test_eval_text_and_safe_eval():
 
 
 def test_eval_text_resolves_namespaces():
-    symbols, inner = xacro.Table({}), xacro.NameSpace()
-    inner["p"] = "4"
-    symbols["A"] = inner
-    assert inner.p == 4
+    symbols, inner_scope = xacro.Table({}), xacro.NameSpace()
+    inner_scope["p"] = "4"
+    symbols["A"] = inner_scope
+    assert inner_scope.p == 4
     assert xacro.eval_text("${A.p}", symbols) == 4
     with pytest.raises(NameError):
-        inner.q  # noqa: B018 - asking is what is tested
+        inner_scope.q  # noqa: B018 - asking is what is tested
 
 
 def test_resolve_args_evaluates_substitutions(monkeypatch):
@@ -95,39 +95,39 @@ def test_load_yaml_returns_attribute_access(write):
 def test_table_evaluates_lazily_and_inherits(capsys):
     language = {"pi": 3}
     top = xacro.Table(language)
-    inner = xacro.Table(top)
-    assert (top.depth, inner.depth, inner.root is language, inner.top() is top) == (0, 1, True, True)
+    inner_scope = xacro.Table(top)
+    assert (top.depth, inner_scope.depth, inner_scope.root is language, inner_scope.top() is top) == (0, 1, True, True)
     top["a"] = "'x'"
     assert top["a"] == "x"
-    inner["b"] = "${a}y"
-    assert inner["b"] == "xy"
-    assert "pi" in inner
+    inner_scope["b"] = "${a}y"
+    assert inner_scope["b"] == "xy"
+    assert "pi" in inner_scope
     assert "b" not in top
     with pytest.raises(KeyError):
         top["b"]
-    inner["pi"] = "4"
+    inner_scope["pi"] = "4"
     assert "redefining global symbol: pi" in capsys.readouterr().err
-    del inner["pi"]
-    assert inner["pi"] == 3
+    del inner_scope["pi"]
+    assert inner_scope["pi"] == 3
     assert "Cannot remove global symbol: pi" in capsys.readouterr().err
     top["c"] = "${d}"
     top["d"] = "${c}"
     with pytest.raises(xacro.XacroException, match="c -> d -> c"):
         top["c"]
-    assert "parent" in str(inner)
+    assert "parent" in str(inner_scope)
 
 
 def test_table_logs_by_verbosity(capsys):
     xacro.verbosity = 3
     top = xacro.Table({})
-    inner = xacro.Table(top)
+    inner_scope = xacro.Table(top)
     xacro.init_stacks("a.xacro")
     top["a"] = "1"
     assert top["a"] == 1
-    inner["b"] = "1"
+    inner_scope["b"] = "1"
     assert capsys.readouterr().err == "set a: 1 (a.xacro)\nuse a: 1 (a.xacro)\n"
     xacro.verbosity = 4
-    inner["b"] = "2"
+    inner_scope["b"] = "2"
     assert capsys.readouterr().err == " set b: 2 (a.xacro)\n"
 
 
@@ -153,12 +153,12 @@ def test_parse_macro_arg_rejects_malformed_parameters():
 
 
 def test_resolve_macro_searches_namespaces():
-    inner = {"m": 2}
-    outer = {"m": 1, "N": inner}
-    assert xacro.resolve_macro("m", outer, outer) == (outer, outer, 1)
-    assert xacro.resolve_macro("N.m", outer, outer) == (inner, inner, 2)
+    inner_scope = {"m": 2}
+    outer_scope = {"m": 1, "N": inner_scope}
+    assert xacro.resolve_macro("m", outer_scope, outer_scope) == (outer_scope, outer_scope, 1)
+    assert xacro.resolve_macro("N.m", outer_scope, outer_scope) == (inner_scope, inner_scope, 2)
     with pytest.raises(KeyError):
-        xacro.resolve_macro("N.x", outer, outer)
+        xacro.resolve_macro("N.x", outer_scope, outer_scope)
 
 
 def test_grab_functions_remove_definitions_from_document(capsys):
@@ -211,20 +211,20 @@ def test_grab_macro_rejects_malformed_names(name):
 
 def test_grab_property_sets_outer_scopes():
     top = xacro.Table({})
-    middle = xacro.Table(top)
-    inner = xacro.Table(middle)
-    inner["v"] = "5"
+    middle_scope = xacro.Table(top)
+    inner_scope = xacro.Table(middle_scope)
+    inner_scope["v"] = "5"
     document = minidom.parseString(
         f'{HEAD}<xacro:property name="g" value="${{v}}" scope="global"/>'
         '<xacro:property name="p" value="${v}" scope="parent"/>'
         '<xacro:property name="v" remove="true"/><xacro:property name="z" value="${p}" lazy_eval="false"/></robot>'
     )
     for element in list(document.documentElement.childNodes):
-        xacro.grab_property(element, inner)
+        xacro.grab_property(element, inner_scope)
     assert dict.__getitem__(top, "g") == 5
-    assert dict.__getitem__(middle, "p") == 5
-    assert "v" not in inner
-    assert dict.__getitem__(inner, "z") == 5
+    assert dict.__getitem__(middle_scope, "p") == 5
+    assert "v" not in inner_scope
+    assert dict.__getitem__(inner_scope, "z") == 5
 
 
 def test_node_functions_navigate_and_replace():

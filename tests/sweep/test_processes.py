@@ -63,10 +63,10 @@ def run_scenario(path: Path, workers: int) -> dict[int, object]:
 def test_results_are_identical_in_any_process_and_order(tmp_path):
     path = write(tmp_path, SIMULATED)
     scenario = load_scenario(path)
-    here = {run.row: run_once(scenario, run) for run in reversed(plan_runs(scenario))}
-    assert run_scenario(path, 2) == here
-    assert all(not outcome.error for outcome in here.values())
-    assert len({outcome.results["a"] for outcome in here.values()}) == 4
+    results_by_row = {run.row: run_once(scenario, run) for run in reversed(plan_runs(scenario))}
+    assert run_scenario(path, 2) == results_by_row
+    assert all(not outcome.error for outcome in results_by_row.values())
+    assert len({outcome.results["a"] for outcome in results_by_row.values()}) == 4
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")
@@ -96,13 +96,13 @@ def test_interrupted_sweep_keeps_rows_and_resumes(tmp_path):
     assert b"Created file squares.csv" in printed
     assert (tmp_path / "squares.csv").read_text() == "row,n,seed,square,error\n1,1,0,1,\n"
     (tmp_path / "go").write_text("")
-    again = subprocess.run(
+    second_run = subprocess.run(
         [sys.executable, "-m", "linkwright", *words, "--resume"],
         cwd=tmp_path,
         capture_output=True,
         check=False,
     )
-    assert again.returncode == 0
+    assert second_run.returncode == 0
     assert (tmp_path / "squares.csv").read_text() == "row,n,seed,square,error\n1,1,0,1,\n2,2,0,4,\n3,3,0,9,\n"
 
 

@@ -21,9 +21,9 @@ def test_drawn_values_depend_only_on_seed_and_name(tmp_path):
     drawn = {run.seed: run.parameters["drawn"] for run in plan_runs(scenario)}
     assert all(run.parameters["drawn"] == drawn[run.seed] for run in plan_runs(scenario))
     assert len(set(drawn.values())) == 2
-    more = plan_runs(with_values(scenario, {"n": "7"}, 50))
-    assert {run.seed: run.parameters["drawn"] for run in more}.items() >= drawn.items()
-    assert all(0.0 <= run.parameters["drawn"] < 1.0 for run in more)
+    longer_plan = plan_runs(with_values(scenario, {"n": "7"}, 50))
+    assert {run.seed: run.parameters["drawn"] for run in longer_plan}.items() >= drawn.items()
+    assert all(0.0 <= run.parameters["drawn"] < 1.0 for run in longer_plan)
 
 
 def test_command_line_values_are_parsed_as_yaml(tmp_path):
@@ -143,8 +143,8 @@ def test_invalid_command_line_values_are_rejected(tmp_path, words, code):
 
 def test_fingerprint_depends_on_file_and_values(tmp_path):
     scenario = loaded(tmp_path)
-    whole = fingerprint(scenario, plan_runs(scenario))
-    assert whole == fingerprint(scenario, plan_runs(scenario))
-    assert whole != fingerprint(scenario, plan_runs(with_values(scenario, {}, 1)))
+    fingerprint_of_plan = fingerprint(scenario, plan_runs(scenario))
+    assert fingerprint_of_plan == fingerprint(scenario, plan_runs(scenario))
+    assert fingerprint_of_plan != fingerprint(scenario, plan_runs(with_values(scenario, {}, 1)))
     write(tmp_path, f"{SQUARES}\n# changed\n")
-    assert whole != fingerprint(scenario, plan_runs(scenario))
+    assert fingerprint_of_plan != fingerprint(scenario, plan_runs(scenario))

@@ -25,12 +25,15 @@ def mixed(world, n):
 """
 
 
-def make_reverse_runner(scenario, until=None):
-    """Return a runner in this process that starts with the last row, and is interrupted before a row."""
+def make_reverse_runner(scenario, should_stop=None):
+    """Return a runner in this process that starts with the last row.
+
+    It is interrupted before a row.
+    """
 
     def run(runs, report):
         for planned_run in reversed(runs):
-            if planned_run.row == until:
+            if planned_run.row == should_stop:
                 raise KeyboardInterrupt
             report(run_once(scenario, planned_run))
 
@@ -48,12 +51,12 @@ def rows_of(path):
     return list(csv.DictReader(io.StringIO(path.read_text())))
 
 
-def run_sweep(tmp_path, text=SQUARES, name="out.csv", until=None, resume=False, paths=None):
+def run_sweep(tmp_path, text=SQUARES, name="out.csv", should_stop=None, resume=False, paths=None):
     scenario = loaded(tmp_path, text)
     sweep = Sweep(scenario, tmp_path / name, ["linkwright", "sweep", "squares.py"], paths and tmp_path / paths)
     messages = []
     table = sweep.run(
-        make_reverse_runner(scenario, until), resume=resume, progress=lambda *state: messages.append(state)
+        make_reverse_runner(scenario, should_stop), resume=resume, progress=lambda *state: messages.append(state)
     )
     return table, messages
 
@@ -93,7 +96,7 @@ def test_paths_are_in_a_file_and_not_in_the_table(tmp_path):
 def test_interrupted_sweep_keeps_its_paths(tmp_path):
     run_sweep(tmp_path, DRIVEN, paths="whole.json")
     (tmp_path / "out.csv").unlink()
-    run_sweep(tmp_path, DRIVEN, until=2, paths="paths.json")
+    run_sweep(tmp_path, DRIVEN, should_stop=2, paths="paths.json")
     with pytest.raises(LinkwrightError, match="differ from the runs of this one"):
         run_sweep(tmp_path, DRIVEN, resume=True)
     run_sweep(tmp_path, DRIVEN, resume=True, paths="paths.json")
@@ -111,11 +114,11 @@ def test_parquet_table_has_same_values_and_types(tmp_path):
 
 
 def test_resumed_sweep_writes_identical_files(tmp_path):
-    whole, interrupted = tmp_path / "whole", tmp_path / "interrupted"
-    whole.mkdir()
+    uninterrupted, interrupted = tmp_path / "whole", tmp_path / "interrupted"
+    uninterrupted.mkdir()
     interrupted.mkdir()
-    run_sweep(whole)
-    table, _ = run_sweep(interrupted, until=3)
+    run_sweep(uninterrupted)
+    table, _ = run_sweep(interrupted, should_stop=3)
     assert table.columns["row"] == [4, 5, 6]
     assert "3 runs remain" in (interrupted / "out.html").read_text()
     journal = interrupted / "out.csv.unfinished"
@@ -125,14 +128,14 @@ def test_resumed_sweep_writes_identical_files(tmp_path):
     assert output[0] == (4, 6, 0)
     assert not journal.exists()
     for name in ("out.csv", "out.html"):
-        assert (interrupted / name).read_bytes() == (whole / name).read_bytes()
+        assert (interrupted / name).read_bytes() == (uninterrupted / name).read_bytes()
 
 
 def test_unfinished_sweep_is_neither_lost_nor_mixed_with_another(tmp_path):
     with pytest.raises(LinkwrightError) as raised:
         run_sweep(tmp_path, resume=True)
     assert raised.value.diagnostics[0].code == "SWEEP109"
-    run_sweep(tmp_path, until=3)
+    run_sweep(tmp_path, should_stop=3)
     before = (tmp_path / "out.csv.unfinished").read_bytes()
     for resume, text, code in ((False, SQUARES, "SWEEP107"), (True, SQUARES.replace("seeds=2", "seeds=3"), "SWEEP108")):
         with pytest.raises(LinkwrightError) as raised:

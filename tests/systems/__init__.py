@@ -1,1 +1,4 @@
-"""Tests of other systems that can run on this one: system-specific modules, and a limited Python."""
+"""Tests of other systems that can run on this one.
+
+They cover system-specific modules, and a limited Python.
+"""

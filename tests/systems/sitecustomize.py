@@ -1,4 +1,6 @@
-"""A Python without the features that another system lacks, for processes with this folder on ``PYTHONPATH``.
+"""A Python without the features that another system lacks.
+
+It is for processes with this folder on ``PYTHONPATH``.
 
 With ``LINKWRIGHT_TESTS_SYSTEM=windows``, the modules, functions, signals and sockets of POSIX are missing, event loops
 watch neither files nor signals, and ``sys.platform`` is ``win32``. With ``macos``, the features of Linux are missing:
@@ -35,7 +37,10 @@ WATCHING = ("add_reader", "add_signal_handler", "add_writer", "create_unix_conne
 
 
 def windows() -> None:
-    """Remove the features that Windows lacks, after the standard library has imported modules that need them here."""
+    """Remove the features that Windows lacks.
+
+    The standard library has already imported modules that need them here.
+    """
     import asyncio
     import ctypes.util  # noqa: F401 - looks at the system when it is imported
     import importlib.abc
@@ -75,8 +80,8 @@ def windows() -> None:
         sys.modules.pop(name, None)
     remove(os, FUNCTIONS.split())
     subprocess._CAN_USE_PIDFD_OPEN = False  # Python 3.15 has set it by asking the system
-    others = [name for name in dir(signal) if name.startswith("SIG") and name[3] != "_" and name not in SIGNALS]
-    remove(signal, [*others, *SIGNAL_FUNCTIONS, "SIG_BLOCK", "SIG_SETMASK", "SIG_UNBLOCK"])
+    posix_signals = [name for name in dir(signal) if name.startswith("SIG") and name[3] != "_" and name not in SIGNALS]
+    remove(signal, [*posix_signals, *SIGNAL_FUNCTIONS, "SIG_BLOCK", "SIG_SETMASK", "SIG_UNBLOCK"])
     remove(socket, SOCKETS)
     remove(select, ["epoll", "poll"])
     selectors.DefaultSelector = selectors.SelectSelector

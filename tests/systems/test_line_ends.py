@@ -1,4 +1,7 @@
-"""Packages with the line ends of Windows, as git checks them out there, give the same results."""
+"""Packages with the line ends of Windows give the same results.
+
+Git checks them out with these line ends there.
+"""
 
 from __future__ import annotations
 

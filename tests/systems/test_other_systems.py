@@ -1,4 +1,7 @@
-"""Linkwright on a Python without the features that Windows or macOS lacks: see `sitecustomize`."""
+"""Linkwright on a Python without the features that Windows or macOS lacks.
+
+See `sitecustomize`.
+"""
 
 from __future__ import annotations
 
@@ -51,7 +54,7 @@ def generate_launch_description():
 
 
 @pytest.fixture(params=SYSTEMS)
-def elsewhere(request, tmp_path):
+def other_system(request, tmp_path):
     """Return a function that starts ``linkwright`` on another system."""
     environment = {
         **os.environ,
@@ -77,29 +80,29 @@ def output_of(process: subprocess.Popen[str]) -> str:
     return out
 
 
-def test_all_modules_can_be_imported(elsewhere, tmp_path):
+def test_all_modules_can_be_imported(other_system, tmp_path):
     (tmp_path / "import_all.py").write_text(IMPORT_ALL, encoding="utf-8")
-    assert output_of(elsewhere(module="import_all")).splitlines()[-1] == "all"
+    assert output_of(other_system(module="import_all")).splitlines()[-1] == "all"
 
 
-def test_commands_run(elsewhere, tmp_path):
-    assert "base_link" in output_of(elsewhere("check", ROBOT))
+def test_commands_run(other_system, tmp_path):
+    assert "base_link" in output_of(other_system("check", ROBOT))
     assert (
-        output_of(elsewhere("xacro", PACKAGE / "urdf" / "mbot_gazebo.xacro", "laser:=true"))
+        output_of(other_system("xacro", PACKAGE / "urdf" / "mbot_gazebo.xacro", "laser:=true"))
         .rstrip()
         .endswith("</robot>")
     )
-    output_of(elsewhere("pkg", "create", "arm", "--build-type", "ament_python", "--license", "MIT"))
+    output_of(other_system("pkg", "create", "arm", "--build-type", "ament_python", "--license", "MIT"))
     assert (tmp_path / "arm" / "package.xml").is_file()
-    assert "base_link" in output_of(elsewhere("inertia", ROBOT))
+    assert "base_link" in output_of(other_system("inertia", ROBOT))
 
 
-def test_viewer_serves_page_and_ctrl_c_ends_it(elsewhere):
-    viewer = elsewhere("view", ROBOT, "--no-open")
+def test_viewer_serves_page_and_ctrl_c_ends_it(other_system):
+    viewer = other_system("view", ROBOT, "--no-open")
     try:
         address = next(match[0] for line in viewer.stdout if (match := re.search(r"http://\S+", line)))
-        with urllib.request.urlopen(address, timeout=60) as answer:
-            assert b"<script" in answer.read()
+        with urllib.request.urlopen(address, timeout=60) as response:
+            assert b"<script" in response.read()
     finally:
         viewer.send_signal(signal.SIGINT)
         out, error = viewer.communicate(timeout=60)
@@ -108,18 +111,18 @@ def test_viewer_serves_page_and_ctrl_c_ends_it(elsewhere):
 
 
 @pytest.mark.parametrize("emulated", ["", "emulate_tty=True"])
-def test_launched_processes_end_cleanly(elsewhere, tmp_path, emulated):
+def test_launched_processes_end_cleanly(other_system, tmp_path, emulated):
     (tmp_path / "it.launch.py").write_text(PROGRAM.replace("EMULATED", emulated), encoding="utf-8")
-    process = elsewhere("launch", "./it.launch.py")
+    process = other_system("launch", "./it.launch.py")
     out, error = process.communicate(timeout=120)
     assert process.returncode == 0, out + error
     assert "process has finished cleanly" in out + error
     assert "has died" not in out + error
 
 
-def test_world_is_simulated(elsewhere):
+def test_world_is_simulated(other_system):
     pytest.importorskip("mujoco")
-    output_of(elsewhere("sim", "empty", ROBOT, "--headless", "--seconds", "0.5"))
+    output_of(other_system("sim", "empty", ROBOT, "--headless", "--seconds", "0.5"))
 
 
 @pytest.mark.parametrize(
@@ -147,14 +150,14 @@ def test_drive_letter_is_a_folder_on_other_systems():
 def test_signal_again_does_not_end_process_on_windows(monkeypatch):
     monkeypatch.setattr(sys, "platform", "win32")
     monkeypatch.setattr(os, "kill", lambda *_: pytest.fail("this ends a process on Windows"))
-    came = []
-    before = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    received = []
+    before = signal.signal(signal.SIGINT, lambda number, _: received.append(number))
     try:
         interruption.signal_again(signal.SIGINT)
-        wait_until(lambda: came)
+        wait_until(lambda: received)
     finally:
         signal.signal(signal.SIGINT, before)
-    assert came == [signal.SIGINT]
+    assert received == [signal.SIGINT]
 
 
 class Recorded:
@@ -169,13 +172,13 @@ class Recorded:
 
 
 @pytest.mark.parametrize(
-    ("platform", "asked"), [("linux", signal.SIGINT), ("darwin", signal.SIGINT), ("win32", "terminate")]
+    ("platform", "expected_signal"), [("linux", signal.SIGINT), ("darwin", signal.SIGINT), ("win32", "terminate")]
 )
-def test_interrupt_uses_sigint_or_terminate_by_platform(monkeypatch, platform, asked):
+def test_interrupt_uses_sigint_or_terminate_by_platform(monkeypatch, platform, expected_signal):
     monkeypatch.setattr(sys, "platform", platform)
     process = Recorded()
     interruption.interrupt(process)
-    assert process.asked == [asked]
+    assert process.asked == [expected_signal]
 
 
 NAMES = "ä漢字"

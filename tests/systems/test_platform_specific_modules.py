@@ -1,4 +1,7 @@
-"""The modules that use features of some systems: each is listed here, and runs without them in `test_other_systems`."""
+"""The modules that use features of some systems.
+
+Each is listed here, and runs without them in `test_other_systems`.
+"""
 
 from __future__ import annotations
 

@@ -354,7 +354,10 @@ def test_program_with_own_ctrl_c_handling_can_stop_robot(write):
 
 
 def test_after_ctrl_c_rclpy_publishes_nothing(write, capsys):
-    """The program fails as under ROS 2. The test does not fail, because it ends the program itself."""
+    """The program fails as under ROS 2.
+
+    The test does not fail, because it ends the program itself.
+    """
     messages, ended = run_until_ctrl_c(write(STOPS_AT_CTRL_C.format(options="")))
     assert messages == []
     assert ended.exit_code == 1
@@ -448,14 +451,14 @@ def test_file_that_only_defines_main_is_run(write):
 
 
 def test_functions_and_modules_can_be_run_as_programs(write, monkeypatch, tmp_path):
-    said = []
+    texts = []
 
     def main():
         time.sleep(0.5)
-        said.append(time.monotonic())
+        texts.append(time.monotonic())
 
     run(main)
-    assert said == [0.5]
+    assert texts == [0.5]
     write("def main(): sys.exit(7)", "my_program_module.py")
     monkeypatch.syspath_prepend(tmp_path)
     assert run("my_program_module")[1].exit_code == 7

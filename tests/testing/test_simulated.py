@@ -76,7 +76,10 @@ def test_accelerating_wheels_match_odometry(linear, angular):
 
 
 def test_laser_measures_links_on_fixed_joints(tmp_path):
-    """gz merges these links with the laser's link, whose collisions rays ignore. Linkwright's server keeps them."""
+    """gz merges these links with the laser's link, whose collisions rays ignore.
+
+    Linkwright's server keeps them.
+    """
     robot = tmp_path / "robot.urdf"
     robot.write_text(LASER_BEHIND_A_POST, encoding="utf-8")
     with SteppedSimulation("empty", robot) as test:
@@ -183,9 +186,9 @@ def test_mass_and_xacro_arguments_are_applied():
 def test_changed_file_is_read_again(tmp_path):
     path = tmp_path / "crate.sdf"
     masses = []
-    for mass, moment in (("2", 1_000_000_000), ("7", 2_000_000_000)):
+    for mass, modified_ns in (("2", 1_000_000_000), ("7", 2_000_000_000)):
         path.write_text(BOX.replace("<mass>2<", f"<mass>{mass}<"))
-        os.utime(path, ns=(moment, moment))
+        os.utime(path, ns=(modified_ns, modified_ns))
         with SteppedSimulation(robot=path) as test:
             masses.append(test.simulation.mass_of("crate"))
     assert masses == [2.0, 7.0]

@@ -7,14 +7,14 @@ from linkwright.urdf import read
 from linkwright.urdf.plaintext import parse_as_urdfdom
 
 
-def describe(text: str) -> str:
+def describe_findings(text: str) -> str:
     """Return the reader's findings about a URDF text, with one line for each fact."""
     reading = read(parse_as_urdfdom(text, "robot.urdf")[0])
-    lines = [line for diagnostic in reading.diagnostics for line in lines_of(diagnostic)]
+    lines = [line for diagnostic in reading.diagnostics for line in finding_lines(diagnostic)]
     return "\n".join([*lines, "robot: none" if reading.robot is None else "robot: kept"])
 
 
-def lines_of(diagnostic: Diagnostic) -> list[str]:
+def finding_lines(diagnostic: Diagnostic) -> list[str]:
     """Return one finding, with one line for each fact."""
     span, source = diagnostic.span, diagnostic.source
     assert span is not None

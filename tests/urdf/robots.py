@@ -50,7 +50,10 @@ limits = st.builds(
 
 @st.composite
 def robots(draw, max_links: int = 8) -> Robot:
-    """Generate a robot of version 1.1 with all kinds of joints, mimic chains, shapes and materials."""
+    """Generate a robot of version 1.1.
+
+    It has all kinds of joints, mimic chains, shapes and materials.
+    """
     link_names = draw(st.lists(names, min_size=1, max_size=max_links, unique=True).filter(all))
     materials = {
         name: Material(name, draw(st.none() | colors), draw(st.none() | names))
@@ -78,14 +81,14 @@ def _links(draw, name: str, materials: dict[str, Material]) -> Link:
     inertial = st.builds(Inertial, numbers, numbers, numbers, numbers, numbers, numbers, numbers, poses)
     visuals = []
     for geometry in draw(st.lists(geometries, max_size=2)):
-        how = draw(st.sampled_from(["none", "named", "undefined", "own"]))
+        material_kind = draw(st.sampled_from(["none", "named", "undefined", "own"]))
         material_name, material = "", None
-        if how == "named" and materials:
+        if material_kind == "named" and materials:
             material_name = draw(st.sampled_from(sorted(materials)))
             material = materials[material_name]
-        elif how == "undefined":
+        elif material_kind == "undefined":
             material_name = "nowhere defined"
-        elif how == "own":
+        elif material_kind == "own":
             material = Material("", draw(colors))
         visuals.append(Visual(geometry, draw(poses), draw(names), material_name, material))
     collisions = draw(st.lists(st.builds(Collision, geometries, poses, names), max_size=2))
@@ -117,8 +120,11 @@ def robot_text(*parts: str, version: str | None = None) -> str:
     return f'<robot name="r"{attribute}>{"".join(parts)}</robot>'
 
 
-def chain(*joints: str) -> str:
-    """Return links a, b, c, ... with joints between them; each joint is ``type`` or ``type: content``."""
+def chain_of_links(*joints: str) -> str:
+    """Return links a, b, c, ...
+
+    with joints between them; each joint is ``type`` or ``type: content``.
+    """
     letters = "abcdefghijklmnopqrstuvwxyz"
     text = "".join(f'<link name="{letter}"/>' for letter in letters[: len(joints) + 1])
     for place, joint in enumerate(joints):

@@ -13,7 +13,7 @@ from linkwright.urdf.schema import ROBOT
 from linkwright.urdf.values import JOINT_TYPE, JOINT_TYPES, NUMBER, QUATERNION, RGBA, TEXT, VECTOR3, VERSION
 from linkwright.xmltree import Document, Element, parse, write
 
-BAD = [
+INVALID_VALUES = [
     "",
     " ",
     "x",
@@ -31,7 +31,7 @@ BAD = [
     "é",
     "a b",
 ]
-GOOD = {
+VALID_VALUES = {
     TEXT: ["a", "b", "c", ""],
     NUMBER: ["0", "1", "-90", " 2.5"],
     VECTOR3: ["0 0 0", "1 -2 .5", "0 0 90", " 1  2 3 "],
@@ -40,7 +40,7 @@ GOOD = {
     JOINT_TYPE: [*JOINT_TYPES],
     VERSION: ["1.0", "1.1", "1.2"],
 }
-OTHERS = [ElementRule(tag, "") for tag in ("gazebo", "xacro:if", "limits", "geomtry", "cube")]
+OTHER_RULES = [ElementRule(tag, "") for tag in ("gazebo", "xacro:if", "limits", "geomtry", "cube")]
 
 
 @st.composite
@@ -48,8 +48,10 @@ def elements(draw, rule: ElementRule, sloppy: bool) -> Element:
     element = Element(rule.tag)
     for attribute in rule.attributes:
         if not sloppy or draw(st.integers(0, 9)):
-            good = GOOD[attribute.type]
-            values = st.sampled_from(BAD + good if sloppy and not draw(st.integers(0, 9)) else good)
+            valid_values = VALID_VALUES[attribute.type]
+            values = st.sampled_from(
+                INVALID_VALUES + valid_values if sloppy and not draw(st.integers(0, 9)) else valid_values
+            )
             element.attributes[attribute.name] = draw(values)
     children = list(rule.children)
     if rule.tag == "geometry":
@@ -58,7 +60,7 @@ def elements(draw, rule: ElementRule, sloppy: bool) -> Element:
         count = draw(st.integers(0, 3)) if child.is_repeated else draw(st.integers(0, 1 if sloppy else 9)) > 0
         element.children += [draw(elements(child, sloppy)) for _ in range(count)]
     if sloppy and not draw(st.integers(0, 9)):
-        element.children.append(draw(elements(draw(st.sampled_from(OTHERS)), sloppy)))
+        element.children.append(draw(elements(draw(st.sampled_from(OTHER_RULES)), sloppy)))
     return element
 
 
@@ -83,13 +85,13 @@ def robots(draw, sloppy: bool) -> Element:
         if sound():
             joint.attributes["name"] = f"joint{place}"
             joint.children += [Element(tag, {"link": f"link{end}"}) for tag, end in ends.items()]
-    others = [child for child in root.elements() if child.tag not in ("link", "joint")]
-    root.children = [*draw(st.permutations(others[:3])), *links, *joints]
+    other_elements = [child for child in root.elements() if child.tag not in ("link", "joint")]
+    root.children = [*draw(st.permutations(other_elements[:3])), *links, *joints]
     root.attributes = {"name": "r", "xmlns:xacro": "http://www.ros.org/wiki/xacro", **root.attributes}
     return root
 
 
-def check(root: Element) -> None:
+def check_robot(root: Element) -> None:
     reading = read(Document(root))
     if reading.robot is None:
         assert has_errors(reading.diagnostics)
@@ -104,20 +106,20 @@ def check(root: Element) -> None:
     tree_text(robot)
     tree = KinematicTree(robot)
     assert tree.forward([0.0] * len(tree.joint_names)).shape == (len(tree.link_names), 4, 4)
-    again = read(parse(save(robot), "saved.urdf"))
-    assert again.robot == robot
+    reread = read(parse(save(robot), "saved.urdf"))
+    assert reread.robot == robot
 
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.data_too_large])
 @given(robots(sloppy=False))
 def test_valid_elements_are_read_without_loss(root):
-    check(root)
+    check_robot(root)
 
 
 @settings(max_examples=150, suppress_health_check=[HealthCheck.data_too_large])
 @given(robots(sloppy=True))
 def test_arbitrary_elements_are_read_without_crash(root):
-    check(root)
+    check_robot(root)
 
 
 @settings(max_examples=100, suppress_health_check=[HealthCheck.data_too_large])

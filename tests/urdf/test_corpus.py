@@ -1,4 +1,7 @@
-"""Whole robots: the verdict of urdfdom, the text of urdf_to_graphviz, and conversion to URDF."""
+"""Whole robots.
+
+The tests cover the verdict of urdfdom, the text of urdf_to_graphviz, and conversion to URDF.
+"""
 
 from __future__ import annotations
 

@@ -10,9 +10,9 @@ from linkwright.descriptions import load
 from linkwright.diagnostics import LinkwrightError
 from linkwright.urdf import to_gv
 from linkwright.urdf.diagram import render
-from tests.urdf.robots import chain, robot_text
+from tests.urdf.robots import chain_of_links, robot_text
 
-GV = to_gv(load(robot_text(chain("fixed", "continuous"))))
+GV = to_gv(load(robot_text(chain_of_links("fixed", "continuous"))))
 
 
 FORMATS = [("pdf", b"%PDF-"), ("svg", b"<?xml"), ("png", b"\x89PNG"), ("SVG", b"<?xml")]

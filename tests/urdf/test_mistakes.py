@@ -10,7 +10,7 @@ import pytest
 
 import linkwright.urdf
 from tests.corpora import OWN
-from tests.urdf.mistakes import describe
+from tests.urdf.mistakes import describe_findings
 
 PAGE = (Path(__file__).parent / "mistakes.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^### (.+?)\n\n```xml\n(.*?)\n```\n\n```text\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
@@ -27,7 +27,7 @@ def test_all_cases_of_page_are_parsed():
 
 @pytest.mark.parametrize(("text", "message"), MISTAKES)
 def test_message_matches_page(text, message):
-    assert describe(text) == message
+    assert describe_findings(text) == message
 
 
 @pytest.mark.parametrize(("text", "message"), MISTAKES)

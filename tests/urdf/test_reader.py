@@ -1,4 +1,7 @@
-"""The reader: defaults, urdfdom's rules for links, materials, axes and versions, and other elements."""
+"""The reader.
+
+The tests cover defaults, urdfdom's rules for links, materials, axes and versions, and other elements.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from linkwright.geometry.single import pose_quaternion
 from linkwright.urdf import Box, Capsule, Limit, Mimic, Pose, read
 from linkwright.xmltree import Document, Element, parse
 from tests.imports import loaded_by, rooms_of
-from tests.urdf.robots import chain, robot_text
+from tests.urdf.robots import chain_of_links, robot_text
 
 BOX = '<geometry><box size="1 2 3"/></geometry>'
 
@@ -27,7 +30,7 @@ def robot(*parts, version=None):
 
 
 def joint(inside="", kind="revolute", version=None):
-    return robot(chain(f"{kind}:{inside}"), version=version).joints["j0"]
+    return robot(chain_of_links(f"{kind}:{inside}"), version=version).joints["j0"]
 
 
 def codes(result):
@@ -86,7 +89,7 @@ class TestLenience:
         ],
     )
     def test_joint_is_read(self, inside):
-        assert not any(d.severity is Severity.ERROR for d in reading(chain(f"revolute:{inside}")).diagnostics)
+        assert not any(d.severity is Severity.ERROR for d in reading(chain_of_links(f"revolute:{inside}")).diagnostics)
 
     @pytest.mark.parametrize(
         "shape",
@@ -121,7 +124,10 @@ class TestLenience:
 
 
 class TestTruncation:
-    """After a bad part of a link, later parts are lost, in the order inertial, visuals, collisions."""
+    """After a bad part of a link, later parts are lost.
+
+    The order is inertial, visuals, collisions.
+    """
 
     GOOD_VISUAL, GOOD_COLLISION = f"<visual>{BOX}</visual>", f"<collision>{BOX}</collision>"
     INERTIAL = '<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
@@ -236,7 +242,7 @@ class TestVersions:
         assert pose_quaternion(joint('<origin quat_xyzw="0 0 0 0"/>', "fixed", "1.1").origin) == (0, 0, 0, 1)
 
     def test_quaternion_with_three_numbers_is_rejected(self):
-        result = reading(chain('fixed:<origin quat_xyzw="0 0 1"/>'), version="1.1")
+        result = reading(chain_of_links('fixed:<origin quat_xyzw="0 0 1"/>'), version="1.1")
         assert (result.robot, codes(result)) == (None, ["URDF122"])
 
     def test_limits_default_to_infinity_since_1_2(self):
@@ -247,13 +253,15 @@ class TestVersions:
         assert (limit.acceleration, limit.deceleration, limit.jerk) == (5, 5, None)
 
     def test_limit_attributes_of_1_2_are_ignored_before(self):
-        result = reading(chain('revolute:<limit effort="1" velocity="1" jerk="nonsense"/>'))
+        result = reading(chain_of_links('revolute:<limit effort="1" velocity="1" jerk="nonsense"/>'))
         assert codes(result) == ["URDF171"]
         assert result.robot.joints["j0"].limit == Limit(0, 0, 1, 1)
 
     @pytest.mark.parametrize("name", ["effort", "velocity", "acceleration", "deceleration", "jerk"])
     def test_negative_limits_are_rejected_since_1_2(self, name):
-        assert reading(chain(f'revolute:<limit lower="0" upper="1" {name}="-1"/>'), version="1.2").robot is None
+        assert (
+            reading(chain_of_links(f'revolute:<limit lower="0" upper="1" {name}="-1"/>'), version="1.2").robot is None
+        )
 
 
 class TestExtensionElements:

@@ -33,7 +33,10 @@ VERSIONS = ("1.0", "1.2")
 
 
 def full(rule: ElementRule, version: tuple[int, int]) -> Element:
-    """Return an element with all its attributes and children; ``<geometry>`` has only its first child."""
+    """Return an element with all its attributes and children.
+
+    ``<geometry>`` has only its first child.
+    """
     element = Element(
         rule.tag,
         {attribute.name: VALUES[attribute.type] for attribute in rule.attributes if attribute.since <= version},

@@ -1,4 +1,7 @@
-"""The tree of links: the order of children, the parent that urdfdom keeps, and the printed tree."""
+"""The tree of links.
+
+The tests cover the order of children, the parent that urdfdom keeps, and the printed tree.
+"""
 
 from __future__ import annotations
 
@@ -90,11 +93,11 @@ def test_tree_text_of_many_paths_is_bounded():
 
 @given(robots())
 def test_walk_visits_each_link_once_after_its_parent(robot):
-    seen = [robot.root]
+    visited = [robot.root]
     steps = list(walk(robot))
     for below, _ in steps:
-        assert below.parent in seen
-        assert below.child not in seen
-        seen.append(below.child)
-    assert set(seen) == set(robot.links)
+        assert below.parent in visited
+        assert below.child not in visited
+        visited.append(below.child)
+    assert set(visited) == set(robot.links)
     assert all(later <= earlier + 1 for (_, earlier), (_, later) in pairwise(steps))

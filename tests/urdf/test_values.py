@@ -12,32 +12,35 @@ from linkwright.urdf.values import looks_like_degrees, number, number_hint, numb
 
 
 def stream_reads(text: str) -> bool:
-    """Return whether a C++ stream reads a double from the whole text, character by character as num_get does."""
+    """Return whether a C++ stream reads a double from the whole text.
+
+    It reads character by character, as num_get does.
+    """
     text = text.lstrip(" \t\n\v\f\r")
-    at = 0
+    position = 0
 
     def digits() -> int:
-        nonlocal at
-        start = at
-        while at < len(text) and text[at] in "0123456789":
-            at += 1
-        return at - start
+        nonlocal position
+        start = position
+        while position < len(text) and text[position] in "0123456789":
+            position += 1
+        return position - start
 
     if text[:1] in ("+", "-"):
-        at += 1
+        position += 1
     count = digits()
-    if text[at : at + 1] == ".":
-        at += 1
+    if text[position : position + 1] == ".":
+        position += 1
         count += digits()
     if not count:
         return False
-    if text[at : at + 1] in ("e", "E"):
-        at += 1
-        if text[at : at + 1] in ("+", "-"):
-            at += 1
+    if text[position : position + 1] in ("e", "E"):
+        position += 1
+        if text[position : position + 1] in ("+", "-"):
+            position += 1
         if not digits():
             return False
-    return at == len(text) and not math.isinf(float(text))
+    return position == len(text) and not math.isinf(float(text))
 
 
 def is_readable(text: str) -> bool:

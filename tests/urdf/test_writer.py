@@ -8,15 +8,15 @@ from linkwright.descriptions import load
 from linkwright.urdf import read, save
 from linkwright.xmltree import parse
 from tests.places import PACKAGE
-from tests.urdf.robots import chain, robot_text, robots
+from tests.urdf.robots import chain_of_links, robot_text, robots
 
 
 @given(robots())
 def test_round_trip_keeps_robot_and_order(robot):
-    again = read(parse(save(robot), "saved.urdf")).robot
-    assert again == robot
-    assert list(again.links) == list(robot.links)
-    assert list(again.joints) == list(robot.joints)
+    reread = read(parse(save(robot), "saved.urdf")).robot
+    assert reread == robot
+    assert list(reread.links) == list(robot.links)
+    assert list(reread.joints) == list(robot.joints)
 
 
 def test_saving_twice_returns_same_text():
@@ -27,7 +27,7 @@ def test_saving_twice_returns_same_text():
 def test_saved_text_is_formatted():
     text = robot_text(
         '<material name="m"><color rgba="1 0.5 0 1"/></material>',
-        chain('revolute:<limit lower="-1.50" upper="1" effort="10" velocity="1e-3"/><origin xyz="0 0 .1"/>'),
+        chain_of_links('revolute:<limit lower="-1.50" upper="1" effort="10" velocity="1e-3"/><origin xyz="0 0 .1"/>'),
         '<gazebo reference="a"><mu1>0.2</mu1></gazebo>',
     )
     assert save(load(text)) == (
@@ -61,7 +61,9 @@ def test_prefixed_elements_keep_namespace_declaration():
 
 def test_limits_of_urdf_1_2_round_trip():
     text = robot_text(
-        chain('continuous:<limit effort="3"/>', 'revolute:<limit lower="0" upper="1" acceleration="2" jerk="4"/>'),
+        chain_of_links(
+            'continuous:<limit effort="3"/>', 'revolute:<limit lower="0" upper="1" acceleration="2" jerk="4"/>'
+        ),
         version="1.2",
     )
     robot = load(text)
@@ -70,6 +72,6 @@ def test_limits_of_urdf_1_2_round_trip():
 
 
 def test_quaternions_of_urdf_1_1_round_trip():
-    robot = load(robot_text(chain('fixed:<origin quat_xyzw="0.5 0.5 0.5 0.5"/>'), version="1.1"))
+    robot = load(robot_text(chain_of_links('fixed:<origin quat_xyzw="0.5 0.5 0.5 0.5"/>'), version="1.1"))
     assert 'quat_xyzw="0.5 0.5 0.5 0.5"' in save(robot)
     assert load(save(robot)) == robot

@@ -48,17 +48,18 @@ def rvl(values: np.ndarray) -> bytes:
 
     left, before = [int(value) for value in values.ravel()], 0
     while left:
-        zeros = next((at for at, value in enumerate(left) if value), len(left))
-        others = next((at for at, value in enumerate(left[zeros:]) if not value), len(left) - zeros)
+        zeros = next((index for index, value in enumerate(left) if value), len(left))
+        nonzeros = next((index for index, value in enumerate(left[zeros:]) if not value), len(left) - zeros)
         put(zeros)
-        put(others)
-        for value in left[zeros : zeros + others]:
+        put(nonzeros)
+        for value in left[zeros : zeros + nonzeros]:
             step, before = value - before, value
             put(2 * step if step >= 0 else -2 * step - 1)
-        left = left[zeros + others :]
+        left = left[zeros + nonzeros :]
     groups += [0] * (-len(groups) % 8)
     words = [
-        sum(group << (28 - 4 * at) for at, group in enumerate(groups[i : i + 8])) for i in range(0, len(groups), 8)
+        sum(group << (28 - 4 * index) for index, group in enumerate(groups[i : i + 8]))
+        for i in range(0, len(groups), 8)
     ]
     return struct.pack(f"<{len(words)}I", *words)
 
@@ -75,7 +76,10 @@ def header(first: float = 0.0, second: float = 0.0) -> bytes:
 
 
 def depth_message(values, packing: str = "png", frame: str = "base"):
-    """Return a `compressedDepth` message of depths: whole millimeters (uint16), or up to 10 meters (float)."""
+    """Return a `compressedDepth` message of depths.
+
+    They are integer millimeters (uint16), or up to 10 meters (float).
+    """
     values = np.asarray(values)
     scale = header()
     encoding = "16UC1"
@@ -83,8 +87,8 @@ def depth_message(values, packing: str = "png", frame: str = "base"):
         encoding, first = "32FC1", 100.0 * 101.0
         second = 1.0 - first / 10.0
         scale = header(first, second)
-        near = values < 10.0
-        values = np.where(near, first / np.where(near, values, 1.0) + second, 0.0)
+        is_in_range = values < 10.0
+        values = np.where(is_in_range, first / np.where(is_in_range, values, 1.0) + second, 0.0)
     pixels = values.astype(np.uint16)
     data = png(pixels) if packing == "png" else sized_rvl(pixels)
     return packed(f"{encoding}; compressedDepth {packing}", scale + data, frame)

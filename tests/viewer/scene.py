@@ -20,7 +20,7 @@ from linkwright.packages import PackageFinder
 from linkwright.rviz import RvizConfig
 from linkwright.viewer import Viewer
 from tests.skipping import graph_clock
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 ARM = """\
 <robot name="arm">
@@ -134,7 +134,7 @@ class Client:
     socket: aiohttp.ClientWebSocketResponse
     messages: list[dict | Transforms | bytes] = field(default_factory=list)
 
-    async def receive(self, timeout: float = SECONDS) -> dict | Transforms | bytes:
+    async def receive(self, timeout: float = TIMEOUT_S) -> dict | Transforms | bytes:
         message = await self.socket.receive(timeout=timeout)
         if message.type is aiohttp.WSMsgType.BINARY:
             decoded: dict | Transforms | bytes = unpack(message.data) if message.data[0] == 1 else message.data
@@ -158,12 +158,12 @@ class Client:
             if isinstance(message, Transforms):
                 return message
 
-    async def drain(self, quiet: float = 0.15) -> list[dict | Transforms | bytes]:
+    async def drain(self, silence_s: float = 0.15) -> list[dict | Transforms | bytes]:
         """Receive messages until none arrives for a while, and return them."""
         start = len(self.messages)
         with suppress(asyncio.TimeoutError):
             while True:
-                await self.receive(timeout=quiet)
+                await self.receive(timeout=silence_s)
         return self.messages[start:]
 
     async def opened(self) -> dict[str, dict]:
@@ -183,11 +183,14 @@ class Client:
 
 
 @asynccontextmanager
-async def page(viewer: Viewer, more: str = "") -> AsyncIterator[Client]:
-    """Open a connected page, with `more` appended to its address; do not wait long for its end."""
-    address = viewer.url.replace("/?", "/ws?") + more
-    hurry = aiohttp.ClientWSTimeout(ws_close=1.0)
-    async with aiohttp.ClientSession() as session, session.ws_connect(address, timeout=hurry) as socket:
+async def page(viewer: Viewer, options: str = "") -> AsyncIterator[Client]:
+    """Open a connected page, with `options` appended to its address.
+
+    Its end is not waited for long.
+    """
+    address = viewer.url.replace("/?", "/ws?") + options
+    close_timeout = aiohttp.ClientWSTimeout(ws_close=1.0)
+    async with aiohttp.ClientSession() as session, session.ws_connect(address, timeout=close_timeout) as socket:
         yield Client(socket)
 
 

@@ -81,8 +81,8 @@ async def test_display_of_another_package_is_created_and_offered(extension_packa
         (fence,) = [display for display in first["tree"]["displays"] if display["cls"] == "brought/Fence"]
         assert (fence["supported"], fence["drawing"]) == (True, "rviz_default_plugins/Polygon")
         await client.send("request_display_choices")
-        offered = (await client.until("display_choices"))["classes"]
-        assert {"cls": "brought/Fence", "messages": ["geometry_msgs/msg/PolygonStamped"]} in offered
+        classes = (await client.until("display_choices"))["classes"]
+        assert {"cls": "brought/Fence", "messages": ["geometry_msgs/msg/PolygonStamped"]} in classes
 
 
 async def test_display_that_cannot_be_imported_is_kept_and_reported(extension_package):

@@ -27,10 +27,10 @@ def test_panels_and_displays_are_imported_on_demand():
     result = subprocess.run([sys.executable, "-c", OPENING], capture_output=True, text=True, cwd=root, check=True)
     opened, watching = (set(line.split()) for line in result.stdout.splitlines())
     panels, displays = "linkwright.panels", "linkwright.rviz.displays"
-    late = {f"{panels}.monitor.{name}" for name in ("node_graph", "parameters", "plots", "teleop", "topics")}
-    late |= {f"{displays}.{name}" for name in ("image", "map", "marker", "point_clouds")}
-    assert not opened & {*late, f"{panels}.export.feature", "linkwright.sdf.reader", "linkwright.sdf.writer"}
-    assert watching & late == {f"{panels}.monitor.node_graph"}
+    lazy_modules = {f"{panels}.monitor.{name}" for name in ("node_graph", "parameters", "plots", "teleop", "topics")}
+    lazy_modules |= {f"{displays}.{name}" for name in ("image", "map", "marker", "point_clouds")}
+    assert not opened & {*lazy_modules, f"{panels}.export.feature", "linkwright.sdf.reader", "linkwright.sdf.writer"}
+    assert watching & lazy_modules == {f"{panels}.monitor.node_graph"}
 
 
 GIVING_OUT = """

@@ -1,4 +1,7 @@
-"""The robot of a recording without transforms: its pose follows the joint states at any time."""
+"""The robot of a recording without transforms.
+
+Its pose follows the joint states at any time.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +18,8 @@ from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, STATIC_TF_PUBLISHER_Q
 from linkwright.messages import JointState, String, TFMessage, TransformBatch, serialize
 from linkwright.viewer.recorded_robot import RecordingWithTransforms, publish_recording, robot_of
 
-START = 1_700_000_000
-SECOND = 1_000_000_000
+START_S = 1_700_000_000
+SECOND_NS = 1_000_000_000
 ARM = """
 <robot name="arm">
   <link name="base"/> <link name="camera"/> <link name="upper"/> <link name="lower"/> <link name="finger"/>
@@ -35,25 +38,28 @@ ARM = """
 """
 
 
-def recorded(path: Path, lifts: Sequence[float], transforms: bool = False) -> Path:
+def recorded(path: Path, lift_positions: Sequence[float], transforms: bool = False) -> Path:
     """Record an arm, and a joint state each second that contains only one joint."""
     with BagWriter(path) as writer:
         writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
-        writer.write("/robot_description", START * SECOND, serialize(String(data=ARM)))
+        writer.write("/robot_description", START_S * SECOND_NS, serialize(String(data=ARM)))
         if transforms:
             writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
-            writer.write("/tf", START * SECOND, serialize(TFMessage(transforms=[])))
-        if lifts:
+            writer.write("/tf", START_S * SECOND_NS, serialize(TFMessage(transforms=[])))
+        if lift_positions:
             writer.add_topic("/joint_states", "sensor_msgs/msg/JointState", [DEFAULT_QOS])
-        for second, lift in enumerate(lifts):
+        for second, lift in enumerate(lift_positions):
             states = JointState(name=["lift", "unknown"], position=[lift, 1.0])
-            states.header.stamp.sec = START + second
-            writer.write("/joint_states", (START + second) * SECOND, serialize(states))
+            states.header.stamp.sec = START_S + second
+            writer.write("/joint_states", (START_S + second) * SECOND_NS, serialize(states))
     return path
 
 
 class Shown:
-    """A published recording, and the last positions of the links: x, y, z in the parent link, in meters."""
+    """A published recording, and the last positions of the links.
+
+    Positions are x, y, z in the parent link, in meters.
+    """
 
     def __init__(self, bag: BagReader) -> None:
         self.graph = Graph()
@@ -72,7 +78,7 @@ class Shown:
     async def at(self, second: int) -> dict[str, list[float]]:
         """Return the positions of the links at a time."""
         self.places.clear()
-        self.playback.seek((START + second) * SECOND)
+        self.playback.seek((START_S + second) * SECOND_NS)
         for _ in range(4):  # a seek takes a few turns of the loop
             await asyncio.sleep(0)
         await self.graph.settle()
@@ -85,7 +91,10 @@ class Shown:
 
 
 async def test_link_poses_follow_recorded_joint_states(tmp_path: Path) -> None:
-    """Joints without messages are at zero, or at the center of limits that exclude zero. Mimic joints follow."""
+    """Joints without messages are at zero, or at the center of limits that exclude zero.
+
+    Mimic joints follow.
+    """
     with BagReader(recorded(tmp_path / "bag", [0.5, 1.0, 7.0])) as bag:
         shown = Shown(bag)
         for second, lift in ((2, 7.0), (0, 0.5), (1, 1.0)):
@@ -124,8 +133,8 @@ async def test_namespaced_transforms_are_used(tmp_path: Path) -> None:
         for second, name in enumerate(names):
             topic = "/robot1/tf_static" if name == "laser" else "/robot1/tf"
             pose = np.array([[second, 0, 0, 0, 0, 0, 1.0]])
-            batch = TransformBatch(("base",), (name,), (START + second) * SECOND, pose)
-            writer.write(topic, (START + second) * SECOND, serialize(TFMessage(batch=batch)))
+            batch = TransformBatch(("base",), (name,), (START_S + second) * SECOND_NS, pose)
+            writer.write(topic, (START_S + second) * SECOND_NS, serialize(TFMessage(batch=batch)))
     with BagReader(tmp_path / "bag") as bag:
         shown = Shown(bag)
         assert await shown.at(2) == {"one": [0, 0, 0], "two": [1, 0, 0], "laser": [2, 0, 0]}

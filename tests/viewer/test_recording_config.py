@@ -16,7 +16,7 @@ from tests.recordings import needs_rosbags
 
 pytestmark = needs_rosbags
 
-START = 1_700_000_000_000_000_000
+START_NS = 1_700_000_000_000_000_000
 LaserScan = get_message("sensor_msgs/msg/LaserScan")
 TransformStamped = get_message("geometry_msgs/msg/TransformStamped")
 
@@ -32,11 +32,11 @@ def test_transforms_are_displayed_without_robot(tmp_path: Path, described: bool)
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
         writer.add_topic("/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
-        writer.write("/tf", START, transform("odom", "base_link"))
-        writer.write("/scan", START + 1, serialize(LaserScan()))
+        writer.write("/tf", START_NS, transform("odom", "base_link"))
+        writer.write("/scan", START_NS + 1, serialize(LaserScan()))
         if described:
             writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
-            writer.write("/robot_description", START, serialize(String(data="<robot name='r'/>")))
+            writer.write("/robot_description", START_NS, serialize(String(data="<robot name='r'/>")))
     with BagReader(tmp_path / "bag") as bag:
         config = recording_config(bag)
     shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
@@ -54,13 +54,13 @@ def test_recorded_simulation_opens_with_its_world(tmp_path: Path) -> None:
             ("/world_poses", transform("world", "mbot::base_link")),
         ):
             writer.add_topic(name, "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
-            writer.write(name, START, message)
+            writer.write(name, START_NS, message)
         for name in ("/scan", "/world_rays", "/world_rays/others"):
             writer.add_topic(name, "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
-            writer.write(name, START, serialize(LaserScan()))
+            writer.write(name, START_NS, serialize(LaserScan()))
         for name in ("/robot_description", "/world_description"):
             writer.add_topic(name, "std_msgs/msg/String", [DESCRIPTION_QOS])
-            writer.write(name, START, serialize(String(data="")))
+            writer.write(name, START_NS, serialize(String(data="")))
     with BagReader(tmp_path / "bag") as bag:
         config = recording_config(bag)
     shown = {display.name: display.checked for display in config.displays}
@@ -74,7 +74,7 @@ def test_scan_without_transforms_uses_its_own_fixed_frame(tmp_path: Path) -> Non
         writer.add_topic("/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
         scan = LaserScan()
         scan.header.frame_id = "laser_frame"
-        writer.write("/scan", START, serialize(scan))
+        writer.write("/scan", START_NS, serialize(scan))
     with BagReader(tmp_path / "bag") as bag:
         assert recording_config(bag).options.text("Fixed Frame") == "laser_frame"
 
@@ -86,26 +86,29 @@ def test_fixed_frame_is_found_in_late_transforms(tmp_path: Path, storage: str) -
     with BagWriter(tmp_path / "bag", storage) as writer:
         for name in ("/tf", "/tf_static"):
             writer.add_topic(name, "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
-        writer.write("/tf_static", START, transform("base_link", "laser"))
+        writer.write("/tf_static", START_NS, transform("base_link", "laser"))
         for tenth in range(50, 400):
-            writer.write("/tf", START + tenth * second // 10, transform("odom", "base_link"))
+            writer.write("/tf", START_NS + tenth * second // 10, transform("odom", "base_link"))
             if tenth > 150:
-                writer.write("/tf", START + tenth * second // 10, transform("map", "odom"))
+                writer.write("/tf", START_NS + tenth * second // 10, transform("map", "odom"))
     with BagReader(tmp_path / "bag") as bag:
         assert recording_config(bag).options.text("Fixed Frame") == "map"
 
 
 def test_first_namespaced_robot_with_description_is_shown(tmp_path: Path) -> None:
-    """The robots' frames have the same names, so the data of the other robots is shown, but at wrong poses."""
+    """The first robot with a description is shown.
+
+    The robots' frames have the same names, so the other robots' data is shown at wrong poses.
+    """
     with BagWriter(tmp_path / "bag") as writer:
         for number in range(3):
             writer.add_topic(f"/robot{number}/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
             writer.add_topic(f"/robot{number}/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
-            writer.write(f"/robot{number}/tf", START, transform("odom", "base_link"))
-            writer.write(f"/robot{number}/scan", START, serialize(LaserScan()))
+            writer.write(f"/robot{number}/tf", START_NS, transform("odom", "base_link"))
+            writer.write(f"/robot{number}/scan", START_NS, serialize(LaserScan()))
             if number:
                 writer.add_topic(f"/robot{number}/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
-                writer.write(f"/robot{number}/robot_description", START, serialize(String(data="<robot name='r'/>")))
+                writer.write(f"/robot{number}/robot_description", START_NS, serialize(String(data="<robot name='r'/>")))
     with BagReader(tmp_path / "bag") as bag:
         config = recording_config(bag)
     assert config.options.text("Fixed Frame") == "odom"
@@ -128,9 +131,9 @@ def test_view_follows_moving_robot_and_fits_unmoving_robot(tmp_path: Path, place
     )
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
-        writer.write("/tf", START, transform(place, "base"))
+        writer.write("/tf", START_NS, transform(place, "base"))
         writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
-        writer.write("/robot_description", START, serialize(String(data=text)))
+        writer.write("/robot_description", START_NS, serialize(String(data=text)))
     with BagReader(tmp_path / "bag") as bag:
         config = recording_config(bag, robot_of(bag, DescriptionLibrary()))
     drives = place == "odom"

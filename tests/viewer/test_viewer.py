@@ -96,10 +96,10 @@ async def test_known_frames_are_offered_as_options():
     async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         world.move_arm()
-        offered = await client.until("property_changed", id="global/Fixed Frame")
-        assert offered["options"] == ["base", "mark", "tip"]
-        offered = await client.until("property_changed", id="display-1/Reference Frame")
-        assert offered["options"] == ["<Fixed Frame>", "base", "mark", "tip"]
+        options_message = await client.until("property_changed", id="global/Fixed Frame")
+        assert options_message["options"] == ["base", "mark", "tip"]
+        options_message = await client.until("property_changed", id="display-1/Reference Frame")
+        assert options_message["options"] == ["<Fixed Frame>", "base", "mark", "tip"]
     options = world.viewer.config.options.rows()[0].options
     assert options == ["base", "mark", "tip"]
 
@@ -186,8 +186,8 @@ async def test_diagnostics_are_shown_with_line_and_cleared():
             "hints": ["did"],
         }
         assert items[1]["file"] is None
-        async with page(world.viewer) as late:
-            assert len((await late.opened())["diagnostics"]["items"]) == 2
+        async with page(world.viewer) as late_client:
+            assert len((await late_client.opened())["diagnostics"]["items"]) == 2
         world.viewer.show_diagnostics([])
         assert (await client.until("diagnostics"))["items"] == []
 
@@ -356,9 +356,9 @@ async def test_failed_feature_close_closes_socket(monkeypatch):
 
 async def test_missing_page_build_is_explained(tmp_path, monkeypatch):
     monkeypatch.setattr(server, "WebServer", partial(server.WebServer, page_folder=tmp_path))
-    async with open_world() as world, aiohttp.ClientSession() as session, session.get(world.viewer.url) as answer:
-        assert answer.status == 503
-        assert "make page" in await answer.text()
+    async with open_world() as world, aiohttp.ClientSession() as session, session.get(world.viewer.url) as response:
+        assert response.status == 503
+        assert "make page" in await response.text()
 
 
 async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
@@ -368,43 +368,43 @@ async def test_page_and_hashed_assets_are_served(tmp_path, monkeypatch):
     monkeypatch.setattr(server, "WebServer", partial(server.WebServer, page_folder=tmp_path))
     async with open_world() as world, aiohttp.ClientSession() as session:
         base = world.viewer.url.partition("?")[0]
-        async with session.get(world.viewer.url) as answer:
-            assert answer.status == 200
-            assert answer.headers["Cache-Control"] == "no-cache"
-            assert await answer.text() == "<!doctype html><title>x</title>"
-        async with session.head(base) as answer:
-            assert (answer.status, answer.headers["Content-Length"]) == (200, "31")
-        async with session.get(f"{base}assets/index-abc.js") as answer:
-            assert answer.status == 200
-            assert answer.content_type == "text/javascript"
-            assert "immutable" in answer.headers["Cache-Control"]
+        async with session.get(world.viewer.url) as response:
+            assert response.status == 200
+            assert response.headers["Cache-Control"] == "no-cache"
+            assert await response.text() == "<!doctype html><title>x</title>"
+        async with session.head(base) as response:
+            assert (response.status, response.headers["Content-Length"]) == (200, "31")
+        async with session.get(f"{base}assets/index-abc.js") as response:
+            assert response.status == 200
+            assert response.content_type == "text/javascript"
+            assert "immutable" in response.headers["Cache-Control"]
         (tmp_path / "assets" / "index-abc.js.gz").write_bytes(gzip.compress(b"export {}"))
-        async with session.get(f"{base}assets/index-abc.js") as answer:
-            assert answer.headers["Content-Encoding"] == "gzip"
-            assert answer.headers["Vary"] == "Accept-Encoding"
-            assert answer.content_type == "text/javascript"
-            assert await answer.text() == "export {}"
-        async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": "identity"}) as answer:
-            assert "Content-Encoding" not in answer.headers
-            assert await answer.text() == "export {}"
+        async with session.get(f"{base}assets/index-abc.js") as response:
+            assert response.headers["Content-Encoding"] == "gzip"
+            assert response.headers["Vary"] == "Accept-Encoding"
+            assert response.content_type == "text/javascript"
+            assert await response.text() == "export {}"
+        async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": "identity"}) as response:
+            assert "Content-Encoding" not in response.headers
+            assert await response.text() == "export {}"
         (tmp_path / "assets" / "index-abc.js").unlink()  # the build creates only compressed files
         for accepted, encoding in (("gzip", "gzip"), ("identity", None)):
-            async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": accepted}) as answer:
-                assert answer.headers.get("Content-Encoding") == encoding
-                assert answer.headers["Vary"] == "Accept-Encoding"
-                assert await answer.text() == "export {}"
-                known = {"Accept-Encoding": accepted, "If-None-Match": answer.headers["ETag"]}
-            async with session.get(f"{base}assets/index-abc.js", headers=known) as answer:
-                assert (answer.status, await answer.read()) == (304, b"")
-        async with session.get(f"{base}assets/gone.js") as answer:
-            assert answer.status == 404
-        async with session.get(base) as answer:
-            tag = answer.headers["ETag"]
-        async with session.get(base, headers={"If-None-Match": tag}) as answer:
-            assert (answer.status, await answer.read()) == (304, b"")
+            async with session.get(f"{base}assets/index-abc.js", headers={"Accept-Encoding": accepted}) as response:
+                assert response.headers.get("Content-Encoding") == encoding
+                assert response.headers["Vary"] == "Accept-Encoding"
+                assert await response.text() == "export {}"
+                headers = {"Accept-Encoding": accepted, "If-None-Match": response.headers["ETag"]}
+            async with session.get(f"{base}assets/index-abc.js", headers=headers) as response:
+                assert (response.status, await response.read()) == (304, b"")
+        async with session.get(f"{base}assets/gone.js") as response:
+            assert response.status == 404
+        async with session.get(base) as response:
+            tag = response.headers["ETag"]
+        async with session.get(base, headers={"If-None-Match": tag}) as response:
+            assert (response.status, await response.read()) == (304, b"")
         (tmp_path / "index.html").write_text("<!doctype html><title>built anew</title>", encoding="utf-8")
-        async with session.get(base, headers={"If-None-Match": tag}) as answer:
-            assert await answer.text() == "<!doctype html><title>built anew</title>"
+        async with session.get(base, headers={"If-None-Match": tag}) as response:
+            assert await response.text() == "<!doctype html><title>built anew</title>"
 
 
 @pytest.mark.parametrize("package", TUTORIAL_PACKAGES, ids=lambda package: package.parent.name)

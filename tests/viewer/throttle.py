@@ -8,21 +8,24 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
 from urllib.parse import urlsplit
 
-_BUFFER = 8192
+_BUFFER_BYTES = 8192
 
 
 @asynccontextmanager
 async def slow_line(url: str, rate: float) -> AsyncIterator[str]:
-    """Return the address of a proxy for a server, which limits the bytes per second from the server."""
+    """Return the address of a proxy for a server.
+
+    The proxy limits the bytes per second from the server.
+    """
     address = urlsplit(url)
     tasks: set[asyncio.Task] = set()
 
     async def serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         upstream = socket.socket()
-        upstream.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER)
+        upstream.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER_BYTES)
         upstream.setblocking(False)
         await asyncio.get_running_loop().sock_connect(upstream, (address.hostname, address.port))
-        from_server, to_server = await asyncio.open_connection(sock=upstream, limit=_BUFFER)
+        from_server, to_server = await asyncio.open_connection(sock=upstream, limit=_BUFFER_BYTES)
         for work in (copy(reader, to_server, 0.0), copy(from_server, writer, rate)):
             task = asyncio.ensure_future(work)
             tasks.add(task)

@@ -1,4 +1,6 @@
-"""Print the files of Linkwright whose functions run on two paths, as JSON, for `tests.viewer.test_data_path_length`.
+"""Print the files of Linkwright whose functions run on two paths, as JSON.
+
+The program is for `tests.viewer.test_data_path_length`.
 
 The paths are from the start of `linkwright view` to an open page, and from a slider of a page to the page's next joint
 positions and transforms. The process must not have imported Linkwright, because imports are part of the first path.
@@ -22,7 +24,7 @@ from typing import Any
 import aiohttp
 
 from tests.places import PACKAGE
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 ROBOT = PACKAGE / "urdf" / "mbot_gazebo.xacro"
 
@@ -61,7 +63,10 @@ class FunctionFiles:
 async def _until(
     socket: aiohttp.ClientWebSocketResponse, is_last: Callable[[str, dict[str, Any]], bool], *kinds: str
 ) -> None:
-    """Receive until messages of all kinds have arrived, the last of them one that `is_last` accepts."""
+    """Receive until messages of all kinds have arrived.
+
+    The last of them is one that `is_last` accepts.
+    """
     missing = set(kinds)
     async for message in socket:
         text = message.type is aiohttp.WSMsgType.TEXT
@@ -96,8 +101,8 @@ async def _main() -> None:
         address = output.getvalue().partition("Viewer: ")[2].split()[0]
         server, _, token = address.partition("/?token=")
         async with aiohttp.ClientSession(cookie_jar=aiohttp.CookieJar(unsafe=True)) as session:
-            async with session.get(address) as answer:
-                await answer.read()
+            async with session.get(address) as response:
+                await response.read()
             origin = {"Origin": server}
             async with session.ws_connect(f"{server.replace('http', 'ws')}/ws?token={token}", headers=origin) as page:
                 await _until(page, _is_stored, "frame_table", "joints", "robot_scene", "binary")
@@ -116,4 +121,4 @@ async def _main() -> None:
 
 
 if __name__ == "__main__":
-    asyncio.run(asyncio.wait_for(_main(), SECONDS))
+    asyncio.run(asyncio.wait_for(_main(), TIMEOUT_S))

@@ -1,3 +1,5 @@
+"""Fixtures of the network tests: domains, processes and programs."""
+
 from __future__ import annotations
 
 import socket
@@ -15,7 +17,7 @@ from linkwright.wire.background import BackgroundTransport
 from linkwright.wire.unsupported_settings import DISCOVERY_SERVERS, SECURITY
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES, ROUTER_FILE, SESSION_FILE
 from tests.domains import own_domain
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 from tests.wire.programs import Program
 
 ROS_VARIABLES = (
@@ -71,7 +73,9 @@ def zenoh_variables(monkeypatch: pytest.MonkeyPatch, domain: int, router_port: i
 
 
 class Process:
-    """The graph, executor and transport of a process in a domain. Several of them share one test process.
+    """The graph, executor and transport of a process in a domain.
+
+    Several of them share one test process.
 
     Args:
         name: the name of its node.
@@ -93,14 +97,14 @@ class Process:
     def join(self) -> BackgroundTransport:
         self.transport = self._join(self.graph)
         assert self.transport is not None
-        assert self.transport.wait_until_ready(SECONDS)
+        assert self.transport.wait_until_ready(TIMEOUT_S)
         return self.transport
 
-    def spin_until(self, condition: Callable[[], object], seconds: float = SECONDS) -> None:
+    def spin_until(self, condition: Callable[[], object], seconds: float = TIMEOUT_S) -> None:
         """Run callbacks until a condition is met, and fail after the time limit."""
-        until = time.monotonic() + seconds
+        deadline = time.monotonic() + seconds
         while not condition():
-            assert time.monotonic() < until, f"condition not met within {seconds} s"
+            assert time.monotonic() < deadline, f"condition not met within {seconds} s"
             self.executor.spin_once(timeout_sec=0.02)
 
     def warnings(self) -> list[str]:
@@ -113,7 +117,10 @@ class Process:
 
 @pytest.fixture
 def processes(wire: str, request: pytest.FixtureRequest) -> Iterator[Callable[..., Process]]:
-    """Return a function that creates graphs; they meet only over the transport, and are closed after the test."""
+    """Return a function that creates graphs.
+
+    They meet only over the transport, and are closed after the test.
+    """
     pytest.importorskip(PACKAGES[wire], reason=f"{wire} is not installed")
     if wire == "zenoh":
         request.getfixturevalue("zenoh_variables")
@@ -130,7 +137,10 @@ def processes(wire: str, request: pytest.FixtureRequest) -> Iterator[Callable[..
 
 @pytest.fixture
 def programs() -> Iterator[Callable[..., Program]]:
-    """Return a function that starts a program of this folder in another process; it ends after the test."""
+    """Return a function that starts a program of this folder in another process.
+
+    It ends after the test.
+    """
     programs: list[Program] = []
 
     def start(name: str, *arguments: str, **environment: str) -> Program:

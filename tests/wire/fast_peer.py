@@ -1,6 +1,6 @@
 """A process that behaves on the wire like Fast DDS, with a service and a client of ours.
 
-``python -m tests.wire.fast_peer``. It serves ``/fast_echo`` and calls ``/our_echo``; both return the text of the
+``python -m tests.wire.fast_peer``. It serves ``/fast_echo`` and calls ``/linkwright_echo``; both return the text of the
 request. Each reply of ``/fast_echo`` comes after a reply to another client.
 """
 
@@ -30,7 +30,10 @@ TYPES = ("sensor_msgs::srv::dds_::SetCameraInfo_Request_", "sensor_msgs::srv::dd
 
 
 class KnownPort(socket.socket):
-    """A socket on the port of the specification's discovery; Fast DDS listens there, and Linkwright does not."""
+    """A socket on the port of the specification's discovery.
+
+    Fast DDS listens there, and Linkwright does not.
+    """
 
     def bind(self, address: Any) -> None:
         super().bind((address[0], multicast_port(read_settings().domain_id) + 10 + 2 * 60))
@@ -45,8 +48,8 @@ class FastPeer:
         add_reader, add_writer = self.participant.add_reader, self.participant.add_writer
         self.requests = add_reader(dds_topic(Role.REQUEST, "/fast_echo"), TYPES[0], b"", self._on_request)
         self.replies = add_writer(dds_topic(Role.REPLY, "/fast_echo"), TYPES[1], b"")
-        self.client_requests = add_writer(dds_topic(Role.REQUEST, "/our_echo"), TYPES[0], b"")
-        self.client_replies = add_reader(dds_topic(Role.REPLY, "/our_echo"), TYPES[1], b"", self._on_reply)
+        self.client_requests = add_writer(dds_topic(Role.REQUEST, "/linkwright_echo"), TYPES[0], b"")
+        self.client_replies = add_reader(dds_topic(Role.REPLY, "/linkwright_echo"), TYPES[1], b"", self._on_reply)
         self.participant.expect({b"whoever there is"})
 
     def is_matched(self) -> bool:
@@ -56,7 +59,7 @@ class FastPeer:
         )
 
     def call(self, text: str) -> str:
-        """Call ``/our_echo``, and return its answer."""
+        """Call ``/linkwright_echo``, and return its answer."""
         request = SetCameraInfo.Request()
         request.camera_info.distortion_model = text
         identity = values.related_identity(self.client_replies.reader.guid, values.NO_NUMBER)

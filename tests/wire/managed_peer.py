@@ -1,4 +1,6 @@
-"""A managed node with an action, on any rclpy of the interpreter: ``-m tests.wire.managed_peer NODE_NAME``.
+"""A managed node with an action, on any rclpy of the interpreter.
+
+Run it with ``-m tests.wire.managed_peer NODE_NAME``.
 
 The action is ``/NODE_NAME/fibonacci``; it rejects negative orders and aborts order 0. The node records all parameter
 events, and the transitions of the nodes that it watches.
@@ -19,7 +21,7 @@ from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from test_msgs.action import Fibonacci
 
-from tests.wire.node_program import SECONDS, result_of, serve_node
+from tests.wire.node_program import TIMEOUT_S, result_of, serve_node
 
 
 class ManagedPeer(LifecycleNode):
@@ -44,7 +46,7 @@ class ManagedPeer(LifecycleNode):
         feedback: list[list[int]] = []
         client = self._action_clients.get(action) or ActionClient(self, Fibonacci, action)
         self._action_clients[action] = client  # a new client gets no feedback until the server has discovered it
-        assert client.wait_for_server(SECONDS)
+        assert client.wait_for_server(TIMEOUT_S)
         sent = client.send_goal_async(
             Fibonacci.Goal(order=order),
             feedback_callback=lambda message: feedback.append(list(message.feedback.sequence)),
@@ -54,7 +56,7 @@ class ManagedPeer(LifecycleNode):
             return {"accepted": False}
         result = goal.get_result_async()
         if cancel_after >= 0:
-            deadline = time.monotonic() + SECONDS
+            deadline = time.monotonic() + TIMEOUT_S
             while len(feedback) < cancel_after and time.monotonic() < deadline:
                 time.sleep(0.01)
             assert len(result_of(goal.cancel_goal_async()).goals_canceling) == 1
@@ -66,11 +68,11 @@ class ManagedPeer(LifecycleNode):
     def count_correct_goals(self, action: str, count: int) -> int:
         """Send many goals, and return the number of correct results."""
         client = ActionClient(self, Fibonacci, action)
-        assert client.wait_for_server(SECONDS)
+        assert client.wait_for_server(TIMEOUT_S)
         goals = [result_of(client.send_goal_async(Fibonacci.Goal(order=number % 5 + 2))) for number in range(count)]
         results = [result_of(goal.get_result_async()).result for goal in goals]
         client.destroy()
-        return sum(list(result.sequence) == fibonacci(number % 5 + 2) for number, result in enumerate(results))
+        return sum(list(result.sequence) == fibonacci_sequence(number % 5 + 2) for number, result in enumerate(results))
 
     def watch(self, node: str) -> None:
         self.create_subscription(
@@ -110,10 +112,10 @@ class ManagedPeer(LifecycleNode):
         return self.changes
 
     def _execute(self, goal: Any) -> Any:
-        deadline = time.monotonic() + SECONDS
+        deadline = time.monotonic() + TIMEOUT_S
         while not self.count_subscribers(f"{self._action}/_action/feedback") and time.monotonic() < deadline:
             time.sleep(0.01)  # a request may arrive before the feedback publisher has discovered its client
-        sequence = fibonacci(1)
+        sequence = fibonacci_sequence(1)
         for _ in range(goal.request.order - 1):
             if goal.is_cancel_requested:
                 goal.canceled()
@@ -135,13 +137,13 @@ class ManagedPeer(LifecycleNode):
 
     def _call(self, service_type: Any, name: str, request: Any) -> Any:
         client = self.create_client(service_type, name)
-        assert client.wait_for_service(SECONDS)
+        assert client.wait_for_service(TIMEOUT_S)
         response = result_of(client.call_async(request))
         self.destroy_client(client)
         return response
 
 
-def fibonacci(order: int) -> list[int]:
+def fibonacci_sequence(order: int) -> list[int]:
     sequence = [0, 1]
     while len(sequence) <= order:
         sequence.append(sequence[-1] + sequence[-2])

@@ -1,4 +1,7 @@
-"""Functions for the programs of this folder that are a node, on any rclpy of their interpreter."""
+"""Functions for the programs of this folder that are a node.
+
+They run on any rclpy of the interpreter.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from rclpy.node import Node
 
 from tests.wire.programs import serve
 
-SECONDS = 60.0
+TIMEOUT_S = 60.0
 """The time limit for another program's answer."""
 
 
@@ -34,7 +37,7 @@ def serve_node(make: Callable[[str], Node], questions: str, *, threads: int = 1)
     rclpy.shutdown()
 
 
-def result_of(future: Any, seconds: float = SECONDS) -> Any:
+def result_of(future: Any, seconds: float = TIMEOUT_S) -> Any:
     """Return the result that another thread delivers.
 
     Raises:

@@ -1,4 +1,7 @@
-"""Control of a program of this folder in another process: each question and each answer is a line of JSON."""
+"""Control of a program of this folder in another process.
+
+Each question and each answer is a line of JSON.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from pathlib import Path
 from queue import Empty, Queue
 from typing import Any
 
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 FOLDER = Path(__file__).parent
 
@@ -35,14 +38,14 @@ class Program:
         name: str,
         *arguments: str,
         python: str = sys.executable,
-        within: Sequence[str] = (),
+        prefix_words: Sequence[str] = (),
         folder: Path | None = None,
         **environment: str,
     ) -> None:
         repository = FOLDER.parents[1]
         variables = {} if folder is None else {"PYTHONPATH": str(repository)}
         self.process = subprocess.Popen(
-            [*within, python, "-m", f"tests.wire.{name}", *arguments],
+            [*prefix_words, python, "-m", f"tests.wire.{name}", *arguments],
             cwd=folder or repository,
             env={**os.environ, **variables, **environment},
             stdin=subprocess.PIPE,
@@ -57,14 +60,14 @@ class Program:
 
     def ask(self, question: str, *arguments: Any) -> Any:
         """Ask a question, and return the answer."""
-        return self._ask(SECONDS, question, arguments)
+        return self._ask(TIMEOUT_S, question, arguments)
 
     def ask_slowly(self, question: str, *arguments: Any) -> Any:
         """Ask a question that takes long to answer, and return the answer."""
-        return self._ask(5 * SECONDS, question, arguments)
+        return self._ask(5 * TIMEOUT_S, question, arguments)
 
     def ask_until(
-        self, condition: Callable[[Any], object], question: str, *arguments: Any, seconds: float = SECONDS
+        self, condition: Callable[[Any], object], question: str, *arguments: Any, seconds: float = TIMEOUT_S
     ) -> Any:
         """Repeat a question until the answer meets a condition, and return that answer."""
         deadline = time.monotonic() + seconds
@@ -72,10 +75,10 @@ class Program:
             answer = self.ask(question, *arguments)
             if condition(answer):
                 return answer
-            assert time.monotonic() < deadline, f"still {answer!r} after {SECONDS} s"
+            assert time.monotonic() < deadline, f"still {answer!r} after {TIMEOUT_S} s"
             time.sleep(0.05)
 
-    def answer(self, seconds: float = SECONDS) -> Any:
+    def answer(self, seconds: float = TIMEOUT_S) -> Any:
         """Return the next answer; fail at once if the process has ended."""
         try:
             result = self._answers.get(timeout=seconds)

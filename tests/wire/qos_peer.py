@@ -1,4 +1,6 @@
-"""A node whose endpoints have any quality of service, on any rclpy: ``-m tests.wire.qos_peer NODE_NAME``.
+"""A node whose endpoints have any quality of service, on any rclpy.
+
+Run it with ``-m tests.wire.qos_peer NODE_NAME``.
 
 A quality of service is a dictionary: ``{"preset": "sensor_data"}``, or policies by name and, in seconds,
 ``deadline``, ``lifespan`` and ``lease``.
@@ -36,7 +38,7 @@ class QosPeer(Node):
 
     def publisher(self, topic: str, qos: dict[str, Any]) -> None:
         callbacks = self._callbacks(PublisherEventCallbacks, topic)
-        self._publishers[topic] = self.create_publisher(String, topic, profile(qos), event_callbacks=callbacks)
+        self._publishers[topic] = self.create_publisher(String, topic, make_profile(qos), event_callbacks=callbacks)
 
     def subscription(self, topic: str, qos: dict[str, Any]) -> None:
         texts = self._received.setdefault(topic, [])
@@ -44,7 +46,7 @@ class QosPeer(Node):
             String,
             topic,
             lambda message: texts.append(message.data),
-            profile(qos),
+            make_profile(qos),
             event_callbacks=self._callbacks(SubscriptionEventCallbacks, topic),
         )
 
@@ -89,7 +91,7 @@ class QosPeer(Node):
         return callbacks_type(**callbacks)
 
 
-def profile(qos: dict[str, Any]) -> Any:
+def make_profile(qos: dict[str, Any]) -> Any:
     if "preset" in qos:
         return QoSPresetProfiles.get_from_short_key(qos["preset"])
     policies = {name: POLICIES[name][value.upper()] for name, value in qos.items() if name in POLICIES}

@@ -1,4 +1,6 @@
-"""A process with a real rclpy: ``$LINKWRIGHT_ROS_PYTHON -m tests.wire.real_peer NODE_NAME``.
+"""A process with a real rclpy.
+
+Run it with ``$LINKWRIGHT_ROS_PYTHON -m tests.wire.real_peer NODE_NAME``.
 
 It has publishers on ``/from_ros``, ``/states_from_ros`` and ``/images_from_ros``, a best-effort one on
 ``/frames_from_ros``, a latched one on ``/lasting_from_ros``, and subscriptions of the same types to ``/to_ros`` and so
@@ -27,10 +29,10 @@ from std_srvs.srv import SetBool
 from tests.wire.node_program import result_of
 from tests.wire.programs import serve
 
-LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 KINDS = {
     "": (String, 10),
-    "lasting_": (String, LASTING),
+    "lasting_": (String, TRANSIENT_LOCAL),
     "states_": (JointState, 200),
     "images_": (Image, 50),
     "frames_": (Image, QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)),
@@ -85,7 +87,10 @@ class RealPeer:
         self.publishers["states_"].publish(JointState(name=names, position=positions))
 
     def publish_images(self, count: int, rate: float) -> None:
-        """Publish numbered images at a rate, from a thread as a camera driver does; the frame ID is the number."""
+        """Publish numbered images at a rate, from a thread as a camera driver does.
+
+        The frame ID is the number.
+        """
 
         def work() -> None:
             image = Image(height=480, width=640, encoding="rgb8", step=1920, data=bytes(640 * 480 * 3))
@@ -131,7 +136,10 @@ class RealPeer:
         return sum(text == answer for text, answer in zip(texts, self.echoes(service, texts), strict=True))
 
     def parameters_of(self, node: str) -> list[str]:
-        """Return the names of a node's parameters; none if it does not answer, as after it was killed."""
+        """Return the names of a node's parameters.
+
+        None if it does not answer, as after it was killed.
+        """
         client = AsyncParameterClient(self.node, node)
         assert client.wait_for_services(60)
         try:

@@ -1,7 +1,9 @@
-"""A process that behaves on the wire like real ROS 2 with rmw_cyclonedds_cpp, and needs only `cyclonedds`.
+"""A process that behaves on the wire like real ROS 2 with rmw_cyclonedds_cpp.
+
+It needs only `cyclonedds`.
 
 ``python -m tests.wire.ros_peer humble|jazzy NODE_NAME``. It has a publisher on ``/from_ros``, a subscription to
-``/to_ros``, a server of ``/ros_flip``, and a client of ``/our_flip``; it writes CDR by hand.
+``/to_ros``, a server of ``/ros_flip``, and a client of ``/linkwright_flip``; it writes CDR by hand.
 """
 
 from __future__ import annotations
@@ -67,7 +69,7 @@ def as_bytes(base: type[IdlStruct]) -> type[IdlStruct]:
     return Raw
 
 
-def text(value: str) -> bytes:
+def read_text(value: str) -> bytes:
     encoded = value.encode() + b"\0"
     return struct.pack("<I", len(encoded)) + encoded + bytes(-len(encoded) % 4)
 
@@ -96,8 +98,8 @@ class RosPeer:
         self.subscription = self._reader("rt/to_ros", string, facts)
         self.requests = self._reader("rq/ros_flipRequest", request, "serviceid=1.2.3;")
         self.replies = self._writer("rr/ros_flipReply", response, "serviceid=1.2.3;")
-        self.client_requests = self._writer("rq/our_flipRequest", request, "clientid=4.5.6;")
-        self.client_replies = self._reader("rr/our_flipReply", response, "clientid=4.5.6;")
+        self.client_requests = self._writer("rq/linkwright_flipRequest", request, "clientid=4.5.6;")
+        self.client_replies = self._reader("rr/linkwright_flipReply", response, "clientid=4.5.6;")
         self.publications = BuiltinDataReader(self.participant, BuiltinTopicDcpsPublication)
         self.subscriptions = BuiltinDataReader(self.participant, BuiltinTopicDcpsSubscription)
         self.nodes_by_participant: dict[str, Any] = {}
@@ -105,7 +107,7 @@ class RosPeer:
         self._announce()
 
     def publish(self, value: str) -> None:
-        self.publisher.write(self.publisher.data_type(b"\0\1\0\0" + text(value)))
+        self.publisher.write(self.publisher.data_type(b"\0\1\0\0" + read_text(value)))
 
     def publish_bytes(self, data: str) -> str:
         """Publish bytes unchanged, and return Cyclone's error, or "written"."""
@@ -125,7 +127,7 @@ class RosPeer:
         for request in requests:
             head, value = request.cdr[4:20], request.cdr[20]
             self.replies.write(
-                self.replies.data_type(b"\0\1\0\0" + head + bytes([not value, 0, 0, 0]) + text("by ROS"))
+                self.replies.data_type(b"\0\1\0\0" + head + bytes([not value, 0, 0, 0]) + read_text("by ROS"))
             )
         return len(requests)
 
@@ -148,7 +150,10 @@ class RosPeer:
         return [node for nodes in self.nodes_by_participant.values() for node in nodes]
 
     def remote_endpoints(self) -> dict[str, Any]:
-        """Return the remote endpoints by key: topic, type and USER_DATA in DDS, and whether it is a writer."""
+        """Return the remote endpoints by key.
+
+        Each has the topic, type and USER_DATA in DDS, and whether it is a writer.
+        """
         for reader, writes in ((self.publications, True), (self.subscriptions, False)):
             for sample in reader.take(500):
                 if sample.sample_info.instance_state != 16:
@@ -181,7 +186,7 @@ class RosPeer:
             return struct.pack("<I", len(entities)) + data
 
         body = self.participant.guid.bytes.ljust(self.gid_size, b"\0") + struct.pack("<I", 1)
-        body += text("/") + text(self.name)
+        body += read_text("/") + read_text(self.name)
         body += gids(self.subscription, self.requests, self.client_replies)
         body += gids(self.publisher, self.replies, self.client_requests)
         self.info_writer.write(self.info_writer.data_type(b"\0\1\0\0" + body))

@@ -1,4 +1,6 @@
-"""A process with zenoh-ros2-sdk: ``$LINKWRIGHT_ZENOH_SDK_PYTHON -m tests.wire.sdk_peer NODE_NAME``.
+"""A process with zenoh-ros2-sdk.
+
+Run it with ``$LINKWRIGHT_ZENOH_SDK_PYTHON -m tests.wire.sdk_peer NODE_NAME``.
 
 It publishes on ``/from_sdk``, subscribes to ``/to_sdk``, and serves ``/flip_sdk``. The hashes of types are its own.
 """

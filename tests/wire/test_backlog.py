@@ -1,3 +1,5 @@
+"""The backlog of a writer: which samples wait for acknowledgments, and which are replaced."""
+
 from __future__ import annotations
 
 from linkwright.graph.qos.profile import QoSProfile
@@ -5,12 +7,15 @@ from linkwright.messages import get_message
 from linkwright.wire.dds.backlog import ACKNOWLEDGMENT_TIMEOUT_S, Backlog
 
 UInt8MultiArray = get_message("std_msgs/msg/UInt8MultiArray")
-SMALL, LARGE = 100, 1000
-DEPTH = 2
+SMALL_BYTES, LARGE_BYTES = 100, 1000
+HISTORY_DEPTH = 2
 
 
 class Writer:
-    """A writer with a queue of two samples; the test decides when its readers have acknowledged."""
+    """A writer with a queue of two samples.
+
+    The test decides when its readers have acknowledged.
+    """
 
     def __init__(self) -> None:
         self.written: list[int] = []
@@ -18,15 +23,15 @@ class Writer:
         self.matters = True
         self.now = 0.0
         self.backlog = Backlog(
-            DEPTH,
-            SMALL,
+            HISTORY_DEPTH,
+            SMALL_BYTES,
             lambda sample: self.written.append(sample[0]),
             lambda: self.acknowledged,
             lambda: self.matters,
             lambda: self.now,
         )
 
-    def send(self, *numbers: int, size: int = LARGE) -> bool:
+    def send(self, *numbers: int, size: int = LARGE_BYTES) -> bool:
         return [self.backlog.send(bytes([number]) * size) for number in numbers][-1]
 
 
@@ -50,17 +55,17 @@ def test_newer_samples_replace_queued_ones():
 
 def test_small_samples_alone_are_not_queued():
     writer = Writer()
-    assert not writer.send(1, 2, 3, 4, size=SMALL)
+    assert not writer.send(1, 2, 3, 4, size=SMALL_BYTES)
     assert writer.written == [1, 2, 3, 4]
 
 
 def test_small_samples_do_not_overtake_or_replace_large_ones():
     writer = Writer()
     writer.send(1)
-    assert writer.send(2, 3, size=SMALL)
+    assert writer.send(2, 3, size=SMALL_BYTES)
     assert writer.written == [1, 2]
     writer.acknowledged = True
-    writer.send(4, size=SMALL)
+    writer.send(4, size=SMALL_BYTES)
     assert writer.written == [1, 2, 3, 4]
 
 

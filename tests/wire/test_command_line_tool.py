@@ -1,4 +1,7 @@
-"""The output of the `cyclonedds` command about our participants: an outside view without any knowledge of ROS."""
+"""The output of the `cyclonedds` command about Linkwright's participants.
+
+It is an outside view without any knowledge of ROS.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +59,10 @@ def test_cyclonedds_ls_shows_endpoints_and_qos(processes, tool, domain):
 
 
 def test_cyclonedds_typeof_shows_no_type_description(processes, tool, domain):
-    """Type descriptions are not sent, because rmw_fastrtps_cpp and Humble's Cyclone DDS cannot process ours."""
+    """Type descriptions are not sent.
+
+    rmw_fastrtps_cpp and Humble's Cyclone DDS cannot process Linkwright's.
+    """
     process = processes("ours")
     process.node.create_publisher(JointState, "joint_states", 10)
     assert "struct" not in tool("typeof", "rt/joint_states", "-i", str(domain))

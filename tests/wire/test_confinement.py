@@ -1,4 +1,7 @@
-"""By default no announcement leaves the machine: each interface has the membership that Linux needs to drop them."""
+"""By default no announcement leaves the machine.
+
+Each interface has the membership that Linux needs to drop them.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ import pytest
 from linkwright.graph import Graph
 from linkwright.wire.dds import join, open_domains
 from linkwright.wire.dds.settings import own_addresses
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 pytestmark = pytest.mark.skipif(
     not sys.platform.startswith("linux"), reason="only Linux sends packets with a time to live of zero"
@@ -22,7 +25,10 @@ GROUP = "0xefff0001"
 
 
 def memberships() -> set[str]:
-    """Return the addresses that are the only source of the announcement group on their interface."""
+    """Return the addresses that are the only source of their interface's group.
+
+    The group is that of the announcements.
+    """
     rows = [line.split() for line in Path("/proc/self/net/mcfilter").read_text().splitlines()[1:]]
     sources = [source for _, _, group, source, included, _ in rows if group == GROUP and int(included)]
     return {socket.inet_ntoa(int(source, 16).to_bytes(4, "big")) for source in sources}
@@ -33,7 +39,7 @@ def join_network() -> Graph:
     graph = Graph(threads=True)
     transport = join(graph)
     assert transport is not None
-    assert transport.wait_until_ready(SECONDS)
+    assert transport.wait_until_ready(TIMEOUT_S)
     return graph
 
 
@@ -47,15 +53,15 @@ def test_only_loopback_is_used_if_memberships_fail(monkeypatch):
     def refuse(addresses):
         raise OSError("no buffer space")
 
-    used = []
+    interfaces = []
     first_taken = open_domains._first_taken
 
     def note(number, configurations):
-        used.extend(configurations)
+        interfaces.extend(configurations)
         return first_taken(number, configurations)
 
     monkeypatch.setattr(open_domains, "confine", refuse)
     monkeypatch.setattr(open_domains, "_first_taken", note)
     asyncio.run(join_network().close())
-    assert used
-    assert not any("autodetermine" in configuration for configuration in used)
+    assert interfaces
+    assert not any("autodetermine" in configuration for configuration in interfaces)

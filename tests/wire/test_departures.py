@@ -108,7 +108,7 @@ def test_destroyed_publisher_and_leaving_process_are_not_lost(processes, program
     process = processes("ours")
     lost: list[EndpointInfo] = []
     process.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
-    peer, marker = processes("theirs"), programs("our_program", "marker")
+    peer, marker = processes("theirs"), programs("linkwright_program", "marker")
     publisher = peer.node.create_publisher(String, "/other", 10)
     peer.node.create_publisher(String, "/other", 10)
     process.spin_until(lambda: process.node.count_publishers("/other") == 2)

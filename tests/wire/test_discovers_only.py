@@ -12,7 +12,7 @@ from linkwright.graph import Graph
 from linkwright.messages import String
 from linkwright.wire.dds import join
 from linkwright.wire.dds import transport as module
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
 
@@ -24,7 +24,7 @@ def observer():
     graph = Graph(threads=True)
     transport = join(graph, discovers_only=True)
     assert transport is not None
-    assert transport.wait_until_ready(SECONDS)
+    assert transport.wait_until_ready(TIMEOUT_S)
     yield graph, transport
     graph.close_threadsafe()
 
@@ -41,7 +41,7 @@ def test_discovers_only_transport_sees_others_and_is_not_seen(observer, processe
     node.create_publisher(String, "unheard", 10)
     other = processes("others")
     other.node.create_subscription(String, "chatter", print, 10)
-    assert other.transport.wait_until_ready(SECONDS)
+    assert other.transport.wait_until_ready(TIMEOUT_S)
     wait_until(lambda: graph.count_subscribers("/chatter") == 1)
     third = processes("third")
     third.spin_until(lambda: third.node.count_subscribers("chatter") == 1)
@@ -52,17 +52,17 @@ def test_discovers_only_transport_sees_others_and_is_not_seen(observer, processe
 @on_linux
 def test_wait_for_discovery_ends_without_peers(observer, never_settled):
     _, transport = observer
-    assert transport.wait_for_discovery(SECONDS)
+    assert transport.wait_for_discovery(TIMEOUT_S)
 
 
 @on_linux
 def test_wait_for_discovery_ends_when_all_processes_are_discovered(programs, never_settled):
-    programs("our_program", "one")
-    programs("our_program", "two")
+    programs("linkwright_program", "one")
+    programs("linkwright_program", "two")
     graph = Graph(threads=True)
     transport = join(graph, discovers_only=True)
     assert transport is not None
-    assert transport.wait_for_discovery(SECONDS)
+    assert transport.wait_for_discovery(TIMEOUT_S)
     assert {node.name for node in transport.remote_nodes()} == {"one", "two"}
     assert graph.count_publishers("/chatter") == 0
     graph.close_threadsafe()
@@ -117,6 +117,6 @@ def test_numpy_and_unused_cyclonedds_modules_are_not_imported():
         print(cyclonedds.pub.DataWriter is DataWriter, cyclonedds.core is core, hasattr(cyclonedds, "nothing"))
     """
     result = subprocess.run(
-        [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=False, timeout=SECONDS
+        [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=False, timeout=TIMEOUT_S
     )
     assert (result.stdout, result.stderr) == ("[]\nTrue True False\n", "")

@@ -1,3 +1,5 @@
+"""The discovery of nodes and endpoints of other processes over DDS."""
+
 from __future__ import annotations
 
 import socket
@@ -10,10 +12,10 @@ from linkwright.messages import String
 from linkwright.wire.dds import discovery, engine, join
 from linkwright.wire.dds.discovery_info import ParticipantEntities
 from linkwright.wire.dds.remote import RemoteEndpoint
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 
-def names(process):
+def remote_node_names(process):
     return sorted(name for name, _ in process.node.get_node_names_and_namespaces())
 
 
@@ -21,17 +23,17 @@ def test_nodes_appear_and_disappear(processes):
     a, b = processes("a"), processes("b")
     extra = b.graph.create_node("extra", namespace="/deep/er")
     a.spin_until(lambda: NodeIdentity("extra", "/deep/er") in a.transport.remote_nodes())
-    assert names(a) == ["a", "b", "extra"]
+    assert remote_node_names(a) == ["a", "b", "extra"]
     extra.destroy_node()
-    a.spin_until(lambda: names(a) == ["a", "b"])
+    a.spin_until(lambda: remote_node_names(a) == ["a", "b"])
     b.close()
-    a.spin_until(lambda: names(a) == ["a"])
+    a.spin_until(lambda: remote_node_names(a) == ["a"])
 
 
 def test_nodes_with_duplicate_names_are_listed_separately(processes):
     a, b = processes("a"), processes("twin")
     b.graph.create_node("twin")
-    a.spin_until(lambda: names(a) == ["a", "twin", "twin"])
+    a.spin_until(lambda: remote_node_names(a) == ["a", "twin", "twin"])
 
 
 def test_graph_watchers_are_notified(processes):
@@ -39,7 +41,7 @@ def test_graph_watchers_are_notified(processes):
     changes: list[int] = []
     a.transport.watch(lambda: changes.append(1))
     b = processes("b")
-    a.spin_until(lambda: changes and "b" in names(a))
+    a.spin_until(lambda: changes and "b" in remote_node_names(a))
     count_before = len(changes)
     b.node.create_publisher(String, "chatter", 10)
     a.spin_until(lambda: len(changes) > count_before and a.node.count_publishers("chatter") == 1)
@@ -57,10 +59,10 @@ def test_endpoints_of_nodes_are_discovered(processes):
 
 
 def test_wait_for_discovery_ends_when_all_nodes_are_discovered(processes, programs):
-    programs("our_program", "one")
-    programs("our_program", "two")
+    programs("linkwright_program", "one")
+    programs("linkwright_program", "two")
     process = processes("ours")
-    assert process.transport.wait_for_discovery(SECONDS)
+    assert process.transport.wait_for_discovery(TIMEOUT_S)
     assert {node.name for node in process.transport.remote_nodes()} == {"one", "two"}
 
 
@@ -69,7 +71,7 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
 
     class Late(engine.Engine):
         def __init__(self, *arguments: Any) -> None:
-            assert may_join.wait(SECONDS)
+            assert may_join.wait(TIMEOUT_S)
             super().__init__(*arguments)
 
     announced = []
@@ -87,48 +89,57 @@ def test_process_announces_nodes_after_creating_all_endpoints(processes, monkeyp
     publishers = [process.node.create_publisher(String, f"topic_{number}", 10) for number in range(50)]
     transport = join(process.graph)  # this requests all publishers before the transport joins
     may_join.set()
-    assert transport.wait_until_ready(SECONDS)
+    assert transport.wait_until_ready(TIMEOUT_S)
     wait_until(lambda: announced)
     assert {publisher.gid for publisher in publishers} <= set(announced[0].nodes[0].writers)
 
 
 def test_wait_for_discovery_ends_soon_without_peers(processes):
     process = processes("ours")
-    assert process.transport.wait_for_discovery(SECONDS)
+    assert process.transport.wait_for_discovery(TIMEOUT_S)
 
 
 def test_killed_process_and_its_successor_are_listed_once(processes, programs):
     process = processes("ours")
-    first = programs("our_program", "worker")
-    process.spin_until(lambda: names(process) == ["ours", "worker"])
+    first = programs("linkwright_program", "worker")
+    process.spin_until(lambda: remote_node_names(process) == ["ours", "worker"])
     first.kill()
-    process.spin_until(lambda: names(process) == ["ours"], 2)
-    programs("our_program", "worker")
-    process.spin_until(lambda: names(process) == ["ours", "worker"])
+    process.spin_until(lambda: remote_node_names(process) == ["ours"], 2)
+    programs("linkwright_program", "worker")
+    process.spin_until(lambda: remote_node_names(process) == ["ours", "worker"])
 
 
 def test_local_process_is_recognized_by_host_name_and_machine_id(monkeypatch):
     """Fast DDS 3 announces the machine ID, Fast DDS 2 and Cyclone the host name."""
-    here = socket.gethostname()
+    host_name = socket.gethostname()
     monkeypatch.setattr(discovery, "machine_id", lambda: "3d12")
-    for text in ("3d12", f"{here}:0", here):
+    for text in ("3d12", f"{host_name}:0", host_name):
         properties = {"fastdds.physical_data.host": text, "fastdds.physical_data.process": "42"}
-        assert next(discovery.announced_processes(lambda name, text=properties: text.get(name, ""))) == (here, "42")
-    elsewhere = {"__Hostname": "elsewhere", "__Pid": "42"}
-    assert list(discovery.announced_processes(lambda name: elsewhere.get(name, ""))) == [("", ""), ("elsewhere", "42")]
+        assert next(discovery.announced_processes(lambda name, text=properties: text.get(name, ""))) == (
+            host_name,
+            "42",
+        )
+    other_process = {"__Hostname": "elsewhere", "__Pid": "42"}
+    assert list(discovery.announced_processes(lambda name: other_process.get(name, ""))) == [
+        ("", ""),
+        ("elsewhere", "42"),
+    ]
 
 
 def test_fifty_nodes_with_services_are_discovered(processes, programs):
     process = processes("ours")
     for number in range(50):
         process.graph.create_node(f"node_{number}")
-    other = programs("our_program", "other")
+    other = programs("linkwright_program", "other")
     names = other.ask_until(lambda names: len(names) == 52, "nodes", seconds=20)
     assert "node_49" in names
 
 
 def test_type_hash_of_fast_dds_request_is_not_service_hash():
-    """Request and response each announce their own hash; with Cyclone both announce the hash of the service."""
+    """Request and response each announce their own hash.
+
+    With Cyclone both announce the hash of the service.
+    """
     hashes = {
         guid[:2]: [
             RemoteEndpoint(guid, 1, guid, False, topic, type_name, QoSProfile(1), {"typehash": "RIHS01_1"})

@@ -1,3 +1,5 @@
+"""The discovery messages of rmw_dds_common: their layout, and malformed ones."""
+
 from __future__ import annotations
 
 import struct

@@ -1,4 +1,7 @@
-"""Errors of users' code in a thread of the transport: they are reported, and the thread continues."""
+"""Errors of users' code in a thread of the transport.
+
+They are reported, and the thread continues.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from tests.waiting import wait_until
 from tests.wire.conftest import both_wires
 
 SetBool = get_service("std_srvs/srv/SetBool")
-LASTING = QoSProfile(5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+TRANSIENT_LOCAL = QoSProfile(5, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
 
 class FailsOnce:
@@ -103,14 +106,14 @@ def with_invalid_data(message, value):
 @both_wires
 def test_unserializable_latched_message_is_reported_and_others_sent(processes):
     a = processes("a", join_now=False)
-    publisher = a.node.create_publisher(String, "described", LASTING)
+    publisher = a.node.create_publisher(String, "described", TRANSIENT_LOCAL)
     publisher._copies_messages = False  # as in Linkwright's own nodes, which do not reuse messages
     for message in (String(data="one"), with_invalid_data(String(), 5), String(data="three")):
         publisher.publish(message)
     a.join()
     b = processes("b")
     texts = []
-    b.node.create_subscription(String, "described", lambda message: texts.append(message.data), LASTING)
+    b.node.create_subscription(String, "described", lambda message: texts.append(message.data), TRANSIENT_LOCAL)
     b.spin_until(lambda: len(texts) == 2)
     assert texts == ["one", "three"]
     assert [text for text in a.warnings() if text.startswith("sending the messages of topic '/described' failed:")]

@@ -1,4 +1,7 @@
-"""Services with Fast DDS, imitated by a process that sends the same packets; `test_real_services` has the real one."""
+"""Services with Fast DDS, imitated by a process that sends the same packets.
+
+`test_real_services` has the real one.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ from linkwright.wire.dds.rtps.values import read_parameters, related_identity
 from tests.wire.test_failures import FailsOnce, warnings_of
 
 SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
-LARGE = "x" * 300_000
+LARGE_TEXT = "x" * 300_000
 CLIENT = SimpleNamespace(
     name="/echo", srv_type=SetCameraInfo, type_name="sensor_msgs/srv/SetCameraInfo", type_hash="", raw=False
 )
@@ -33,7 +36,7 @@ def camera_request(text):
     return request
 
 
-@pytest.mark.parametrize("text", ["hej", LARGE])
+@pytest.mark.parametrize("text", ["hej", LARGE_TEXT])
 def test_client_takes_response_with_its_identity(processes, programs, text):
     process = processes("ours")
     client = process.node.create_client(SetCameraInfo, "/fast_echo")
@@ -47,25 +50,25 @@ def test_client_takes_response_with_its_identity(processes, programs, text):
     process.spin_until(lambda: not client.service_is_ready(), 5.0)  # the lease is 10 s
 
 
-@pytest.mark.parametrize("text", ["hej", LARGE])
+@pytest.mark.parametrize("text", ["hej", LARGE_TEXT])
 def test_service_responds_with_identity_of_request(processes, programs, text):
     process = processes("ours")
-    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     peer = programs("fast_peer")
     process.spin_until(lambda: peer.ask("is_matched"))
-    answers = []
-    thread = threading.Thread(target=lambda: answers.append(peer.ask("call", text)))
+    responses = []
+    thread = threading.Thread(target=lambda: responses.append(peer.ask("call", text)))
     thread.start()
-    process.spin_until(lambda: answers)
+    process.spin_until(lambda: responses)
     thread.join()
-    assert answers == [text]
+    assert responses == [text]
     assert not process.warnings()
 
 
 def test_no_rtps_participant_is_created_with_cyclone_peers_only(processes):
     a, b = processes("a"), processes("b")
-    a.node.create_service(SetCameraInfo, "/our_echo", echo)
-    client = b.node.create_client(SetCameraInfo, "/our_echo")
+    a.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
+    client = b.node.create_client(SetCameraInfo, "/linkwright_echo")
     assert client.wait_for_service(60)
     assert not [thread.name for thread in threading.enumerate() if thread.name == "linkwright-rtps"]
 
@@ -76,7 +79,7 @@ def test_missing_socket_is_reported_once_and_other_services_work(processes, prog
 
     monkeypatch.setattr("linkwright.wire.dds.rtps.participant.Network", refuse)
     process = processes("ours")
-    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     programs("fast_peer")
     process.spin_until(process.warnings)
     assert process.warnings() == ["Services and clients of nodes on Fast DDS are out of reach: no sockets today"]
@@ -103,7 +106,7 @@ class _Participant:
 
 
 class _Service:
-    name = "/our_echo"
+    name = "/linkwright_echo"
     srv_type = SetCameraInfo
     type_name, type_hash, raw = SetCameraInfo.TYPE_NAME, "", False
     destroyed = False
@@ -166,10 +169,10 @@ def test_replies_to_others_during_client_creation_are_ignored():
             return 1
 
     client = FastClient(CLIENT, EarlyReplyParticipant(), lambda _: False)
-    answers = []
-    client.send(camera_request("hej"), answers.append)
+    responses = []
+    client.send(camera_request("hej"), responses.append)
     client._on_data(replace(reply, inline=read_parameters(related_identity(b"r" * 16, 1), 0, "<")[0], payload=ANSWER))
-    assert [answer.status_message for answer in answers] == ["hej"]
+    assert [response.status_message for response in responses] == ["hej"]
 
 
 def test_error_in_participant_thread_is_reported_and_next_call_answered(processes, programs, monkeypatch):

@@ -1,3 +1,5 @@
+"""Joining a domain: settings, missing packages and errors."""
+
 from __future__ import annotations
 
 import socket
@@ -28,7 +30,7 @@ def graph(log):
     graph.close_threadsafe()
 
 
-def texts(log):
+def log_texts(log):
     return [record.text for record in log]
 
 
@@ -59,7 +61,7 @@ def test_missing_cyclonedds_is_reported_and_process_continues(graph, log, monkey
     monkeypatch.setattr("linkwright.wire.dds.joining.find_spec", lambda _name: None)
     assert "'cyclonedds' is not installed" in unavailable_reason()
     assert join(graph) is None
-    (text,) = texts(log)
+    (text,) = log_texts(log)
     assert text.startswith(
         "This process does not communicate with other processes: the package 'cyclonedds' is not installed"
     )
@@ -71,7 +73,7 @@ def test_missing_cyclonedds_is_reported_and_process_continues(graph, log, monkey
 def test_invalid_domain_id_is_reported(graph, log, monkeypatch, number):
     monkeypatch.setenv("ROS_DOMAIN_ID", number)
     assert join(graph) is None
-    (text,) = texts(log)
+    (text,) = log_texts(log)
     assert f"error[DDS101]: '{number}' is not a DDS domain ID" in text
     assert "This process continues without the network" in text
     assert delivers_locally(graph)
@@ -84,7 +86,7 @@ def test_configuration_rejected_by_cyclone_is_reported(graph, log, monkeypatch, 
     transport = join(graph)
     assert not transport.wait_until_ready(10)
     assert transport.problem.diagnostics[0].code == "DDS102"
-    (text,) = texts(log)
+    (text,) = log_texts(log)
     assert uri in text
     assert delivers_locally(graph)
     capfd.readouterr()
@@ -95,7 +97,7 @@ def test_invalid_discovery_range_is_reported_and_falls_back_to_machine(graph, lo
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOTS")
     transport = join(graph)
     assert transport.wait_until_ready(60)
-    (text,) = texts(log)
+    (text,) = log_texts(log)
     assert text.startswith("Invalid value 'LOCALHOTS' specified for 'ROS_AUTOMATIC_DISCOVERY_RANGE'")
     assert "did you mean 'LOCALHOST'?" in text
 

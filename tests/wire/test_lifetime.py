@@ -1,3 +1,5 @@
+"""The lifetime of a participant: threads, sockets, forks and exits."""
+
 from __future__ import annotations
 
 import os
@@ -13,20 +15,20 @@ import pytest
 
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.messages import String, get_message
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytest.importorskip("cyclonedds", reason="cyclonedds is not installed")
 
 on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the test reads /proc")
 
 
-def run(text: str, seconds: float = SECONDS) -> subprocess.CompletedProcess[str]:
+def run_program(text: str, seconds: float = TIMEOUT_S) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", textwrap.dedent(text)], capture_output=True, text=True, timeout=seconds, check=False
     )
 
 
-def descriptors() -> set[str]:
+def open_descriptors() -> set[str]:
     return {str(path.readlink()) for path in Path("/proc/self/fd").iterdir() if path.is_symlink()}
 
 
@@ -39,7 +41,7 @@ def test_close_leaves_no_threads_or_sockets(processes):
     processes("warm").close()
     threads, sockets = (
         threading.active_count(),
-        {descriptor for descriptor in descriptors() if descriptor.startswith("socket")},
+        {descriptor for descriptor in open_descriptors() if descriptor.startswith("socket")},
     )
     tasks = kernel_threads()
     process = processes("ours")
@@ -47,7 +49,7 @@ def test_close_leaves_no_threads_or_sockets(processes):
     assert kernel_threads() > tasks
     process.close()
     assert threading.active_count() == threads
-    assert {descriptor for descriptor in descriptors() if descriptor.startswith("socket")} == sockets
+    assert {descriptor for descriptor in open_descriptors() if descriptor.startswith("socket")} == sockets
     wait_until(lambda: kernel_threads() <= tasks)  # the kernel lists a joined thread a moment longer
 
 
@@ -69,7 +71,7 @@ def test_domain_joined_after_close_is_left_again(processes, monkeypatch):
 
     class Late(engine.Engine):
         def __init__(self, *arguments: Any) -> None:
-            assert may_join.wait(SECONDS)
+            assert may_join.wait(TIMEOUT_S)
             super().__init__(*arguments)
             engines.append(self)
 
@@ -80,15 +82,15 @@ def test_domain_joined_after_close_is_left_again(processes, monkeypatch):
     joining.close()
     assert not engines
     may_join.set()
-    joining._join_thread.join(SECONDS)
+    joining._join_thread.join(TIMEOUT_S)
     assert [engine._participant.closed for engine in engines] == [True]
     assert open_domains._opened == {}
-    assert not joining.wait_until_ready(SECONDS)
+    assert not joining.wait_until_ready(TIMEOUT_S)
 
 
 @pytest.mark.parametrize("seconds", [0.0, 0.05, 0.1, 0.15, 0.2])
 def test_program_that_ends_while_joining_prints_nothing(seconds):
-    result = run(
+    result = run_program(
         f"""
         import asyncio, time
         from linkwright.graph import Graph
@@ -117,16 +119,16 @@ def test_close_ends_wait_for_discovery(processes):
     waiting = threading.Thread(target=wait, daemon=True)
     waiting.start()
     process.close()
-    assert ended.wait(SECONDS)
+    assert ended.wait(TIMEOUT_S)
 
 
 def test_reliable_messages_sent_before_close_arrive(processes):
     b = processes("b")
     numbers: list[int] = []
-    deep = QoSProfile(500)
-    b.node.create_subscription("std_msgs/msg/Int32", "chatter", lambda message: numbers.append(message.data), deep)
+    deep_qos = QoSProfile(500)
+    b.node.create_subscription("std_msgs/msg/Int32", "chatter", lambda message: numbers.append(message.data), deep_qos)
     a = processes("a")
-    publisher = a.node.create_publisher("std_msgs/msg/Int32", "chatter", deep)
+    publisher = a.node.create_publisher("std_msgs/msg/Int32", "chatter", deep_qos)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for number in range(300):
         publisher.publish(get_message("std_msgs/msg/Int32")(data=number))
@@ -135,7 +137,7 @@ def test_reliable_messages_sent_before_close_arrive(processes):
 
 
 def test_program_without_close_ends(domain):
-    result = run(
+    result = run_program(
         """
         from linkwright.graph import Graph
         from linkwright.wire.dds import join
@@ -150,7 +152,7 @@ def test_program_without_close_ends(domain):
 
 
 def test_failing_program_ends(domain):
-    result = run(
+    result = run_program(
         """
         from linkwright.graph import Graph
         from linkwright.wire.dds import join
@@ -163,7 +165,7 @@ def test_failing_program_ends(domain):
 
 
 def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
-    result = run(
+    result = run_program(
         """
         import os, socket, time
         from linkwright.graph import Graph
@@ -188,7 +190,7 @@ def test_packets_that_are_not_dds_print_nothing_to_stderr(domain):
 def test_forked_child_does_not_participate(processes, programs):
     process = processes("ours")
     process.node.create_subscription("std_msgs/msg/Int32", "/flood", print, 10)
-    other = programs("our_program", "forking")
+    other = programs("linkwright_program", "forking")
     other.ask_until(bool, "subscribers", "/flood")
     assert other.ask("fork")[0] == 7
     assert other.ask("nodes") == ["forking", "ours"]
@@ -204,4 +206,4 @@ def test_killed_peer_does_not_block_publisher(processes, programs):
     for _ in range(2000):
         publisher.publish(String(data="x" * 1000))
     process.close()
-    assert time.monotonic() - begin < SECONDS, "messages must not wait one by one"
+    assert time.monotonic() - begin < TIMEOUT_S, "messages must not wait one by one"

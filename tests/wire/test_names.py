@@ -1,3 +1,5 @@
+"""Names of topics, types and services on DDS."""
+
 from __future__ import annotations
 
 import pytest

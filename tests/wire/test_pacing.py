@@ -1,4 +1,7 @@
-"""Large samples for readers of Fast DDS, sent packet by packet; `test_real_ros` has a real reader."""
+"""Large samples for readers of Fast DDS, sent packet by packet.
+
+`test_real_ros` has a real reader.
+"""
 
 from __future__ import annotations
 
@@ -14,14 +17,17 @@ from linkwright.wire.dds.rtps.messages import parse
 Image = get_message("sensor_msgs/msg/Image")
 ADDRESS = ("127.0.0.1", 7411)
 WRITER, READER = bytes(range(16)), bytes(range(100, 116))
-PACKET = 60_832
+PACKET_BYTES = 60_832
 """The bytes that Linux charges to the buffer for a packet with a full fragment."""
 
 SMALL, LARGE = bytes(100), os.urandom(150_000)
 
 
 class Buffer:
-    """A receive buffer with a sequence of fill levels; the sender reads the level once a packet."""
+    """A receive buffer with a sequence of fill levels.
+
+    The sender reads the level once a packet.
+    """
 
     def __init__(self, *levels):
         self.levels = list(levels)
@@ -38,7 +44,7 @@ class Buffer:
 
 
 def test_three_packets_fit_in_empty_buffer_before_next_check():
-    buffer = Buffer(0, 3 * PACKET, 2 * PACKET, PACKET, 0)
+    buffer = Buffer(0, 3 * PACKET_BYTES, 2 * PACKET_BYTES, PACKET_BYTES, 0)
     assert [buffer.receiver.wait_for_room() for _ in range(3)] == [True] * 3
     assert not buffer.pauses
     assert buffer.receiver.wait_for_room()
@@ -46,7 +52,7 @@ def test_three_packets_fit_in_empty_buffer_before_next_check():
 
 
 def test_blocked_reader_is_waited_for_once():
-    buffer = Buffer(3 * PACKET)
+    buffer = Buffer(3 * PACKET_BYTES)
     assert not buffer.receiver.wait_for_room()
     pauses = buffer.pauses
     buffer.receiver.begin()
@@ -163,7 +169,10 @@ def test_closed_writer_sends_nothing():
 
 
 def test_image_is_sent_packet_by_packet_before_cyclone(processes, monkeypatch):
-    """The test treats Cyclone's reader as a reader of Fast DDS, and listens on a socket in its place."""
+    """An image is sent packet by packet.
+
+    The test treats Cyclone's reader as a reader of Fast DDS, and listens on a socket in its place.
+    """
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
         listening.bind(("127.0.0.1", 0))
         listening.settimeout(60)

@@ -1,4 +1,6 @@
-"""Actions, managed nodes and parameter events with nodes of real ROS 2 on Fast DDS; see `test_real_ros`.
+"""Actions, managed nodes and parameter events with nodes of real ROS 2 on Fast DDS.
+
+See `test_real_ros`.
 
 Both sides run one program, `managed_peer`: one with the real rclpy, one with ours.
 """
@@ -15,7 +17,7 @@ from tests.waiting import wait_until
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-GOALS = 100
+GOAL_COUNT = 100
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 """The side of the client, and the side of the server."""
 
@@ -24,7 +26,10 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 @pytest.fixture
 def peers(programs):
-    """Return a function that starts the program on a side, with the side's name as the node's name."""
+    """Return a function that starts the program on a side.
+
+    The side's name is the node's name.
+    """
 
     def start(side):
         if side == "theirs":
@@ -59,7 +64,7 @@ def test_goals_are_rejected_aborted_and_canceled(peers, client_side, server_side
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
 def test_simultaneous_goals_get_their_own_results(peers, client_side, server_side):
     peers(server_side)
-    assert peers(client_side).ask("count_correct_goals", f"/{server_side}/fibonacci", GOALS) == GOALS
+    assert peers(client_side).ask("count_correct_goals", f"/{server_side}/fibonacci", GOAL_COUNT) == GOAL_COUNT
 
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)

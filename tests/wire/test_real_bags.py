@@ -12,8 +12,8 @@ import pytest
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-IMAGES = 30
-STATES = 100
+IMAGE_COUNT = 30
+STATE_COUNT = 100
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
@@ -33,16 +33,16 @@ def test_bag_records_real_node_and_plays_to_it(real_node, tmp_path, storage):
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as recording:
         for kind in ("states_", "images_", "lasting_"):
             real.ask_until(lambda count: count == 1, "subscription_count", kind)
-        for number in range(STATES):
+        for number in range(STATE_COUNT):
             real.ask("publish_state", ["a", "b"], [float(number), 0.5])
-        real.ask("publish_images", IMAGES, 10.0)
-        real.ask_until(lambda sent: sent == IMAGES, "sent_images")
+        real.ask("publish_images", IMAGE_COUNT, 10.0)
+        real.ask_until(lambda sent: sent == IMAGE_COUNT, "sent_images")
         real.ask("wait_for_all", "images_")
         real.ask("wait_for_all", "states_")
         recording.send_signal(signal.SIGINT)
         assert recording.wait(60) == 0
-    assert f"Count: {STATES} |" in info_line(bag, "/states_from_ros")
-    assert f"Count: {IMAGES} |" in info_line(bag, "/images_from_ros")
+    assert f"Count: {STATE_COUNT} |" in info_line(bag, "/states_from_ros")
+    assert f"Count: {IMAGE_COUNT} |" in info_line(bag, "/images_from_ros")
     assert "Count: 1 |" in info_line(bag, "/lasting_from_ros")
     remapped = [f"{topic}:={topic.replace('from', 'to')}" for topic in topics]
     command = [sys.executable, "-m", "linkwright", "bag", "play", str(bag), "--start-paused", "--remap", *remapped]
@@ -52,9 +52,9 @@ def test_bag_records_real_node_and_plays_to_it(real_node, tmp_path, storage):
         resumed = linkwright("service", "call", "/rosbag2_player/resume", "rosbag2_interfaces/srv/Resume")
         assert resumed[2] == 0, resumed
         assert playing.wait(60) == 0
-    states = real.ask_until(lambda heard: len(heard) == STATES, "received_states")
-    assert states == [[["a", "b"], [float(number), 0.5]] for number in range(STATES)]
-    assert real.ask_until(lambda heard: len(heard) == IMAGES, "received_images") == list(range(IMAGES))
+    states = real.ask_until(lambda heard: len(heard) == STATE_COUNT, "received_states")
+    assert states == [[["a", "b"], [float(number), 0.5]] for number in range(STATE_COUNT)]
+    assert real.ask_until(lambda heard: len(heard) == IMAGE_COUNT, "received_images") == list(range(IMAGE_COUNT))
     assert real.ask_until(bool, "received", "lasting_to_ros") == ["said before"]
 
 

@@ -1,4 +1,6 @@
-"""A bridge between nodes of real ROS 2 on Fast DDS and nodes of ours over Zenoh; see `test_real_ros`.
+"""A bridge between nodes of real ROS 2 on Fast DDS and nodes of ours over Zenoh.
+
+See `test_real_ros`.
 
 Both sides run the same programs; one side's subscriptions are remapped to the other side's publishers.
 """
@@ -19,9 +21,9 @@ PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 TYPES = os.environ.get("LINKWRIGHT_ROS_TYPES", "")
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 RMW = {"theirs": "rmw_fastrtps_cpp", "ours": "rmw_zenoh_cpp"}
-IMAGES = 50
-RATE = 10.0
-CALLS = 100
+IMAGE_COUNT = 50
+RATE_HZ = 10.0
+CALL_COUNT = 100
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
@@ -61,7 +63,10 @@ def bridge():
 
 @pytest.fixture
 def peer(programs):
-    """Return a function that starts the program on a side, with the side's name as the node's name."""
+    """Return a function that starts the program on a side.
+
+    The side's name is the node's name.
+    """
 
     def start(program, side):
         arguments = []
@@ -102,7 +107,7 @@ def publish_image_until_received(publisher, subscriber):
     """
 
     def has_arrived(numbers):
-        publisher.ask("publish_images", 1, RATE)
+        publisher.ask("publish_images", 1, RATE_HZ)
         return numbers
 
     subscriber.ask_until(has_arrived, "received_images")
@@ -127,8 +132,8 @@ def test_bridge_connects_topics_services_and_parameters(bridge, peer):
     assert sides["theirs"].ask("hashes", "/lasting_to_ros") == sides["theirs"].ask("hashes", "/lasting_from_ros")
     for client_side, server_side in SIDES:
         assert (
-            sides[client_side].ask("count_correct_echoes", f"/{server_side}_echo", f"{client_side} asks", CALLS)
-            == CALLS
+            sides[client_side].ask("count_correct_echoes", f"/{server_side}_echo", f"{client_side} asks", CALL_COUNT)
+            == CALL_COUNT
         )
         assert "speed" in sides[client_side].ask("parameters_of", server_side)
         assert sides[client_side].ask("set_parameter_of", server_side, "speed", 2.5) == [True, 2.5]
@@ -166,9 +171,9 @@ def test_images_arrive_in_order(bridge, peer, publisher_side, subscriber_side):
     bridge()
     sides = start_both_sides(peer, "real_peer")
     publish_image_until_received(sides[publisher_side], sides[subscriber_side])
-    sides[publisher_side].ask("publish_images", IMAGES, RATE)
-    indices = sides[subscriber_side].ask_until(lambda numbers: IMAGES - 1 in numbers, "received_images")
-    assert indices[-IMAGES:] == list(range(IMAGES))
+    sides[publisher_side].ask("publish_images", IMAGE_COUNT, RATE_HZ)
+    indices = sides[subscriber_side].ask_until(lambda numbers: IMAGE_COUNT - 1 in numbers, "received_images")
+    assert indices[-IMAGE_COUNT:] == list(range(IMAGE_COUNT))
 
 
 @pytest.mark.parametrize("killed", RMW)

@@ -1,4 +1,7 @@
-"""The nodes of the course's solutions under the real rclpy, unchanged, together with ours; see `test_real_ros`."""
+"""The nodes of the course's solutions under the real rclpy, unchanged, together with ours.
+
+See `test_real_ros`.
+"""
 
 from __future__ import annotations
 
@@ -15,10 +18,10 @@ import pytest
 from linkwright.learning.course import find_course, load_course
 from linkwright.messages import String, get_message, get_service
 from linkwright.packages.programs.source_programs import source_programs
-from tests.learning.finished import finish
+from tests.learning.finished import finish_lessons
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-SECONDS = 90.0
+TIMEOUT_S = 90.0
 RED_BALL = (-1.5, 1.8)
 
 Float64, Twist = get_message("std_msgs/msg/Float64"), get_message("geometry_msgs/msg/Twist")
@@ -32,15 +35,23 @@ pytestmark = [
 
 @pytest.fixture(scope="module", params=["11"])
 def workspace(tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest) -> Path:
-    """Return a learner's workspace at the end of lesson 11, or of the lesson that the test names."""
+    """Return a learner's workspace at the end of lesson 11.
+
+    A test may name another lesson.
+    """
     folder = tmp_path_factory.mktemp("workspace")
-    finish([lesson for lesson in load_course(find_course("robot")).lessons if lesson.id[:2] <= request.param], folder)
+    finish_lessons(
+        [lesson for lesson in load_course(find_course("robot")).lessons if lesson.id[:2] <= request.param], folder
+    )
     return folder
 
 
 @pytest.fixture
-def run(workspace):
-    """Return a function that starts an executable of the workspace in the real ROS 2; it is killed after the test."""
+def start_solution(workspace):
+    """Return a function that starts an executable of the workspace in the real ROS 2.
+
+    It is killed after the test.
+    """
     processes: list[subprocess.Popen[str]] = []
 
     def start(package: str, executable: str, *parameters: str) -> subprocess.Popen[str]:
@@ -89,47 +100,47 @@ def interrupt(process: subprocess.Popen[str]) -> str:
     """
     time.sleep(0.3)  # the subscriber has taken all messages
     process.send_signal(signal.SIGINT)
-    return process.communicate(timeout=SECONDS)[1]
+    return process.communicate(timeout=TIMEOUT_S)[1]
 
 
-def test_first_move_follows_parameters_and_stops_on_ctrl_c(velocities, run):
+def test_first_move_follows_parameters_and_stops_on_ctrl_c(velocities, start_solution):
     process, commands = velocities
-    program = run("my_control", "first_move", "speed:=0.4", "duration:=60.0")
-    process.spin_until(lambda: (0.4, 0.5) in commands, SECONDS)
+    program = start_solution("my_control", "first_move", "speed:=0.4", "duration:=60.0")
+    process.spin_until(lambda: (0.4, 0.5) in commands, TIMEOUT_S)
     assert "Traceback" not in interrupt(program)
-    process.spin_until(lambda: commands[-1] == (0.0, 0.0), SECONDS)
+    process.spin_until(lambda: commands[-1] == (0.0, 0.0), TIMEOUT_S)
 
 
-def test_odometer_accumulates_distance_and_resets(processes, run):
+def test_odometer_accumulates_distance_and_resets(processes, start_solution):
     process = processes("ours")
     distances: list[float] = []
     process.node.create_subscription(Float64, "/distance", lambda message: distances.append(message.data), 10)
     publisher = process.node.create_publisher(Odometry, "/odom", 10)
     trigger = get_service("std_srvs/srv/Trigger")
     client = process.node.create_client(trigger, "/reset_distance")
-    run("my_control", "odometer")
+    start_solution("my_control", "odometer")
     process.spin_until(
-        lambda: publisher.get_subscription_count() and process.node.count_publishers("/distance"), SECONDS
+        lambda: publisher.get_subscription_count() and process.node.count_publishers("/distance"), TIMEOUT_S
     )
     for x in (0.0, 1.0, 0.0):
         message = Odometry()
         message.pose.pose.position.x = x
         publisher.publish(message)
-    process.spin_until(lambda: distances and distances[-1] == 2.0, SECONDS)
-    process.spin_until(client.service_is_ready, SECONDS)
-    answer = client.call_async(trigger.Request())
-    process.spin_until(answer.done, SECONDS)
-    assert answer.result().success
+    process.spin_until(lambda: distances and distances[-1] == 2.0, TIMEOUT_S)
+    process.spin_until(client.service_is_ready, TIMEOUT_S)
+    response = client.call_async(trigger.Request())
+    process.spin_until(response.done, TIMEOUT_S)
+    assert response.result().success
 
 
-def odometry(x):
+def make_odometry(x):
     message = Odometry()
     message.pose.pose.position.x = x
     message.pose.pose.orientation.w = 1.0
     return message
 
 
-def scan(distance):
+def make_scan(distance):
     return LaserScan(
         angle_min=-1.5, angle_max=1.5, angle_increment=0.1, range_min=0.1, range_max=10.0, ranges=[distance] * 31
     )
@@ -138,44 +149,44 @@ def scan(distance):
 @pytest.mark.parametrize(
     ("executable", "topic", "drives", "does_not_drive"),
     [
-        ("drive_meter", "/odom", odometry(0.0), odometry(1.0)),
-        ("drive_square", "/odom", odometry(0.2), None),
-        ("stop_at_wall", "/scan", scan(inf), scan(0.4)),
-        ("wander", "/scan", scan(5.0), scan(0.4)),
+        ("drive_meter", "/odom", make_odometry(0.0), make_odometry(1.0)),
+        ("drive_square", "/odom", make_odometry(0.2), None),
+        ("stop_at_wall", "/scan", make_scan(inf), make_scan(0.4)),
+        ("wander", "/scan", make_scan(5.0), make_scan(0.4)),
     ],
 )
-def test_course_nodes_drive_by_measurements(velocities, run, executable, topic, drives, does_not_drive):
+def test_course_nodes_drive_by_measurements(velocities, start_solution, executable, topic, drives, does_not_drive):
     process, commands = velocities
     publisher = process.node.create_publisher(type(drives), topic, 10)
-    program = run("my_control", executable)
+    program = start_solution("my_control", executable)
     process.spin_until(
-        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), SECONDS
+        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), TIMEOUT_S
     )
 
     def tell(message, condition):
         publisher.publish(message)
         return commands and condition(commands[-1][0])
 
-    process.spin_until(lambda: tell(drives, lambda speed: speed > 0.0), SECONDS)
+    process.spin_until(lambda: tell(drives, lambda speed: speed > 0.0), TIMEOUT_S)
     if does_not_drive is not None:
-        process.spin_until(lambda: tell(does_not_drive, lambda speed: speed == 0.0), SECONDS)
+        process.spin_until(lambda: tell(does_not_drive, lambda speed: speed == 0.0), TIMEOUT_S)
     assert "Traceback" not in interrupt(program)
 
 
-def test_word_driver_ends_on_ctrl_c(velocities, run):
+def test_word_driver_ends_on_ctrl_c(velocities, start_solution):
     process, commands = velocities
     publisher = process.node.create_publisher(String, "/voice/text", 10)
-    program = run("my_voice", "word_driver")
+    program = start_solution("my_voice", "word_driver")
     process.spin_until(
-        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), SECONDS
+        lambda: publisher.get_subscription_count() and process.node.count_publishers("/cmd_vel"), TIMEOUT_S
     )
     assert "Traceback" not in interrupt(program)
-    process.spin_until(lambda: commands and commands[-1] == (0.0, 0.0), SECONDS)
+    process.spin_until(lambda: commands and commands[-1] == (0.0, 0.0), TIMEOUT_S)
 
 
 @pytest.mark.extra("sim")
 @pytest.mark.parametrize("workspace", ["11", "12"], indirect=True)
-def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
+def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, start_solution):
     """The world is ours, and each node of the learner runs under the real rclpy.
 
     In lesson 12, the images are sent with best effort. Kilted's Fast DDS sometimes does not connect two real nodes,
@@ -199,30 +210,33 @@ def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, run):
     ) as world:
         try:
             programs = []
-            for package, name, is_there in (
+            for package, name, is_present in (
                 ("my_senses", "command_listener", commands.get_subscription_count),
                 ("my_senses", "color_finder", lambda: process.node.count_subscribers("/camera/image_raw")),
                 ("my_mission", "go_to_ball", lambda: states and process.node.count_subscribers("/ball")),
             ):
-                programs.append(run(package, name, "use_sim_time:=true"))
-                process.spin_until(is_there, SECONDS)
-            process.spin_until(lambda: places and process.node.count_publishers("/camera/image_raw"), SECONDS)
+                programs.append(start_solution(package, name, "use_sim_time:=true"))
+                process.spin_until(is_present, TIMEOUT_S)
+            process.spin_until(lambda: places and process.node.count_publishers("/camera/image_raw"), TIMEOUT_S)
 
-            told = -inf
+            command_time = -inf
 
             def is_driving():
-                """Repeat the command, because not all nodes may know each other yet when the first one comes."""
-                nonlocal told
-                if time.monotonic() > told + 4.0:
+                """Return whether the robot drives, and repeat the command.
+
+                Not all nodes may know each other yet when the first one comes.
+                """
+                nonlocal command_time
+                if time.monotonic() > command_time + 4.0:
                     commands.publish(String(data="去红球那里"))
-                    told = time.monotonic()
+                    command_time = time.monotonic()
                 return "driving" in states
 
-            process.spin_until(is_driving, SECONDS)
-            process.spin_until(lambda: states[-1] == "arrived", SECONDS)
+            process.spin_until(is_driving, TIMEOUT_S)
+            process.spin_until(lambda: states[-1] == "arrived", TIMEOUT_S)
             x, y = places[-1]
             assert 0.4 < ((x - RED_BALL[0]) ** 2 + (y - RED_BALL[1]) ** 2) ** 0.5 < 1.0
             assert not any("Traceback" in interrupt(program) for program in programs)
         finally:
             world.send_signal(signal.SIGINT)
-            world.wait(SECONDS)
+            world.wait(TIMEOUT_S)

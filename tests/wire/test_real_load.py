@@ -1,4 +1,6 @@
-"""Many simultaneous calls and goals between nodes of real ROS 2 on Fast DDS and ours; see `test_real_ros`.
+"""Many simultaneous calls and goals between nodes of real ROS 2 on Fast DDS and ours.
+
+See `test_real_ros`.
 
 Both sides run one program, `load_peer`: one with the real rclpy, one with ours.
 """
@@ -13,10 +15,10 @@ import pytest
 from linkwright.standins.process import environment
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-CALLS = 1000
+CALL_COUNT = 1000
 CLIENTS = ("theirs_1", "theirs_2", "ours_1")
-GOALS = 13
-RATE = 100.0
+GOAL_COUNT = 13
+RATE_HZ = 100.0
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
@@ -39,7 +41,7 @@ def test_thousand_mixed_calls_from_three_clients_are_answered(peers, server):
     peers(server)
     clients = [peers(name) for name in CLIENTS]
     with ThreadPoolExecutor(len(clients)) as threads:
-        share = CALLS // len(clients) + 1
+        share = CALL_COUNT // len(clients) + 1
         asking = [
             threads.submit(client.ask_slowly, "count_correct_calls", server, share, name)
             for name, client in zip(CLIENTS, clients, strict=True)
@@ -50,13 +52,13 @@ def test_thousand_mixed_calls_from_three_clients_are_answered(peers, server):
 @pytest.mark.parametrize(("asks", "answers"), [("theirs", "ours"), ("ours", "theirs")])
 def test_goals_are_canceled_and_preempted_under_load(peers, asks, answers):
     client, server, other = peers(asks), peers(answers), peers(f"{asks}_2")
-    client.ask("exchange_states", RATE, answers)
-    server.ask("exchange_states", RATE, asks)
+    client.ask("exchange_states", RATE_HZ, answers)
+    server.ask("exchange_states", RATE_HZ, asks)
     for peer in (client, server):
-        peer.ask_until(lambda heard: heard > RATE, "received_count")
+        peer.ask_until(lambda heard: heard > RATE_HZ, "received_count")
     with ThreadPoolExecutor(1) as threads:
-        storm = threads.submit(other.ask_slowly, "count_correct_calls", answers, CALLS // 4, "other")
-        ends = client.ask_slowly("run_goals", answers, GOALS)
-        assert storm.result() == CALLS // 4
-    cancelled = ["CANCELED" if number % 3 == 2 else "ABORTED" for number in range(GOALS - 1)]
+        storm = threads.submit(other.ask_slowly, "count_correct_calls", answers, CALL_COUNT // 4, "other")
+        ends = client.ask_slowly("run_goals", answers, GOAL_COUNT)
+        assert storm.result() == CALL_COUNT // 4
+    cancelled = ["CANCELED" if number % 3 == 2 else "ABORTED" for number in range(GOAL_COUNT - 1)]
     assert ends == [*cancelled, "SUCCEEDED"]

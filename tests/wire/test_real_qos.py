@@ -1,4 +1,6 @@
-"""All qualities of service between nodes of real ROS 2 on Fast DDS and ours, with their events; see `test_real_ros`.
+"""All QoS profiles between nodes of real ROS 2 on Fast DDS and of Linkwright.
+
+The tests also cover their events. See `test_real_ros`.
 
 Both sides run one program, `qos_peer`: one with the real rclpy, one with ours.
 """
@@ -47,7 +49,10 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 @pytest.fixture
 def peers(programs, monkeypatch):
-    """Return a function that starts the program on a side, with the side's name as the node's name."""
+    """Return a function that starts the program on a side.
+
+    The side's name is the node's name.
+    """
     monkeypatch.setenv("ROS_DISTRO", "jazzy")  # rclpy's module of events has had its name since Iron
 
     def start(side):
@@ -125,7 +130,10 @@ def test_best_available_qos_always_matches(peers, publisher_side, subscriber_sid
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
 def test_missed_deadline_is_reported_on_both_sides(peers, publisher_side, subscriber_side):
-    """A deadline begins with the first message, and is not missed while messages arrive in time."""
+    """A missed deadline is reported on both sides.
+
+    A deadline begins with the first message, and is not missed while messages arrive in time.
+    """
     publishes, subscribes = peers(publisher_side), peers(subscriber_side)
     for topic in ("/topic", "/silent"):
         publishes.ask("publisher", topic, {"deadline": 2.0})
@@ -134,14 +142,14 @@ def test_missed_deadline_is_reported_on_both_sides(peers, publisher_side, subscr
     publishes.ask("keep_publishing", "/topic", 0.1)
     subscribes.ask_until(lambda texts: len(texts) > 40, "received", "/topic")
     for peer in (publishes, subscribes):
-        assert missed(peer, "/topic") == 0
+        assert count_missed_deadlines(peer, "/topic") == 0
     publishes.ask("stop_publishing", "/topic")
     for peer in (publishes, subscribes):
         peer.ask_until(lambda events: [kind for kind, *_ in events].count("deadline") >= 2, "events", "/topic")
-        assert missed(peer, "/silent") == 0
+        assert count_missed_deadlines(peer, "/silent") == 0
 
 
-def missed(peer, topic):
+def count_missed_deadlines(peer, topic):
     """Return the number of missed deadlines that a side reported."""
     return [kind for kind, *_ in peer.ask("events", topic)].count("deadline")
 

@@ -1,4 +1,7 @@
-"""The recipe of `docs/howto-real-robot.md`, with a robot whose node is real; see `test_real_ros`."""
+"""The recipe of `docs/howto-real-robot.md`, with a robot whose node is real.
+
+See `test_real_ros`.
+"""
 
 from __future__ import annotations
 
@@ -8,45 +11,48 @@ import shlex
 
 import pytest
 
-from tests.docs.pages import DOCS, blocks
+from tests.docs.pages import DOCS, read_blocks
 from tests.domains import own_domain
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 PAGE = DOCS / "howto-real-robot.md"
-FIND_IT = next(block.text for block in blocks(PAGE) if "linkwright topic list" in block.text)
+FIND_COMMAND = next(block.text for block in read_blocks(PAGE) if "linkwright topic list" in block.text)
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
 
 @pytest.fixture
 def robot(programs):
-    """Start a robot with some variables of its environment; it listens and publishes when this returns."""
+    """Start a robot with some variables of its environment.
+
+    It listens and publishes when this returns.
+    """
     return lambda **variables: programs("real_peer", "robot", python=PYTHON, **variables)
 
 
-def run(name):
+def run_recipe_command(name):
     """Run the command of step 3 that has this verb."""
-    line = next(line for line in FIND_IT.splitlines() if line.startswith(f"linkwright {name}"))
+    line = next(line for line in FIND_COMMAND.splitlines() if line.startswith(f"linkwright {name}"))
     return linkwright(*shlex.split(line)[1:])
 
 
 def test_robot_is_found_with_documented_variables(robot, monkeypatch) -> None:
-    for name, value in re.findall(r"^export (\w+)=(\w+)", FIND_IT, re.MULTILINE):
+    for name, value in re.findall(r"^export (\w+)=(\w+)", FIND_COMMAND, re.MULTILINE):
         monkeypatch.setenv(name, str(own_domain()) if name == "ROS_DOMAIN_ID" else value)
     robot()
-    assert "/from_ros" in run("topic list")[0].splitlines()
-    output, errors, status = run("doctor")
-    (shown,) = (line for block in blocks(PAGE) for line in block.text.splitlines() if ": 1 node, " in line)
+    assert "/from_ros" in run_recipe_command("topic list")[0].splitlines()
+    output, errors, status = run_recipe_command("doctor")
+    (shown,) = (line for block in read_blocks(PAGE) for line in block.text.splitlines() if ": 1 node, " in line)
     assert (status, output.partition("1 node, ")[0]) == (0, shown.partition("1 node, ")[0]), errors
 
 
 @pytest.mark.parametrize(("transports", "found"), [("SHM", False), ("LARGE_DATA", False), ("DEFAULT", True)])
 def test_fast_dds_transports_that_hide_robot(robot, transports, found) -> None:
     robot(FASTDDS_BUILTIN_TRANSPORTS=transports)
-    assert ("/from_ros" in run("topic list")[0].splitlines()) is found
+    assert ("/from_ros" in run_recipe_command("topic list")[0].splitlines()) is found
 
 
 def test_doctor_reports_possibly_different_domain(robot) -> None:
     robot(ROS_DOMAIN_ID=str(own_domain(2)))
-    assert "DOC801" in run("doctor")[1]
+    assert "DOC801" in run_recipe_command("doctor")[1]

@@ -1,4 +1,7 @@
-"""Nodes of real ROS 2, where an interpreter with rclpy is named by LINKWRIGHT_ROS_PYTHON (see CONTRIBUTING.md)."""
+"""Nodes of real ROS 2.
+
+LINKWRIGHT_ROS_PYTHON names an interpreter with rclpy (see CONTRIBUTING.md).
+"""
 
 from __future__ import annotations
 
@@ -18,11 +21,11 @@ from tests.domains import own_domain
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-LASTING = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-IMAGES = 45
-FLOOD = 300
-FRAMES = 40
-NODES = 50
+TRANSIENT_LOCAL = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+IMAGE_COUNT = 45
+FLOOD_COUNT = 300
+FRAME_COUNT = 40
+NODE_COUNT = 50
 
 Image = get_message("sensor_msgs/msg/Image")
 JointState = get_message("sensor_msgs/msg/JointState")
@@ -84,7 +87,10 @@ def test_domains_are_isolated(processes, real_node, domain):
 
 
 def test_late_node_sees_everything_after_wait_for_discovery(processes, real_node):
-    """The node also sees the last service, which Fast DDS announces some time after the first topic."""
+    """A late node sees everything after its wait.
+
+    It also sees the last service, which Fast DDS announces some time after the first topic.
+    """
     real_node()
     process = processes("ours")
     assert process.transport.wait_for_discovery(60)
@@ -138,32 +144,35 @@ def test_images_at_30_hz_arrive_complete_in_both_directions(processes, real_node
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     process.spin_until(lambda: process.node.count_publishers("/images_from_ros") == 1)
     time.sleep(0.5)
-    real.ask("publish_images", IMAGES, 30.0)
+    real.ask("publish_images", IMAGE_COUNT, 30.0)
     picture = Image(height=480, width=640, encoding="rgb8", step=1920, data=bytes(640 * 480 * 3))
     due = time.monotonic()
-    for number in range(IMAGES):
+    for number in range(IMAGE_COUNT):
         picture.header.frame_id = str(number)
         publisher.publish(picture)
         due += 1 / 30
         while time.monotonic() < due:
             process.executor.spin_once(timeout_sec=max(0.0, due - time.monotonic()))
-    process.spin_until(lambda: len(numbers) == IMAGES)
-    assert numbers == list(range(IMAGES))
-    assert real.ask_until(lambda images: len(images) == IMAGES, "received_images") == list(range(IMAGES))
+    process.spin_until(lambda: len(numbers) == IMAGE_COUNT)
+    assert numbers == list(range(IMAGE_COUNT))
+    assert real.ask_until(lambda images: len(images) == IMAGE_COUNT, "received_images") == list(range(IMAGE_COUNT))
 
 
 def test_images_replaced_in_transit_do_not_stop_reader(processes, real_node):
-    """Fast DDS keeps reading a sample that it has freed when a GAP replaces the rest of an image."""
+    """Images that are replaced in transit do not stop the reader.
+
+    Fast DDS keeps reading a sample that it has freed when a GAP replaces the rest of an image.
+    """
     process = processes("ours")
     real = real_node()
     publisher = process.node.create_publisher(Image, "/images_to_ros", 1)
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     image = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
-    for number in range(FLOOD):
+    for number in range(FLOOD_COUNT):
         image.header.frame_id = str(number)
         publisher.publish(image)
         process.executor.spin_once(timeout_sec=0.01)
-    assert real.ask_until(lambda images: images and images[-1] == FLOOD - 1, "received_images")
+    assert real.ask_until(lambda images: images and images[-1] == FLOOD_COUNT - 1, "received_images")
 
 
 def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_node):
@@ -176,27 +185,29 @@ def test_best_effort_images_larger_than_reader_buffer_arrive(processes, real_nod
     publisher = process.node.create_publisher(Image, "/frames_to_ros", profile)
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     image = Image(height=1, width=1_000_000, encoding="mono8", step=1_000_000, data=bytes(1_000_000))
-    came: list[int] = []
-    for number in range(FRAMES):
+    arrived: list[int] = []
+    for number in range(FRAME_COUNT):
         image.header.frame_id = str(number)
         publisher.publish(image)
-        until = time.monotonic() + 1.0
-        while number not in came and time.monotonic() < until:
+        deadline = time.monotonic() + 1.0
+        while number not in arrived and time.monotonic() < deadline:
             process.executor.spin_once(timeout_sec=0.01)
-            came = real.ask("received_images", "frames_to_ros")
+            arrived = real.ask("received_images", "frames_to_ros")
     # The reader is discovered before the second half is sent.
-    assert len([number for number in came if number >= FRAMES // 2]) >= 0.9 * FRAMES / 2
+    assert len([number for number in arrived if number >= FRAME_COUNT // 2]) >= 0.9 * FRAME_COUNT / 2
 
 
 def test_late_subscriber_gets_latched_message(processes, real_node):
     process = processes("ours")
-    process.node.create_publisher(String, "/lasting_to_ros", LASTING).publish(String(data="said before"))
+    process.node.create_publisher(String, "/lasting_to_ros", TRANSIENT_LOCAL).publish(String(data="said before"))
     real = real_node()
     assert real.ask_until(bool, "received", "lasting_to_ros") == ["said before"]
-    late = processes("late")
+    late_process = processes("late")
     texts: list[str] = []
-    late.node.create_subscription(String, "/lasting_from_ros", lambda message: texts.append(message.data), LASTING)
-    late.spin_until(lambda: texts == ["said before"])
+    late_process.node.create_subscription(
+        String, "/lasting_from_ros", lambda message: texts.append(message.data), TRANSIENT_LOCAL
+    )
+    late_process.spin_until(lambda: texts == ["said before"])
 
 
 def test_endpoints_have_node_and_type_hash(processes, real_node):
@@ -216,7 +227,7 @@ def test_incompatible_qos_is_reported_on_both_sides(processes, real_node):
     process = processes("ours")
     real = real_node()
     process.node.create_publisher(String, "/to_ros", QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT))
-    process.node.create_subscription(String, "/from_ros", print, LASTING)
+    process.node.create_subscription(String, "/from_ros", print, TRANSIENT_LOCAL)
     process.spin_until(lambda: len([text for text in process.warnings() if "incompatible QoS" in text]) == 2)
     assert any("RELIABILITY" in text and "'/real_node'" in text for text in process.warnings())
     assert any("DURABILITY" in text and "'/real_node'" in text for text in process.warnings())
@@ -240,21 +251,21 @@ def test_killed_real_node_is_received_again_after_restart(processes, real_node):
     first = real_node()
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     first.kill()
-    again = real_node()
+    second_peer = real_node()
     # The lease of the first node, 20 s, has not expired.
     process.spin_until(lambda: publisher.get_subscription_count() == 2)
-    began = time.monotonic()
+    start_s = time.monotonic()
     for number in range(8):
         publisher.publish(String(data=str(number)))
-    assert time.monotonic() - began < 1.0
-    assert again.ask_until(lambda heard: len(heard) == 8, "received", "to_ros") == list("01234567")
-    again.ask("publish", "back")
+    assert time.monotonic() - start_s < 1.0
+    assert second_peer.ask_until(lambda heard: len(heard) == 8, "received", "to_ros") == list("01234567")
+    second_peer.ask("publish", "back")
     process.spin_until(lambda: texts == ["back"])
 
 
 def test_killed_linkwright_node_disappears_and_successor_is_received(processes, programs, real_node):
     real = real_node()
-    ours = programs("our_program", "victim")
+    ours = programs("linkwright_program", "victim")
     real.ask_until(lambda nodes: ["/", "victim"] in nodes, "nodes")
     ours.kill()
     successor = processes("victim")
@@ -268,11 +279,11 @@ def test_killed_linkwright_node_disappears_and_successor_is_received(processes, 
 def test_fifty_real_nodes_appear_and_disappear_with_their_process(processes, real_node):
     process = processes("ours")
     real = real_node()
-    real.ask("make_nodes", NODES)
-    names = {f"extra_{number}" for number in range(NODES)}
+    real.ask("make_nodes", NODE_COUNT)
+    names = {f"extra_{number}" for number in range(NODE_COUNT)}
     process.spin_until(lambda: names <= {node.name for node in process.transport.remote_nodes()})
-    process.spin_until(lambda: process.node.count_publishers("/rosout") == NODES + 2)
-    assert len(linkwright("node", "list")[0].splitlines()) == NODES + 2
+    process.spin_until(lambda: process.node.count_publishers("/rosout") == NODE_COUNT + 2)
+    assert len(linkwright("node", "list")[0].splitlines()) == NODE_COUNT + 2
     real.end()
     process.spin_until(lambda: not process.transport.remote_nodes())
 

@@ -13,8 +13,8 @@ from linkwright.messages import get_service
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
-CALLS = 1000
-LARGE = 1_000_000
+CALL_COUNT = 1000
+LARGE_TEXT_LENGTH = 1_000_000
 SetBool = get_service("std_srvs/srv/SetBool")
 SetCameraInfo = get_service("sensor_msgs/srv/SetCameraInfo")
 
@@ -62,7 +62,7 @@ def test_thousand_calls_to_real_service_get_their_own_responses(processes, real_
     process = process or processes("ours")
     client = process.node.create_client(SetCameraInfo, "/echo")
     process.spin_until(client.service_is_ready)
-    for number in range(CALLS):
+    for number in range(CALL_COUNT):
         assert (
             wait_for_result(process, client.call_async(camera_request(f"call {number}"))).status_message
             == f"call {number}"
@@ -71,31 +71,34 @@ def test_thousand_calls_to_real_service_get_their_own_responses(processes, real_
 
 def test_thousand_calls_from_real_client_get_their_own_responses(processes, real_node):
     process = processes("ours")
-    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     peer = real_node()
-    assert ask_while_spinning(process, peer, "echoes_are_right", "/our_echo", "call", CALLS) == CALLS
+    assert ask_while_spinning(process, peer, "echoes_are_right", "/linkwright_echo", "call", CALL_COUNT) == CALL_COUNT
 
 
 def test_first_call_of_first_real_node_is_answered(processes, real_node):
-    """The real node calls as soon as it has read Cyclone's announcement, before Linkwright has discovered it."""
+    """The first call of the first real node is answered.
+
+    The node calls as soon as it has read Cyclone's announcement, before Linkwright has discovered it.
+    """
     process = processes("ours")
-    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     for attempt in range(3):
         peer = real_node(f"real_node_{attempt}")
-        assert ask_while_spinning(process, peer, "echoes", "/our_echo", ["one", "two"]) == ["one", "two"]
+        assert ask_while_spinning(process, peer, "echoes", "/linkwright_echo", ["one", "two"]) == ["one", "two"]
         peer.end()
 
 
 def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_node):
     process = processes("ours")
-    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     client = process.node.create_client(SetCameraInfo, "/echo")
     peers = [real_node(f"real_node_{number}") for number in range(3)]
     counts = []
     threads = [
         threading.Thread(
             target=lambda peer=peer, number=number: counts.append(
-                peer.ask("echoes_are_right", "/our_echo", f"client {number}", CALLS // 5)
+                peer.ask("echoes_are_right", "/linkwright_echo", f"client {number}", CALL_COUNT // 5)
             )
         )
         for number, peer in enumerate(peers)
@@ -103,15 +106,15 @@ def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_n
     for thread in threads:
         thread.start()
     process.spin_until(client.service_is_ready)
-    mine = [
+    own_futures = [
         wait_for_result(process, client.call_async(camera_request(f"mine {number}"))).status_message
         for number in range(20)
     ]
     process.spin_until(lambda: len(counts) == 3, 120)
     for thread in threads:
         thread.join()
-    assert counts == [CALLS // 5] * 3
-    assert mine == [f"mine {number}" for number in range(20)]
+    assert counts == [CALL_COUNT // 5] * 3
+    assert own_futures == [f"mine {number}" for number in range(20)]
 
 
 def test_history_of_real_publisher_is_unknown(processes, real_node):
@@ -129,23 +132,23 @@ def test_calls_work_in_both_directions_on_localhost(processes, real_node, monkey
     for name, value in ours.items():
         monkeypatch.setenv(name, value)
     process = processes("ours")
-    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     client = process.node.create_client(SetCameraInfo, "/echo")
     peer = peer or real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     process.spin_until(client.service_is_ready)
     assert wait_for_result(process, client.call_async(camera_request("hej"))).status_message == "hej"
-    assert ask_while_spinning(process, peer, "echoes", "/our_echo", ["hej"]) == ["hej"]
+    assert ask_while_spinning(process, peer, "echoes", "/linkwright_echo", ["hej"]) == ["hej"]
 
 
 def test_calls_larger_than_packet_work_in_both_directions(processes, real_node):
     process = processes("ours")
-    process.node.create_service(SetCameraInfo, "/our_echo", echo)
+    process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     client = process.node.create_client(SetCameraInfo, "/echo")
     peer = real_node()
     process.spin_until(client.service_is_ready)
-    large = "".join(chr(ord("a") + number % 26) for number in range(LARGE))
+    large = "".join(chr(ord("a") + number % 26) for number in range(LARGE_TEXT_LENGTH))
     assert wait_for_result(process, client.call_async(camera_request(large))).status_message == large
-    assert ask_while_spinning(process, peer, "echoes", "/our_echo", [large, "small"]) == [large, "small"]
+    assert ask_while_spinning(process, peer, "echoes", "/linkwright_echo", [large, "small"]) == [large, "small"]
 
 
 def test_killed_real_server_disappears_and_successor_is_called(processes, real_node):
@@ -163,7 +166,7 @@ def test_killed_real_server_disappears_and_successor_is_called(processes, real_n
 
 
 def test_successor_of_killed_linkwright_server_answers(processes, programs, real_node):
-    ours = programs("our_program", "ours")
+    ours = programs("linkwright_program", "ours")
     peer = real_node()
     assert "use_sim_time" in peer.ask("parameters_of", "ours")
     ours.kill()

@@ -1,4 +1,6 @@
-"""Transforms, and messages of a custom package, with nodes of real ROS 2; see `test_real_ros`.
+"""Transforms, and messages of a custom package, with nodes of real ROS 2.
+
+See `test_real_ros`.
 
 The wheels of ROS 2 have neither: `tools/ros_types.py` builds them in the folder that LINKWRIGHT_ROS_TYPES names.
 """
@@ -21,7 +23,7 @@ from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 TYPES = os.environ.get("LINKWRIGHT_ROS_TYPES", "")
-SEEDS = 6
+SEED_COUNT = 6
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 
 pytestmark = pytest.mark.skipif(
@@ -36,7 +38,7 @@ def start_real_program(programs):
     return lambda name: programs(name, "theirs", python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **variables)
 
 
-def transform(parent, child, x):
+def make_transform(parent, child, x):
     message = TransformStamped(child_frame_id=child)
     message.header.frame_id = parent
     message.transform.translation.x = x
@@ -59,14 +61,14 @@ def test_transform_chain_of_real_node_is_looked_up(processes, start_real_program
 def test_linkwright_transforms_are_received_by_real_node(processes, start_real_program):
     process = processes("ours")
     StaticTransformBroadcaster(process.node).sendTransform(
-        [transform("map", "odom", 1.0), transform("base", "arm", 2.0)]
+        [make_transform("map", "odom", 1.0), make_transform("base", "arm", 2.0)]
     )
     moving_frames = TransformBroadcaster(process.node)
     peer = start_real_program("tf_peer")
     static_frames = peer.ask_until(lambda frames: len(frames) == 2, "received", "/tf_static")
     assert static_frames == {"odom": ["map", 1.0], "arm": ["base", 2.0]}
     process.spin_until(lambda: moving_frames.pub_tf.get_subscription_count() == 1)
-    moving_frames.sendTransform(transform("odom", "base", 0.25))
+    moving_frames.sendTransform(make_transform("odom", "base", 0.25))
     assert peer.ask_until(bool, "received", "/tf") == {"base": ["odom", 0.25]}
     assert all(
         type_hash("tf2_msgs/msg/TFMessage").removeprefix("RIHS01_") in text for text in peer.ask("hashes", "/tf")
@@ -98,15 +100,15 @@ def test_messages_and_services_of_custom_package(programs, tmp_path, publisher_s
     peers_by_side = {side: start(side) for side in ("theirs", "ours")}
     types = ["wire_msgs/msg/Part", "wire_msgs/msg/Whole"]
     peers_by_side[subscriber_side].ask("subscribe", types)
-    peers_by_side[publisher_side].ask("publish", types, SEEDS)
-    peers_by_side[subscriber_side].ask_until(lambda counts: set(counts.values()) == {SEEDS}, "counts")
+    peers_by_side[publisher_side].ask("publish", types, SEED_COUNT)
+    peers_by_side[subscriber_side].ask_until(lambda counts: set(counts.values()) == {SEED_COUNT}, "counts")
     for name in types:
         assert peers_by_side[subscriber_side].ask("received", name) == peers_by_side[publisher_side].ask(
-            "expected", name, SEEDS
+            "expected", name, SEED_COUNT
         )
     peers_by_side[subscriber_side].ask("serve", ["wire_msgs/srv/Judge"])
-    requests, responses = peers_by_side[subscriber_side].ask("expected_calls", "wire_msgs/srv/Judge", SEEDS)
-    assert peers_by_side[publisher_side].ask("call", "wire_msgs/srv/Judge", SEEDS) == responses
+    requests, responses = peers_by_side[subscriber_side].ask("expected_calls", "wire_msgs/srv/Judge", SEED_COUNT)
+    assert peers_by_side[publisher_side].ask("call", "wire_msgs/srv/Judge", SEED_COUNT) == responses
     assert peers_by_side[subscriber_side].ask("requests", "wire_msgs/srv/Judge") == requests
     if publisher_side == "ours":
         (message,) = set(peers_by_side["theirs"].ask("hashes", "wire_msgs/msg/Whole"))

@@ -1,4 +1,7 @@
-"""Nodes of real ROS 2, imitated by a process that behaves on the wire like rmw_cyclonedds_cpp."""
+"""Nodes of real ROS 2, imitated by a process.
+
+It behaves on the wire like rmw_cyclonedds_cpp.
+"""
 
 from __future__ import annotations
 
@@ -26,15 +29,15 @@ def test_ros_node_and_endpoints_are_discovered(processes, programs, distribution
     process = processes("ours")
     process.spin_until(lambda: NodeIdentity("real_node", "/") in process.transport.remote_nodes())
     process.spin_until(lambda: len(process.transport.remote_endpoints()) >= 4)
-    seen = {
+    endpoints_by_name = {
         (remote_endpoint.kind, remote_endpoint.name): remote_endpoint
         for remote_endpoint in process.transport.remote_endpoints()
     }
-    assert seen[EndpointKind.PUBLISHER, "/from_ros"].type_name == "std_msgs/msg/String"
-    assert seen[EndpointKind.SUBSCRIPTION, "/to_ros"].node == NodeIdentity("real_node", "/")
-    assert seen[EndpointKind.SERVICE, "/ros_flip"].type_name == "std_srvs/srv/SetBool"
-    assert seen[EndpointKind.CLIENT, "/our_flip"].node == NodeIdentity("real_node", "/")
-    hashes = seen[EndpointKind.PUBLISHER, "/from_ros"].type_hash
+    assert endpoints_by_name[EndpointKind.PUBLISHER, "/from_ros"].type_name == "std_msgs/msg/String"
+    assert endpoints_by_name[EndpointKind.SUBSCRIPTION, "/to_ros"].node == NodeIdentity("real_node", "/")
+    assert endpoints_by_name[EndpointKind.SERVICE, "/ros_flip"].type_name == "std_srvs/srv/SetBool"
+    assert endpoints_by_name[EndpointKind.CLIENT, "/linkwright_flip"].node == NodeIdentity("real_node", "/")
+    hashes = endpoints_by_name[EndpointKind.PUBLISHER, "/from_ros"].type_hash
     assert hashes == ("" if distribution == "humble" else type_hash(String))
 
 
@@ -85,9 +88,9 @@ def test_service_answers_ros_client(processes, programs, distribution):
         response.success, response.message = not request.data, "by us"
         return response
 
-    process.node.create_service(SetBool, "/our_flip", flip)
+    process.node.create_service(SetBool, "/linkwright_flip", flip)
     peer = programs("ros_peer", distribution, "real_node", "localhost")
-    process.spin_until(lambda: process.node.count_clients("/our_flip") == 1)
+    process.spin_until(lambda: process.node.count_clients("/linkwright_flip") == 1)
     peer.ask("call", False, 41)
     process.spin_until(lambda: peer.ask("replies") == [[0x0123456789ABCDEF, 41, True, "by us"]])
 

@@ -22,9 +22,9 @@ from linkwright.wire.dds.rtps.messages import (
 from linkwright.wire.dds.rtps.reader import Reader
 from linkwright.wire.dds.rtps.writer import Writer
 
-OURS, THEIRS = b"LW" + bytes(10), b"\x01\x0f" + bytes(range(10))
+LINKWRIGHT_PREFIX, FAST_DDS_PREFIX = b"LW" + bytes(10), b"\x01\x0f" + bytes(range(10))
 AT = (("127.0.0.1", 7411),)
-WRITER, READER = OURS + b"\0\0\1\3", THEIRS + b"\0\0\1\4"
+WRITER, READER = LINKWRIGHT_PREFIX + b"\0\0\1\3", FAST_DDS_PREFIX + b"\0\0\1\4"
 
 
 def test_fast_dds_request_is_parsed():
@@ -36,12 +36,15 @@ def test_fast_dds_request_is_parsed():
         + "01000000".replace(" ", "")
         + "00010000 01000000".replace(" ", "")
     )
-    (parsed,) = parse(packet[:20] + packet[20:], OURS)
+    (parsed,) = parse(packet[:20] + packet[20:], LINKWRIGHT_PREFIX)
     assert isinstance(parsed, Data)
-    assert (parsed.writer, parsed.reader, parsed.sequence_number) == (THEIRS + b"\0\0\2\3", b"\0\0\1\4", 42)
+    assert (parsed.writer, parsed.reader, parsed.sequence_number) == (FAST_DDS_PREFIX + b"\0\0\2\3", b"\0\0\1\4", 42)
     assert parsed.time == 5_500_000_000
     assert parsed.payload == bytes.fromhex("0001000001000000")
-    assert values.read_related_identity(parsed.inline, parsed.order) == (THEIRS + b"\0\0\3\4", values.NO_NUMBER)
+    assert values.read_related_identity(parsed.inline, parsed.order) == (
+        FAST_DDS_PREFIX + b"\0\0\3\4",
+        values.NO_NUMBER,
+    )
 
 
 def test_reply_identity_uses_both_fast_dds_parameters():
@@ -51,31 +54,35 @@ def test_reply_identity_uses_both_fast_dds_parameters():
 
 
 def test_acknack_lists_missing_samples():
-    packet = message(THEIRS, acknack(READER[12:], WRITER[12:], 40, [41, 72], 1), to=OURS)
-    (parsed,) = parse(packet, OURS)
-    assert parsed == AckNack(THEIRS, READER, WRITER[12:], 40, [41, 72], final=True)
+    packet = message(FAST_DDS_PREFIX, acknack(READER[12:], WRITER[12:], 40, [41, 72], 1), to=LINKWRIGHT_PREFIX)
+    (parsed,) = parse(packet, LINKWRIGHT_PREFIX)
+    assert parsed == AckNack(FAST_DDS_PREFIX, READER, WRITER[12:], 40, [41, 72], final=True)
 
 
 @pytest.mark.parametrize("cut", range(4, 100, 3))
 def test_truncated_packet_is_not_misread(cut):
-    packet = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1)))
-    for text in parse(packet[:cut], OURS):
+    packet = message(
+        FAST_DDS_PREFIX, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1))
+    )
+    for text in parse(packet[:cut], LINKWRIGHT_PREFIX):
         assert isinstance(text, Data)
 
 
 def test_corrupted_packets_do_not_raise():
     noise = random.Random(5)
-    whole = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1)))
+    complete_packet = message(
+        FAST_DDS_PREFIX, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0hej!", values.related_identity(READER, 1))
+    )
     for _ in range(2000):
-        packet = bytearray(whole)
+        packet = bytearray(complete_packet)
         for _ in range(noise.randrange(1, 6)):
             packet[noise.randrange(20, len(packet))] = noise.randrange(256)
-        list(parse(bytes(packet), OURS))
+        list(parse(bytes(packet), LINKWRIGHT_PREFIX))
 
 
 def test_messages_for_other_participants_are_ignored():
-    packet = message(THEIRS, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0"), to=b"somebody els")
-    assert list(parse(packet, OURS)) == []
+    packet = message(FAST_DDS_PREFIX, data(b"\0\0\1\4", b"\0\0\2\3", 1, b"\0\1\0\0"), to=b"somebody els")
+    assert list(parse(packet, LINKWRIGHT_PREFIX)) == []
 
 
 def test_endpoint_data_round_trips():
@@ -84,8 +91,10 @@ def test_endpoint_data_round_trips():
     assert read == discovery_data.EndpointData(
         WRITER, "rr/flipReply", "std_srvs::srv::dds_::SetBool_Response_", True, ()
     )
-    spdp = discovery_data.describe_participant(OURS, "us", 10.0, list(AT))
-    assert discovery_data.read_participant(spdp) == discovery_data.ParticipantData(OURS, values.VENDOR, 10.0, AT, AT)
+    spdp = discovery_data.describe_participant(LINKWRIGHT_PREFIX, "us", 10.0, list(AT))
+    assert discovery_data.read_participant(spdp) == discovery_data.ParticipantData(
+        LINKWRIGHT_PREFIX, values.VENDOR, 10.0, AT, AT
+    )
 
 
 class _LossyLink:
@@ -103,7 +112,9 @@ class _LossyLink:
             packet, _ = queue.pop(0)
             if self.random.random() < self.loss:
                 continue
-            for submessage in parse(packet, THEIRS if packet[8:20] == OURS else OURS):
+            for submessage in parse(
+                packet, FAST_DDS_PREFIX if packet[8:20] == LINKWRIGHT_PREFIX else LINKWRIGHT_PREFIX
+            ):
                 queue += self._receive(submessage)
 
     def _receive(self, submessage):
@@ -151,7 +162,7 @@ def test_fragments_are_reassembled(loss):
 def test_sample_for_other_reader_is_not_waited_for():
     line = _LossyLink(0.0)
     line.carry(line.writer.write(b"\0\1\0\0", to=b"somebody els"))
-    line.carry(line.writer.write(b"\0\1\0\0mine", to=THEIRS))
+    line.carry(line.writer.write(b"\0\1\0\0mine", to=FAST_DDS_PREFIX))
     assert line.received == [(2, b"\0\1\0\0mine")]
     assert line.writer.next_reminder() is None
 
@@ -161,5 +172,5 @@ def test_late_reader_gets_no_earlier_samples():
     for _ in range(3):
         writer.write(b"\0\1\0\0")
     ((packet, _),) = writer.match(READER, AT)
-    (parsed,) = parse(packet, THEIRS)
+    (parsed,) = parse(packet, FAST_DDS_PREFIX)
     assert (parsed.first, parsed.last) == (4, 3)

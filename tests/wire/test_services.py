@@ -1,3 +1,5 @@
+"""Services between processes over DDS."""
+
 from __future__ import annotations
 
 from linkwright.graph.actions.client import ActionClient
@@ -5,7 +7,7 @@ from linkwright.graph.actions.server import ActionServer
 from linkwright.graph.parameters.client import AsyncParameterClient
 from linkwright.messages import get_action, get_service
 from linkwright.wire.dds.services import IncomingService
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 from tests.wire.conftest import both_wires
 
 SetBool = get_service("std_srvs/srv/SetBool")
@@ -115,7 +117,7 @@ def test_remote_action_is_executed(processes):
 
     server = ActionServer(b.node, Fibonacci, "count", execute)
     client = ActionClient(a.node, Fibonacci, "count")
-    assert client.wait_for_server(SECONDS)
+    assert client.wait_for_server(TIMEOUT_S)
     b.spin_until(lambda: b.node.count_clients("/count/_action/send_goal"))  # the server has discovered the client too
     b.spin_until(lambda: b.node.count_clients("/count/_action/get_result"))
     b.spin_until(lambda: b.node.count_subscribers("/count/_action/feedback"))

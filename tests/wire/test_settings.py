@@ -1,3 +1,5 @@
+"""The discovery settings that environment variables give."""
+
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
@@ -9,7 +11,7 @@ from linkwright.wire.dds.discovery_info import GID_SIZE, OLD_GID_SIZE
 from linkwright.wire.dds.settings import Range, own_addresses, read_settings
 
 
-def elements(settings):
+def configuration_elements(settings):
     """Return the preferred configuration: path -> texts and attributes."""
     settings_by_path = {}
 
@@ -25,7 +27,7 @@ def elements(settings):
 def test_default_range_is_own_machine():
     settings = read_settings({})
     assert (settings.domain_id, settings.range) == (0, Range.MACHINE)
-    document = elements(settings)
+    document = configuration_elements(settings)
     assert document["General/MulticastTimeToLive"] == ["0"]
     assert document["General/MulticastRecvNetworkInterfaceAddresses"] == ["127.0.0.1"]
     peers = [peer["address"] for peer in document["Discovery/Peers/Peer"]]
@@ -34,7 +36,7 @@ def test_default_range_is_own_machine():
 
 def test_machine_without_network_uses_loopback(monkeypatch):
     monkeypatch.setattr("linkwright.wire.dds.settings.own_addresses", list)
-    settings = elements(read_settings({}))
+    settings = configuration_elements(read_settings({}))
     assert settings["General/Interfaces/NetworkInterface"] == [{"address": "127.0.0.1", "multicast": "true"}]
 
 
@@ -56,17 +58,20 @@ def test_ros_variables_set_discovery_range(variables, expected):
     assert read_settings(variables).range is expected
 
 
-def permanent_peer(address: str) -> dict[str, str]:
+def peer_settings(address: str) -> dict[str, str]:
     """Return the settings of an address that is asked without a time limit."""
     return {"address": address, "PruneDelay": "inf"}
 
 
-THIS_MACHINE = permanent_peer("127.0.0.1")
+OWN_PEER = peer_settings("127.0.0.1")
 
 
 def test_subnet_settings_match_rmw_cyclonedds_and_keep_own_machine():
-    """A node of Fast DDS that is limited to this machine ignores announcements of other machines."""
-    settings = elements(
+    """Subnet settings include the own machine.
+
+    A node of Fast DDS that is limited to this machine ignores announcements of other machines.
+    """
+    settings = configuration_elements(
         read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET", "ROS_STATIC_PEERS": "192.0.2.7;host"})
     )
     assert settings == {
@@ -76,21 +81,24 @@ def test_subnet_settings_match_rmw_cyclonedds_and_keep_own_machine():
         "Discovery/MaxAutoParticipantIndex": ["32"],
         "Discovery/SPDPInterval": ["3 s"],
         "Discovery/Peers": [{}],
-        "Discovery/Peers/Peer": [THIS_MACHINE, permanent_peer("192.0.2.7"), permanent_peer("host")],
+        "Discovery/Peers/Peer": [OWN_PEER, peer_settings("192.0.2.7"), peer_settings("host")],
     }
 
 
 def test_localhost_range_equals_own_machine():
-    """Humble's rmw_cyclonedds then uses the loopback interface, and Jazzy's uses the one that Cyclone chooses."""
+    """The range of localhost equals the own machine.
+
+    Humble's rmw_cyclonedds then uses the loopback interface, and Jazzy's uses the one that Cyclone chooses.
+    """
     machine = read_settings({}).configurations
     assert read_settings({"ROS_LOCALHOST_ONLY": "1"}).configurations == machine
     assert read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}).configurations == machine
 
 
 def test_localhost_with_peers_matches_rmw_cyclonedds():
-    settings = elements(read_settings({"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "192.0.2.7"}))
+    settings = configuration_elements(read_settings({"ROS_LOCALHOST_ONLY": "1", "ROS_STATIC_PEERS": "192.0.2.7"}))
     assert settings["General/AllowMulticast"] == ["false"]
-    assert settings["Discovery/Peers/Peer"] == [THIS_MACHINE, permanent_peer("192.0.2.7")]
+    assert settings["Discovery/Peers/Peer"] == [OWN_PEER, peer_settings("192.0.2.7")]
 
 
 def test_user_configuration_is_applied_last():
@@ -101,7 +109,7 @@ def test_user_configuration_is_applied_last():
 
 
 def test_discovery_off_uses_unique_tag():
-    settings = elements(read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}))
+    settings = configuration_elements(read_settings({"ROS_AUTOMATIC_DISCOVERY_RANGE": "OFF"}))
     assert settings["Discovery/ParticipantIndex"] == ["none"]
     assert settings["Discovery/Tag"][0].startswith("ros_discovery_off_")
 

@@ -1,4 +1,7 @@
-"""Machines that are reached without multicast, as with ROS_STATIC_PEERS: they may start late, and return."""
+"""Machines that are reached without multicast, as with ROS_STATIC_PEERS.
+
+They may start late, and return.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +14,16 @@ import pytest
 from tests.wire.programs import Program
 from tests.wire.zenoh.hosts import CLOUD, DESK, DESKS_CLOUD_ADDRESS, Hosts, unsupported_reason
 
-FORGOTTEN_AFTER = 2
+PRUNE_DELAY_S = 2
 """The seconds after which Cyclone stops asking an address that does not answer; 30 by default."""
 
 
-def configuration(interface: str) -> str:
+def cyclone_configuration(interface: str) -> str:
     """Return a configuration of Cyclone without multicast."""
     return (
         "<CycloneDDS><Domain><General><AllowMulticast>false</AllowMulticast>"
         f"<Interfaces><NetworkInterface name='{interface}'/></Interfaces></General>"
-        f"<Discovery><InitialLocatorPruneDelay>{FORGOTTEN_AFTER} s</InitialLocatorPruneDelay></Discovery>"
+        f"<Discovery><InitialLocatorPruneDelay>{PRUNE_DELAY_S} s</InitialLocatorPruneDelay></Discovery>"
         "</Domain></CycloneDDS>"
     )
 
@@ -43,16 +46,16 @@ def hosts() -> Iterator[Hosts]:
 
 def test_late_and_returning_static_peer_is_discovered(hosts):
     def start(host: str, other: str, name: str, **environment: str) -> Program:
-        settings = {"CYCLONEDDS_URI": configuration(f"to{other}"), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
-        return Program("far_program", name, within=hosts.within(host), **settings, **environment)
+        settings = {"CYCLONEDDS_URI": cyclone_configuration(f"to{other}"), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
+        return Program("far_program", name, prefix_words=hosts.within(host), **settings, **environment)
 
     desk = start(DESK, CLOUD, "desk", ROS_STATIC_PEERS=DESKS_CLOUD_ADDRESS)
     try:
         for name in ("first", "second"):
-            time.sleep(2 * FORGOTTEN_AFTER)
-            late = start(CLOUD, DESK, name)
+            time.sleep(2 * PRUNE_DELAY_S)
+            late_peer = start(CLOUD, DESK, name)
             desk.ask_until(lambda nodes, name=name: name in nodes, "nodes")
-            late.end()
+            late_peer.end()
             desk.ask_until(lambda nodes, name=name: name not in nodes, "nodes")
     finally:
         desk.end()

@@ -1,4 +1,7 @@
-"""The types of topics: announced by name, created once per domain, and kept until the domain is closed."""
+"""The types of topics.
+
+They are announced by name, created once per domain, and kept until the domain is closed.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,7 @@ from linkwright.wire.dds.type_descriptions import empty_type_data
 make_idl_struct = pytest.importorskip("cyclonedds.idl", reason="cyclonedds is not installed").make_idl_struct
 Point = get_message("geometry_msgs/msg/Point")
 
-CHURN = """
+CHURN_PROGRAM = """
     import gc, time
     from linkwright.graph import Graph
     from linkwright.wire.dds import join
@@ -64,7 +67,7 @@ CHURN = """
 """
 
 
-TOGETHER = """
+COMBINED_PROGRAM = """
     from linkwright.graph import Graph
     from linkwright.wire.dds import join
     from linkwright.messages import get_message
@@ -88,8 +91,11 @@ TOGETHER = """
 """
 
 
-def output_of(program: str) -> str:
-    """Run a program that must end well although freed memory is overwritten, and return its output."""
+def run_program(program: str) -> str:
+    """Run a program, and return its output.
+
+    It must end well although freed memory is overwritten.
+    """
     result = subprocess.run(
         [sys.executable, "-X", "faulthandler", "-c", textwrap.dedent(program)],
         capture_output=True,
@@ -164,12 +170,12 @@ def test_topic_rejected_by_cyclone_raises_error(processes):
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the test reads /proc")
 def test_repeated_graphs_do_not_leak_memory(domain):
-    assert float(output_of(CHURN)) < 3.0, "creating the types again would take 0.5 MB per graph"
+    assert float(run_program(CHURN_PROGRAM)) < 3.0, "creating the types again would take 0.5 MB per graph"
 
 
 @pytest.mark.slow
 def test_graphs_can_join_simultaneously(domain):
-    assert output_of(TOGETHER) == ""
+    assert run_program(COMBINED_PROGRAM) == ""
 
 
 @pytest.mark.parametrize("name", ["A_", "Ab_", "Abc_", "ParticipantEntitiesInfo_", "Müller_"])

@@ -1,3 +1,5 @@
+"""Topics between processes over DDS: delivery, latched messages and QoS."""
+
 from __future__ import annotations
 
 import platform
@@ -18,8 +20,8 @@ from linkwright.graph.time.values import Duration
 from linkwright.messages import String, get_message, interface_names, serialize
 from tests.wire.conftest import both_wires
 
-LASTING = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+TRANSIENT_LOCAL = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 
 
 @both_wires
@@ -57,14 +59,14 @@ def test_messages_are_not_serialized_without_remote_subscribers(processes):
 @both_wires
 def test_late_subscriber_gets_messages_latched_before_join(processes):
     a = processes("a", join_now=False)
-    publisher = a.node.create_publisher(String, "described", LASTING)
+    publisher = a.node.create_publisher(String, "described", TRANSIENT_LOCAL)
     for word in ("one", "two", "three", "four"):
         publisher.publish(String(data=word))
     a.join()
     publisher.publish(String(data="five"))
     b = processes("b")
     texts: list[str] = []
-    b.node.create_subscription(String, "described", lambda message: texts.append(message.data), LASTING)
+    b.node.create_subscription(String, "described", lambda message: texts.append(message.data), TRANSIENT_LOCAL)
     b.spin_until(lambda: len(texts) == 3)
     assert texts == ["three", "four", "five"]
     publisher.publish(String(data="six"))
@@ -75,11 +77,13 @@ def test_late_subscriber_gets_messages_latched_before_join(processes):
 @both_wires
 def test_latched_message_of_same_process_is_delivered_once(processes):
     a, b = processes("a"), processes("b")
-    publisher = a.node.create_publisher(String, "described", LASTING)
+    publisher = a.node.create_publisher(String, "described", TRANSIENT_LOCAL)
     publisher.publish(String(data="one"))
     texts: list[str] = []
     for process in (a, b):
-        process.node.create_subscription(String, "described", lambda message: texts.append(message.data), LASTING)
+        process.node.create_subscription(
+            String, "described", lambda message: texts.append(message.data), TRANSIENT_LOCAL
+        )
     a.spin_until(lambda: len(texts) == 1)
     b.spin_until(lambda: len(texts) == 2)
     publisher.publish(String(data="two"))
@@ -92,8 +96,8 @@ def test_latched_message_of_same_process_is_delivered_once(processes):
 def test_keep_all_messages_arrive_after_publisher_closes(processes):
     a, b = processes("a"), processes("b")
     texts: list[str] = []
-    b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), EVERYTHING)
-    publisher = a.node.create_publisher(String, "chatter", EVERYTHING)
+    b.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), KEEP_ALL)
+    publisher = a.node.create_publisher(String, "chatter", KEEP_ALL)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for number in range(2000):
         publisher.publish(String(data=str(number)))
@@ -155,17 +159,20 @@ def test_incompatible_qos_is_reported_on_both_sides(processes):
     b.node.create_subscription(String, "chatter", print, QoSProfile(5))
 
     def reported(process):
-        """Return the warnings about a mismatch; another one may be about a remaining node of an earlier test."""
+        """Return the warnings about a mismatch.
+
+        Another one may be about a remaining node of an earlier test.
+        """
         return [text for text in process.warnings() if "incompatible QoS" in text]
 
     b.spin_until(lambda: reported(b))
     a.spin_until(lambda: reported(a))
-    (theirs,), (ours,) = reported(b), reported(a)
-    assert "New publisher discovered on topic '/chatter', offering incompatible QoS" in theirs
-    assert "RELIABILITY" in theirs
-    assert "'/a'" in theirs
-    assert "New subscription discovered on topic '/chatter', requesting incompatible QoS" in ours
-    assert "'/b'" in ours
+    (remote_texts,), (local_texts,) = reported(b), reported(a)
+    assert "New publisher discovered on topic '/chatter', offering incompatible QoS" in remote_texts
+    assert "RELIABILITY" in remote_texts
+    assert "'/a'" in remote_texts
+    assert "New subscription discovered on topic '/chatter', requesting incompatible QoS" in local_texts
+    assert "'/b'" in local_texts
 
 
 def test_qos_of_remote_endpoints_is_available(processes):
@@ -180,7 +187,7 @@ def test_qos_of_remote_endpoints_is_available(processes):
         liveliness_lease_duration=Duration(seconds=2),
     )
     a.node.create_publisher(String, "chatter", offered)
-    a.node.create_publisher(String, "all", EVERYTHING)
+    a.node.create_publisher(String, "all", KEEP_ALL)
     b.spin_until(lambda: b.node.count_publishers("chatter") and b.node.count_publishers("all"))
     (endpoint,) = b.node.get_publishers_info_by_topic("/chatter")
     assert endpoint.qos_profile == offered
@@ -190,11 +197,11 @@ def test_qos_of_remote_endpoints_is_available(processes):
 
 def test_topic_can_avoid_ros_namespace_conventions(processes):
     a, b = processes("a"), processes("b")
-    plain = QoSProfile(10, avoid_ros_namespace_conventions=True)
+    plain_qos = QoSProfile(10, avoid_ros_namespace_conventions=True)
     texts: list[str] = []
-    b.node.create_subscription(String, "/plain", lambda message: texts.append(message.data), plain)
+    b.node.create_subscription(String, "/plain", lambda message: texts.append(message.data), plain_qos)
     b.node.create_subscription(String, "/plain", lambda message: texts.append("ros"), 10)
-    publisher = a.node.create_publisher(String, "/plain", plain)
+    publisher = a.node.create_publisher(String, "/plain", plain_qos)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     publisher.publish(String(data="hej"))
     b.spin_until(lambda: texts)
@@ -223,8 +230,8 @@ def test_malformed_samples_are_dropped_counted_and_reported_once(processes, prog
 def test_messages_of_any_size_arrive(processes, size):
     a, b = processes("a"), processes("b")
     sizes: list[int] = []
-    b.node.create_subscription(String, "chatter", lambda message: sizes.append(len(message.data)), EVERYTHING)
-    publisher = a.node.create_publisher(String, "chatter", EVERYTHING)
+    b.node.create_subscription(String, "chatter", lambda message: sizes.append(len(message.data)), KEEP_ALL)
+    publisher = a.node.create_publisher(String, "chatter", KEEP_ALL)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     for _ in range(5):
         publisher.publish(String(data="x" * size))
@@ -258,9 +265,9 @@ def test_reliable_flood_loses_no_messages(processes, programs):
     process = processes("ours")
     numbers: list[int] = []
     process.node.create_subscription(
-        "std_msgs/msg/Int32", "flood", lambda message: numbers.append(message.data), EVERYTHING
+        "std_msgs/msg/Int32", "flood", lambda message: numbers.append(message.data), KEEP_ALL
     )
-    sender = programs("our_program", "sender")
+    sender = programs("linkwright_program", "sender")
     assert sender.ask_until(bool, "subscribers", "/flood")
     count = 20_000
     sender.ask("flood", "/flood", count)
@@ -273,31 +280,31 @@ def test_lost_liveliness_of_remote_publisher_is_reported(processes):
     manual = QoSProfile(
         5, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC, liveliness_lease_duration=Duration(nanoseconds=400_000_000)
     )
-    seen = []
-    callbacks = SubscriptionEventCallbacks(liveliness=seen.append)
+    events = []
+    callbacks = SubscriptionEventCallbacks(liveliness=events.append)
     b.node.create_subscription(String, "chatter", print, manual, event_callbacks=callbacks)
     publisher = a.node.create_publisher(String, "chatter", manual)
     a.spin_until(lambda: publisher.get_subscription_count() == 1)
     publisher.assert_liveliness()
-    b.spin_until(lambda: seen and seen[-1].not_alive_count == 1)
+    b.spin_until(lambda: events and events[-1].not_alive_count == 1)
 
     def is_alive_again() -> bool:
         publisher.publish(String())  # a publisher that is discovered late may already count as silent
-        return seen[-1].alive_count == 1 and seen[-1].not_alive_count == 0
+        return events[-1].alive_count == 1 and events[-1].not_alive_count == 0
 
     b.spin_until(is_alive_again)
 
 
 def test_best_available_qos_considers_remote_endpoints(processes):
     process, peer = processes("us"), processes("them")
-    best = QoSPresetProfiles.BEST_AVAILABLE.value
+    best_available = QoSPresetProfiles.BEST_AVAILABLE.value
     peer.node.create_publisher(String, "/scan", QoSPresetProfiles.SENSOR_DATA.value)
     peer.node.create_subscription(String, "/command", print, QoSProfile(1, deadline=Duration(seconds=2)))
     process.spin_until(
         lambda: process.node.count_publishers("/scan") == process.node.count_subscribers("/command") == 1
     )
-    process.node.create_subscription(String, "/scan", print, best)
-    process.node.create_publisher(String, "/command", best)
+    process.node.create_subscription(String, "/scan", print, best_available)
+    process.node.create_publisher(String, "/command", best_available)
     (endpoint,) = process.node.get_subscriptions_info_by_topic("/scan")
     assert endpoint.qos_profile.reliability is ReliabilityPolicy.BEST_EFFORT
     (offered,) = process.node.get_publishers_info_by_topic("/command")

@@ -14,7 +14,7 @@ from linkwright.wire.unsupported_settings import CYCLONE, ZENOH
 from linkwright.wire.zenoh import ZenohTransport
 
 PLACES = ("linkwright.wire.joining", "linkwright.wire.dds.joining", "linkwright.wire.zenoh.joining")
-ASKED = {"RMW_IMPLEMENTATION": ZENOH}
+REQUESTED_RMW = {"RMW_IMPLEMENTATION": ZENOH}
 
 
 @pytest.fixture
@@ -32,30 +32,30 @@ def installed(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("packages", "variables", "chosen", "is_there"),
+    ("packages", "variables", "chosen", "is_installed"),
     [
         (["cyclonedds", "zenoh", "xxhash"], {}, CYCLONE, True),
-        (["cyclonedds", "zenoh", "xxhash"], ASKED, ZENOH, True),
+        (["cyclonedds", "zenoh", "xxhash"], REQUESTED_RMW, ZENOH, True),
         (["zenoh", "xxhash"], {}, ZENOH, True),
         (["zenoh", "xxhash"], {"RMW_IMPLEMENTATION": "rmw_fastrtps_cpp"}, CYCLONE, False),
-        (["cyclonedds"], ASKED, ZENOH, False),
-        (["zenoh"], ASKED, ZENOH, False),
+        (["cyclonedds"], REQUESTED_RMW, ZENOH, False),
+        (["zenoh"], REQUESTED_RMW, ZENOH, False),
         ([], {}, CYCLONE, False),
-        (["cyclonedds", "zenoh", "xxhash"], {**ASKED, "LINKWRIGHT_DDS": "0"}, ZENOH, False),
+        (["cyclonedds", "zenoh", "xxhash"], {**REQUESTED_RMW, "LINKWRIGHT_DDS": "0"}, ZENOH, False),
     ],
 )
 def test_rmw_implementation_selects_transport_before_installed_packages(
-    installed, packages, variables, chosen, is_there
+    installed, packages, variables, chosen, is_installed
 ):
     installed(*packages)
     assert middleware(variables) == chosen
-    assert is_available(variables) is is_there
+    assert is_available(variables) is is_installed
 
 
 def test_missing_packages_are_reported(installed):
     installed()
     assert f"neither DDS nor Zenoh is installed: {install_hint('zenoh')}, or with 'dds'" in unavailable_reason({})
-    assert "the package 'eclipse-zenoh' is not installed" in unavailable_reason(ASKED)
+    assert "the package 'eclipse-zenoh' is not installed" in unavailable_reason(REQUESTED_RMW)
     assert "the package 'cyclonedds' is not installed" in unavailable_reason({"RMW_IMPLEMENTATION": CYCLONE})
 
 
@@ -77,16 +77,16 @@ def test_process_without_transport_logs_and_continues(installed):
 
 @pytest.mark.skipif(importlib.util.find_spec("cyclonedds") is None, reason="cyclonedds is not installed")
 def test_settings_of_chosen_transport_are_checked():
-    wrong = {"ZENOH_CONFIG_OVERRIDE": "mode"}
-    check_settings(wrong)
+    invalid_variables = {"ZENOH_CONFIG_OVERRIDE": "mode"}
+    check_settings(invalid_variables)
     with pytest.raises(LinkwrightError, match="is not a Zenoh setting"):
-        check_settings({**ASKED, **wrong})
-    for variables in ({}, ASKED):
+        check_settings({**REQUESTED_RMW, **invalid_variables})
+    for variables in ({}, REQUESTED_RMW):
         with pytest.raises(LinkwrightError, match="is not a DDS domain"):
             check_settings({**variables, "ROS_DOMAIN_ID": "233"})
 
 
-@pytest.mark.parametrize(("variables", "kind"), [({}, DdsTransport), (ASKED, ZenohTransport)])
+@pytest.mark.parametrize(("variables", "kind"), [({}, DdsTransport), (REQUESTED_RMW, ZenohTransport)])
 def test_graph_joins_with_chosen_transport(variables, kind, domain):
     pytest.importorskip("cyclonedds" if kind is DdsTransport else "zenoh", reason="it is not installed here")
     graph = Graph(threads=True)

@@ -20,7 +20,7 @@ SERVER = {"ROS_DISCOVERY_SERVER": "127.0.0.1:11811"}
 with_network = pytest.mark.skipif(not is_available(), reason="neither DDS nor Zenoh is installed")
 
 
-def codes(variables):
+def diagnostic_codes(variables):
     return [setting.code for setting in unsupported_settings(variables)]
 
 
@@ -46,7 +46,7 @@ def codes(variables):
     ],
 )
 def test_unsupported_settings_are_reported(variables, message):
-    assert codes(variables) == message
+    assert diagnostic_codes(variables) == message
 
 
 @pytest.mark.parametrize(

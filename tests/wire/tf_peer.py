@@ -1,4 +1,6 @@
-"""A node that publishes and receives transforms with the real rclpy but without tf2_ros; see `tools/ros_types.py`.
+"""A node that publishes and receives transforms with the real rclpy but without tf2_ros.
+
+See `tools/ros_types.py`.
 
 ``$LINKWRIGHT_ROS_PYTHON -m tests.wire.tf_peer NODE_NAME``. The QoS profiles are those of tf2_ros.
 """

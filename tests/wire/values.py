@@ -1,4 +1,7 @@
-"""Test values for the fields of any message, equal with every rclpy: extremes, empty and random values."""
+"""Test values for the fields of any message, equal with every rclpy.
+
+They are extreme, empty and random values.
+"""
 
 from __future__ import annotations
 
@@ -30,34 +33,37 @@ def message_from_seed(message_type: Any, seed: int) -> Any:
     return message
 
 
-def plain(value: Any) -> Any:
+def to_json_value(value: Any) -> Any:
     """Return the JSON form of a message or of a part of one; it is equal for equal messages."""
     if hasattr(value, "get_fields_and_field_types"):
-        return [[name, plain(getattr(value, name))] for name in value.get_fields_and_field_types()]
+        return [[name, to_json_value(getattr(value, name))] for name in value.get_fields_and_field_types()]
     if isinstance(value, bytes):
         return value.hex()
     if isinstance(value, str):
         return value
     if hasattr(value, "tolist"):  # array.array and numpy arrays
-        return plain(value.tolist())
+        return to_json_value(value.tolist())
     if isinstance(value, (list, tuple)):
-        return [plain(element) for element in value]
+        return [to_json_value(element) for element in value]
     return float(value).hex() if isinstance(value, float) else int(value)
 
 
-def interface(name: str) -> Any:
-    """Return the class of ``package/msg/Name``, ``package/srv/Name`` or ``package/action/Name``."""
+def load_interface(name: str) -> Any:
+    """Return the class of an interface.
+
+    Its name is ``package/msg/Name``, ``package/srv/Name`` or ``package/action/Name``.
+    """
     package, folder, type_name = name.split("/")
     return getattr(importlib.import_module(f"{package}.{folder}"), type_name)
 
 
-def bytes_of_size(number: int, size: int) -> bytes:
+def make_bytes(number: int, size: int) -> bytes:
     """Return bytes in which every block of 32 is the hash of a number."""
     block = hashlib.sha256(str(number).encode()).digest()
     return (block * (size // len(block) + 1))[:size]
 
 
-def digest(data: Any) -> str:
+def sha256_of(data: Any) -> str:
     """Return the SHA-256 of some data."""
     return hashlib.sha256(bytes(data)).hexdigest()
 
@@ -82,7 +88,7 @@ def _value(kind: str, seed: int, draw: random.Random) -> Any:
         lowest, highest = (0, 2**bits - 1) if integer[1] else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
         return {LOWEST: lowest, HIGHEST: highest}.get(seed, draw.randint(lowest, highest))
     package, type_name = kind.split("/")
-    nested = interface(f"{package}/msg/{type_name}")()
+    nested = load_interface(f"{package}/msg/{type_name}")()
     for name, field_kind in type(nested).get_fields_and_field_types().items():
         setattr(nested, name, _value(field_kind, seed, draw))
     return nested

@@ -1,4 +1,6 @@
-"""Test cases in Markdown: each heading is a case, with blocks for files, arguments and the expected result.
+"""Test cases in Markdown.
+
+Each heading is a case, with blocks for files, arguments and the expected result.
 
 Fences: ``xacro`` is the content of the root element of ``main.xacro``; ``document`` is the whole of this file;
 ``file NAME`` is another file in the folder; ``arguments`` holds ``name:=value`` lines; ``urdf`` is the expansion
@@ -79,20 +81,20 @@ def without_banner(text: str) -> str:
     return "".join(text.splitlines(keepends=True)[BANNER_LINES:]).removesuffix("\n")
 
 
-def described(diagnostic: Diagnostic, folder: Path) -> str:
+def format_diagnostic(diagnostic: Diagnostic, folder: Path) -> str:
     """Return a diagnostic in the notation of the Markdown files."""
-    where = f"{_place(diagnostic.span, folder)}: " if diagnostic.span else ""
-    lines = [f"{where}{diagnostic.severity.value} {diagnostic.code}: {diagnostic.message}"]
-    lines += [f"  note: {note.message}{_in_brackets(note.span, folder)}" for note in diagnostic.notes]
+    location = f"{_format_place(diagnostic.span, folder)}: " if diagnostic.span else ""
+    lines = [f"{location}{diagnostic.severity.value} {diagnostic.code}: {diagnostic.message}"]
+    lines += [f"  note: {note.message}{_format_span(note.span, folder)}" for note in diagnostic.notes]
     if diagnostic.hint:
         lines.append(f"  hint: {diagnostic.hint}")
     return "\n".join(lines).replace(f"{folder}/", "")
 
 
-def _in_brackets(span: Span | None, folder: Path) -> str:
-    return f" ({_place(span, folder)})" if span else ""
+def _format_span(span: Span | None, folder: Path) -> str:
+    return f" ({_format_place(span, folder)})" if span else ""
 
 
-def _place(span: Span, folder: Path) -> str:
+def _format_place(span: Span, folder: Path) -> str:
     end = span.end_column if span.end_line == span.line else f"{span.end_line}:{span.end_column}"
     return f"{span.file.replace(f'{folder}/', '')}:{span.line}:{span.column}-{end}"

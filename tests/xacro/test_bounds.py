@@ -17,14 +17,14 @@ from .cases import ROOT
 from .evaluating import evaluate
 
 
-def codes(text: str, limits: Limits | None = None) -> list[str]:
+def error_codes(text: str, limits: Limits | None = None) -> list[str]:
     """Return the codes of the errors in a text, and check that none takes long to find."""
     with ends(), pytest.raises(LinkwrightError) as caught:
         expand("m.xacro", text=text, limits=limits)
     return [diagnostic.code for diagnostic in caught.value.diagnostics]
 
 
-HUGE = [
+HUGE_NUMBERS = [
     "10**10**10",
     "2**20000**2",
     "'a' * 10**9",
@@ -169,7 +169,7 @@ HUGE = [
 ]
 
 
-@pytest.mark.parametrize("source", HUGE, ids=lambda source: source[:40])
+@pytest.mark.parametrize("source", HUGE_NUMBERS, ids=lambda source: source[:40])
 def test_unbounded_expressions_are_stopped(source: str) -> None:
     with ends(), pytest.raises(Fault):
         evaluate("${" + source + "}", items=[1], data={"a": 1})
@@ -203,7 +203,7 @@ def test_exponential_macro_calls_are_stopped() -> None:
     assert caught.value.diagnostics[0].code == "XAC602"
 
 
-RECURSIVE = (
+RECURSIVE_MACROS = (
     '<xacro:macro name="r" params="n"><l><k><xacro:if value="${n>1}"><xacro:r n="${n-1}"/></xacro:if></k></l>'
     '</xacro:macro><xacro:r n="%d"/>'
 )
@@ -212,7 +212,7 @@ RECURSIVE = (
 @pytest.mark.parametrize("levels", [1, 150, 200])
 def test_deep_macro_recursion_is_expanded(levels: int) -> None:
     limit = sys.getrecursionlimit()
-    text = str(expand("m.xacro", text=f"{ROOT}{RECURSIVE % levels}</robot>"))
+    text = str(expand("m.xacro", text=f"{ROOT}{RECURSIVE_MACROS % levels}</robot>"))
     assert text.count("<l>") == levels
     assert sys.getrecursionlimit() == limit
 
@@ -220,7 +220,7 @@ def test_deep_macro_recursion_is_expanded(levels: int) -> None:
 @pytest.mark.parametrize("levels", [201, 100_000])
 def test_too_deep_macro_recursion_is_one_error(levels: int) -> None:
     with pytest.raises(LinkwrightError) as caught:
-        expand("m.xacro", text=f"{ROOT}{RECURSIVE % levels}</robot>")
+        expand("m.xacro", text=f"{ROOT}{RECURSIVE_MACROS % levels}</robot>")
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "XAC601"
     assert "more than 200 levels deep" in diagnostic.message
@@ -287,7 +287,7 @@ def test_large_allowed_expressions_are_fast(source: str) -> None:
         evaluate("${" + source + "}", items=[1], data={"a": 1})
 
 
-def nested_macros(count: int, body: str) -> str:
+def make_nested_macros(count: int, body: str) -> str:
     """Return macros that each call the next one twice."""
     macros = "".join(
         f'<xacro:macro name="m{number}">{body.format(call=f"<xacro:m{number + 1}/>")}</xacro:macro>'
@@ -298,7 +298,7 @@ def nested_macros(count: int, body: str) -> str:
 
 @pytest.mark.parametrize("body", ["{call}{call}", "<a>{call}</a><b>{call}</b>"])
 def test_macros_that_double_are_stopped_by_default(body: str) -> None:
-    assert codes(nested_macros(60, body)) == ["XAC602"]
+    assert error_codes(make_nested_macros(60, body)) == ["XAC602"]
 
 
 @pytest.mark.parametrize(
@@ -330,8 +330,8 @@ def test_blocks_that_double_are_stopped() -> None:
 
 
 def test_time_limit_is_enforced() -> None:
-    text = nested_macros(60, "{call}{call}")
-    assert codes(text, Limits(elements=10**9, seconds=0.1)) == ["XAC606"]
+    text = make_nested_macros(60, "{call}{call}")
+    assert error_codes(text, Limits(elements=10**9, seconds=0.1)) == ["XAC606"]
     with pytest.raises(Fault) as caught:
         evaluate("${[x for x in python.range(1000000)]}", Limits(steps=10**9, seconds=0.05))
     assert caught.value.code == "XAC606"
@@ -343,8 +343,8 @@ def test_lists_growing_across_macro_calls_are_stopped() -> None:
         '<xacro:r n="${n-1}"/></xacro:macro>'
     )
     for first in ("'ab'", "3", "[1]"):
-        given = f'<xacro:property name="items" value="${{[{first}]}}"/>'
-        assert codes(f'{ROOT}{body}{given}<xacro:r n="100"/></robot>')[0] in ("XAC204", "XAC601")
+        first_list = f'<xacro:property name="items" value="${{[{first}]}}"/>'
+        assert error_codes(f'{ROOT}{body}{first_list}<xacro:r n="100"/></robot>')[0] in ("XAC204", "XAC601")
 
 
 @pytest.mark.parametrize(
@@ -361,7 +361,7 @@ def test_lists_growing_across_macro_calls_are_stopped() -> None:
     ids=lambda body: body[:40],
 )
 def test_infinite_recursion_is_an_error(body: str) -> None:
-    assert codes(f"{ROOT}{body}</robot>") == ["XAC601"]
+    assert error_codes(f"{ROOT}{body}</robot>") == ["XAC601"]
 
 
 def test_file_that_includes_itself_is_an_error(tmp_path: Path) -> None:
@@ -375,20 +375,20 @@ def test_file_that_includes_itself_is_an_error(tmp_path: Path) -> None:
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="this system has no /dev/zero")
 @pytest.mark.parametrize("use", ['<xacro:include filename="/dev/zero"/>', "<a v=\"${xacro.load_yaml('/dev/zero')}\"/>"])
 def test_endless_file_is_an_error(use: str) -> None:
-    assert codes(f"{ROOT}{use}</robot>")[0] in ("XML103", "XAC506")
+    assert error_codes(f"{ROOT}{use}</robot>")[0] in ("XML103", "XAC506")
 
 
 @pytest.mark.parametrize("written", ["'\\x00'", "'\\x01'", "'\\ud800'", "'\\uffff'", "'%c' % 2"])
 def test_characters_invalid_in_xml_are_an_error(written: str) -> None:
-    assert codes(f'{ROOT}<a v="${{{written}}}"/></robot>') == ["XAC206"]
+    assert error_codes(f'{ROOT}<a v="${{{written}}}"/></robot>') == ["XAC206"]
 
 
-LAUGHS = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
+BILLION_LAUGHS = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
     f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]\n" for n in range(1, 10)
 )
 MERGES = "a0: &a0 {x: 1}\n" + "".join(f"a{n}: &a{n}\n  <<: [{', '.join([f'*a{n - 1}'] * 10)}]\n" for n in range(1, 12))
 BOMBS = {
-    "aliases": LAUGHS,
+    "aliases": BILLION_LAUGHS,
     "merges": MERGES,
     "a list in itself": "&a [*a]",
     "a mapping as its own key": "&a {*a : 1}",
@@ -416,7 +416,7 @@ BOMBS = {
 def test_yaml_bomb_is_an_error(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("d.yaml").write_text(text)
-    diagnostic_codes = codes(
+    diagnostic_codes = error_codes(
         f'{ROOT}<xacro:property name="d" value="${{xacro.load_yaml(\'d.yaml\')}}"/><a v="${{len(d)}}"/></robot>'
     )
     assert diagnostic_codes[0] in ("XAC506", "XAC204", "XAC202")

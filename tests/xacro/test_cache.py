@@ -1,3 +1,5 @@
+"""The cache of documents: its bound, and the entries that it replaces."""
+
 from __future__ import annotations
 
 from linkwright.xacro import cache, expand

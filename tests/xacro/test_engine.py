@@ -15,13 +15,13 @@ from tests.imports import loaded_by
 from .cases import ROOT
 
 
-def write(folder: Path, **files: str) -> Path:
+def write_files(folder: Path, **files: str) -> Path:
     for name, text in files.items():
         (folder / f"{name}.xacro").write_text(f"{ROOT}{text}</robot>", encoding="utf-8")
     return folder / "main.xacro"
 
 
-def find(expansion: Expansion, tag: str) -> Element:
+def find_element(expansion: Expansion, tag: str) -> Element:
     pending = [expansion.document.root]
     while pending:
         element = pending.pop()
@@ -46,23 +46,23 @@ def test_expanded_text_has_banner(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 def test_arguments_of_caller_are_not_changed(tmp_path: Path) -> None:
-    main = write(tmp_path, main='<xacro:arg name="a" default="1"/><x v="$(arg a)"/>')
-    given: dict[str, str] = {}
-    assert expand(main, given).arguments == {"a": "1"}
-    assert given == {}
+    main = write_files(tmp_path, main='<xacro:arg name="a" default="1"/><x v="$(arg a)"/>')
+    arguments: dict[str, str] = {}
+    assert expand(main, arguments).arguments == {"a": "1"}
+    assert arguments == {}
     assert expand(main, {"a": "2", "other": "3"}).arguments == {"a": "2", "other": "3"}
     assert 'v="1"' in str(expand(main))
 
 
 def test_unused_argument_suggests_similar_name(tmp_path: Path) -> None:
-    main = write(tmp_path, main='<xacro:arg name="radius" default="1"/><x v="$(arg given)"/>')
+    main = write_files(tmp_path, main='<xacro:arg name="radius" default="1"/><x v="$(arg given)"/>')
     (warning,) = expand(main, {"given": "1", "raduis": "2"}).diagnostics
     assert (warning.code, warning.hint) == ("XAC215", "did you mean 'radius'?")
     assert "'raduis'" in warning.message
 
 
 def test_dependencies_list_all_files_with_main_file_first(tmp_path: Path) -> None:
-    main = write(
+    main = write_files(
         tmp_path,
         main='<xacro:include filename="a.xacro"/><xacro:include filename="a.xacro"/>'
         "<x v=\"${xacro.load_yaml('c.yaml')}\"/>",
@@ -74,7 +74,7 @@ def test_dependencies_list_all_files_with_main_file_first(tmp_path: Path) -> Non
 
 
 def test_given_text_replaces_file(tmp_path: Path) -> None:
-    write(tmp_path, part="<y/>")
+    write_files(tmp_path, part="<y/>")
     main = tmp_path / "unsaved.xacro"
     expansion = expand(main, text=f'{ROOT}<xacro:include filename="part.xacro"/></robot>')
     assert "<y/>" in str(expansion)
@@ -84,7 +84,7 @@ def test_given_text_replaces_file(tmp_path: Path) -> None:
 
 
 def test_changed_file_is_read_again(tmp_path: Path) -> None:
-    main = write(tmp_path, main='<xacro:include filename="part.xacro"/>', part="<y/>")
+    main = write_files(tmp_path, main='<xacro:include filename="part.xacro"/>', part="<y/>")
     assert "<y/>" in str(expand(main))
     part = tmp_path / "part.xacro"
     part.write_text(f"{ROOT}<z1/></robot>", encoding="utf-8")
@@ -93,7 +93,7 @@ def test_changed_file_is_read_again(tmp_path: Path) -> None:
 
 
 def test_repeated_expansion_is_equal_and_keeps_source(tmp_path: Path) -> None:
-    main = write(
+    main = write_files(
         tmp_path,
         main='<xacro:macro name="m" params="*b"><!-- c --><xacro:property name="p" value="1"/>'
         '<g><xacro:attribute name="k" value="v"/><xacro:insert_block name="b"/></g></xacro:macro>'
@@ -103,7 +103,7 @@ def test_repeated_expansion_is_equal_and_keeps_source(tmp_path: Path) -> None:
 
 
 def test_elements_have_source_locations_and_call_chains(tmp_path: Path) -> None:
-    main = write(
+    main = write_files(
         tmp_path,
         main='\n<xacro:include filename="part.xacro"/>\n<xacro:outer/>\n',
         part='\n<seen/>\n<xacro:macro name="inner">\n  <link name="a"/>\n</xacro:macro>'
@@ -112,7 +112,7 @@ def test_elements_have_source_locations_and_call_chains(tmp_path: Path) -> None:
     expansion = expand(main)
     part = str(tmp_path / "part.xacro")
 
-    origin = expansion.origin(find(expansion, "link"))
+    origin = expansion.origin(find_element(expansion, "link"))
     assert origin.span is not None
     assert (origin.span.file, origin.span.line, origin.span.column) == (part, 4, 3)
     assert [(note.message, note.span and (note.span.file, note.span.line)) for note in origin.trail] == [
@@ -120,21 +120,21 @@ def test_elements_have_source_locations_and_call_chains(tmp_path: Path) -> None:
         ("in macro 'outer' called here", (str(main), 3)),
     ]
 
-    origin = expansion.origin(find(expansion, "seen"))
+    origin = expansion.origin(find_element(expansion, "seen"))
     assert [(note.message, note.span and note.span.line) for note in origin.trail] == [("included from here", 2)]
 
     assert expansion.origin(expansion.document.root).trail == ()
 
 
 def test_attributes_of_expanded_elements_have_spans(tmp_path: Path) -> None:
-    main = write(tmp_path, main='\n<x a="1" 名="${1 + 1}"/>\n')
-    span = find(expand(main), "x").attribute_span("名")
+    main = write_files(tmp_path, main='\n<x a="1" 名="${1 + 1}"/>\n')
+    span = find_element(expand(main), "x").attribute_span("名")
     assert span is not None
     assert (span.line, span.column, span.end_column) == (2, 13, 21)
 
 
 def test_packages_accept_mapping_or_finder(tmp_path: Path) -> None:
-    main = write(tmp_path, main='<x v="$(find p)/m"/>')
+    main = write_files(tmp_path, main='<x v="$(find p)/m"/>')
 
     class Finder:
         def share(self, name: str) -> Path:
@@ -146,7 +146,7 @@ def test_packages_accept_mapping_or_finder(tmp_path: Path) -> None:
 
 
 def test_unknown_package_is_reported_with_location(tmp_path: Path) -> None:
-    main = write(tmp_path, main='\n<x v="$(find no_such_package_anywhere)"/>')
+    main = write_files(tmp_path, main='\n<x v="$(find no_such_package_anywhere)"/>')
     with pytest.raises(LinkwrightError) as caught:
         expand(main, packages={"p": "/given"})
     (diagnostic,) = caught.value.diagnostics
@@ -162,12 +162,12 @@ def test_package_in_colcon_workspace_is_found(tmp_path: Path, monkeypatch: pytes
     (share / "ament_index/resource_index/packages/some_robot").touch()
     (share / "some_robot").mkdir()
     monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "prefix"))
-    main = write(tmp_path, main='<x v="$(find some_robot)"/>')
+    main = write_files(tmp_path, main='<x v="$(find some_robot)"/>')
     assert f'v="{share / "some_robot"}"' in str(expand(main))
 
 
 def test_warning_is_reported_once(tmp_path: Path) -> None:
-    main = write(
+    main = write_files(
         tmp_path, main='<xacro:macro name="m"><xacro:property name="pi" value="3"/></xacro:macro>' + "<xacro:m/>" * 3
     )
     (warning,) = expand(main).diagnostics
@@ -186,23 +186,24 @@ def test_unreadable_files_are_errors(tmp_path: Path) -> None:
 def test_bugs_of_ros_xacro_are_not_reproduced(tmp_path: Path) -> None:
     """Each case is a bug of ros/xacro."""
     in_a_condition = '<x><xacro:if value="1"><xacro:attribute name="k" value="v"/></xacro:if></x>'
-    assert '<x k="v"/>' in str(expand(write(tmp_path, main=in_a_condition)))
+    assert '<x k="v"/>' in str(expand(write_files(tmp_path, main=in_a_condition)))
     in_a_macro = '<xacro:macro name="m"><xacro:attribute name="k" value="v"/></xacro:macro><x><xacro:m/></x>'
-    assert '<x k="v"/>' in str(expand(write(tmp_path, main=in_a_macro)))
+    assert '<x k="v"/>' in str(expand(write_files(tmp_path, main=in_a_macro)))
     typed = '<x><xacro:attribute name="k" value="${1 + 1}"/></x>'
-    assert '<x k="2"/>' in str(expand(write(tmp_path, main=typed)))
+    assert '<x k="2"/>' in str(expand(write_files(tmp_path, main=typed)))
     dirname = '<x v="$(dirname)"/>'
-    assert f'v="{tmp_path}"' in str(expand(write(tmp_path, main=dirname)))
-    assert 'v="7"' in str(expand(write(tmp_path, main='<xacro:arg name="a" default="1"/><x v="$(arg a)"/>'), {"a": 7}))  # type: ignore[dict-item]
+    assert f'v="{tmp_path}"' in str(expand(write_files(tmp_path, main=dirname)))
+    main = write_files(tmp_path, main='<xacro:arg name="a" default="1"/><x v="$(arg a)"/>')
+    assert 'v="7"' in str(expand(main, {"a": 7}))  # type: ignore[dict-item]
 
 
 def test_import_of_expand_loads_no_heavy_modules() -> None:
     """The room imports neither slow modules nor modules that only some files need."""
     names = loaded_by("from linkwright.xacro import expand")
-    heavy = {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.packages", "datetime"}
+    heavy_modules = {"yaml", "numpy", "asyncio", "xml.dom", "linkwright.packages", "datetime"}
     stands_for_less = {"ast", "contextlib", "dataclasses", "gettext", "inspect", "pathlib", "typing", "warnings"}
     assert "linkwright.xacro.expansion" in names
-    assert not (heavy | stands_for_less | {"argparse", "linkwright.xacro.tracing", "xml.parsers"}) & names
+    assert not (heavy_modules | stands_for_less | {"argparse", "linkwright.xacro.tracing", "xml.parsers"}) & names
 
 
 def test_file_that_is_not_utf_8_has_one_warning(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import yaml
 from linkwright.diagnostics import LinkwrightError
 from linkwright.xacro import expand
 
-from .cases import PACKAGES, Case, described, read_cases, set_environment
+from .cases import PACKAGES, Case, format_diagnostic, read_cases, set_environment
 
 CASES = {
     f"{path.stem}: {case.title}": case
@@ -30,4 +30,4 @@ def test_error_report_matches_case(case: Case, tmp_path: Path, monkeypatch: pyte
         diagnostics = expand("main.xacro", case.arguments, packages=PACKAGES).diagnostics
     except LinkwrightError as error:
         diagnostics = error.diagnostics
-    assert "\n".join(described(diagnostic, tmp_path) for diagnostic in diagnostics) == case.expected
+    assert "\n".join(format_diagnostic(diagnostic, tmp_path) for diagnostic in diagnostics) == case.expected

@@ -45,7 +45,7 @@ def test_malformed_text_is_rejected_with_location(text: str, start: int, end: in
     assert (caught.value.code, caught.value.start, caught.value.end) == ("XAC101", start, end)
 
 
-def _tokens(text: str) -> list[Token] | None:
+def _read_tokens(text: str) -> list[Token] | None:
     try:
         return tokenize(text)
     except Fault:
@@ -54,7 +54,7 @@ def _tokens(text: str) -> list[Token] | None:
 
 @given(TEXTS)
 def test_tokens_cover_whole_text(text: str) -> None:
-    tokens = _tokens(text)
+    tokens = _read_tokens(text)
     assume(tokens is not None)
     assert tokens is not None
     starts = [token.start for token in tokens]
@@ -81,8 +81,8 @@ def test_text_without_dollars_is_unchanged(text: str) -> None:
 
 
 @given(st.text(alphabet="ab {$(", max_size=10), st.integers(min_value=1, max_value=4))
-def test_escaping_removes_one_dollar(rest: str, dollars: int) -> None:
-    rest = rest.replace("$", "")
-    tokens = tokenize("$" * (dollars + 1) + "{" + rest)
-    assert "".join(token.text for token in tokens) == "$" * dollars + "{" + rest
+def test_escaping_removes_one_dollar(rest_of_text: str, dollars: int) -> None:
+    rest_of_text = rest_of_text.replace("$", "")
+    tokens = tokenize("$" * (dollars + 1) + "{" + rest_of_text)
+    assert "".join(token.text for token in tokens) == "$" * dollars + "{" + rest_of_text
     assert all(token.kind is TokenKind.TEXT for token in tokens)

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from linkwright.xacro.expressions.scope import literal, truth
 
 
-def reference(value: str) -> Any:
+def convert_literal(value: str) -> Any:
     """Convert a literal by the documented rule, without optimizations."""
     if len(value) >= 2 and value[0] == value[-1] == "'":
         return value[1:-1]
@@ -44,7 +44,7 @@ def test_literals_are_converted(text: str, value: object) -> None:
     st.one_of(st.text(max_size=8), st.text(alphabet="0123456789.+-eE_'infatrueTF ", max_size=8), st.floats().map(str))
 )
 def test_literal_shortcuts_match_reference(text: str) -> None:
-    expected, value = reference(text), literal(text)
+    expected, value = convert_literal(text), literal(text)
     assert type(value) is type(expected)
     assert value == expected or (math.isnan(value) and math.isnan(expected))
 

@@ -18,36 +18,36 @@ def parts(folder, body: str, **files: str) -> Expansion:
         (folder / f"{name}.xacro").write_text(f'<robot xmlns:xacro="http://www.ros.org/wiki/xacro">{text}</robot>')
     path = folder / "robot.xacro"
     path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">{body}</robot>')
-    return of_file(path)
+    return file_of(path)
 
 
-def of_file(path: Path) -> Expansion:
+def file_of(path: Path) -> Expansion:
     try:
         return expand(path)
     except LinkwrightError as error:
         return expand_parts(Inputs(str(path), {}), error)
 
 
-def links(expansion: Expansion) -> list[str]:
+def link_names(expansion: Expansion) -> list[str]:
     return [link.attributes["name"] for link in expansion.document.root.elements("link")]
 
 
-def problems(expansion: Expansion) -> list[str]:
+def problem_texts(expansion: Expansion) -> list[str]:
     return [problem.code for problem in expansion.problems]
 
 
 def test_parts_of_valid_description_are_complete(tmp_path):
     body = '<xacro:property name="a" value="1"/><link name="l${a}"><inertial><mass value="${a}"/></inertial></link>'
-    whole = parts(tmp_path, body)
+    complete_parts = parts(tmp_path, body)
     expansion = expand_parts(Inputs(str(tmp_path / "robot.xacro"), {}), LinkwrightError(Diagnostic("XAC201", "")))
     assert expansion.problems == ()
-    assert write_element(expansion.document.root) == write_element(whole.document.root)
+    assert write_element(expansion.document.root) == write_element(complete_parts.document.root)
 
 
 def test_element_with_failed_attribute_omits_its_ancestors(tmp_path):
     expansion = parts(tmp_path, '<link name="a"><visual><origin xyz="${nowhere} 0 0"/></visual></link><link name="b"/>')
-    assert links(expansion) == ["b"]
-    assert problems(expansion) == ["XAC201"]
+    assert link_names(expansion) == ["b"]
+    assert problem_texts(expansion) == ["XAC201"]
 
 
 def test_all_mistakes_are_reported(tmp_path):
@@ -55,8 +55,8 @@ def test_all_mistakes_are_reported(tmp_path):
         tmp_path,
         '<link name="${1/0}"/><xacro:wheel/><link name="a"/><xacro:insert_block name="b"/><link name="${x}"/>',
     )
-    assert links(expansion) == ["a"]
-    assert problems(expansion) == ["XAC202", "XAC401", "XAC406", "XAC201"]
+    assert link_names(expansion) == ["a"]
+    assert problem_texts(expansion) == ["XAC202", "XAC401", "XAC406", "XAC201"]
 
 
 def test_failed_text_omits_its_element(tmp_path):
@@ -66,13 +66,13 @@ def test_failed_text_omits_its_element(tmp_path):
 
 def test_failed_call_omits_element_around_it(tmp_path):
     expansion = parts(tmp_path, '<link name="a"><xacro:shape/></link><link name="b"/>')
-    assert links(expansion) == ["b"]
+    assert link_names(expansion) == ["b"]
 
 
 def test_failure_in_macro_body_omits_element_around_call(tmp_path):
     macro = '<xacro:macro name="m"><xacro:none/><visual/></xacro:macro>'
     expansion = parts(tmp_path, f'{macro}<link name="a"><xacro:m/></link><link name="b"/>')
-    assert links(expansion) == ["b"]
+    assert link_names(expansion) == ["b"]
 
 
 def test_failure_in_block_omits_element_that_inserts_it(tmp_path):
@@ -80,14 +80,14 @@ def test_failure_in_block_omits_element_that_inserts_it(tmp_path):
         '<xacro:macro name="m" params="*block"><link name="a"><xacro:insert_block name="block"/></link></xacro:macro>'
     )
     body = f'{macro}<xacro:m><origin xyz="${{nowhere}} 0 0"/></xacro:m><link name="b"/>'
-    assert links(parts(tmp_path, body)) == ["b"]
+    assert link_names(parts(tmp_path, body)) == ["b"]
 
 
 def test_call_without_its_failed_block_is_omitted_without_report(tmp_path):
     macro = '<xacro:macro name="m" params="*block"><link name="a"/></xacro:macro>'
     expansion = parts(tmp_path, f'{macro}<xacro:m><xacro:none/></xacro:m><link name="b"/>')
-    assert links(expansion) == ["b"]
-    assert problems(expansion) == ["XAC401"]
+    assert link_names(expansion) == ["b"]
+    assert problem_texts(expansion) == ["XAC401"]
 
 
 class TestConsequences:
@@ -96,16 +96,16 @@ class TestConsequences:
             tmp_path,
             '<xacro:include filename="none.xacro"/><link name="${prefix}a"/><xacro:wheel/><link name="b"/>',
         )
-        assert links(expansion) == ["b"]
-        assert problems(expansion) == ["XML101"]
+        assert link_names(expansion) == ["b"]
+        assert problem_texts(expansion) == ["XML101"]
 
     def test_all_missing_files_are_reported(self, tmp_path):
         includes = '<xacro:include filename="none.xacro"/><xacro:include filename="$(cwd)/nor_this.xacro"/>'
-        assert problems(parts(tmp_path, includes)) == ["XML101", "XML101"]
+        assert problem_texts(parts(tmp_path, includes)) == ["XML101", "XML101"]
 
     def test_malformed_expressions_are_reported(self, tmp_path):
         expansion = parts(tmp_path, '<xacro:include filename="none.xacro"/><link name="${1 +}"/>')
-        assert problems(expansion) == ["XML101", "XAC102"]
+        assert problem_texts(expansion) == ["XML101", "XAC102"]
 
     def test_elements_with_uncertain_values_are_omitted(self, tmp_path):
         mass = '<link name="a"><inertial><mass value="${m}"/></inertial></link>'
@@ -114,22 +114,22 @@ class TestConsequences:
             f'<xacro:property name="m" value="0"/><xacro:if value="${{x}}"><xacro:property name="m" value="1"/>'
             f'</xacro:if>{mass}<link name="b"/>',
         )
-        assert links(expansion) == ["b"]
-        assert problems(expansion) == ["XAC201"]
+        assert link_names(expansion) == ["b"]
+        assert problem_texts(expansion) == ["XAC201"]
 
     def test_conditions_on_uncertain_values_are_omitted(self, tmp_path):
         body = '<xacro:include filename="none.xacro"/><xacro:unless value="${m}"><link name="a"/></xacro:unless>'
-        assert links(parts(tmp_path, f'<xacro:property name="m" value="0"/>{body}<link name="b"/>')) == ["b"]
+        assert link_names(parts(tmp_path, f'<xacro:property name="m" value="0"/>{body}<link name="b"/>')) == ["b"]
 
     def test_missing_macro_leaves_outer_properties_certain(self, tmp_path):
         expansion = parts(tmp_path, '<xacro:property name="m" value="1"/><xacro:wheeel/><link name="a${m}"/>')
-        assert links(expansion) == ["a1"]
+        assert link_names(expansion) == ["a1"]
 
     def test_missing_macro_may_set_properties_of_parent_scope(self, tmp_path):
         macro = '<xacro:macro name="m"><xacro:property name="x" value="2" scope="parent"/></xacro:macro>'
         expansion = parts(tmp_path, f'{macro}<xacro:property name="x" value="1"/><xacro:n/><link name="a${{x}}"/>')
-        assert links(expansion) == []
-        assert problems(expansion) == ["XAC401"]
+        assert link_names(expansion) == []
+        assert problem_texts(expansion) == ["XAC401"]
 
     def test_warnings_that_may_be_consequences_are_omitted(self, tmp_path):
         warning = '<xacro:property name="none" remove="true"/>'
@@ -159,4 +159,4 @@ def test_included_file_with_mistake_keeps_other_parts(tmp_path):
         '<xacro:include filename="part.xacro"/><link name="c"/>',
         part='<link name="a"/><link name="${x}"/><link name="b"/>',
     )
-    assert links(expansion) == ["a", "b", "c"]
+    assert link_names(expansion) == ["a", "b", "c"]

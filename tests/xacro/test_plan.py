@@ -72,12 +72,12 @@ def test_eval_comments_enables_comments_after_it(tmp_path: Path) -> None:
 
 def test_modified_copy_is_written_with_changes(tmp_path: Path) -> None:
     path = write_model(tmp_path, '<link name="a"><visual name="v"> </visual></link>')
-    whole = str(expand(path))
+    expanded_text = str(expand(path))
     expansion = expand(path)
     visual = expansion.document.root.first("link").first("visual")
     visual.attributes["name"] = "w"
-    assert str(expansion) == whole.replace('"v"', '"w"')
-    assert str(expand(path)) == whole
+    assert str(expansion) == expanded_text.replace('"v"', '"w"')
+    assert str(expand(path)) == expanded_text
 
 
 @pytest.mark.parametrize("copied", [copy.copy, copy.deepcopy])

@@ -1,4 +1,7 @@
-"""The rules of the language, compared with the output of ros/xacro (tools/reference_outputs.py)."""
+"""The rules of the language, compared with the output of ros/xacro.
+
+`tools/reference_outputs.py` writes this output.
+"""
 
 from __future__ import annotations
 

@@ -23,26 +23,26 @@ from tests.work import ends
 
 from .evaluating import evaluate
 
-LONG = 300_000
-ALIKE = [i * sys.hash_info.modulus for i in range(60_000)]
+LONG_LENGTH = 300_000
+COLLIDING_NUMBERS = [i * sys.hash_info.modulus for i in range(60_000)]
 """Integers with equal hashes."""
-ALIKE_PAIRS = [(number, number) for number in ALIKE]
+COLLIDING_PAIRS = [(number, number) for number in COLLIDING_NUMBERS]
 NUMBERS = [3**12_000 - i for i in range(200)] * 1_000
 TEXTS = {
-    "one letter": "a" * LONG,
-    "half": "a" * (LONG // 2),
-    "other end": "a" * (LONG // 2) + "b",
-    "other beginning": "ab" + "a" * (LONG // 2),
+    "one letter": "a" * LONG_LENGTH,
+    "half": "a" * (LONG_LENGTH // 2),
+    "other end": "a" * (LONG_LENGTH // 2) + "b",
+    "other beginning": "ab" + "a" * (LONG_LENGTH // 2),
     "many letters": "".join(map(chr, range(0x100, 0x8100))),
-    "high letters": "\xe9" * LONG,
+    "high letters": "\xe9" * LONG_LENGTH,
     "codec": "punycode",
     "other codec": "idna",
-    "words": "a b " * (LONG // 4),
+    "words": "a b " * (LONG_LENGTH // 4),
 }
 
 
 @contextlib.contextmanager
-def ends_soon() -> Iterator[None]:
+def assert_ends_soon() -> Iterator[None]:
     """Check that the body ends soon, with or without an error."""
     faults = (Fault, RefusalError, TypeError, ValueError, LookupError, ArithmeticError, AttributeError)
     with ends(), contextlib.suppress(*faults):
@@ -50,16 +50,16 @@ def ends_soon() -> Iterator[None]:
 
 
 def call_quickly(function: Callable[..., Any], *arguments: Any) -> None:
-    with ends_soon():
+    with assert_ends_soon():
         call(Budget(Limits()), function, list(arguments), {})
 
 
-def methods(kind: type) -> list[str]:
+def find_methods(kind: type) -> list[str]:
     grown = {name for owner, name in sandbox._GROWING if owner is kind}
     return sorted(sandbox._ATTRIBUTES[kind] | grown)
 
 
-@pytest.mark.parametrize("name", methods(str))
+@pytest.mark.parametrize("name", find_methods(str))
 def test_string_methods_end_quickly(name: str) -> None:
     for text in TEXTS.values():
         method = sandbox.attribute(text, name)
@@ -69,17 +69,23 @@ def test_string_methods_end_quickly(name: str) -> None:
         call_quickly(method, "a", "b")
 
 
-@pytest.mark.parametrize("name", methods(bytes))
+@pytest.mark.parametrize("name", find_methods(bytes))
 def test_bytes_methods_end_quickly(name: str) -> None:
-    for text in (b"a" * LONG, b"ab" + b"a" * (LONG // 2), b"a-" * (LONG // 2)):
-        for argument in (b"ab" + b"a" * (LONG // 2), "punycode", "idna", "utf-7"):
+    for text in (b"a" * LONG_LENGTH, b"ab" + b"a" * (LONG_LENGTH // 2), b"a-" * (LONG_LENGTH // 2)):
+        for argument in (b"ab" + b"a" * (LONG_LENGTH // 2), "punycode", "idna", "utf-7"):
             call_quickly(sandbox.attribute(text, name), argument)
 
 
 @pytest.mark.parametrize("kind", [set, frozenset, dict, list, tuple])
 def test_collection_methods_end_quickly_with_colliding_keys(kind: type) -> None:
-    for name in methods(kind):
-        for items in (ALIKE, iter(ALIKE), ALIKE_PAIRS, map(abs, ALIKE), zip(ALIKE, ALIKE, strict=True)):
+    for name in find_methods(kind):
+        for items in (
+            COLLIDING_NUMBERS,
+            iter(COLLIDING_NUMBERS),
+            COLLIDING_PAIRS,
+            map(abs, COLLIDING_NUMBERS),
+            zip(COLLIDING_NUMBERS, COLLIDING_NUMBERS, strict=True),
+        ):
             owner = kind({1: 1}) if kind is not dict else {1: 1}
             call_quickly(sandbox.attribute(owner, name), items)
 
@@ -108,36 +114,36 @@ def test_math_functions_end_quickly(name: str) -> None:
 def test_colliding_keys_are_rejected(text: str) -> None:
     source = text.format(*["[i * 2305843009213693951 for i in python.range(60000)]"] * 2)
     source = source.replace("complex", "python.complex")
-    with ends_soon(), pytest.raises(Fault, match=r"same hash|more than \d+"):
+    with assert_ends_soon(), pytest.raises(Fault, match=r"same hash|more than \d+"):
         evaluate("${len(" + source + ")}")
 
 
 def test_equal_or_few_colliding_keys_are_accepted() -> None:
     assert checked_keys([7] * 5_000) == [7] * 5_000
-    assert len(set(checked_keys(ALIKE[:900]))) == 900
+    assert len(set(checked_keys(COLLIDING_NUMBERS[:900]))) == 900
     assert checked_keys([["a"], {}] * 1_000) == [["a"], {}] * 1_000
     assert len(set(checked_keys(i / 7 for i in range(50_000)))) == 50_000
 
 
 @pytest.mark.parametrize("form", ["{}: 1\n", "? {}\n: 1\n"])
 def test_colliding_keys_in_yaml_are_rejected(tmp_path: Path, form: str) -> None:
-    (tmp_path / "a.yaml").write_text("".join(form.format(number) for number in ALIKE))
+    (tmp_path / "a.yaml").write_text("".join(form.format(number) for number in COLLIDING_NUMBERS))
     text = "<robot name=\"r\" xmlns:xacro='x'><a v=\"${len(xacro.load_yaml('a.yaml'))}\"/></robot>"
-    with ends_soon(), pytest.raises(LinkwrightError, match="60 bits"):
+    with assert_ends_soon(), pytest.raises(LinkwrightError, match="60 bits"):
         expand(tmp_path / "a.xacro", text=text)
 
 
 def test_long_numbers_in_yaml_are_rejected(tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text("a: " + ":".join(["59"] * 300_000))
     text = "<robot name=\"r\" xmlns:xacro='x'><a v=\"${xacro.load_yaml('a.yaml')}\"/></robot>"
-    with ends_soon(), pytest.raises(LinkwrightError, match="4,000 characters"):
+    with assert_ends_soon(), pytest.raises(LinkwrightError, match="4,000 characters"):
         expand(tmp_path / "a.xacro", text=text)
 
 
 @pytest.mark.parametrize("sep", ["\\\\](a+)+b", "\\\\](a|aa)+$", "^\\\\](.*)*x[", "\\\\]((a*)*)*b"])
 def test_tokenize_ends_quickly_with_pattern_as_separator(sep: str) -> None:
     for text in ("\\" + "a" * 40, "\\" + "aa" * 5_000):
-        with ends_soon():
+        with assert_ends_soon():
             tokenize(text, sep)
 
 

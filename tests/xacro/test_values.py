@@ -12,16 +12,16 @@ from linkwright.xacro.tracing.values import evaluated_expressions
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 
-def values(text: str, **arguments: str) -> dict[str, tuple[str, ...]]:
+def find_values(text: str, **arguments: str) -> dict[str, tuple[str, ...]]:
     """Return the values of each text with expressions, by its position."""
-    whole = f"{HEAD}{text}</robot>"
-    expressions = evaluated_expressions(Inputs("r.xacro", arguments, text=whole))
-    return {whole[part.start : part.end]: part.values for part in expressions}
+    document_text = f"{HEAD}{text}</robot>"
+    expressions = evaluated_expressions(Inputs("r.xacro", arguments, text=document_text))
+    return {document_text[part.start : part.end]: part.values for part in expressions}
 
 
 def test_values_of_each_macro_call_are_listed():
     text = '<xacro:macro name="m" params="n"><link name="${n}_l"/></xacro:macro><xacro:m n="a"/><xacro:m n="b"/>'
-    assert values(text) == {"${n}": ("'a'", "'b'"), "${n}_l": ("'a_l'", "'b_l'")}
+    assert find_values(text) == {"${n}": ("'a'", "'b'"), "${n}_l": ("'a_l'", "'b_l'")}
 
 
 def test_evaluation_has_call_and_names():
@@ -45,29 +45,29 @@ def test_properties_conditions_parameters_and_texts_have_values():
         '<xacro:if value="${b == 3}"><xacro:m n="${b}"/></xacro:if>'
     )
     expected = {"${a + 1}": ("3",), "${b == 3}": ("True",), "${b}": ("3",), "${a*10}": ("20",), "${n + k}": ("23",)}
-    assert values(text) == expected
+    assert find_values(text) == expected
 
 
 def test_arguments_determine_values():
     text = '<xacro:arg name="side" default="left"/><link name="$(arg side)"/>'
-    assert values(text) == {"$(arg side)": ("'left'",)}
-    assert values(text, side="right") == {"$(arg side)": ("'right'",)}
+    assert find_values(text) == {"$(arg side)": ("'left'",)}
+    assert find_values(text, side="right") == {"$(arg side)": ("'right'",)}
 
 
 def test_values_before_error_are_listed():
-    assert values('<link name="${1 + 1}"/><link name="${missing}"/>') == {"${1 + 1}": ("2",)}
+    assert find_values('<link name="${1 + 1}"/><link name="${missing}"/>') == {"${1 + 1}": ("2",)}
 
 
 @pytest.mark.parametrize("text", ["<a", '<link name="${1 +"/>', '<xacro:include filename="missing.xacro"/>'])
 def test_malformed_text_has_no_values(text):
-    assert values(text) == {}
+    assert find_values(text) == {}
 
 
 def test_expression_with_side_effect_is_evaluated_once():
     text = (
         '<xacro:property name="items" value="${[1, 2, 3]}"/><link name="l${items.pop(0)}"/><link name="k${items[0]}"/>'
     )
-    expression_values = values(text)
+    expression_values = find_values(text)
     assert "${items.pop(0)}" not in expression_values
     assert expression_values["${items[0]}"] == ("2",)
 
@@ -82,9 +82,9 @@ def test_included_files_have_values(tmp_path: Path):
 
 def test_macro_parameter_list_has_no_value():
     text = '<xacro:macro name="m" params="n:=${k}"><link name="${n}"/></xacro:macro><xacro:m n="a"/>'
-    assert values(f'<xacro:property name="k" value="2"/>{text}') == {"${n}": ("'a'",)}
+    assert find_values(f'<xacro:property name="k" value="2"/>{text}') == {"${n}": ("'a'",)}
 
 
 def test_values_before_malformed_parameter_list_remain():
     text = """<link name="${1 + 1}"/><xacro:macro name="m" params="a:='${'"/><xacro:m a="1"/>"""
-    assert values(text) == {"${1 + 1}": ("2",)}
+    assert find_values(text) == {"${1 + 1}": ("2",)}

@@ -20,14 +20,14 @@ PLAIN = NodeLoader.__base__
 """PyYAML's loader; if PyYAML uses libyaml, some of its errors differ from those of the parser in Python."""
 
 
-def outcome(load: Any) -> str:
+def load_outcome(load: Any) -> str:
     try:
         return repr(load())
     except (yaml.YAMLError, ValueError, TypeError) as error:
         return type(error).__name__
 
 
-def loaded(text: str) -> Any:
+def load_text(text: str) -> Any:
     loader = NodeLoader(text)
     try:
         node = loader.get_single_node()
@@ -38,7 +38,7 @@ def loaded(text: str) -> Any:
 
 @given(st.lists(st.sampled_from(PIECES), max_size=14).map("".join))
 def test_conversion_of_any_text_matches_pyyaml(text: str) -> None:
-    assert outcome(lambda: loaded(text)) == outcome(lambda: yaml.load(text, PLAIN))
+    assert load_outcome(lambda: load_text(text)) == load_outcome(lambda: yaml.load(text, PLAIN))
 
 
 @pytest.mark.parametrize(
@@ -51,9 +51,9 @@ def test_conversion_of_any_text_matches_pyyaml(text: str) -> None:
     ],
 )
 def test_conversion_of_examples_matches_pyyaml(text: str) -> None:
-    assert loaded(text) == yaml.safe_load(text)
+    assert load_text(text) == yaml.safe_load(text)
 
 
 def test_aliases_share_one_value() -> None:
-    value = loaded("a: &x [1]\nb: *x")
+    value = load_text("a: &x [1]\nb: *x")
     assert value["a"] is value["b"]

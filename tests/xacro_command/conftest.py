@@ -1,3 +1,5 @@
+"""Fixtures of the tests of the `xacro` command."""
+
 from __future__ import annotations
 
 from collections.abc import Callable
@@ -13,7 +15,7 @@ HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 
 @dataclass
-class Answer:
+class CommandResult:
     """The output and the exit status of a command."""
 
     status: int
@@ -23,7 +25,10 @@ class Answer:
 
 @pytest.fixture
 def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
-    """Return a function that writes a robot's file into the current folder; it adds the tags of the root."""
+    """Return a function that writes a robot's file into the current folder.
+
+    It adds the tags of the root.
+    """
     monkeypatch.chdir(tmp_path)
 
     def file(name: str, inside: str) -> Path:
@@ -37,13 +42,13 @@ def write(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Write:
 
 
 @pytest.fixture
-def run(capsys: pytest.CaptureFixture[str]) -> Callable[..., Answer]:
+def run(capsys: pytest.CaptureFixture[str]) -> Callable[..., CommandResult]:
     """Return a function that runs ``linkwright xacro``."""
 
-    def command(*words: str) -> Answer:
+    def command(*words: str) -> CommandResult:
         capsys.readouterr()
         status = main(["xacro", *words])
         captured = capsys.readouterr()
-        return Answer(status, captured.out, captured.err)
+        return CommandResult(status, captured.out, captured.err)
 
     return command

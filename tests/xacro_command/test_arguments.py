@@ -142,18 +142,18 @@ def robot(write):
 
 
 def test_args_option_prints_list(robot, run):
-    answer = run("--args", str(robot), "size:=3", "siz:=4")
-    assert answer.status == 0
-    assert [line.split() for line in answer.out.splitlines()] == [line.split() for line in LIST.splitlines()]
-    assert answer.err == (
+    result = run("--args", str(robot), "size:=3", "siz:=4")
+    assert result.status == 0
+    assert [line.split() for line in result.out.splitlines()] == [line.split() for line in LIST.splitlines()]
+    assert result.err == (
         "warning[XAC215]: the argument 'siz' is given, but 'a.xacro' does not use it\n   = hint: did you mean 'size'?\n"
     )
     assert run("--args", str(robot), "size:=3", "siz:=4", "-q").err == ""
 
 
 def test_args_option_prints_json(robot, run):
-    answer = run("--args", str(robot), "--format", "json")
-    first, *_, last = json.loads(answer.out)["arguments"]
+    result = run("--args", str(robot), "--format", "json")
+    first, *_, last = json.loads(result.out)["arguments"]
     assert first == {
         "name": "name",
         "default": "ur",
@@ -170,14 +170,14 @@ def test_args_option_prints_json(robot, run):
 
 def test_incomplete_list_is_reported_with_warning(write, run):
     write("a.xacro", '<xacro:include filename="$(arg which).xacro"/>')
-    answer = run("--args", "a.xacro")
-    assert answer.status == 0
-    assert answer.out.startswith("which  required")
-    assert answer.err.startswith(
+    result = run("--args", "a.xacro")
+    assert result.status == 0
+    assert result.out.startswith("which  required")
+    assert result.err.startswith(
         "warning[XAC803]: the list of arguments may be incomplete because the file cannot be expanded with the "
         "arguments given"
     )
-    assert "hint: pass which:=..." in answer.err
+    assert "hint: pass which:=..." in result.err
 
 
 def test_hint_names_argument_that_leads_to_missing_file(write, run):

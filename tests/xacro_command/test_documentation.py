@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.docs.pages import DOCS, Block, blocks
+from tests.docs.pages import DOCS, Block, read_blocks
 
 PAGES = [DOCS / "xacro.md", DOCS / "zh" / "xacro.md"]
 
@@ -23,15 +23,15 @@ def printed(block: Block, run) -> tuple[str, str]:
         return out.getvalue(), ""
     _, verb, *words = shlex.split(block.text)
     assert verb == "xacro"
-    answer = run(*words)
-    assert answer.status == 0, answer.err
-    return answer.out, answer.err
+    result = run(*words)
+    assert result.status == 0, result.err
+    return result.out, result.err
 
 
 @pytest.mark.parametrize("page", PAGES, ids=["en", "zh"])
 def test_shown_outputs_are_current(page, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    found = blocks(page)
+    found = read_blocks(page)
     files = [block for block in found if block.language == "xml"]
     for block in files:
         Path(block.title).write_text(block.text, encoding="utf-8")

@@ -36,8 +36,8 @@ def robot(write):
     )
 
 
-def explain_one(path, name, *rest, **options):
-    (found,) = explain(path, name, *rest, **options)
+def explain_one(path, name, *explain_options, **options):
+    (found,) = explain(path, name, *explain_options, **options)
     return found
 
 
@@ -104,8 +104,8 @@ def test_attribute_set_by_xacro_attribute_tag_is_traced(robot):
 def test_provenance_of_expanded_element_matches_explain(robot):
     expansion = expand(robot)
     link = next(expansion.document.root.elements("link"))
-    found, same = expansion.provenance(link), explain_one(robot, "left_wheel")
-    assert (found.span, found.calls, found.attributes) == (same.span, same.calls, same.attributes)
+    found, explanation = expansion.provenance(link), explain_one(robot, "left_wheel")
+    assert (found.span, found.calls, found.attributes) == (explanation.span, explanation.calls, explanation.attributes)
     cylinder = next(link.elements("cylinder"))
     assert expansion.provenance(cylinder).calls == expansion.provenance(link).calls
 
@@ -211,18 +211,18 @@ def test_nested_elements_are_found_by_name(write):
     ],
 )
 def test_unknown_name_has_suggestion(robot, run, name, hint):
-    answer = run("--explain", name, str(robot))
-    assert answer.status == 1
-    assert answer.err == (
+    result = run("--explain", name, str(robot))
+    assert result.status == 1
+    assert result.err == (
         f"error[XAC801]: the expansion of 'a.xacro' has no link or joint named '{name}'\n   = hint: {hint}\n"
     )
 
 
 def test_expansion_error_is_reported(write, run):
     write("a.xacro", '<link name="${no}"/>')
-    answer = run("--explain", "l", "a.xacro")
-    assert answer.status == 1
-    assert "XAC201" in answer.err
+    result = run("--explain", "l", "a.xacro")
+    assert result.status == 1
+    assert "XAC201" in result.err
 
 
 STORY = """\
@@ -252,14 +252,14 @@ written at wheel.xacro:8:3
 
 
 def test_explain_option_prints_text(robot, run):
-    answer = run("--explain", "left_joint", str(robot))
-    assert (answer.status, answer.err) == (0, "")
-    assert answer.out == STORY
+    result = run("--explain", "left_joint", str(robot))
+    assert (result.status, result.err) == (0, "")
+    assert result.out == STORY
 
 
 def test_explain_option_prints_json(robot, run):
-    answer = run("--explain", "left_wheel", str(robot), "--format", "json")
-    (element,) = json.loads(answer.out)["elements"]
+    result = run("--explain", "left_wheel", str(robot), "--format", "json")
+    (element,) = json.loads(result.out)["elements"]
     assert (element["tag"], element["file"], element["line"], element["column"]) == ("link", "wheel.xacro", 4, 3)
     assert element["calls"][0]["macro"] == "wheel"
     assert element["calls"][0]["parameters"][1]["written"] == "${diameter}"

@@ -173,8 +173,8 @@ def test_gbk_text_is_recognized() -> None:
     ],
 )
 def test_template_language_is_named(text: str, language: str, column: int) -> None:
-    code, message, _, at, hint = finding_of(text)
-    assert (code, at) == ("XML206", column)
+    code, message, _, location, hint = finding_of(text)
+    assert (code, location) == ("XML206", column)
     assert message == f"this is a {language} template, not XML"
     assert (
         str(hint)

@@ -43,17 +43,17 @@ def test_every_node_has_source_location() -> None:
     )
     document = parse(text, "x")
     for node in [*document.prolog, *nodes(document.root), *document.epilog]:
-        rest = text[node.offset :]
+        remaining_text = text[node.offset :]
         if isinstance(node, Element):
-            assert rest.startswith("<" + node.tag)
+            assert remaining_text.startswith("<" + node.tag)
         elif isinstance(node, Comment):
-            assert rest.startswith(f"<!--{node.data}-->")
+            assert remaining_text.startswith(f"<!--{node.data}-->")
         elif isinstance(node, ProcessingInstruction):
-            assert rest.startswith(f"<?{node.target} {node.data}?>")
+            assert remaining_text.startswith(f"<?{node.target} {node.data}?>")
         elif "<" not in node.data or node.cdata:
-            assert rest.replace("\r\n", "\n").startswith(node.data)
+            assert remaining_text.replace("\r\n", "\n").startswith(node.data)
         else:
-            assert rest.startswith("x &lt; y")
+            assert remaining_text.startswith("x &lt; y")
     span = document.root.first("a").span()  # type: ignore[union-attr]
     assert span is not None
     assert (span.line, span.column, span.end_column) == (4, 12, 14)
@@ -150,8 +150,8 @@ TREES = st.recursive(
 @given(st.lists(TREES, max_size=4))
 def test_tree_matches_element_tree(parts: list[str]) -> None:
     text = write("root", {}, parts)
-    ours, theirs = parse(text, "x").root, ET.fromstring(text)
-    pending = [(ours, theirs)]
+    actual, theirs = parse(text, "x").root, ET.fromstring(text)
+    pending = [(actual, theirs)]
     while pending:
         element, expected = pending.pop()
         assert element.tag == expected.tag

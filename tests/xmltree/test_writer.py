@@ -100,5 +100,5 @@ def content(element: Element) -> object:
 @given(ELEMENTS)
 def test_written_document_is_read_back(element: Element) -> None:
     text = write(Document(element))
-    again = parse(text, "x")
-    assert content(again.root) == content(element)
+    reread = parse(text, "x")
+    assert content(reread.root) == content(element)

@@ -1,4 +1,7 @@
-"""Helpers for arm controllers: joints on a stand, trajectory messages, goals of actions."""
+"""Helpers for arm controllers.
+
+They create joints on a test bench, trajectory messages, and goals of actions.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,9 @@ from typing import Any
 
 from linkwright.graph.actions.client import ActionClient
 from linkwright.messages import Duration, Header, Time, get_action, get_message
-from tests.control.stand import TestBench
+from tests.control.bench import TestBench
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 JOINTS = ("shoulder", "elbow")
 
 
@@ -18,15 +21,18 @@ def trajectory(
     names: tuple[str, ...] = JOINTS,
     start_ns: int = 0,
 ) -> Any:
-    """Return a trajectory message; each point has seconds, positions, velocities and accelerations."""
+    """Return a trajectory message.
+
+    Each point has seconds, positions, velocities and accelerations.
+    """
     point_type = get_message("trajectory_msgs/msg/JointTrajectoryPoint")
     fields = ("positions", "velocities", "accelerations", "effort")
     trajectory_points = [
         point_type(
-            **dict(zip(fields, lists, strict=False)),
-            time_from_start=Duration.from_nanoseconds(round(seconds * SECOND)),
+            **dict(zip(fields, derivatives, strict=False)),
+            time_from_start=Duration.from_nanoseconds(round(seconds * SECOND_NS)),
         )
-        for seconds, *lists in points
+        for seconds, *derivatives in points
     ]
     header = Header(stamp=Time.from_nanoseconds(start_ns))
     return get_message("trajectory_msgs/msg/JointTrajectory")(
@@ -47,11 +53,11 @@ class SentGoal:
         accepted, status, result: the state so far; None before.
     """
 
-    def __init__(self, stand: TestBench, action_type: str, name: str, goal: Any) -> None:
+    def __init__(self, bench: TestBench, action_type: str, name: str, goal: Any) -> None:
         self.feedback: list[Any] = []
         self.status: int | None = None
         self.result: Any = None
-        self._client = ActionClient(stand.node, get_action(action_type), name)
+        self._client = ActionClient(bench.node, get_action(action_type), name)
         self._handle: Any = None
         self._sent = self._client.send_goal_async(goal, feedback_callback=self._on_feedback)
         self._sent.add_done_callback(self._on_response)
@@ -78,10 +84,10 @@ class SentGoal:
 
 
 async def run(
-    stand: TestBench, controller: Any, seconds: float, hardware: Callable[[], object] | None = None, rate: float = 100.0
+    bench: TestBench, controller: Any, seconds: float, hardware: Callable[[], object] | None = None, rate: float = 100.0
 ) -> None:
     """Update a controller for some time; the hardware moves after each update."""
     for _ in range(round(seconds * rate)):
-        await stand.step(controller, 1.0 / rate)
+        await bench.step(controller, 1.0 / rate)
         if hardware is not None:
             hardware()

@@ -6,9 +6,9 @@ from typing import Any
 
 from linkwright.control.controllers.controller import Controller
 from linkwright.messages import Header, Time, Vector3, get_message
-from tests.control.stand import TestBench
+from tests.control.bench import TestBench
 
-STEP = 0.01
+STEP_S = 0.01
 
 
 def twist(forward: float = 0.0, yaw_rate: float = 0.0, sideways: float = 0.0) -> Any:
@@ -24,17 +24,17 @@ def stamped_twist(nanoseconds: int, *velocity: float) -> Any:
     return get_message("geometry_msgs/msg/TwistStamped")(header=header, twist=twist(*velocity))
 
 
-async def roll(stand: TestBench, controller: Controller[Any], count: int = 1) -> None:
+async def roll_wheels(bench: TestBench, controller: Controller[Any], count: int = 1) -> None:
     """Step a controller; after each step the wheels move by their commands."""
     for _ in range(count):
-        await stand.step(controller, STEP)
-        for name, command in stand.commands.items():
+        await bench.step(controller, STEP_S)
+        for name, command in bench.commands.items():
             joint, interface = name.rsplit("/", 1)
             if interface == "velocity":
-                stand.states[f"{joint}/position"].value += command.value * STEP
-            stand.states[name].value = command.value
+                bench.states[f"{joint}/position"].value += command.value * STEP_S
+            bench.states[name].value = command.value
 
 
-def warnings(stand: TestBench) -> list[str]:
+def logged_warnings(bench: TestBench) -> list[str]:
     """Return the log's warnings and errors so far."""
-    return [record.text for record in stand.log if record.level.name in ("WARN", "ERROR")]
+    return [record.text for record in bench.log if record.level.name in ("WARN", "ERROR")]

@@ -11,8 +11,8 @@ from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.registry import controller_class
 from linkwright.diagnostics import LinkwrightError
 
-STATE, STATES = "sensor_msgs/msg/BatteryState", "control_msgs/msg/BatteryStateArray"
-BATTERIES = {
+BATTERY_STATE, BATTERY_STATES = "sensor_msgs/msg/BatteryState", "control_msgs/msg/BatteryStateArray"
+PARAMETERS = {
     "batteries": ["left", "right"],
     "interfaces": {"left": {"battery_current": True, "battery_charge": True, "battery_power_supply_status": True}},
     "left": {"minimum_voltage": 10.0, "maximum_voltage": 14.0, "capacity": 5.0, "location": "slot 1"},
@@ -21,21 +21,21 @@ BATTERIES = {
 
 
 @pytest.fixture
-def batteries(stand):
-    """Return a stand with two batteries, of which one only measures its voltage."""
-    stand.joint("left", battery_voltage=13.0, battery_current=-2.0, battery_charge=4.0, battery_power_supply_status=2.0)
-    stand.joint("right", battery_voltage=11.0)
-    return stand
+def battery_bench(bench):
+    """Return a test bench with two batteries, of which one only measures its voltage."""
+    bench.joint("left", battery_voltage=13.0, battery_current=-2.0, battery_charge=4.0, battery_power_supply_status=2.0)
+    bench.joint("right", battery_voltage=11.0)
+    return bench
 
 
 def test_broadcaster_is_found_by_type():
     assert controller_class("battery_state_broadcaster/BatteryStateBroadcaster") is BatteryStateBroadcaster
 
 
-async def test_batteries_are_published_one_by_one(batteries):
-    broadcaster = batteries.start(BatteryStateBroadcaster, **BATTERIES)
-    messages = batteries.record(STATES, "/controller/raw_battery_states")
-    await batteries.step(broadcaster)
+async def test_batteries_are_published_one_by_one(battery_bench):
+    broadcaster = battery_bench.start(BatteryStateBroadcaster, **PARAMETERS)
+    messages = battery_bench.record(BATTERY_STATES, "/controller/raw_battery_states")
+    await battery_bench.step(broadcaster)
     left, right = messages[-1].battery_states
     assert (left.header.frame_id, left.voltage, left.current, left.charge) == ("left", 13.0, -2.0, 4.0)
     assert (left.percentage, left.capacity, left.power_supply_status, left.location) == (75.0, 5.0, 2, "slot 1")
@@ -44,26 +44,26 @@ async def test_batteries_are_published_one_by_one(batteries):
     assert (right.voltage, right.power_supply_technology) == (11.0, 2)
     assert isnan(right.current)
     assert isnan(right.percentage)
-    batteries.states["right/battery_voltage"].value = nan
-    await batteries.step(broadcaster)
+    battery_bench.states["right/battery_voltage"].value = nan
+    await battery_bench.step(broadcaster)
     assert not messages[-1].battery_states[1].present
 
 
-async def test_combined_state_has_means_and_sums_of_measured_quantities(batteries):
-    broadcaster = batteries.start(BatteryStateBroadcaster, **BATTERIES)
-    messages = batteries.record(STATE, "/controller/battery_state")
-    await batteries.step(broadcaster)
+async def test_combined_state_has_means_and_sums_of_measured_quantities(battery_bench):
+    broadcaster = battery_bench.start(BatteryStateBroadcaster, **PARAMETERS)
+    messages = battery_bench.record(BATTERY_STATE, "/controller/battery_state")
+    await battery_bench.step(broadcaster)
     state = messages[-1]
     assert (state.voltage, state.current, state.charge, state.percentage) == (12.0, -2.0, 4.0, 75.0)
     assert (state.capacity, state.power_supply_status, state.power_supply_technology) == (8.0, 2, 0)
     assert (state.location, isnan(state.temperature)) == ("slot 1, , ", True)
 
 
-async def test_sensor_name_publishes_voltage_only(stand):
-    stand.joint("pack", voltage=12.5)
-    broadcaster = stand.start(BatteryStateBroadcaster, sensor_name="pack", design_capacity=7.0)
-    messages = stand.record(STATE, "/controller/battery_state")
-    await stand.step(broadcaster)
+async def test_sensor_name_publishes_voltage_only(bench):
+    bench.joint("pack", voltage=12.5)
+    broadcaster = bench.start(BatteryStateBroadcaster, sensor_name="pack", design_capacity=7.0)
+    messages = bench.record(BATTERY_STATE, "/controller/battery_state")
+    await bench.step(broadcaster)
     assert (messages[-1].voltage, messages[-1].design_capacity, messages[-1].present) == (12.5, 7.0, True)
 
 
@@ -79,7 +79,7 @@ async def test_sensor_name_publishes_voltage_only(stand):
         ({"power_supply_technology": 9}, "'power_supply_technology' must be from 0 to 8, but it is 9"),
     ],
 )
-async def test_invalid_parameters_are_rejected(stand, settings, message):
+async def test_invalid_parameters_are_rejected(bench, settings, message):
     expected = LinkwrightError if "power_supply_technology" in settings else ControllerError
     with pytest.raises(expected, match=message):
-        stand.make(BatteryStateBroadcaster, **settings).on_configure()
+        bench.make(BatteryStateBroadcaster, **settings).on_configure()

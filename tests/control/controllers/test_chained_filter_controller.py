@@ -22,7 +22,7 @@ def test_controller_is_found_by_type():
 
 EXPONENTIAL = "control_filters/ExponentialFilterDouble"
 LIMITS = {"sampling_interval": 0.1, "max_value": 2.0, "min_value": 3.0}
-KEPT = exp(-2.0 * pi * 20.5 / (1000.0 * 10.0**-0.125))
+EXPONENTIAL_WEIGHT = exp(-2.0 * pi * 20.5 / (1000.0 * 10.0**-0.125))
 
 
 @pytest.mark.parametrize(
@@ -36,7 +36,7 @@ KEPT = exp(-2.0 * pi * 20.5 / (1000.0 * 10.0**-0.125))
             "control_filters/LowPassFilterDouble",
             {"sampling_frequency": 1000.0, "damping_frequency": 20.5, "damping_intensity": 1.25},
             [1.0, 2.0, 2.0],
-            [1.0, 1.0, KEPT + 2.0 * (1.0 - KEPT)],
+            [1.0, 1.0, EXPONENTIAL_WEIGHT + 2.0 * (1.0 - EXPONENTIAL_WEIGHT)],
         ),
         (
             "control_filters/RateLimiterDouble",
@@ -51,31 +51,34 @@ def test_filters_follow_their_formulas(kind, parameters, values, expected):
     assert [value_filter(value) for value in values] == pytest.approx(expected)
 
 
-async def test_states_are_filtered_and_exported(stand):
-    stand.joint("wheel", position=1.0)
-    controller = stand.start(ChainedFilterController, **INTERFACES, filter_chain={"filter1": MEAN, "filter2": MEAN})
+async def test_states_are_filtered_and_exported(bench):
+    bench.joint("wheel", position=1.0)
+    controller = bench.start(ChainedFilterController, **INTERFACES, filter_chain={"filter1": MEAN, "filter2": MEAN})
     (result,) = controller.exported
     assert result.name == "controller/wheel/filtered"
     assert isnan(result.value)
     for value, expected in ((1.0, 1.0), (3.0, 1.5), (nan, 1.5), (5.0, 3.0)):
-        stand.states["wheel/position"].value = value
-        await stand.step(controller)
+        bench.states["wheel/position"].value = value
+        await bench.step(controller)
         assert result.value == expected
-    assert not stand.log
+    assert not bench.log
 
 
-async def test_each_state_can_have_its_own_chain(stand):
-    stand.joint("wheel", position=1.0, velocity=1.0)
-    own = {**MEAN, "params": {"number_of_observations": 1}}
-    controller = stand.start(
+async def test_each_state_can_have_its_own_chain(bench):
+    bench.joint("wheel", position=1.0, velocity=1.0)
+    single_value_mean = {**MEAN, "params": {"number_of_observations": 1}}
+    controller = bench.start(
         ChainedFilterController,
         input_interfaces=["wheel/position", "wheel/velocity"],
         output_interfaces=["position", "velocity"],
-        **{"wheel/position": {"filter_chain": {"filter1": MEAN}}, "wheel/velocity": {"filter_chain": {"filter1": own}}},
+        **{
+            "wheel/position": {"filter_chain": {"filter1": MEAN}},
+            "wheel/velocity": {"filter_chain": {"filter1": single_value_mean}},
+        },
     )
-    await stand.step(controller)
-    stand.states["wheel/position"].value = stand.states["wheel/velocity"].value = 3.0
-    await stand.step(controller)
+    await bench.step(controller)
+    bench.states["wheel/position"].value = bench.states["wheel/velocity"].value = 3.0
+    await bench.step(controller)
     assert [state.value for state in controller.exported] == [2.0, 3.0]
 
 
@@ -106,6 +109,6 @@ async def test_each_state_can_have_its_own_chain(stand):
         ),
     ],
 )
-async def test_invalid_chains_are_rejected(stand, settings, message):
+async def test_invalid_chains_are_rejected(bench, settings, message):
     with pytest.raises((ControllerError, LinkwrightError), match=message):
-        stand.make(ChainedFilterController, **INTERFACES | settings).on_configure()
+        bench.make(ChainedFilterController, **INTERFACES | settings).on_configure()

@@ -10,7 +10,7 @@ import pytest
 from linkwright.control.controllers.registry import controller_class
 from linkwright.diagnostics import SourceText
 from linkwright.graph.parameters.files import parse_parameters, read_parameter_file
-from tests.control.controllers.driving import stamped_twist, warnings
+from tests.control.controllers.driving import logged_warnings, stamped_twist
 
 FILE = Path(__file__).with_name("drives.yaml")
 TYPES = {
@@ -26,15 +26,15 @@ TYPES = {
 
 
 @pytest.mark.parametrize("name", TYPES)
-async def test_all_parameters_of_file_are_recognized(stand, name):
+async def test_all_parameters_of_file_are_recognized(bench, name):
     for joint in ("left_front", "left_rear", "right_front", "right_rear"):
-        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+        bench.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     for joint in ("steer_left", "steer_right"):
-        stand.joint(joint, commands=("position",), position=0.0)
+        bench.joint(joint, commands=("position",), position=0.0)
     parameters = read_parameter_file(FILE).for_node(f"/{name}")
-    controller = stand.start(controller_class(TYPES[name]).variant(list(parameters)), name, **parameters)
-    await stand.step(controller)
-    assert not warnings(stand)
+    controller = bench.start(controller_class(TYPES[name]).variant(list(parameters)), name, **parameters)
+    await bench.step(controller)
+    assert not logged_warnings(bench)
 
 
 def documented_file(page: str) -> str:
@@ -45,13 +45,13 @@ def documented_file(page: str) -> str:
 
 
 @pytest.mark.parametrize("page", ["control.md", "zh/control.md"])
-async def test_documented_drive_starts(stand, page):
+async def test_documented_drive_starts(bench, page):
     for joint in ("left_joint", "right_joint"):
-        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+        bench.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     parameters = parse_parameters(SourceText(page, documented_file(page))).for_node("/base_controller")
-    controller = stand.start(controller_class(TYPES["jazzy_base"]), "base_controller", **parameters)
+    controller = bench.start(controller_class(TYPES["jazzy_base"]), "base_controller", **parameters)
     second = 1_000_000_000
-    stand.publish("geometry_msgs/msg/TwistStamped", "/base_controller/cmd_vel", stamped_twist(second, 9.0))
-    await stand.step(controller, 1.0)
+    bench.publish("geometry_msgs/msg/TwistStamped", "/base_controller/cmd_vel", stamped_twist(second, 9.0))
+    await bench.step(controller, 1.0)
     assert [command.value for command in controller.commands] == pytest.approx([0.8 / 0.06] * 2)
-    assert not warnings(stand)
+    assert not logged_warnings(bench)

@@ -23,14 +23,14 @@ DESCRIPTION = """<robot name="r"><link name="base"/>
 
 
 @pytest.fixture
-def outputs(stand):
-    """Return a stand with a tool with two outputs and lamps with two inputs."""
-    stand.joint("tool", commands=("valve", "pump"), valve=0.0)
-    stand.joint("lamps", red=1.0, green=0.0)
-    return stand
+def gpio_bench(bench):
+    """Return a test bench with a tool with two outputs and lamps with two inputs."""
+    bench.joint("tool", commands=("valve", "pump"), valve=0.0)
+    bench.joint("lamps", red=1.0, green=0.0)
+    return bench
 
 
-def group(**gpios: dict[str, float]):
+def make_group(**gpios: dict[str, float]):
     value = get_message("control_msgs/msg/InterfaceValue")
     values = [value(interface_names=list(names), values=list(names.values())) for names in gpios.values()]
     return get_message(TYPE)(interface_groups=list(gpios), interface_values=values)
@@ -40,23 +40,23 @@ def test_controller_is_found_by_type():
     assert controller_class("gpio_controllers/GpioCommandController") is GpioCommandController
 
 
-async def test_commands_are_forwarded_and_states_published(outputs):
+async def test_commands_are_forwarded_and_states_published(gpio_bench):
     states = {"state_interfaces": {"tool": {"interfaces": ["valve"]}}}
-    controller = outputs.start(GpioCommandController, **SETTINGS, **states)
-    messages = outputs.record(TYPE, "/controller/gpio_states")
-    outputs.publish(TYPE, "/controller/commands", group(tool={"pump": 1.0}))
-    await outputs.step(controller, count=2)
-    assert outputs.commands["tool/pump"].value == 1.0
-    assert outputs.commands["tool/valve"].value != outputs.commands["tool/valve"].value  # without a command
+    controller = gpio_bench.start(GpioCommandController, **SETTINGS, **states)
+    messages = gpio_bench.record(TYPE, "/controller/gpio_states")
+    gpio_bench.publish(TYPE, "/controller/commands", make_group(tool={"pump": 1.0}))
+    await gpio_bench.step(controller, count=2)
+    assert gpio_bench.commands["tool/pump"].value == 1.0
+    assert gpio_bench.commands["tool/valve"].value != gpio_bench.commands["tool/valve"].value  # without a command
     assert messages[-1].interface_groups == ["tool", "lamps"]
     assert [list(item.interface_names) for item in messages[-1].interface_values] == [["valve"], []]
     assert list(messages[-1].interface_values[0].values) == [0.0]
 
 
-async def test_states_of_description_are_published_by_default(outputs):
-    controller = outputs.activate(outputs.make(GpioCommandController, description=DESCRIPTION, **GPIOS))
-    messages = outputs.record(TYPE, "/controller/gpio_states")
-    await outputs.step(controller)
+async def test_states_of_description_are_published_by_default(gpio_bench):
+    controller = gpio_bench.activate(gpio_bench.make(GpioCommandController, description=DESCRIPTION, **GPIOS))
+    messages = gpio_bench.record(TYPE, "/controller/gpio_states")
+    await gpio_bench.step(controller)
     assert [list(item.interface_names) for item in messages[-1].interface_values] == [[], ["red", "green"]]
     assert list(messages[-1].interface_values[1].values) == [1.0, 0.0]
 
@@ -64,8 +64,8 @@ async def test_states_of_description_are_published_by_default(outputs):
 @pytest.mark.parametrize(
     ("message", "reported"),
     [
-        (group(tool={"pump": nan}), "a command with NaN is not forwarded"),
-        (group(tool={"horn": 1.0}), "'tool/horn' is not a command interface of this controller"),
+        (make_group(tool={"pump": nan}), "a command with NaN is not forwarded"),
+        (make_group(tool={"horn": 1.0}), "'tool/horn' is not a command interface of this controller"),
         (get_message(TYPE)(interface_groups=["tool"]), "a command has 1 GPIO, but values for 0"),
         (
             get_message(TYPE)(
@@ -76,16 +76,16 @@ async def test_states_of_description_are_published_by_default(outputs):
         ),
     ],
 )
-async def test_invalid_commands_are_reported(outputs, message, reported):
-    controller = outputs.start(GpioCommandController, **SETTINGS)
-    outputs.publish(TYPE, "/controller/commands", message)
-    await outputs.step(controller)
-    assert reported in [str(record.text) for record in outputs.log]
-    assert outputs.commands["tool/pump"].value != outputs.commands["tool/pump"].value
+async def test_invalid_commands_are_reported(gpio_bench, message, reported):
+    controller = gpio_bench.start(GpioCommandController, **SETTINGS)
+    gpio_bench.publish(TYPE, "/controller/commands", message)
+    await gpio_bench.step(controller)
+    assert reported in [str(record.text) for record in gpio_bench.log]
+    assert gpio_bench.commands["tool/pump"].value != gpio_bench.commands["tool/pump"].value
 
 
-async def test_controller_without_interfaces_is_rejected(outputs):
+async def test_controller_without_interfaces_is_rejected(gpio_bench):
     with pytest.raises(ControllerError, match="No command or state interfaces are configured"):
-        outputs.make(GpioCommandController, **GPIOS).on_configure()
+        gpio_bench.make(GpioCommandController, **GPIOS).on_configure()
     with pytest.raises(LinkwrightError, match="'gpios' contains 'tool' twice"):
-        outputs.make(GpioCommandController, "second", gpios=["tool", "tool"])
+        gpio_bench.make(GpioCommandController, "second", gpios=["tool", "tool"])

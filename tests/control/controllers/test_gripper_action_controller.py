@@ -18,32 +18,32 @@ SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
 
 
 class Gripper:
-    """A gripper on a stand: hardware that moves to its command at 0.1 m/s, up to a limit."""
+    """A gripper on a test bench: hardware that moves to its command at 0.1 m/s, up to a limit."""
 
     def __init__(
-        self, stand: Any, kind: type = PositionGripper, commands: tuple[str, ...] = ("position",), **parameters: Any
+        self, bench: Any, kind: type = PositionGripper, commands: tuple[str, ...] = ("position",), **parameters: Any
     ):
-        self.stand = stand
-        stand.joint("finger", commands=commands, position=0.0, velocity=0.0)
+        self.bench = bench
+        bench.joint("finger", commands=commands, position=0.0, velocity=0.0)
         self.limit = 1.0
-        self.controller = stand.start(kind, joint="finger", **parameters)
+        self.controller = bench.start(kind, joint="finger", **parameters)
 
     @property
     def command(self) -> float:
-        return self.stand.commands["finger/position"].value
+        return self.bench.commands["finger/position"].value
 
     def move(self) -> None:
-        position, speed = (self.stand.states[f"finger/{interface}"] for interface in ("position", "velocity"))
+        position, speed = (self.bench.states[f"finger/{interface}"] for interface in ("position", "velocity"))
         step = min(max(min(self.command, self.limit) - position.value, -0.001), 0.001)
         position.value += step
         speed.value = step / 0.01
 
     async def run(self, seconds: float) -> None:
-        await run(self.stand, self.controller, seconds, self.move)
+        await run(self.bench, self.controller, seconds, self.move)
 
     def send_goal(self, position: float, effort: float = 0.0) -> SentGoal:
         command = get_message("control_msgs/msg/GripperCommand")(position=position, max_effort=effort)
-        return SentGoal(self.stand, ACTION, "/controller/gripper_cmd", get_action(ACTION).Goal(command=command))
+        return SentGoal(self.bench, ACTION, "/controller/gripper_cmd", get_action(ACTION).Goal(command=command))
 
 
 @pytest.mark.parametrize(
@@ -58,8 +58,8 @@ def test_controllers_are_found_by_type(name, kind):
     assert controller_class(name) is kind
 
 
-async def test_gripper_holds_position_and_moves_to_goal(stand):
-    fingers = Gripper(stand)
+async def test_gripper_holds_position_and_moves_to_goal(bench):
+    fingers = Gripper(bench)
     await fingers.run(0.05)
     assert fingers.command == 0.0
     goal = fingers.send_goal(0.05, effort=7.0)
@@ -73,8 +73,8 @@ async def test_gripper_holds_position_and_moves_to_goal(stand):
 
 
 @pytest.mark.parametrize(("allowed", "status"), [(False, ABORTED), (True, SUCCEEDED)])
-async def test_blocked_gripper_stalls(stand, allowed, status):
-    fingers = Gripper(stand, allow_stalling=allowed, stall_timeout=0.5)
+async def test_blocked_gripper_stalls(bench, allowed, status):
+    fingers = Gripper(bench, allow_stalling=allowed, stall_timeout=0.5)
     fingers.limit = 0.02
     goal = fingers.send_goal(0.05)
     await fingers.run(0.65)
@@ -85,8 +85,8 @@ async def test_blocked_gripper_stalls(stand, allowed, status):
     assert fingers.command == 0.05
 
 
-async def test_canceled_goal_holds_position(stand):
-    fingers = Gripper(stand)
+async def test_canceled_goal_holds_position(bench):
+    fingers = Gripper(bench)
     goal = fingers.send_goal(0.5)
     await fingers.run(0.2)
     goal.cancel()
@@ -95,8 +95,8 @@ async def test_canceled_goal_holds_position(stand):
     assert fingers.command == pytest.approx(0.02, abs=0.0021)
 
 
-async def test_new_goal_preempts_previous_goal(stand):
-    fingers = Gripper(stand)
+async def test_new_goal_preempts_previous_goal(bench):
+    fingers = Gripper(bench)
     first = fingers.send_goal(0.5)
     await fingers.run(0.1)
     second = fingers.send_goal(0.0)
@@ -104,38 +104,38 @@ async def test_new_goal_preempts_previous_goal(stand):
     assert (first.status, second.status) == (CANCELED, SUCCEEDED)
 
 
-async def test_goal_is_rejected_if_not_a_number_or_inactive(stand):
-    fingers = Gripper(stand)
-    wrong = fingers.send_goal(nan)
+async def test_goal_is_rejected_if_not_a_number_or_inactive(bench):
+    fingers = Gripper(bench)
+    invalid_goal = fingers.send_goal(nan)
     await fingers.run(0.02)
     fingers.controller.on_deactivate()
     rejected = fingers.send_goal(0.1)
-    await stand.graph.settle()
-    assert (wrong.accepted, rejected.accepted) == (False, False)
+    await bench.graph.settle()
+    assert (invalid_goal.accepted, rejected.accepted) == (False, False)
 
 
-async def test_effort_follows_error_up_to_maximum_of_goal(stand):
+async def test_effort_follows_error_up_to_maximum_of_goal(bench):
     fingers = Gripper(
-        stand, EffortGripper, ("effort", "position"), gains={"finger": {"p": 100.0, "d": 10.0}}, goal_tolerance=0.001
+        bench, EffortGripper, ("effort", "position"), gains={"finger": {"p": 100.0, "d": 10.0}}, goal_tolerance=0.001
     )
     goal = fingers.send_goal(0.1, effort=4.0)
-    await run(stand, fingers.controller, 0.05)
-    assert stand.commands["finger/effort"].value == 4.0
-    fingers.stand.states["finger/position"].value = 0.08
-    fingers.stand.states["finger/velocity"].value = 0.1
-    await run(stand, fingers.controller, 0.01)
-    assert stand.commands["finger/effort"].value == pytest.approx(2.0 - 1.0)
+    await run(bench, fingers.controller, 0.05)
+    assert bench.commands["finger/effort"].value == 4.0
+    fingers.bench.states["finger/position"].value = 0.08
+    fingers.bench.states["finger/velocity"].value = 0.1
+    await run(bench, fingers.controller, 0.01)
+    assert bench.commands["finger/effort"].value == pytest.approx(2.0 - 1.0)
     fingers.controller.on_deactivate()
-    stand.exchange.deliver()
-    await stand.graph.settle()
-    assert stand.commands["finger/effort"].value == 0.0
+    bench.exchange.deliver()
+    await bench.graph.settle()
+    assert bench.commands["finger/effort"].value == 0.0
     assert goal.status == CANCELED
 
 
-async def test_parallel_gripper_forwards_maximum_effort_and_velocity(stand):
-    stand.joint("limits", commands=("effort", "velocity"))
+async def test_parallel_gripper_forwards_maximum_effort_and_velocity(bench):
+    bench.joint("limits", commands=("effort", "velocity"))
     fingers = Gripper(
-        stand,
+        bench,
         ParallelGripper,
         max_effort_interface="limits/effort",
         max_velocity_interface="limits/velocity",
@@ -143,19 +143,19 @@ async def test_parallel_gripper_forwards_maximum_effort_and_velocity(stand):
 
     def send_goal(position: list[float], velocity: list[float], effort: list[float]) -> SentGoal:
         command = JointState(name=["finger"], position=position, velocity=velocity, effort=effort)
-        return SentGoal(stand, PARALLEL, "/controller/gripper_cmd", get_action(PARALLEL).Goal(command=command))
+        return SentGoal(bench, PARALLEL, "/controller/gripper_cmd", get_action(PARALLEL).Goal(command=command))
 
     def limits() -> tuple[float, float]:
-        return stand.commands["limits/effort"].value, stand.commands["limits/velocity"].value
+        return bench.commands["limits/effort"].value, bench.commands["limits/velocity"].value
 
     await fingers.run(0.02)
     assert limits() == (10.0, 0.1)
-    goal, wrong = send_goal([0.02], [0.3], [5.0]), send_goal([], [], [])
+    goal, invalid_goal = send_goal([0.02], [0.3], [5.0]), send_goal([], [], [])
     await fingers.run(0.5)
     assert limits() == (5.0, 0.3)
-    assert (goal.status, wrong.accepted) == (SUCCEEDED, False)
+    assert (goal.status, invalid_goal.accepted) == (SUCCEEDED, False)
     assert goal.result.state.name == ["finger"]
     assert goal.result.state.effort[0] == 5.0
     assert "Received action goal with wrong number of position values, expects 1, got 0" in [
-        str(record.text) for record in stand.log
+        str(record.text) for record in bench.log
     ]

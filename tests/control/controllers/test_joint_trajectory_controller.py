@@ -1,4 +1,7 @@
-"""The joint trajectory controller: its commands over time, rejections, and the ends of goals."""
+"""The joint trajectory controller.
+
+The tests cover its commands over time, rejections, and the ends of goals.
+"""
 
 from __future__ import annotations
 
@@ -12,62 +15,69 @@ from linkwright.control.controllers.joint_trajectory_controller import JointTraj
 from linkwright.control.controllers.registry import controller_class
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Duration, Time, get_action, get_service
-from tests.control.controllers.arm import JOINTS, SECOND, SentGoal, run, tolerance, trajectory
+from tests.control.controllers.arm import JOINTS, SECOND_NS, SentGoal, run, tolerance, trajectory
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
 TYPE = "trajectory_msgs/msg/JointTrajectory"
 SUCCEEDED, CANCELED, ABORTED = 4, 5, 6
-BY_POSITION = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
+POSITION_PARAMETERS = {
+    "joints": list(JOINTS),
+    "command_interfaces": ["position"],
+    "state_interfaces": ["position", "velocity"],
+}
 
 
 class Arm:
-    """A controller on a stand, with hardware that follows its commands at once, except for stuck joints."""
+    """A controller on a test bench, with hardware that follows its commands.
 
-    def __init__(self, stand: Any, **parameters: Any) -> None:
-        self.stand = stand
-        facts = {**BY_POSITION, **parameters}
+    It follows them at once, except for stuck joints.
+    """
+
+    def __init__(self, bench: Any, **parameters: Any) -> None:
+        self.bench = bench
+        facts = {**POSITION_PARAMETERS, **parameters}
         for joint in JOINTS:
-            stand.joint(joint, commands=tuple(facts["command_interfaces"]), position=0.0, velocity=0.0)
+            bench.joint(joint, commands=tuple(facts["command_interfaces"]), position=0.0, velocity=0.0)
         self.stuck: set[str] = set()
-        self.controller = stand.start(JointTrajectoryController, **facts)
+        self.controller = bench.start(JointTrajectoryController, **facts)
 
     def command(self, joint: str, interface: str = "position") -> float:
-        return self.stand.commands[f"{joint}/{interface}"].value
+        return self.bench.commands[f"{joint}/{interface}"].value
 
     def follow_commands(self) -> None:
-        for name, command in self.stand.commands.items():
+        for name, command in self.bench.commands.items():
             joint, _, interface = name.partition("/")
             if joint not in self.stuck and interface == "position":
-                self.stand.states[name].value = command.value
+                self.bench.states[name].value = command.value
 
     async def run(self, seconds: float) -> None:
-        await run(self.stand, self.controller, seconds, self.follow_commands)
+        await run(self.bench, self.controller, seconds, self.follow_commands)
 
     def publish(self, message: Any) -> None:
-        self.stand.publish(TYPE, "/controller/joint_trajectory", message)
+        self.bench.publish(TYPE, "/controller/joint_trajectory", message)
 
     def send_goal(self, message: Any, **fields: Any) -> SentGoal:
         goal = get_action(ACTION).Goal(trajectory=message, **fields)
-        return SentGoal(self.stand, ACTION, "/controller/follow_joint_trajectory", goal)
+        return SentGoal(self.bench, ACTION, "/controller/follow_joint_trajectory", goal)
 
     def log_texts(self) -> list[str]:
-        return [str(record.text) for record in self.stand.log]
+        return [str(record.text) for record in self.bench.log]
 
 
 def test_controller_is_found_by_type():
     assert controller_class("joint_trajectory_controller/JointTrajectoryController") is JointTrajectoryController
 
 
-async def test_joints_are_held_until_first_trajectory(stand):
-    stand.joint("shoulder", commands=("position",), position=0.3, velocity=0.0)
-    stand.joint("elbow", commands=("position",), position=-0.2, velocity=0.0)
-    controller = stand.start(JointTrajectoryController, **BY_POSITION)
-    await run(stand, controller, 0.05)
+async def test_joints_are_held_until_first_trajectory(bench):
+    bench.joint("shoulder", commands=("position",), position=0.3, velocity=0.0)
+    bench.joint("elbow", commands=("position",), position=-0.2, velocity=0.0)
+    controller = bench.start(JointTrajectoryController, **POSITION_PARAMETERS)
+    await run(bench, controller, 0.05)
     assert [command.value for command in controller.commands] == [0.3, -0.2]
 
 
-async def test_positions_are_interpolated_linearly_one_update_ahead(stand):
-    arm = Arm(stand)
+async def test_positions_are_interpolated_linearly_one_update_ahead(bench):
+    arm = Arm(bench)
     await arm.run(0.1)
     arm.publish(trajectory((1.0, [1.0, -2.0]), (2.0, [0.0, 0.0])))
     await arm.run(0.5)
@@ -80,8 +90,8 @@ async def test_positions_are_interpolated_linearly_one_update_ahead(stand):
     assert (arm.command("shoulder"), arm.command("elbow")) == (0.0, 0.0)
 
 
-async def test_velocities_are_interpolated_as_cubic_and_commanded(stand):
-    arm = Arm(stand, command_interfaces=["position", "velocity"])
+async def test_velocities_are_interpolated_as_cubic_and_commanded(bench):
+    arm = Arm(bench, command_interfaces=["position", "velocity"])
     arm.publish(trajectory((2.0, [1.0, 1.0], [0.0, 0.0])))
     await arm.run(1.0)
     assert arm.command("shoulder") == pytest.approx(0.5, abs=1e-6)
@@ -90,48 +100,48 @@ async def test_velocities_are_interpolated_as_cubic_and_commanded(stand):
     assert arm.command("shoulder", "velocity") == 0.0
 
 
-async def test_accelerations_are_commanded(stand):
+async def test_accelerations_are_commanded(bench):
     for joint in JOINTS:
-        stand.joint(
+        bench.joint(
             joint, commands=("position", "velocity", "acceleration"), position=0.0, velocity=0.0, acceleration=0.0
         )
-    three = ["position", "velocity", "acceleration"]
-    controller = stand.start(
-        JointTrajectoryController, joints=list(JOINTS), command_interfaces=three, state_interfaces=three
+    interfaces = ["position", "velocity", "acceleration"]
+    controller = bench.start(
+        JointTrajectoryController, joints=list(JOINTS), command_interfaces=interfaces, state_interfaces=interfaces
     )
     point = (2.0, [1.0, 1.0], [0.0, 0.0], [0.0, 0.0])
-    stand.publish(TYPE, "/controller/joint_trajectory", trajectory(point))
-    await run(stand, controller, 1.0)
-    values = [stand.commands[f"shoulder/{interface}"].value for interface in three]
+    bench.publish(TYPE, "/controller/joint_trajectory", trajectory(point))
+    await run(bench, controller, 1.0)
+    values = [bench.commands[f"shoulder/{interface}"].value for interface in interfaces]
     assert values == pytest.approx([0.5, 15.0 / 16.0, 0.0], abs=1e-9)
 
 
-async def test_velocity_command_is_feed_forward_plus_error(stand):
+async def test_velocity_command_is_feed_forward_plus_error(bench):
     gains = {joint: {"p": 2.0, "ff_velocity_scale": 1.0} for joint in JOINTS}
-    arm = Arm(stand, command_interfaces=["velocity"], gains=gains)
+    arm = Arm(bench, command_interfaces=["velocity"], gains=gains)
     arm.publish(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
     assert arm.command("shoulder", "velocity") == pytest.approx(1.0 + 2.0 * 0.49)
 
 
-async def test_effort_by_pid_moves_mass_along_trajectory(stand):
+async def test_effort_by_pid_moves_mass_along_trajectory(bench):
     gains = {joint: {"p": 400.0, "d": 40.0, "i": 10.0, "i_clamp": 5.0} for joint in JOINTS}
-    arm = Arm(stand, command_interfaces=["effort"], gains=gains)
+    arm = Arm(bench, command_interfaces=["effort"], gains=gains)
 
-    def fall() -> None:
+    def move_by_effort() -> None:
         for joint in JOINTS:
-            position, velocity = (stand.states[f"{joint}/{interface}"] for interface in ("position", "velocity"))
+            position, velocity = (bench.states[f"{joint}/{interface}"] for interface in ("position", "velocity"))
             velocity.value += 0.01 * (arm.command(joint, "effort") - 1.0)
             position.value += 0.01 * velocity.value
 
     goal = arm.send_goal(trajectory((2.0, [1.0, 0.5], [0.0, 0.0])))
-    await run(stand, arm.controller, 4.0, fall)
-    assert stand.states["shoulder/position"].value == pytest.approx(1.0, abs=0.01)
+    await run(bench, arm.controller, 4.0, move_by_effort)
+    assert bench.states["shoulder/position"].value == pytest.approx(1.0, abs=0.01)
     assert goal.status == SUCCEEDED
 
 
-async def test_gains_can_be_changed_while_active(stand):
-    arm = Arm(stand, command_interfaces=["velocity"], gains={joint: {"p": 1.0} for joint in JOINTS})
+async def test_gains_can_be_changed_while_active(bench):
+    arm = Arm(bench, command_interfaces=["velocity"], gains={joint: {"p": 1.0} for joint in JOINTS})
     arm.publish(trajectory((0.01, [1.0, 1.0])))
     await arm.run(0.1)
     assert arm.command("shoulder", "velocity") == pytest.approx(1.0)
@@ -141,8 +151,8 @@ async def test_gains_can_be_changed_while_active(stand):
     assert (arm.command("shoulder", "velocity"), arm.command("elbow", "velocity")) == pytest.approx((3.0, 1.0))
 
 
-async def test_goal_succeeds_with_feedback(stand):
-    arm = Arm(stand, action_monitor_rate=10.0)
+async def test_goal_succeeds_with_feedback(bench):
+    arm = Arm(bench, action_monitor_rate=10.0)
     goal = arm.send_goal(trajectory((1.0, [1.0, 0.5])))
     await arm.run(1.1)
     assert goal.status == SUCCEEDED
@@ -154,15 +164,15 @@ async def test_goal_succeeds_with_feedback(stand):
     assert "Goal reached, success!" in arm.log_texts()
 
 
-async def test_joints_can_be_listed_in_any_order(stand):
-    arm = Arm(stand)
+async def test_joints_can_be_listed_in_any_order(bench):
+    arm = Arm(bench)
     arm.publish(trajectory((0.5, [2.0, 1.0]), names=("elbow", "shoulder")))
     await arm.run(1.0)
     assert (arm.command("shoulder"), arm.command("elbow")) == (1.0, 2.0)
 
 
-async def test_joints_omitted_from_partial_goal_are_held(stand):
-    arm = Arm(stand, allow_partial_joints_goal=True)
+async def test_joints_omitted_from_partial_goal_are_held(bench):
+    arm = Arm(bench, allow_partial_joints_goal=True)
     arm.publish(trajectory((0.5, [0.7, 0.4])))
     await arm.run(1.0)
     goal = arm.send_goal(trajectory((0.5, [1.0], [0.0]), names=("elbow",)))
@@ -171,18 +181,24 @@ async def test_joints_omitted_from_partial_goal_are_held(stand):
     assert (arm.command("shoulder"), arm.command("elbow")) == (0.7, 1.0)
 
 
-GOOD = (1.0, [1.0, 1.0])
+VALID_POINT = (1.0, [1.0, 1.0])
 
 
 @pytest.mark.parametrize(
     ("message", "expected"),
     [
-        (trajectory(GOOD, names=("shoulder",)), "Joints on incoming trajectory don't match the controller joints."),
-        (trajectory(names=JOINTS), "Empty trajectory received."),
-        (trajectory(GOOD, names=("shoulder", "knee")), "Incoming joint knee doesn't match the controller's joints."),
-        (trajectory(GOOD, names=("elbow", "elbow")), "Incoming joint elbow appears twice."),
         (
-            trajectory(GOOD, (1.0, [0.0, 0.0])),
+            trajectory(VALID_POINT, names=("shoulder",)),
+            "Joints on incoming trajectory don't match the controller joints.",
+        ),
+        (trajectory(names=JOINTS), "Empty trajectory received."),
+        (
+            trajectory(VALID_POINT, names=("shoulder", "knee")),
+            "Incoming joint knee doesn't match the controller's joints.",
+        ),
+        (trajectory(VALID_POINT, names=("elbow", "elbow")), "Incoming joint elbow appears twice."),
+        (
+            trajectory(VALID_POINT, (1.0, [0.0, 0.0])),
             "Time between points 0 and 1 is not strictly increasing, it is 1.000000 and 1.000000 respectively",
         ),
         (
@@ -204,13 +220,13 @@ GOOD = (1.0, [1.0, 1.0])
             "Trajectories with effort fields are currently not supported.",
         ),
         (
-            trajectory((0.5, [1.0, 1.0]), start_ns=SECOND // 4),
+            trajectory((0.5, [1.0, 1.0]), start_ns=SECOND_NS // 4),
             "Received trajectory with non-zero start time (0.250000) that ends in the past (0.750000)",
         ),
     ],
 )
-async def test_invalid_trajectory_is_rejected_with_reason(stand, message, expected):
-    arm = Arm(stand)
+async def test_invalid_trajectory_is_rejected_with_reason(bench, message, expected):
+    arm = Arm(bench)
     await arm.run(1.0)
     goal = arm.send_goal(message)
     arm.publish(message)
@@ -220,24 +236,24 @@ async def test_invalid_trajectory_is_rejected_with_reason(stand, message, expect
     assert arm.command("shoulder") == 0.0
 
 
-async def test_partial_goal_requires_joint_names(stand):
-    arm = Arm(stand, allow_partial_joints_goal=True)
+async def test_partial_goal_requires_joint_names(bench):
+    arm = Arm(bench, allow_partial_joints_goal=True)
     goal = arm.send_goal(trajectory(names=()))
     await arm.run(0.05)
     assert goal.accepted is False
     assert "Empty joint names on incoming trajectory." in arm.log_texts()
 
 
-async def test_nonzero_final_velocity_can_be_forbidden(stand):
-    arm = Arm(stand, allow_nonzero_velocity_at_trajectory_end=False)
+async def test_nonzero_final_velocity_can_be_forbidden(bench):
+    arm = Arm(bench, allow_nonzero_velocity_at_trajectory_end=False)
     goal = arm.send_goal(trajectory((1.0, [1.0, 1.0], [0.0, 0.1])))
     await arm.run(0.05)
     assert goal.accepted is False
     assert "Velocity of last trajectory point of joint elbow is not zero: 0.100000000000000" in arm.log_texts()
 
 
-async def test_points_without_positions_are_integrated_if_allowed(stand):
-    arm = Arm(stand, allow_integration_in_goal_trajectories=True)
+async def test_points_without_positions_are_integrated_if_allowed(bench):
+    arm = Arm(bench, allow_integration_in_goal_trajectories=True)
     goal = arm.send_goal(trajectory((1.0, [], [2.0, 0.0]), (2.0, [], [0.0, 0.0])))
     await arm.run(2.5)
     assert goal.status == SUCCEEDED
@@ -247,26 +263,26 @@ async def test_points_without_positions_are_integrated_if_allowed(stand):
     assert empty.accepted is False
 
 
-async def test_trajectory_with_future_start_reaches_first_point_on_time(stand):
-    arm = Arm(stand)
+async def test_trajectory_with_future_start_reaches_first_point_on_time(bench):
+    arm = Arm(bench)
     await arm.run(1.0)
-    arm.publish(trajectory((1.0, [1.0, 1.0]), start_ns=2 * SECOND))
+    arm.publish(trajectory((1.0, [1.0, 1.0]), start_ns=2 * SECOND_NS))
     await arm.run(1.0)
     assert arm.command("shoulder") == pytest.approx(0.5, abs=0.01)
     await arm.run(1.0)
     assert arm.command("shoulder") == pytest.approx(1.0)
 
 
-async def test_trajectory_with_past_start_continues_at_current_time(stand):
-    arm = Arm(stand)
+async def test_trajectory_with_past_start_continues_at_current_time(bench):
+    arm = Arm(bench)
     await arm.run(1.0)
-    arm.publish(trajectory((0.5, [0.5, 0.5]), (2.5, [2.5, 2.5]), start_ns=SECOND // 2))
+    arm.publish(trajectory((0.5, [0.5, 0.5]), (2.5, [2.5, 2.5]), start_ns=SECOND_NS // 2))
     await arm.run(0.5)
     assert arm.command("shoulder") == pytest.approx(1.01)
 
 
-async def test_violated_path_tolerance_aborts_goal_and_holds_joints(stand):
-    arm = Arm(stand, constraints={"shoulder": {"trajectory": 0.1}})
+async def test_violated_path_tolerance_aborts_goal_and_holds_joints(bench):
+    arm = Arm(bench, constraints={"shoulder": {"trajectory": 0.1}})
     arm.stuck.add("shoulder")
     goal = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
@@ -280,8 +296,8 @@ async def test_violated_path_tolerance_aborts_goal_and_holds_joints(stand):
     )
 
 
-async def test_goal_is_aborted_after_goal_time(stand):
-    arm = Arm(stand, constraints={"goal_time": 0.5, "shoulder": {"goal": 0.1}})
+async def test_goal_is_aborted_after_goal_time(bench):
+    arm = Arm(bench, constraints={"goal_time": 0.5, "shoulder": {"goal": 0.1}})
     arm.stuck.add("shoulder")
     goal = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(1.5)
@@ -293,8 +309,8 @@ async def test_goal_is_aborted_after_goal_time(stand):
     assert arm.command("shoulder") == 0.0
 
 
-async def test_goal_never_times_out_without_goal_time(stand):
-    arm = Arm(stand, constraints={"shoulder": {"goal": 0.1}})
+async def test_goal_never_times_out_without_goal_time(bench):
+    arm = Arm(bench, constraints={"shoulder": {"goal": 0.1}})
     arm.stuck.add("shoulder")
     goal = arm.send_goal(trajectory((0.1, [1.0, 1.0])))
     await arm.run(5.0)
@@ -304,8 +320,8 @@ async def test_goal_never_times_out_without_goal_time(stand):
     assert goal.status == SUCCEEDED
 
 
-async def test_goal_overrides_tolerances(stand):
-    arm = Arm(stand, constraints={"goal_time": 0.1, "shoulder": {"trajectory": 0.1, "goal": 0.1}})
+async def test_goal_overrides_tolerances(bench):
+    arm = Arm(bench, constraints={"goal_time": 0.1, "shoulder": {"trajectory": 0.1, "goal": 0.1}})
     arm.stuck.add("shoulder")
     erased_tolerances = [tolerance("shoulder", -1.0)]
     first = arm.send_goal(
@@ -325,7 +341,7 @@ async def test_goal_overrides_tolerances(stand):
 
 
 @pytest.mark.parametrize(
-    ("wrong", "message"),
+    ("tolerance_fields", "message"),
     [
         (
             tolerance("knee", 1.0),
@@ -337,17 +353,17 @@ async def test_goal_overrides_tolerances(stand):
         ),
     ],
 )
-async def test_invalid_goal_tolerances_keep_controller_tolerances(stand, wrong, message):
-    arm = Arm(stand, constraints={"shoulder": {"trajectory": 0.1}})
+async def test_invalid_goal_tolerances_keep_controller_tolerances(bench, tolerance_fields, message):
+    arm = Arm(bench, constraints={"shoulder": {"trajectory": 0.1}})
     arm.stuck.add("shoulder")
-    goal = arm.send_goal(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), wrong])
+    goal = arm.send_goal(trajectory((0.5, [1.0, 1.0])), path_tolerance=[tolerance("shoulder", -1.0), tolerance_fields])
     await arm.run(0.5)
     assert goal.status == ABORTED
     assert message in arm.log_texts()
 
 
-async def test_canceled_goal_holds_joints(stand):
-    arm = Arm(stand)
+async def test_canceled_goal_holds_joints(bench):
+    arm = Arm(bench)
     goal = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
     goal.cancel()
@@ -358,8 +374,8 @@ async def test_canceled_goal_holds_joints(stand):
     assert arm.command("shoulder") == pytest.approx(0.5)
 
 
-async def test_new_goal_preempts_previous_goal(stand):
-    arm = Arm(stand)
+async def test_new_goal_preempts_previous_goal(bench):
+    arm = Arm(bench)
     first = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
     second = arm.send_goal(trajectory((1.0, [0.0, 0.0])))
@@ -369,8 +385,8 @@ async def test_new_goal_preempts_previous_goal(stand):
     assert first.result.error_string == "Current goal cancelled due to new incoming action."
 
 
-async def test_trajectory_on_topic_preempts_goal(stand):
-    arm = Arm(stand)
+async def test_trajectory_on_topic_preempts_goal(bench):
+    arm = Arm(bench)
     goal = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
     arm.publish(trajectory((0.5, [0.0, 0.0])))
@@ -379,8 +395,8 @@ async def test_trajectory_on_topic_preempts_goal(stand):
     assert arm.command("shoulder") == 0.0
 
 
-async def test_rejected_goal_keeps_previous_goal(stand):
-    arm = Arm(stand)
+async def test_rejected_goal_keeps_previous_goal(bench):
+    arm = Arm(bench)
     first = arm.send_goal(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
     arm.send_goal(trajectory())
@@ -388,14 +404,14 @@ async def test_rejected_goal_keeps_previous_goal(stand):
     assert first.status == SUCCEEDED
 
 
-async def test_inactive_controller_rejects_goals_and_ends_current_goal(stand):
-    arm = Arm(stand, command_interfaces=["position", "velocity"])
+async def test_inactive_controller_rejects_goals_and_ends_current_goal(bench):
+    arm = Arm(bench, command_interfaces=["position", "velocity"])
     current_goal = arm.send_goal(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
     await arm.run(0.5)
     arm.controller.on_deactivate()
-    stand.exchange.deliver()
-    rejected_goal = arm.send_goal(trajectory(GOOD))
-    await stand.graph.settle()
+    bench.exchange.deliver()
+    rejected_goal = arm.send_goal(trajectory(VALID_POINT))
+    await bench.graph.settle()
     assert (current_goal.status, rejected_goal.accepted) == (CANCELED, False)
     assert current_goal.result.error_string == "Current goal cancelled during deactivate transition."
     assert "Can't accept new action goals. Controller is not running." in arm.log_texts()
@@ -403,32 +419,32 @@ async def test_inactive_controller_rejects_goals_and_ends_current_goal(stand):
     assert arm.command("shoulder", "velocity") == 0.0
 
 
-async def test_reactivation_holds_last_commands(stand):
-    arm = Arm(stand)
+async def test_reactivation_holds_last_commands(bench):
+    arm = Arm(bench)
     arm.publish(trajectory((0.5, [1.0, 1.0])))
     await arm.run(1.0)
     arm.controller.on_deactivate()
-    stand.states["shoulder/position"].value = 0.9
+    bench.states["shoulder/position"].value = 0.9
     arm.controller.on_activate()
     assert arm.controller._trajectory.points[0].state.positions == [1.0, 1.0]
 
 
-async def test_open_loop_trajectory_starts_at_last_command(stand):
-    arm = Arm(stand, open_loop_control=True)
+async def test_open_loop_trajectory_starts_at_last_command(bench):
+    arm = Arm(bench, open_loop_control=True)
     arm.publish(trajectory((0.5, [1.0, 1.0])))
     await arm.run(1.0)
     arm.stuck.update(JOINTS)
     for joint in JOINTS:
-        stand.states[f"{joint}/position"].value = 0.5
+        bench.states[f"{joint}/position"].value = 0.5
     arm.publish(trajectory((1.0, [2.0, 2.0])))
     await arm.run(0.5)
     assert arm.command("shoulder") == pytest.approx(1.5)
 
 
-async def test_angle_wraparound_turns_shorter_way(stand):
-    arm = Arm(stand, gains={"shoulder": {"angle_wraparound": True}})
-    stand.states["shoulder/position"].value = 3.0
-    stand.commands["shoulder/position"].value = 3.0
+async def test_angle_wraparound_turns_shorter_way(bench):
+    arm = Arm(bench, gains={"shoulder": {"angle_wraparound": True}})
+    bench.states["shoulder/position"].value = 3.0
+    bench.commands["shoulder/position"].value = 3.0
     arm.controller.on_activate()
     goal = arm.send_goal(trajectory((1.0, [-3.0, 0.0])))
     await arm.run(0.5)
@@ -437,8 +453,8 @@ async def test_angle_wraparound_turns_shorter_way(stand):
     assert goal.status == SUCCEEDED
 
 
-async def test_points_are_commanded_when_due_without_interpolation(stand):
-    arm = Arm(stand, interpolation_method="none")
+async def test_points_are_commanded_when_due_without_interpolation(bench):
+    arm = Arm(bench, interpolation_method="none")
     arm.publish(trajectory((1.0, [1.0, 1.0]), (2.0, [2.0, 2.0])))
     await arm.run(0.9)
     assert arm.command("shoulder") == 0.0
@@ -446,8 +462,8 @@ async def test_points_are_commanded_when_due_without_interpolation(stand):
     assert arm.command("shoulder") == 2.0
 
 
-async def test_ended_trajectory_is_dropped_after_cmd_timeout(stand):
-    arm = Arm(stand, cmd_timeout=0.5)
+async def test_ended_trajectory_is_dropped_after_cmd_timeout(bench):
+    arm = Arm(bench, cmd_timeout=0.5)
     arm.stuck.update(JOINTS)
     arm.publish(trajectory((0.5, [1.0, 1.0])))
     await arm.run(0.9)
@@ -457,15 +473,15 @@ async def test_ended_trajectory_is_dropped_after_cmd_timeout(stand):
     assert arm.command("shoulder") == 0.0
 
 
-async def test_cmd_timeout_below_goal_time_is_ignored_with_warning(stand):
-    arm = Arm(stand, cmd_timeout=0.5, constraints={"goal_time": 0.6})
+async def test_cmd_timeout_below_goal_time_is_ignored_with_warning(bench):
+    arm = Arm(bench, cmd_timeout=0.5, constraints={"goal_time": 0.6})
     assert "Command timeout must be higher than goal_time tolerance (0.500000 vs. 0.600000)" in arm.log_texts()
 
 
-async def test_state_is_published_each_update_or_at_set_rate(stand):
-    arm = Arm(stand, state_publish_rate=20.0)
+async def test_state_is_published_each_update_or_at_set_rate(bench):
+    arm = Arm(bench, state_publish_rate=20.0)
     new, old = (
-        stand.record("control_msgs/msg/JointTrajectoryControllerState", f"/controller/{topic}")
+        bench.record("control_msgs/msg/JointTrajectoryControllerState", f"/controller/{topic}")
         for topic in ("controller_state", "state")
     )
     arm.publish(trajectory((1.0, [1.0, 1.0])))
@@ -479,42 +495,42 @@ async def test_state_is_published_each_update_or_at_set_rate(stand):
     assert message.error.positions[0] == message.reference.positions[0] - message.feedback.positions[0]
 
 
-async def test_errors_of_held_joints_are_computed_only_for_subscribers(stand, monkeypatch):
+async def test_errors_of_held_joints_are_computed_only_for_subscribers(bench, monkeypatch):
     compare, comparisons = JointTrajectoryController._compare, []
     monkeypatch.setattr(
         JointTrajectoryController, "_compare", lambda self, target: comparisons.append(target) or compare(self, target)
     )
-    arm = Arm(stand)
+    arm = Arm(bench)
     await arm.run(0.1)
     assert comparisons == []
-    states = stand.record("control_msgs/msg/JointTrajectoryControllerState", "/controller/controller_state")
+    states = bench.record("control_msgs/msg/JointTrajectoryControllerState", "/controller/controller_state")
     await arm.run(0.02)
     assert len(states) == len(comparisons) == 2
     assert list(states[-1].error.positions) == [0.0, 0.0]
 
 
-async def test_query_state_returns_state_at_time(stand):
-    arm = Arm(stand)
+async def test_query_state_returns_state_at_time(bench):
+    arm = Arm(bench)
     query = get_service("control_msgs/srv/QueryTrajectoryState")
-    client = stand.node.create_client(query, "/controller/query_state")
+    client = bench.node.create_client(query, "/controller/query_state")
 
-    async def ask(seconds: float) -> Any:
-        future = client.call_async(query.Request(time=Time.from_nanoseconds(round(seconds * SECOND))))
+    async def query_state(seconds: float) -> Any:
+        future = client.call_async(query.Request(time=Time.from_nanoseconds(round(seconds * SECOND_NS))))
         await arm.run(0.01)
         return future.result()
 
     arm.publish(trajectory((1.0, [1.0, 0.0])))
     await arm.run(0.1)
-    answer = await ask(0.51)
-    assert (answer.success, answer.name) == (True, list(JOINTS))
-    assert answer.position[0] == pytest.approx(0.5)
-    assert answer.velocity[0] == pytest.approx(1.0)
+    response = await query_state(0.51)
+    assert (response.success, response.name) == (True, list(JOINTS))
+    assert response.position[0] == pytest.approx(0.5)
+    assert response.velocity[0] == pytest.approx(1.0)
     for seconds, text in (
         (0.001, "Requested sample time is earlier than the current trajectory start time."),
         (9.0, "Requested sample time precedes the current trajectory end time."),
     ):
-        answer = await ask(seconds)
-        assert (answer.success, answer.message) == (False, text)
+        response = await query_state(seconds)
+        assert (response.success, response.message) == (False, text)
 
 
 @pytest.mark.parametrize(
@@ -530,28 +546,28 @@ async def test_query_state_returns_state_at_time(stand):
         ({"interpolation_method": "linear"}, "'linear' is not one of"),
     ],
 )
-async def test_invalid_parameters_are_rejected(stand, parameters, message):
+async def test_invalid_parameters_are_rejected(bench, parameters, message):
     with pytest.raises(LinkwrightError, match=message):
-        stand.make(JointTrajectoryController, **{**BY_POSITION, **parameters})
+        bench.make(JointTrajectoryController, **{**POSITION_PARAMETERS, **parameters})
 
 
 @pytest.mark.parametrize("kind", ["velocity", "effort"])
-async def test_pid_commands_require_position_and_velocity_states(stand, kind):
+async def test_pid_commands_require_position_and_velocity_states(bench, kind):
     parameters = {"joints": ["hip"], "command_interfaces": [kind], "state_interfaces": ["position"]}
     with pytest.raises(ControllerError, match=f"'{kind}' command interface can only be used alone if"):
-        stand.make(JointTrajectoryController, **parameters).on_configure()
+        bench.make(JointTrajectoryController, **parameters).on_configure()
 
 
-async def test_activation_fails_without_known_positions(stand):
-    stand.joint("hip", commands=("position",), position=nan)
+async def test_activation_fails_without_known_positions(bench):
+    bench.joint("hip", commands=("position",), position=nan)
     parameters = {"joints": ["hip"], "command_interfaces": ["position"], "state_interfaces": ["position"]}
     with pytest.raises(ControllerError, match="not known yet"):
-        stand.start(JointTrajectoryController, **parameters)
+        bench.start(JointTrajectoryController, **parameters)
 
 
-async def test_unknown_velocity_state_counts_as_zero(stand):
-    arm = Arm(stand)
-    stand.states["shoulder/velocity"].value = nan
+async def test_unknown_velocity_state_counts_as_zero(bench):
+    arm = Arm(bench)
+    bench.states["shoulder/velocity"].value = nan
     arm.publish(trajectory((1.0, [1.0, 1.0], [0.0, 0.0])))
     await arm.run(0.5)
     assert arm.command("shoulder") == pytest.approx(0.5)
@@ -559,30 +575,30 @@ async def test_unknown_velocity_state_counts_as_zero(stand):
     assert arm.command("shoulder") == 1.0
 
 
-async def test_command_joints_can_differ_from_state_joints(stand):
-    stand.joint("hip", position=0.0)
-    stand.joint("motor", commands=("position",))
+async def test_command_joints_can_differ_from_state_joints(bench):
+    bench.joint("hip", position=0.0)
+    bench.joint("motor", commands=("position",))
     parameters = {"joints": ["hip"], "command_interfaces": ["position"], "state_interfaces": ["position"]}
-    controller = stand.start(JointTrajectoryController, command_joints=["motor"], **parameters)
-    await run(stand, controller, 0.02)
-    assert stand.commands["motor/position"].value == 0.0
+    controller = bench.start(JointTrajectoryController, command_joints=["motor"], **parameters)
+    await run(bench, controller, 0.02)
+    assert bench.commands["motor/position"].value == 0.0
 
 
-async def test_time_reset_holds_joints(stand):
-    arm = Arm(stand)
+async def test_time_reset_holds_joints(bench):
+    arm = Arm(bench)
     arm.publish(trajectory((1.0, [1.0, 1.0])))
     await arm.run(0.5)
-    stand.time_ns = 0
+    bench.time_ns = 0
     await arm.run(0.1)
     assert arm.command("shoulder") == pytest.approx(0.5)
 
 
-async def test_controller_can_be_configured_again_after_cleanup(stand):
-    arm = Arm(stand)
+async def test_controller_can_be_configured_again_after_cleanup(bench):
+    arm = Arm(bench)
     arm.controller.on_deactivate()
     arm.controller.on_cleanup()
-    await stand.graph.settle()
-    stand.activate(arm.controller)
+    await bench.graph.settle()
+    bench.activate(arm.controller)
     goal = arm.send_goal(trajectory((0.1, [1.0, 1.0])))
     await arm.run(0.2)
     assert goal.status == SUCCEEDED

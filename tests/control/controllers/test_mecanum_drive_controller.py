@@ -1,3 +1,5 @@
+"""The mecanum drive controller: wheel speeds, odometry, limits and timeouts."""
+
 from __future__ import annotations
 
 from math import cos, isnan, nan, pi, sin
@@ -7,29 +9,31 @@ import pytest
 from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.mecanum_drive_controller import MecanumDriveController
 from linkwright.control.controllers.registry import controller_class
-from tests.control.controllers.driving import roll, stamped_twist
+from tests.control.controllers.driving import roll_wheels, stamped_twist
 
-NAME = "base"
+CONTROLLER_NAME = "base"
 CORNERS = ("front_left", "front_right", "rear_right", "rear_left")
-ARM, RADIUS = 0.5, 0.1
-SIZES = {"wheels_radius": RADIUS, "sum_of_robot_center_projection_on_X_Y_axis": ARM}
-ROBOT = {f"{corner}_wheel_command_joint_name": corner for corner in CORNERS} | {"kinematics": SIZES}
+CENTER_DISTANCE_SUM, WHEEL_RADIUS = 0.5, 0.1
+SIZES = {"wheels_radius": WHEEL_RADIUS, "sum_of_robot_center_projection_on_X_Y_axis": CENTER_DISTANCE_SUM}
+PARAMETERS = {f"{corner}_wheel_command_joint_name": corner for corner in CORNERS} | {"kinematics": SIZES}
 
 
 @pytest.fixture
-def wheels(stand):
-    """Return a stand with four wheels."""
+def wheel_bench(bench):
+    """Return a test bench with four wheels."""
     for joint in CORNERS:
-        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
-    return stand
+        bench.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+    return bench
 
 
-def command(stand, forward: float, sideways: float, turning: float) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped_twist(0, forward, turning, sideways))
+def publish_command(bench, forward: float, sideways: float, turning: float) -> None:
+    bench.publish(
+        "geometry_msgs/msg/TwistStamped", f"/{CONTROLLER_NAME}/reference", stamped_twist(0, forward, turning, sideways)
+    )
 
 
-def wheel_commands(stand) -> list[float]:
-    return [stand.commands[f"{corner}/velocity"].value for corner in CORNERS]
+def wheel_commands(bench) -> list[float]:
+    return [bench.commands[f"{corner}/velocity"].value for corner in CORNERS]
 
 
 def test_controller_is_found_by_type():
@@ -44,19 +48,19 @@ def test_controller_is_found_by_type():
         ((0.0, 0.0, 1.0), [-5.0, 5.0, 5.0, -5.0]),
     ],
 )
-async def test_wheel_speeds_match_motion(wheels, velocity, wheels_turn):
-    controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=1.0)
-    command(wheels, *velocity)
-    await wheels.step(controller)
-    assert wheel_commands(wheels) == pytest.approx(wheels_turn)
+async def test_wheel_speeds_match_motion(wheel_bench, velocity, wheels_turn):
+    controller = wheel_bench.start(MecanumDriveController, CONTROLLER_NAME, **PARAMETERS, reference_timeout=1.0)
+    publish_command(wheel_bench, *velocity)
+    await wheel_bench.step(controller)
+    assert wheel_commands(wheel_bench) == pytest.approx(wheels_turn)
 
 
-async def test_odometry_matches_driven_arc(wheels):
-    controller = wheels.start(MecanumDriveController, NAME, **ROBOT, reference_timeout=60.0)
-    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
-    transforms = wheels.record("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
-    command(wheels, 0.3, 0.4, 0.5)
-    await roll(wheels, controller, 501)
+async def test_odometry_matches_driven_arc(wheel_bench):
+    controller = wheel_bench.start(MecanumDriveController, CONTROLLER_NAME, **PARAMETERS, reference_timeout=60.0)
+    odometry = wheel_bench.record("nav_msgs/msg/Odometry", f"/{CONTROLLER_NAME}/odometry")
+    transforms = wheel_bench.record("tf2_msgs/msg/TFMessage", f"/{CONTROLLER_NAME}/tf_odometry")
+    publish_command(wheel_bench, 0.3, 0.4, 0.5)
+    await roll_wheels(wheel_bench, controller, 501)
     pose, velocity, yaw = odometry[-1].pose.pose, odometry[-1].twist.twist, 2.5
     x = (0.3 * sin(yaw) + 0.4 * (cos(yaw) - 1.0)) / 0.5
     y = (0.3 * (1.0 - cos(yaw)) + 0.4 * sin(yaw)) / 0.5
@@ -65,63 +69,67 @@ async def test_odometry_matches_driven_arc(wheels):
     assert transforms[-1].transforms[0].transform.translation.x == pose.position.x
 
 
-async def test_base_frame_offset_is_applied(wheels):
+async def test_base_frame_offset_is_applied(wheel_bench):
     offset = {"x": 0.2, "y": -0.1, "theta": pi / 2.0}
     sizes = {"kinematics": SIZES | {"base_frame_offset": offset}}
-    controller = wheels.start(MecanumDriveController, NAME, **ROBOT | sizes, reference_timeout=60.0)
-    odometry = wheels.record("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
-    command(wheels, 1.0, 0.0, 0.0)
-    await wheels.step(controller)
-    assert wheel_commands(wheels) == pytest.approx([-10.0, 10.0, -10.0, 10.0])
-    command(wheels, 0.3, 0.4, 0.5)
-    await roll(wheels, controller, 3)
+    controller = wheel_bench.start(
+        MecanumDriveController, CONTROLLER_NAME, **PARAMETERS | sizes, reference_timeout=60.0
+    )
+    odometry = wheel_bench.record("nav_msgs/msg/Odometry", f"/{CONTROLLER_NAME}/odometry")
+    publish_command(wheel_bench, 1.0, 0.0, 0.0)
+    await wheel_bench.step(controller)
+    assert wheel_commands(wheel_bench) == pytest.approx([-10.0, 10.0, -10.0, 10.0])
+    publish_command(wheel_bench, 0.3, 0.4, 0.5)
+    await roll_wheels(wheel_bench, controller, 3)
     velocity = odometry[-1].twist.twist
     assert (velocity.linear.x, velocity.linear.y, velocity.angular.z) == pytest.approx((0.3, 0.4, 0.5))
 
 
-async def test_command_expires_after_timeout_or_one_update(wheels):
-    controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
-    command(wheels, 1.0, 0.0, 0.0)
-    await wheels.step(controller, 0.001)
-    assert wheel_commands(wheels) == pytest.approx([10.0] * 4)
-    await wheels.step(controller, 0.001)
-    assert wheel_commands(wheels) == [0.0] * 4
-    command(wheels, nan, 0.0, 0.0)
-    await wheels.step(controller, 0.001)
-    assert wheel_commands(wheels) == [0.0] * 4
+async def test_command_expires_after_timeout_or_one_update(wheel_bench):
+    controller = wheel_bench.start(MecanumDriveController, CONTROLLER_NAME, **PARAMETERS)
+    publish_command(wheel_bench, 1.0, 0.0, 0.0)
+    await wheel_bench.step(controller, 0.001)
+    assert wheel_commands(wheel_bench) == pytest.approx([10.0] * 4)
+    await wheel_bench.step(controller, 0.001)
+    assert wheel_commands(wheel_bench) == [0.0] * 4
+    publish_command(wheel_bench, nan, 0.0, 0.0)
+    await wheel_bench.step(controller, 0.001)
+    assert wheel_commands(wheel_bench) == [0.0] * 4
 
 
-async def test_limits_apply_to_each_axis_until_command_expires(wheels):
+async def test_limits_apply_to_each_axis_until_command_expires(wheel_bench):
     limits = {"linear": {"x": {"max_acceleration": 1.0}, "y": {"max_velocity": 0.2}}, "angular": {"z": {}}}
-    controller = wheels.start(MecanumDriveController, NAME, **ROBOT, **limits, reference_timeout=0.25)
-    command(wheels, 1.0, 0.5, 0.0)
+    controller = wheel_bench.start(
+        MecanumDriveController, CONTROLLER_NAME, **PARAMETERS, **limits, reference_timeout=0.25
+    )
+    publish_command(wheel_bench, 1.0, 0.5, 0.0)
     for forward in (0.1, 0.2):
-        await wheels.step(controller, 0.1)
-        assert wheel_commands(wheels) == pytest.approx(
+        await wheel_bench.step(controller, 0.1)
+        assert wheel_commands(wheel_bench) == pytest.approx(
             [10.0 * (forward + sign * 0.2) for sign in (-1, 1, -1, 1)], abs=1e-9
         )
-    await wheels.step(controller, 0.1, count=2)
-    assert wheel_commands(wheels) == [0.0, 0.0, 0.0, 0.0]
-    command(wheels, 1.0, 0.0, 0.0)
-    await wheels.step(controller, 0.1)
-    assert wheel_commands(wheels) == pytest.approx([1.0, 1.0, 1.0, 1.0])
+    await wheel_bench.step(controller, 0.1, count=2)
+    assert wheel_commands(wheel_bench) == [0.0, 0.0, 0.0, 0.0]
+    publish_command(wheel_bench, 1.0, 0.0, 0.0)
+    await wheel_bench.step(controller, 0.1)
+    assert wheel_commands(wheel_bench) == pytest.approx([1.0, 1.0, 1.0, 1.0])
 
 
-async def test_chained_mode_accepts_references_and_publishes_state(wheels):
-    controller = wheels.start(MecanumDriveController, NAME, **ROBOT)
+async def test_chained_mode_accepts_references_and_publishes_state(wheel_bench):
+    controller = wheel_bench.start(MecanumDriveController, CONTROLLER_NAME, **PARAMETERS)
     assert [reference.name for reference in controller.references] == [
         "base/linear/x/velocity",
         "base/linear/y/velocity",
         "base/angular/z/velocity",
     ]
-    states = wheels.record("control_msgs/msg/MecanumDriveControllerState", f"/{NAME}/controller_state")
+    states = wheel_bench.record("control_msgs/msg/MecanumDriveControllerState", f"/{CONTROLLER_NAME}/controller_state")
     controller.is_chained = True
     for reference, value in zip(controller.references, (0.0, 1.0, 0.0), strict=True):
         reference.value = value
-    await roll(wheels, controller)
+    await roll_wheels(wheel_bench, controller)
     assert states[-1].reference_velocity.linear.y == 1.0
-    await roll(wheels, controller)
-    assert wheel_commands(wheels) == [0.0] * 4
+    await roll_wheels(wheel_bench, controller)
+    assert wheel_commands(wheel_bench) == [0.0] * 4
     assert (states[-1].front_left_wheel_velocity, states[-1].back_left_wheel_velocity) == pytest.approx((-10.0, 10.0))
     assert isnan(states[-1].reference_velocity.linear.y)
 
@@ -136,7 +144,7 @@ async def test_chained_mode_accepts_references_and_publishes_state(wheels):
         ),
     ],
 )
-def test_invalid_parameters_fail_configuration(wheels, parameters, message):
+def test_invalid_parameters_fail_configuration(wheel_bench, parameters, message):
     with pytest.raises(ControllerError) as error:
-        wheels.start(MecanumDriveController, NAME, **ROBOT | parameters)
+        wheel_bench.start(MecanumDriveController, CONTROLLER_NAME, **PARAMETERS | parameters)
     assert message in str(error.value)

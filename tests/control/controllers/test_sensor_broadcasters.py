@@ -38,16 +38,16 @@ def test_broadcasters_are_found_by_type(name, kind):
     assert controller_class(name) is kind
 
 
-async def test_imu_is_published(stand):
+async def test_imu_is_published(bench):
     names = [*(f"orientation.{axis}" for axis in "xyzw")]
     names += [f"{quantity}.{axis}" for quantity in ("angular_velocity", "linear_acceleration") for axis in "xyz"]
-    stand.joint("imu", **{quantity: float(number) for number, quantity in enumerate(reversed(names))})
+    bench.joint("imu", **{quantity: float(number) for number, quantity in enumerate(reversed(names))})
     covariance = [0.5, 0.0, 0.0, 0.0, 0.5, 0.0, 0.0, 0.0, 0.5]
-    broadcaster = stand.start(
+    broadcaster = bench.start(
         ImuBroadcaster, sensor_name="imu", frame_id="imu_link", static_covariance_orientation=covariance
     )
-    imu_messages = stand.record("sensor_msgs/msg/Imu", "/controller/imu")
-    await stand.step(broadcaster)
+    imu_messages = bench.record("sensor_msgs/msg/Imu", "/controller/imu")
+    await bench.step(broadcaster)
     (message,) = imu_messages
     assert message.header.frame_id == "imu_link"
     assert message.header.stamp.nanosec == 10_000_000
@@ -57,68 +57,68 @@ async def test_imu_is_published(stand):
     assert list(message.angular_velocity_covariance) == [0.0] * 9
 
 
-async def test_wrench_is_published(stand):
-    stand.joint("tcp", **{interface: float(number) for number, interface in enumerate(WRENCH)})
-    broadcaster = stand.start(ForceTorqueBroadcaster, sensor_name="tcp", frame_id="tool0")
-    wrenches = stand.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
-    await stand.step(broadcaster)
+async def test_wrench_is_published(bench):
+    bench.joint("tcp", **{interface: float(number) for number, interface in enumerate(WRENCH)})
+    broadcaster = bench.start(ForceTorqueBroadcaster, sensor_name="tcp", frame_id="tool0")
+    wrenches = bench.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
+    await bench.step(broadcaster)
     assert (wrenches[0].header.frame_id, wrenches[0].wrench.force.y, wrenches[0].wrench.torque.z) == ("tool0", 1.0, 5.0)
 
 
-async def test_wrench_axes_can_be_renamed_or_missing(stand):
-    stand.joint("cell", pull=3.0, twist=4.0)
-    broadcaster = stand.start(
+async def test_wrench_axes_can_be_renamed_or_missing(bench):
+    bench.joint("cell", pull=3.0, twist=4.0)
+    broadcaster = bench.start(
         ForceTorqueBroadcaster,
         frame_id="tool0",
         interface_names={"force": {"z": "cell/pull"}, "torque": {"x": "cell/twist"}},
     )
-    wrenches = stand.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
-    await stand.step(broadcaster)
+    wrenches = bench.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
+    await bench.step(broadcaster)
     wrench = wrenches[0].wrench
     assert (wrench.force.x, wrench.force.z, wrench.torque.x) == (0.0, 3.0, 4.0)
 
 
-async def test_wrench_offset_is_applied_before_multiplier(stand):
-    stand.joint("tcp", **dict.fromkeys(WRENCH, 1.0))
-    broadcaster = stand.start(
+async def test_wrench_offset_is_applied_before_multiplier(bench):
+    bench.joint("tcp", **dict.fromkeys(WRENCH, 1.0))
+    broadcaster = bench.start(
         ForceTorqueBroadcaster,
         sensor_name="tcp",
         frame_id="tool0",
         offset={"force": {"z": 2.0}},
         multiplier={"force": {"z": -1.0}, "torque": {"x": 0.5}},
     )
-    wrenches = stand.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
-    await stand.step(broadcaster)
+    wrenches = bench.record("geometry_msgs/msg/WrenchStamped", "/controller/wrench")
+    await bench.step(broadcaster)
     wrench = wrenches[0].wrench
     assert (wrench.force.x, wrench.force.z, wrench.torque.x) == (1.0, -3.0, 0.5)
 
 
-async def test_range_is_published(stand):
-    stand.joint("sonar", range=1.5)
-    broadcaster = stand.start(RangeBroadcaster, sensor_name="sonar", frame_id="sonar_link", max_range=3.0)
-    ranges = stand.record("sensor_msgs/msg/Range", "/controller/range")
-    await stand.step(broadcaster)
+async def test_range_is_published(bench):
+    bench.joint("sonar", range=1.5)
+    broadcaster = bench.start(RangeBroadcaster, sensor_name="sonar", frame_id="sonar_link", max_range=3.0)
+    ranges = bench.record("sensor_msgs/msg/Range", "/controller/range")
+    await bench.step(broadcaster)
     assert (ranges[0].range, ranges[0].max_range, ranges[0].radiation_type) == (1.5, 3.0, 0)
     assert ranges[0].field_of_view == pytest.approx(0.52)
 
 
-async def test_pose_and_transform_are_published(stand):
-    stand.joint("tcp", **dict(zip(POSE, (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0), strict=True)))
-    broadcaster = stand.start(
+async def test_pose_and_transform_are_published(bench):
+    bench.joint("tcp", **dict(zip(POSE, (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0), strict=True)))
+    broadcaster = bench.start(
         PoseBroadcaster, pose_name="tcp", frame_id="base", tf={"child_frame_id": "tool", "publish_rate": 20.0}
     )
-    poses = stand.record("geometry_msgs/msg/PoseStamped", "/controller/pose")
-    transforms = stand.record("tf2_msgs/msg/TFMessage", "/tf")
-    await stand.step(broadcaster, count=10)
+    poses = bench.record("geometry_msgs/msg/PoseStamped", "/controller/pose")
+    transforms = bench.record("tf2_msgs/msg/TFMessage", "/tf")
+    await bench.step(broadcaster, count=10)
     assert (len(poses), len(transforms)) == (10, 2)
     assert (poses[0].pose.position.z, poses[0].pose.orientation.w) == (3.0, 1.0)
     (transform,) = transforms[0].transforms
     assert (transform.header.frame_id, transform.child_frame_id) == ("base", "tool")
     assert transform.transform.translation.y == 2.0
-    stand.states["tcp/position.x"].value = nan
-    await stand.step(broadcaster, count=10)
+    bench.states["tcp/position.x"].value = nan
+    await bench.step(broadcaster, count=10)
     assert (len(poses), len(transforms)) == (20, 2)
-    stand.states["tcp/position.x"].value = 1.0
+    bench.states["tcp/position.x"].value = 1.0
     published: list[object] = []
     broadcaster._transforms = SimpleNamespace(is_wanted=True, publish=published.append)
     for time_ns in (10**12, 10**6, 2 * 10**6):  # simulated time is reset after the first update
@@ -126,42 +126,42 @@ async def test_pose_and_transform_are_published(stand):
     assert [message.transforms[0].header.stamp.sec for message in published] == [1000, 0]
 
 
-async def test_position_is_published_with_its_covariance(stand):
+async def test_position_is_published_with_its_covariance(bench):
     position = {"status": 0.0, "service": 1.0, "latitude": 48.1, "longitude": 11.6, "altitude": 520.0}
-    stand.joint("gps", **position, latitude_covariance=1.0, longitude_covariance=2.0, altitude_covariance=3.0)
+    bench.joint("gps", **position, latitude_covariance=1.0, longitude_covariance=2.0, altitude_covariance=3.0)
     fixed = [4.0, 0.0, 0.0, 0.0, 4.0, 0.0, 0.0, 0.0, 9.0]
-    broadcaster = stand.start(GpsBroadcaster, sensor_name="gps", frame_id="gps_link", static_position_covariance=fixed)
-    messages = stand.record("sensor_msgs/msg/NavSatFix", "/controller/gps/fix")
-    await stand.step(broadcaster)
+    broadcaster = bench.start(GpsBroadcaster, sensor_name="gps", frame_id="gps_link", static_position_covariance=fixed)
+    messages = bench.record("sensor_msgs/msg/NavSatFix", "/controller/gps/fix")
+    await bench.step(broadcaster)
     fix = messages[-1]
     assert (fix.status.status, fix.status.service, fix.latitude, fix.altitude) == (0, 1, 48.1, 520.0)
     assert (list(fix.position_covariance), fix.position_covariance_type) == (fixed, fix.COVARIANCE_TYPE_KNOWN)
-    stand.states["gps/status"].value = nan
-    measured = stand.start(GpsBroadcaster, "b", sensor_name="gps", frame_id="g", read_covariance_from_interface=True)
-    messages = stand.record("sensor_msgs/msg/NavSatFix", "/b/gps/fix")
-    await stand.step(measured)
+    bench.states["gps/status"].value = nan
+    measured = bench.start(GpsBroadcaster, "b", sensor_name="gps", frame_id="g", read_covariance_from_interface=True)
+    messages = bench.record("sensor_msgs/msg/NavSatFix", "/b/gps/fix")
+    await bench.step(measured)
     fix = messages[-1]
     assert list(fix.position_covariance) == [1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0]
     assert (fix.status.status, fix.position_covariance_type) == (-1, fix.COVARIANCE_TYPE_DIAGONAL_KNOWN)
 
 
-async def test_magnetic_field_is_published(stand):
-    stand.joint(
+async def test_magnetic_field_is_published(bench):
+    bench.joint(
         "compass", **{f"magnetic_field.{axis}": value for axis, value in zip("xyz", (1e-5, 2e-5, -4e-5), strict=True)}
     )
-    broadcaster = stand.start(MagnetometerBroadcaster, sensor_name="compass", frame_id="compass_link")
-    messages = stand.record("sensor_msgs/msg/MagneticField", "/controller/magnetic_field")
-    await stand.step(broadcaster)
+    broadcaster = bench.start(MagnetometerBroadcaster, sensor_name="compass", frame_id="compass_link")
+    messages = bench.record("sensor_msgs/msg/MagneticField", "/controller/magnetic_field")
+    await bench.step(broadcaster)
     assert (messages[-1].header.frame_id, messages[-1].magnetic_field.z) == ("compass_link", -4e-5)
 
 
 @pytest.mark.parametrize(("kind", "name"), [(ForceTorqueBroadcaster, "sensor_name"), (PoseBroadcaster, "pose_name")])
-async def test_sensor_and_interface_names_are_mutually_exclusive(stand, kind, name):
+async def test_sensor_and_interface_names_are_mutually_exclusive(bench, kind, name):
     names = {"force": {"x": "a/b"}} if kind is ForceTorqueBroadcaster else {"position": {"x": "a/b"}}
     with pytest.raises(ControllerError, match="has to be specified"):
-        stand.make(kind, "first", frame_id="base").on_configure()
+        bench.make(kind, "first", frame_id="base").on_configure()
     with pytest.raises(ControllerError, match="specified together"):
-        stand.make(kind, "second", frame_id="base", interface_names=names, **{name: "tcp"}).on_configure()
+        bench.make(kind, "second", frame_id="base", interface_names=names, **{name: "tcp"}).on_configure()
 
 
 @pytest.mark.parametrize(
@@ -176,9 +176,9 @@ async def test_sensor_and_interface_names_are_mutually_exclusive(stand, kind, na
         ),
     ],
 )
-async def test_missing_or_invalid_parameters_are_rejected(stand, kind, parameters, message):
+async def test_missing_or_invalid_parameters_are_rejected(bench, kind, parameters, message):
     with pytest.raises(LinkwrightError, match=message):
-        stand.make(kind, **parameters)
+        bench.make(kind, **parameters)
 
 
 def test_admittance_controller_is_rejected_with_hint():

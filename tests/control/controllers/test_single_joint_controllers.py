@@ -1,4 +1,4 @@
-"""Controllers of ROS 1 for one joint, and trajectory controllers under their names of ROS 1."""
+"""Controllers of ROS 1 for one joint, and trajectory controllers under their old names."""
 
 from __future__ import annotations
 
@@ -16,77 +16,80 @@ from tests.control.robots import robot
 GAINS = {"pid": {"p": 10.0, "d": 1.0}}
 
 
-def start(stand, kind: str, interface: str, **parameters):
-    """Return the active controller of the joint ``hip``, which is at 0.5 rad and turns at 2 rad/s."""
-    stand.joint("hip", commands=(interface,), position=0.5, velocity=2.0)
-    return stand.start(controller_class(kind), "hip_controller", joint="hip", **parameters)
+def start_controller(bench, kind: str, interface: str, **parameters):
+    """Return the active controller of the joint ``hip``.
+
+    The joint is at 0.5 rad and turns at 2 rad/s.
+    """
+    bench.joint("hip", commands=(interface,), position=0.5, velocity=2.0)
+    return bench.start(controller_class(kind), "hip_controller", joint="hip", **parameters)
 
 
-def send(stand, value: float) -> None:
-    stand.publish("std_msgs/msg/Float64", "/hip_controller/command", get_message("std_msgs/msg/Float64")(data=value))
+def publish_command(bench, value: float) -> None:
+    bench.publish("std_msgs/msg/Float64", "/hip_controller/command", get_message("std_msgs/msg/Float64")(data=value))
 
 
 @pytest.mark.parametrize(
     ("kind", "interface", "first"),
     [("Position", "position", 0.5), ("Velocity", "velocity", 0.0), ("Effort", "effort", 0.0)],
 )
-async def test_command_is_forwarded_to_the_joint(stand, kind, interface, first):
-    controller = start(stand, f"{interface}_controllers/Joint{kind}Controller", interface)
-    command = stand.commands[f"hip/{interface}"]
-    await stand.step(controller)
+async def test_command_is_forwarded_to_the_joint(bench, kind, interface, first):
+    controller = start_controller(bench, f"{interface}_controllers/Joint{kind}Controller", interface)
+    command = bench.commands[f"hip/{interface}"]
+    await bench.step(controller)
     assert command.value == first
-    send(stand, 1.25)
-    await stand.step(controller)
+    publish_command(bench, 1.25)
+    await bench.step(controller)
     assert command.value == 1.25
-    send(stand, nan)
-    await stand.step(controller)
+    publish_command(bench, nan)
+    await bench.step(controller)
     assert command.value == 1.25
     controller.on_deactivate()
     assert command.value == (1.25 if kind == "Position" else 0.0)
 
 
-async def test_effort_follows_the_error_of_the_position(stand):
-    controller = start(stand, "effort_controllers/JointPositionController", "effort", pid={"p": 10.0})
-    await stand.step(controller)
-    assert stand.commands["hip/effort"].value == 0.0
-    send(stand, 0.75)
-    await stand.step(controller)
-    assert stand.commands["hip/effort"].value == pytest.approx(2.5)
+async def test_effort_follows_the_error_of_the_position(bench):
+    controller = start_controller(bench, "effort_controllers/JointPositionController", "effort", pid={"p": 10.0})
+    await bench.step(controller)
+    assert bench.commands["hip/effort"].value == 0.0
+    publish_command(bench, 0.75)
+    await bench.step(controller)
+    assert bench.commands["hip/effort"].value == pytest.approx(2.5)
 
 
-async def test_derivative_gain_acts_on_the_change_of_the_error(stand):
-    controller = start(stand, "effort_controllers/JointPositionController", "effort", **GAINS)
-    await stand.step(controller)
-    send(stand, 0.75)
-    await stand.step(controller)
-    assert stand.commands["hip/effort"].value == pytest.approx(2.5 + 0.25 / 0.01)
+async def test_derivative_gain_acts_on_the_change_of_the_error(bench):
+    controller = start_controller(bench, "effort_controllers/JointPositionController", "effort", **GAINS)
+    await bench.step(controller)
+    publish_command(bench, 0.75)
+    await bench.step(controller)
+    assert bench.commands["hip/effort"].value == pytest.approx(2.5 + 0.25 / 0.01)
 
 
-async def test_effort_follows_the_error_of_the_velocity(stand):
-    controller = start(stand, "effort_controllers/JointVelocityController", "effort", pid={"p": 3.0})
-    await stand.step(controller)
-    assert stand.commands["hip/effort"].value == pytest.approx(-6.0)
-    send(stand, 2.5)
-    await stand.step(controller)
-    assert stand.commands["hip/effort"].value == pytest.approx(1.5)
+async def test_effort_follows_the_error_of_the_velocity(bench):
+    controller = start_controller(bench, "effort_controllers/JointVelocityController", "effort", pid={"p": 3.0})
+    await bench.step(controller)
+    assert bench.commands["hip/effort"].value == pytest.approx(-6.0)
+    publish_command(bench, 2.5)
+    await bench.step(controller)
+    assert bench.commands["hip/effort"].value == pytest.approx(1.5)
 
 
-async def test_velocity_follows_the_error_of_the_position(stand):
-    controller = start(stand, "velocity_controllers/JointPositionController", "velocity", pid={"p": 4.0})
-    send(stand, 1.0)
-    await stand.step(controller)
-    assert stand.commands["hip/velocity"].value == pytest.approx(2.0)
+async def test_velocity_follows_the_error_of_the_position(bench):
+    controller = start_controller(bench, "velocity_controllers/JointPositionController", "velocity", pid={"p": 4.0})
+    publish_command(bench, 1.0)
+    await bench.step(controller)
+    assert bench.commands["hip/velocity"].value == pytest.approx(2.0)
 
 
-async def test_continuous_joint_turns_the_shortest_way(stand):
-    stand.joint("hip", commands=("effort",), position=3.0)
+async def test_continuous_joint_turns_the_shortest_way(bench):
+    bench.joint("hip", commands=("effort",), position=3.0)
     kind = controller_class("effort_controllers/JointPositionController")
     description = robot("").replace("revolute", "continuous")
-    controller = stand.activate(stand.make(kind, description=description, joint="hip", pid={"p": 1.0}))
+    controller = bench.activate(bench.make(kind, description=description, joint="hip", pid={"p": 1.0}))
     message = get_message("std_msgs/msg/Float64")(data=-3.0)
-    stand.publish("std_msgs/msg/Float64", "/controller/command", message)
-    await stand.step(controller)
-    assert stand.commands["hip/effort"].value == pytest.approx(2 * 3.14159265 - 6.0)
+    bench.publish("std_msgs/msg/Float64", "/controller/command", message)
+    await bench.step(controller)
+    assert bench.commands["hip/effort"].value == pytest.approx(2 * 3.14159265 - 6.0)
 
 
 @pytest.mark.parametrize(
@@ -104,49 +107,49 @@ def test_integral_needs_a_bound(bounds, expected):
     assert (gains.p, gains.i) == (1.0, 5.0)
 
 
-async def test_velocity_stops_without_its_commander(stand):
-    controller = start(stand, "velocity_controllers/JointVelocityController", "velocity")
+async def test_velocity_stops_without_its_commander(bench):
+    controller = start_controller(bench, "velocity_controllers/JointVelocityController", "velocity")
     assert controller._stop_motion() is False
-    send(stand, 1.0)
-    await stand.step(controller)
+    publish_command(bench, 1.0)
+    await bench.step(controller)
     assert controller._stop_motion() is True
-    await stand.step(controller)
-    assert stand.commands["hip/velocity"].value == 0.0
-    position = start(stand, "position_controllers/JointPositionController", "position")
+    await bench.step(controller)
+    assert bench.commands["hip/velocity"].value == 0.0
+    position = start_controller(bench, "position_controllers/JointPositionController", "position")
     assert position._stop_motion() is False
 
 
-def test_command_before_activation_is_ignored(stand):
-    controller = stand.make(controller_class("velocity_controllers/JointVelocityController"), joint="hip")
+def test_command_before_activation_is_ignored(bench):
+    controller = bench.make(controller_class("velocity_controllers/JointVelocityController"), joint="hip")
     controller.on_configure()
     assert controller._stop_motion() is False
     controller._on_command(get_message("std_msgs/msg/Float64")(data=1.0))
     assert isnan(controller._target)
 
 
-def test_joint_is_required(stand):
+def test_joint_is_required(bench):
     with pytest.raises(LinkwrightError, match="Parameter 'joint' cannot be empty"):
-        stand.make(controller_class("position_controllers/JointPositionController"))
+        bench.make(controller_class("position_controllers/JointPositionController"))
 
 
 @pytest.mark.parametrize("interface", ["position", "velocity", "effort"])
-def test_trajectory_controller_commands_the_interface_in_its_name(stand, interface):
+def test_trajectory_controller_commands_the_interface_in_its_name(bench, interface):
     kind = controller_class(f"{interface}_controllers/JointTrajectoryController")
-    controller = stand.make(kind, joints=["hip"], gains={"hip": {"p": 1.0}})
+    controller = bench.make(kind, joints=["hip"], gains={"hip": {"p": 1.0}})
     assert list(controller.command_interfaces()) == [f"hip/{interface}"]
     assert list(controller.state_interfaces()) == ["hip/position", "hip/velocity"]
 
 
 @pytest.mark.parametrize("topic", ["command", "joint_trajectory"])
-async def test_trajectory_controller_accepts_trajectories_on_both_topics(stand, topic):
-    stand.joint("hip", commands=("position",), position=0.0, velocity=0.0)
+async def test_trajectory_controller_accepts_trajectories_on_both_topics(bench, topic):
+    bench.joint("hip", commands=("position",), position=0.0, velocity=0.0)
     kind = controller_class("position_controllers/JointTrajectoryController")
-    controller = stand.start(kind, joints=["hip"])
+    controller = bench.start(kind, joints=["hip"])
     point = get_message("trajectory_msgs/msg/JointTrajectoryPoint")(positions=[0.5])
     message = get_message("trajectory_msgs/msg/JointTrajectory")(joint_names=["hip"], points=[point])
-    stand.publish("trajectory_msgs/msg/JointTrajectory", f"/controller/{topic}", message)
-    await stand.step(controller, count=3)
-    assert stand.commands["hip/position"].value == pytest.approx(0.5)
+    bench.publish("trajectory_msgs/msg/JointTrajectory", f"/controller/{topic}", message)
+    await bench.step(controller, count=3)
+    assert bench.commands["hip/position"].value == pytest.approx(0.5)
 
 
 def test_joint_state_controller_is_the_broadcaster():

@@ -16,23 +16,23 @@ def test_broadcaster_is_found_by_type():
     assert controller_class("state_interfaces_broadcaster/StateInterfacesBroadcaster") is StateInterfacesBroadcaster
 
 
-async def test_names_are_published_once_and_values_at_each_update(stand):
-    stand.joint("elbow", position=1.5, velocity=0.2)
-    stand.joint("tool", temperature=40.0)
+async def test_names_are_published_once_and_values_at_each_update(bench):
+    bench.joint("elbow", position=1.5, velocity=0.2)
+    bench.joint("tool", temperature=40.0)
     names = ["tool/temperature", "elbow/position"]
-    broadcaster = stand.start(StateInterfacesBroadcaster, interfaces=names)
-    values = stand.record("control_msgs/msg/Float64Values", "/controller/values")
-    await stand.step(broadcaster, count=2)
+    broadcaster = bench.start(StateInterfacesBroadcaster, interfaces=names)
+    values = bench.record("control_msgs/msg/Float64Values", "/controller/values")
+    await bench.step(broadcaster, count=2)
     keys: list[Any] = []
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    stand.node.create_subscription("control_msgs/msg/Keys", "/controller/names", keys.append, latched)
-    await stand.step(broadcaster)
+    bench.node.create_subscription("control_msgs/msg/Keys", "/controller/names", keys.append, latched)
+    await bench.step(broadcaster)
     assert [message.keys for message in keys] == [names]
     assert keys[0].header.stamp.sec > 0
     assert [list(message.values) for message in values] == [[40.0, 1.5]] * 3
     assert values[0].header.stamp.nanosec == 10_000_000
 
 
-async def test_interfaces_are_required(stand):
+async def test_interfaces_are_required(bench):
     with pytest.raises(LinkwrightError, match="Parameter 'interfaces' cannot be empty"):
-        stand.make(StateInterfacesBroadcaster)
+        bench.make(StateInterfacesBroadcaster)

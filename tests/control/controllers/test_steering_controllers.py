@@ -1,4 +1,7 @@
-"""Controllers of steered vehicles, compared with the geometry of wheels that roll around one point."""
+"""Controllers of steered vehicles, compared with the geometry of rolling wheels.
+
+All wheels of a vehicle roll around one point.
+"""
 
 from __future__ import annotations
 
@@ -12,99 +15,107 @@ from linkwright.control.controllers.bicycle_steering_controller import BicycleSt
 from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.registry import controller_class
 from linkwright.control.controllers.tricycle_steering_controller import TricycleSteeringController
-from tests.control.controllers.driving import roll, stamped_twist, twist, warnings
+from tests.control.controllers.driving import logged_warnings, roll_wheels, stamped_twist, twist
 
-NAME = "car"
-BASE, TRACK, RADIUS = 1.2, 0.8, 0.1
+CONTROLLER_NAME = "car"
+WHEELBASE, TRACK_WIDTH, WHEEL_RADIUS = 1.2, 0.8, 0.1
 
-TWO = {"traction_joints_names": ["right", "left"], "steering_joints_names": ["steer_right", "steer_left"]}
-ACKERMANN = TWO | {"wheelbase": BASE, "traction_track_width": TRACK, "traction_wheels_radius": RADIUS}
-TRICYCLE = ACKERMANN | {"steering_joints_names": ["steer"]}
-BICYCLE = {
+TWO_WHEEL_JOINTS = {"traction_joints_names": ["right", "left"], "steering_joints_names": ["steer_right", "steer_left"]}
+ACKERMANN_PARAMETERS = TWO_WHEEL_JOINTS | {
+    "wheelbase": WHEELBASE,
+    "traction_track_width": TRACK_WIDTH,
+    "traction_wheels_radius": WHEEL_RADIUS,
+}
+TRICYCLE_PARAMETERS = ACKERMANN_PARAMETERS | {"steering_joints_names": ["steer"]}
+BICYCLE_PARAMETERS = {
     "traction_joints_names": ["wheel"],
     "steering_joints_names": ["steer"],
-    "wheelbase": BASE,
-    "traction_wheel_radius": RADIUS,
+    "wheelbase": WHEELBASE,
+    "traction_wheel_radius": WHEEL_RADIUS,
 }
-ALL = [
-    (AckermannSteeringController, ACKERMANN),
-    (TricycleSteeringController, TRICYCLE),
-    (BicycleSteeringController, BICYCLE),
+CONTROLLERS = [
+    (AckermannSteeringController, ACKERMANN_PARAMETERS),
+    (TricycleSteeringController, TRICYCLE_PARAMETERS),
+    (BicycleSteeringController, BICYCLE_PARAMETERS),
 ]
-EACH = pytest.mark.parametrize(("kind", "sizes"), ALL, ids=["ackermann", "tricycle", "bicycle"])
+each_controller = pytest.mark.parametrize(("kind", "sizes"), CONTROLLERS, ids=["ackermann", "tricycle", "bicycle"])
 
 
-def vehicle(stand, kind, sizes, **parameters) -> Any:
+def start_vehicle(bench, kind, sizes, **parameters) -> Any:
     """Return a controller whose joints follow their commands."""
     for joint in sizes["traction_joints_names"]:
-        stand.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
+        bench.joint(joint, commands=("velocity",), position=0.0, velocity=0.0)
     for joint in sizes["steering_joints_names"]:
-        stand.joint(joint, commands=("position",), position=0.0)
-    return stand.start(kind, NAME, **sizes | parameters)
+        bench.joint(joint, commands=("position",), position=0.0)
+    return bench.start(kind, CONTROLLER_NAME, **sizes | parameters)
 
 
-def command(stand, *velocity: float, time_ns: int = 0) -> None:
-    stand.publish("geometry_msgs/msg/TwistStamped", f"/{NAME}/reference", stamped_twist(time_ns, *velocity))
+def publish_command(bench, *velocity: float, time_ns: int = 0) -> None:
+    bench.publish("geometry_msgs/msg/TwistStamped", f"/{CONTROLLER_NAME}/reference", stamped_twist(time_ns, *velocity))
 
 
-def joint_commands(stand, *joints: str) -> list[float]:
+def joint_commands(bench, *joints: str) -> list[float]:
     return [
-        next(interface.value for name, interface in stand.commands.items() if name.startswith(f"{joint}/"))
+        next(interface.value for name, interface in bench.commands.items() if name.startswith(f"{joint}/"))
         for joint in joints
     ]
 
 
 def test_controllers_are_found_by_type():
-    for kind, _ in ALL:
+    for kind, _ in CONTROLLERS:
         package = kind.__module__.rpartition(".")[2]
         assert controller_class(f"{package}/{kind.__name__}") is kind
 
 
-async def test_ackermann_wheels_roll_about_one_point(stand):
-    controller = vehicle(stand, AckermannSteeringController, ACKERMANN)
+async def test_ackermann_wheels_roll_about_one_point(bench):
+    controller = start_vehicle(bench, AckermannSteeringController, ACKERMANN_PARAMETERS)
     for _ in range(3):
-        command(stand, 1.0, 0.5)
-        await roll(stand, controller)
+        publish_command(bench, 1.0, 0.5)
+        await roll_wheels(bench, controller)
     circle = 1.0 / 0.5
-    left, right = joint_commands(stand, "steer_left", "steer_right")
-    assert (left, right) == pytest.approx((atan(BASE / (circle - TRACK / 2)), atan(BASE / (circle + TRACK / 2))))
-    left, right = joint_commands(stand, "left", "right")
-    assert (left, right) == pytest.approx((0.5 * (circle - TRACK / 2) / RADIUS, 0.5 * (circle + TRACK / 2) / RADIUS))
+    left, right = joint_commands(bench, "steer_left", "steer_right")
+    assert (left, right) == pytest.approx(
+        (atan(WHEELBASE / (circle - TRACK_WIDTH / 2)), atan(WHEELBASE / (circle + TRACK_WIDTH / 2)))
+    )
+    left, right = joint_commands(bench, "left", "right")
+    assert (left, right) == pytest.approx(
+        (0.5 * (circle - TRACK_WIDTH / 2) / WHEEL_RADIUS, 0.5 * (circle + TRACK_WIDTH / 2) / WHEEL_RADIUS)
+    )
 
 
-async def test_steering_track_width_can_differ(stand):
-    controller = vehicle(stand, AckermannSteeringController, ACKERMANN, steering_track_width=0.4)
-    command(stand, 1.0, 0.5)
-    await stand.step(controller)
-    assert joint_commands(stand, "steer_left") == pytest.approx([atan(BASE / (2.0 - 0.2))])
+async def test_steering_track_width_can_differ(bench):
+    controller = start_vehicle(bench, AckermannSteeringController, ACKERMANN_PARAMETERS, steering_track_width=0.4)
+    publish_command(bench, 1.0, 0.5)
+    await bench.step(controller)
+    assert joint_commands(bench, "steer_left") == pytest.approx([atan(WHEELBASE / (2.0 - 0.2))])
 
 
-async def test_tricycle_wheel_commands(stand):
-    controller = vehicle(stand, TricycleSteeringController, TRICYCLE, open_loop=True)
-    command(stand, 1.0, 0.5)
-    await stand.step(controller)
-    assert joint_commands(stand, "right", "left", "steer") == pytest.approx([12.0, 8.0, atan(0.6)])
+async def test_tricycle_wheel_commands(bench):
+    controller = start_vehicle(bench, TricycleSteeringController, TRICYCLE_PARAMETERS, open_loop=True)
+    publish_command(bench, 1.0, 0.5)
+    await bench.step(controller)
+    assert joint_commands(bench, "right", "left", "steer") == pytest.approx([12.0, 8.0, atan(0.6)])
 
 
-async def test_bicycle_wheel_commands(stand):
-    controller = vehicle(stand, BicycleSteeringController, BICYCLE)
-    command(stand, 1.0, 0.5)
-    await stand.step(controller)
-    assert joint_commands(stand, "wheel", "steer") == pytest.approx([10.0, atan(0.6)])
+async def test_bicycle_wheel_commands(bench):
+    controller = start_vehicle(bench, BicycleSteeringController, BICYCLE_PARAMETERS)
+    publish_command(bench, 1.0, 0.5)
+    await bench.step(controller)
+    assert joint_commands(bench, "wheel", "steer") == pytest.approx([10.0, atan(0.6)])
 
 
-@EACH
+@each_controller
 @pytest.mark.parametrize(
-    "how", [{}, {"position_feedback": True}, {"open_loop": True}], ids=["velocity", "position", "open"]
+    "feedback", [{}, {"position_feedback": True}, {"open_loop": True}], ids=["velocity", "position", "open"]
 )
-async def test_odometry_matches_driven_arc(stand, kind, sizes, how):
-    controller = vehicle(stand, kind, sizes, reference_timeout=60.0, **how)
-    odometry = stand.record("nav_msgs/msg/Odometry", f"/{NAME}/odometry")
-    transforms = stand.record("tf2_msgs/msg/TFMessage", f"/{NAME}/tf_odometry")
-    command(stand, 0.5, 0.2)
-    await roll(stand, controller, 20)
+async def test_odometry_matches_driven_arc(bench, kind, sizes, feedback):
+    controller = start_vehicle(bench, kind, sizes, reference_timeout=60.0, **feedback)
+    odometry = bench.record("nav_msgs/msg/Odometry", f"/{CONTROLLER_NAME}/odometry")
+    transforms = bench.record("tf2_msgs/msg/TFMessage", f"/{CONTROLLER_NAME}/tf_odometry")
+    publish_command(bench, 0.5, 0.2)
+    await roll_wheels(bench, controller, 20)
     begin = odometry[-1].pose.pose
-    await roll(stand, controller, 500)
+    await roll_wheels(bench, controller, 500)
     end, velocity = odometry[-1].pose.pose, odometry[-1].twist.twist
     yaw = 2.0 * atan(begin.orientation.z / begin.orientation.w)
     assert end.position.x - begin.position.x == pytest.approx(2.5 * (sin(yaw + 1.0) - sin(yaw)), abs=1e-9)
@@ -114,98 +125,100 @@ async def test_odometry_matches_driven_arc(stand, kind, sizes, how):
     assert list(odometry[-1].pose.covariance[::7]) == [0.0, 7.0, 14.0, 21.0, 28.0, 35.0]
 
 
-@EACH
-async def test_command_expires_after_timeout(stand, kind, sizes):
-    controller = vehicle(stand, kind, sizes, reference_timeout=0.1)
-    command(stand, 1.0, 0.5)
-    await stand.step(controller, 0.001, count=101)
-    angle = joint_commands(stand, sizes["steering_joints_names"][0])
-    assert joint_commands(stand, sizes["traction_joints_names"][0])[0] > 0.0
-    await stand.step(controller, 0.001)
-    assert joint_commands(stand, *sizes["traction_joints_names"]) == [0.0] * len(sizes["traction_joints_names"])
-    assert joint_commands(stand, sizes["steering_joints_names"][0]) == angle
+@each_controller
+async def test_command_expires_after_timeout(bench, kind, sizes):
+    controller = start_vehicle(bench, kind, sizes, reference_timeout=0.1)
+    publish_command(bench, 1.0, 0.5)
+    await bench.step(controller, 0.001, count=101)
+    angle = joint_commands(bench, sizes["steering_joints_names"][0])
+    assert joint_commands(bench, sizes["traction_joints_names"][0])[0] > 0.0
+    await bench.step(controller, 0.001)
+    assert joint_commands(bench, *sizes["traction_joints_names"]) == [0.0] * len(sizes["traction_joints_names"])
+    assert joint_commands(bench, sizes["steering_joints_names"][0]) == angle
 
 
-async def test_command_holds_for_one_update_without_timeout(stand):
-    controller = vehicle(stand, BicycleSteeringController, BICYCLE, reference_timeout=0.0)
-    command(stand, 1.0)
-    await stand.step(controller)
-    assert joint_commands(stand, "wheel") == [10.0]
-    await stand.step(controller)
-    assert joint_commands(stand, "wheel") == [0.0]
+async def test_command_holds_for_one_update_without_timeout(bench):
+    controller = start_vehicle(bench, BicycleSteeringController, BICYCLE_PARAMETERS, reference_timeout=0.0)
+    publish_command(bench, 1.0)
+    await bench.step(controller)
+    assert joint_commands(bench, "wheel") == [10.0]
+    await bench.step(controller)
+    assert joint_commands(bench, "wheel") == [0.0]
 
 
-async def test_humble_accepts_unstamped_commands(stand):
-    controller = vehicle(stand, BicycleSteeringController, BICYCLE, use_stamped_vel=False)
-    stand.publish("geometry_msgs/msg/Twist", f"/{NAME}/reference_unstamped", twist(1.0))
-    await stand.step(controller)
-    assert joint_commands(stand, "wheel") == [10.0]
+async def test_humble_accepts_unstamped_commands(bench):
+    controller = start_vehicle(bench, BicycleSteeringController, BICYCLE_PARAMETERS, use_stamped_vel=False)
+    bench.publish("geometry_msgs/msg/Twist", f"/{CONTROLLER_NAME}/reference_unstamped", twist(1.0))
+    await bench.step(controller)
+    assert joint_commands(bench, "wheel") == [10.0]
 
 
-async def test_humble_accepts_older_parameter_names(stand):
+async def test_humble_accepts_older_parameter_names(bench):
     older = {
         "front_steering": True,
         "rear_wheels_names": ["right", "left"],
         "front_wheels_names": ["steer_right", "steer_left"],
-        "wheelbase": BASE,
+        "wheelbase": WHEELBASE,
         "front_wheel_track": 0.4,
-        "rear_wheel_track": TRACK,
+        "rear_wheel_track": TRACK_WIDTH,
         "front_wheels_radius": 0.3,
-        "rear_wheels_radius": RADIUS,
+        "rear_wheels_radius": WHEEL_RADIUS,
     }
     for joint in ("right", "left"):
-        stand.joint(joint, commands=("velocity",), velocity=0.0)
-        stand.joint(f"steer_{joint}", commands=("position",), position=0.0)
-    controller = stand.start(AckermannSteeringController, NAME, **older)
-    command(stand, 1.0, 0.5)
-    await stand.step(controller)
-    assert joint_commands(stand, "left", "steer_left") == pytest.approx([10.0, atan(BASE / 1.8)])
-    assert not [warning for warning in warnings(stand) if "not a parameter" in warning]
+        bench.joint(joint, commands=("velocity",), velocity=0.0)
+        bench.joint(f"steer_{joint}", commands=("position",), position=0.0)
+    controller = bench.start(AckermannSteeringController, CONTROLLER_NAME, **older)
+    publish_command(bench, 1.0, 0.5)
+    await bench.step(controller)
+    assert joint_commands(bench, "left", "steer_left") == pytest.approx([10.0, atan(WHEELBASE / 1.8)])
+    assert not [warning for warning in logged_warnings(bench) if "not a parameter" in warning]
 
 
-async def test_wheel_speed_can_be_reduced_until_steering_is_reached(stand):
-    controller = vehicle(stand, BicycleSteeringController, BICYCLE, reduce_wheel_speed_until_steering_reached=True)
-    command(stand, 1.0, tan(1.0) / BASE)
-    await stand.step(controller)
-    assert joint_commands(stand, "wheel") == pytest.approx([10.0 * cos(1.0) / cos(0.5235987755982988)])
-    stand.states["steer/position"].value = 1.0
-    await stand.step(controller)
-    assert joint_commands(stand, "wheel") == pytest.approx([10.0])
+async def test_wheel_speed_can_be_reduced_until_steering_is_reached(bench):
+    controller = start_vehicle(
+        bench, BicycleSteeringController, BICYCLE_PARAMETERS, reduce_wheel_speed_until_steering_reached=True
+    )
+    publish_command(bench, 1.0, tan(1.0) / WHEELBASE)
+    await bench.step(controller)
+    assert joint_commands(bench, "wheel") == pytest.approx([10.0 * cos(1.0) / cos(0.5235987755982988)])
+    bench.states["steer/position"].value = 1.0
+    await bench.step(controller)
+    assert joint_commands(bench, "wheel") == pytest.approx([10.0])
 
 
-async def test_chained_mode_accepts_reference_interfaces(stand):
-    controller = vehicle(stand, BicycleSteeringController, BICYCLE)
+async def test_chained_mode_accepts_reference_interfaces(bench):
+    controller = start_vehicle(bench, BicycleSteeringController, BICYCLE_PARAMETERS)
     assert [reference.name for reference in controller.references] == ["car/linear/velocity", "car/angular/velocity"]
     controller.is_chained = True
     controller.references[0].value, controller.references[1].value = 1.0, 0.0
-    await stand.step(controller)
-    assert joint_commands(stand, "wheel") == [10.0]
+    await bench.step(controller)
+    assert joint_commands(bench, "wheel") == [10.0]
     assert all(isnan(reference.value) for reference in controller.references)
-    await stand.step(controller)
-    assert joint_commands(stand, "wheel") == [0.0]
+    await bench.step(controller)
+    assert joint_commands(bench, "wheel") == [0.0]
 
 
-async def test_controller_state_is_published(stand):
-    controller = vehicle(stand, BicycleSteeringController, BICYCLE)
-    statuses = stand.record("control_msgs/msg/SteeringControllerStatus", f"/{NAME}/controller_state")
-    command(stand, 1.0, 0.5)
-    await roll(stand, controller, 2)
+async def test_controller_state_is_published(bench):
+    controller = start_vehicle(bench, BicycleSteeringController, BICYCLE_PARAMETERS)
+    statuses = bench.record("control_msgs/msg/SteeringControllerStatus", f"/{CONTROLLER_NAME}/controller_state")
+    publish_command(bench, 1.0, 0.5)
+    await roll_wheels(bench, controller, 2)
     last = statuses[-1]
     assert (list(last.traction_wheels_velocity), list(last.linear_velocity_command)) == ([10.0], [10.0])
     assert list(last.steer_positions) == list(last.steering_angle_command) == [atan(0.6)]
 
 
-async def test_deactivation_or_nan_command_stops_vehicle(stand):
-    controller = vehicle(stand, BicycleSteeringController, BICYCLE)
-    command(stand, 1.0)
-    await stand.step(controller)
-    command(stand, nan)
-    await stand.step(controller)
-    assert joint_commands(stand, "wheel") == [0.0]
-    command(stand, 1.0)
-    await stand.step(controller)
+async def test_deactivation_or_nan_command_stops_vehicle(bench):
+    controller = start_vehicle(bench, BicycleSteeringController, BICYCLE_PARAMETERS)
+    publish_command(bench, 1.0)
+    await bench.step(controller)
+    publish_command(bench, nan)
+    await bench.step(controller)
+    assert joint_commands(bench, "wheel") == [0.0]
+    publish_command(bench, 1.0)
+    await bench.step(controller)
     controller.on_deactivate()
-    assert joint_commands(stand, "wheel") == [0.0]
+    assert joint_commands(bench, "wheel") == [0.0]
 
 
 @pytest.mark.parametrize(
@@ -213,14 +226,18 @@ async def test_deactivation_or_nan_command_stops_vehicle(stand):
     [
         (
             AckermannSteeringController,
-            ACKERMANN | {"traction_joints_names": ["right"]},
+            ACKERMANN_PARAMETERS | {"traction_joints_names": ["right"]},
             "Ackermann configuration requires exactly 2 traction joint(s), but 1 were provided",
         ),
         (BicycleSteeringController, {"wheelbase": 1.0}, "requires exactly 1 traction joint(s), but 0 were provided"),
-        (BicycleSteeringController, BICYCLE | {"wheelbase": 0.0}, "'wheelbase' with the value 0 must be above 0"),
+        (
+            BicycleSteeringController,
+            BICYCLE_PARAMETERS | {"wheelbase": 0.0},
+            "'wheelbase' with the value 0 must be above 0",
+        ),
     ],
 )
-def test_invalid_parameters_fail_configuration(stand, kind, sizes, message):
+def test_invalid_parameters_fail_configuration(bench, kind, sizes, message):
     with pytest.raises(ControllerError) as error:
-        stand.start(kind, NAME, **sizes)
+        bench.start(kind, CONTROLLER_NAME, **sizes)
     assert message in str(error.value)

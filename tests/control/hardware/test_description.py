@@ -1,3 +1,5 @@
+"""The `<ros2_control>` elements of a description: components, interfaces and parameters."""
+
 from __future__ import annotations
 
 from math import isnan

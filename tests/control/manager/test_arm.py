@@ -1,4 +1,7 @@
-"""An arm with mock hardware and a controller manager: trajectories by the action, from goal to result."""
+"""An arm with mock hardware and a controller manager.
+
+The tests follow trajectories of the action, from goal to result.
+"""
 
 from __future__ import annotations
 
@@ -9,22 +12,22 @@ import pytest
 from linkwright.control.manager.switching import STRICT
 from linkwright.messages import get_action
 from tests.control.controllers.arm import SentGoal, trajectory
-from tests.control.robots import joint, manager, robot
+from tests.control.robots import joint, make_manager, robot
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
 TYPE = "joint_trajectory_controller/JointTrajectoryController"
 JOINTS = ("hip", "knee")
-SAID = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
+PARAMETERS = {"joints": list(JOINTS), "command_interfaces": ["position"], "state_interfaces": ["position", "velocity"]}
 SUCCEEDED, CANCELED = 4, 5
 
 
-class Robot:
+class ControlledArm:
     """A robot with an active trajectory controller."""
 
     def __init__(self, graph: Any) -> None:
-        self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
+        self.graph, self.node, self.time_ns = graph, graph.create_node("test_node"), 0
         text = robot(joint("hip", initial="0.2") + joint("knee"))
-        self.manager = manager(graph, text, {"arm": {"type": TYPE}}, arm=SAID)
+        self.manager = make_manager(graph, text, {"arm": {"type": TYPE}}, arm=PARAMETERS)
         assert self.manager.load("arm")
         assert self.manager.configure("arm")
         assert self.manager.switch(["arm"], [], STRICT)[0]
@@ -45,7 +48,7 @@ class Robot:
 
 
 async def test_arm_holds_position_and_follows_trajectory(graph):
-    arm = Robot(graph)
+    arm = ControlledArm(graph)
     await arm.advance(0.1)
     assert arm.positions() == [0.2, 0.0]
     goal = arm.send_goal((1.0, [1.2, -1.0]))
@@ -57,7 +60,7 @@ async def test_arm_holds_position_and_follows_trajectory(graph):
 
 
 async def test_goal_can_be_canceled_on_event_loop(graph):
-    arm = Robot(graph)
+    arm = ControlledArm(graph)
     goal = arm.send_goal((1.0, [1.2, 1.0]))
     await arm.advance(0.5)
     goal.cancel()
@@ -70,7 +73,7 @@ async def test_goal_can_be_canceled_on_event_loop(graph):
 
 
 async def test_deactivation_ends_goal_and_allows_new_one(graph):
-    arm = Robot(graph)
+    arm = ControlledArm(graph)
     first = arm.send_goal((1.0, [1.2, 1.0]))
     await arm.advance(0.5)
     assert arm.manager.switch([], ["arm"], STRICT)[0]

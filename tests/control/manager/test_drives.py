@@ -1,4 +1,7 @@
-"""A drive with mock hardware and a controller manager: PID controllers in chained mode, and stops."""
+"""A drive with mock hardware and a controller manager.
+
+The tests cover PID controllers in chained mode, and stops.
+"""
 
 from __future__ import annotations
 
@@ -10,21 +13,21 @@ import pytest
 from linkwright.control.manager.switching import STRICT
 from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
 from tests.control.controllers.driving import stamped_twist
-from tests.control.robots import joint, manager, robot
+from tests.control.robots import joint, make_manager, robot
 
 WHEELS = robot(joint("left", "velocity") + joint("right", "velocity"), joints=("left", "right"))
-DRIVE, PID = "diff_drive_controller/DiffDriveController", "pid_controller/PidController"
-MECANUM = "mecanum_drive_controller/MecanumDriveController"
-CORNERS = {"front_left": "left", "front_right": "right", "rear_left": "left", "rear_right": "right"}
-SAID = {"wheel_separation": 0.4, "wheel_radius": 0.1, "cmd_vel_timeout": 9.0, "publish_rate": 100.0}
+DRIVE_TYPE, PID_TYPE = "diff_drive_controller/DiffDriveController", "pid_controller/PidController"
+MECANUM_TYPE = "mecanum_drive_controller/MecanumDriveController"
+WHEEL_BY_CORNER = {"front_left": "left", "front_right": "right", "rear_left": "left", "rear_right": "right"}
+DRIVE_PARAMETERS = {"wheel_separation": 0.4, "wheel_radius": 0.1, "cmd_vel_timeout": 9.0, "publish_rate": 100.0}
 
 
-class Base:
+class ControlledBase:
     """A robot on two wheels with active controllers."""
 
     def __init__(self, graph: Any, types: dict[str, str], **parameters: dict[str, Any]) -> None:
-        self.graph, self.node, self.time_ns = graph, graph.create_node("audience"), 0
-        self.manager = manager(
+        self.graph, self.node, self.time_ns = graph, graph.create_node("test_node"), 0
+        self.manager = make_manager(
             graph, WHEELS, {name: {"type": controller_type} for name, controller_type in types.items()}, **parameters
         )
         for name in types:
@@ -59,10 +62,10 @@ async def test_drive_commands_pid_controllers_in_chained_mode(graph):
         for side in ("left", "right")
     }
     names = {"left_wheel_names": ["pid_left/left"], "right_wheel_names": ["pid_right/right"]}
-    base = Base(
+    base = ControlledBase(
         graph,
-        {"pid_left": PID, "pid_right": PID, "base": DRIVE},
-        base=SAID | names | {"position_feedback": False},
+        {"pid_left": PID_TYPE, "pid_right": PID_TYPE, "base": DRIVE_TYPE},
+        base=DRIVE_PARAMETERS | names | {"position_feedback": False},
         **parameters,
     )
     await base.drive(0.0, 0.0, 2)
@@ -75,7 +78,7 @@ async def test_drive_commands_pid_controllers_in_chained_mode(graph):
 
 async def test_drive_is_deactivated_if_wheel_state_is_not_a_number(graph, log):
     names = {"left_wheel_names": ["left"], "right_wheel_names": ["right"]}
-    base = Base(graph, {"base": DRIVE}, base=SAID | names)
+    base = ControlledBase(graph, {"base": DRIVE_TYPE}, base=DRIVE_PARAMETERS | names)
     await base.drive(1.0, 0.0, 10)
     assert base.wheels() == pytest.approx([10.0, 10.0])
     assert base.manager.controllers["base"].controller.state is ACTIVE
@@ -93,9 +96,9 @@ async def test_drive_is_deactivated_if_wheel_state_is_not_a_number(graph, log):
 
 
 async def test_manager_selects_controller_variant_by_parameters(graph):
-    wheels = {f"{corner}_wheel_name": side for corner, side in CORNERS.items()}
+    wheels = {f"{corner}_wheel_name": side for corner, side in WHEEL_BY_CORNER.items()}
     sizes = {"wheel_separation_x": 0.2, "wheel_separation_y": 0.2, "wheel_radius": 0.1, "open_loop": True}
-    controller_manager = manager(graph, WHEELS, {"base": {"type": MECANUM}}, base={**wheels, **sizes})
+    controller_manager = make_manager(graph, WHEELS, {"base": {"type": MECANUM_TYPE}}, base={**wheels, **sizes})
     assert controller_manager.load("base")
     assert controller_manager.configure("base")
     topics = dict(graph.get_topic_names_and_types())

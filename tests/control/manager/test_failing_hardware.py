@@ -1,4 +1,7 @@
-"""A user's hardware that fails while controllers run: which controllers stop, which continue, and the recovery."""
+"""A user's hardware that fails while controllers run.
+
+The tests cover which controllers stop, which continue, and the recovery.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from tests.control.manager.test_ros2_control_node import advance, call_service
 from tests.control.robots import joint, robot
 
 State = get_message("lifecycle_msgs/msg/State")
-FILE = """
+PARAMETER_FILE = """
 controller_manager:
   ros__parameters:
     update_rate: 100
@@ -25,7 +28,7 @@ controller_manager:
 hips: {ros__parameters: {joints: [hip], interface_name: velocity}}
 knees: {ros__parameters: {joints: [knee], interface_name: velocity}}
 """
-TWO = (
+DESCRIPTION = (
     robot(joint("hip", "velocity", "velocity"))
     .replace("mock_components/GenericSystem", "my_robot/Arm")
     .replace(
@@ -75,11 +78,11 @@ def arm(tmp_path, monkeypatch) -> Iterator[type[Arm]]:
 @pytest.mark.parametrize("fault", [HardwareError("the cable is out"), OSError("the cable is out")])
 async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(graph, clock, tmp_path, logged, arm, fault):
     path = tmp_path / "controllers.yaml"
-    path.write_text(FILE)
+    path.write_text(PARAMETER_FILE)
     words = ["--ros-args", "--params-file", str(path)]
-    options = NodeOptions(parameters={"robot_description": TWO}, arguments=words, library=DescriptionLibrary())
-    running = Ros2ControlNode(graph, options)
-    node = graph.create_node("audience")
+    options = NodeOptions(parameters={"robot_description": DESCRIPTION}, arguments=words, library=DescriptionLibrary())
+    node_under_test = Ros2ControlNode(graph, options)
+    node = graph.create_node("test_node")
     for name in ("hips", "knees"):
         assert (await call_service(graph, node, "load_controller", name=name)).ok
         assert (await call_service(graph, node, "configure_controller", name=name)).ok
@@ -109,7 +112,7 @@ async def test_failed_hardware_stops_its_controllers_and_can_be_reactivated(grap
     assert second == ("Deactivating controllers : [ hips ] as their hardware components failed: [ arm ]")
     publishers["knees"].publish(array(data=[3.0]))
     await advance(graph, clock, 2)
-    leg = running._manager.resources.components["leg"]
+    leg = node_under_test._manager.resources.components["leg"]
     assert [command.value for command in leg.commands] == [3.0]
 
     response = await call_service(graph, node, "switch_controller", activate_controllers=["hips"], strictness=2)

@@ -1,3 +1,5 @@
+"""The controller manager: the lifecycle of controllers, and who owns an interface."""
+
 from __future__ import annotations
 
 from math import inf, nan
@@ -8,7 +10,7 @@ from linkwright.control.controllers import registry
 from linkwright.control.controllers.controller import Controller, ControllerError
 from linkwright.control.manager.switching import AUTO, BEST_EFFORT, FORCE_AUTO, STRICT
 from linkwright.graph.lifecycle.states import ACTIVE, INACTIVE
-from tests.control.robots import joint, manager, robot
+from tests.control.robots import joint, make_manager, robot
 
 CONTROL = robot(joint("hip", "position velocity") + joint("knee", "position velocity"))
 FORWARD = "forward_command_controller/ForwardCommandController"
@@ -52,14 +54,14 @@ class ReluctantController(Controller):
 
 
 class BrokenController(Controller):
-    def __init__(self, place):
+    def __init__(self, context):
         raise ZeroDivisionError("in the beginning")
 
 
 @pytest.fixture
 def create_manager(graph, monkeypatch):
     """Return a function that creates a manager with the controllers of this file."""
-    ours = {
+    test_controllers = {
         "t/Low": LowController,
         "t/High": HighController,
         "t/Reluctant": ReluctantController,
@@ -68,13 +70,13 @@ def create_manager(graph, monkeypatch):
     original = registry.controller_class
 
     def find_class(name):
-        return ours.get(name) or original(name)
+        return test_controllers.get(name) or original(name)
 
     monkeypatch.setattr("linkwright.control.manager.manager.controller_class", find_class)
 
     def make(types=None, text=CONTROL, **parameters):
         types = {"low": "t/Low", "high": "t/High"} if types is None else types
-        return manager(
+        return make_manager(
             graph, text, {name: {"type": controller_type} for name, controller_type in types.items()}, **parameters
         )
 
@@ -87,7 +89,7 @@ def start_controllers(manager, *names):
         assert manager.configure(name)
 
 
-def value(manager, name):
+def command_value(manager, name):
     return {command.name: command.value for command in manager.resources.commands([name])}[name]
 
 
@@ -174,16 +176,16 @@ async def test_chained_controllers_are_ordered_and_activated(create_manager):
     assert not controller_manager.switch(["high"], [], STRICT)[0]
     assert controller_manager.switch(["low"], [], STRICT)[0]
     controller_manager.cycle(1, 0.01)
-    assert value(controller_manager, "hip/velocity") == 0.5
+    assert command_value(controller_manager, "hip/velocity") == 0.5
     assert controller_manager.switch(["high"], [], STRICT)[0]
     assert controller_manager.controllers["low"].controller.is_chained
     controller_manager.cycle(2, 0.01)
-    assert value(controller_manager, "hip/velocity") == 2.0
+    assert command_value(controller_manager, "hip/velocity") == 2.0
     assert not controller_manager.switch([], ["low"], STRICT)[0]
     assert controller_manager.switch([], ["high"], STRICT)[0]
     assert not controller_manager.controllers["low"].controller.is_chained
     controller_manager.cycle(3, 0.01)
-    assert value(controller_manager, "hip/velocity") == 0.5
+    assert command_value(controller_manager, "hip/velocity") == 0.5
 
 
 async def test_chain_is_activated_together_or_separately(create_manager):
@@ -211,15 +213,15 @@ async def test_controller_that_raises_is_deactivated_and_joints_stop(create_mana
     assert errors[1] == "Deactivating controllers : [ low high ] as their update resulted in an error!"
 
 
-@pytest.mark.parametrize("wrong", [nan, inf])
-async def test_nan_commands_do_not_reach_hardware(create_manager, logged, wrong):
+@pytest.mark.parametrize("invalid_value", [nan, inf])
+async def test_nan_commands_do_not_reach_hardware(create_manager, logged, invalid_value):
     controller_manager = create_manager()
     start_controllers(controller_manager, "low")
     controller_manager.switch(["low"], [], STRICT)
     controller_manager.cycle(1, 0.01)
-    controller_manager.controllers["low"].controller.value = wrong
+    controller_manager.controllers["low"].controller.value = invalid_value
     controller_manager.cycle(2, 0.01)
-    assert value(controller_manager, "hip/velocity") == 0.0
+    assert command_value(controller_manager, "hip/velocity") == 0.0
     assert "'hip/velocity' is not a number" in logged("ERROR")[0]
 
 
@@ -231,7 +233,7 @@ async def test_commands_with_overflowing_sum_reach_hardware(create_manager, logg
     loaded.controller.commands *= 2  # two commands, whose sum overflows
     loaded.controller.value = 1.5e308
     controller_manager.cycle(1, 0.01)
-    assert value(controller_manager, "hip/velocity") == 1.5e308
+    assert command_value(controller_manager, "hip/velocity") == 1.5e308
     assert logged("ERROR") == []
 
 
@@ -280,13 +282,13 @@ async def test_slower_controller_is_updated_at_its_own_rate(create_manager):
 
 async def test_hardware_initial_states_are_applied(graph, logged):
     states = {"hardware_components_initial_state": {"inactive": ["arm"], "unconfigured": ["leg"]}}
-    controller_manager = manager(graph, CONTROL, states)
+    controller_manager = make_manager(graph, CONTROL, states)
     assert controller_manager.resources.components["arm"].state is INACTIVE
     assert logged("WARN") == ["Hardware component 'leg' is unknown, therefore not set in 'unconfigured' state."]
 
 
 async def test_unsupported_hardware_is_replaced_by_mock(graph, logged):
-    controller_manager = manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
+    controller_manager = make_manager(graph, CONTROL.replace("mock_components/GenericSystem", "acme/Driver"))
     assert controller_manager.resources.components["arm"].state is ACTIVE
     assert logged("WARN")[0].startswith("hardware 'arm': Linkwright does not support 'acme/Driver', so mock_components")
 
@@ -301,7 +303,7 @@ async def test_async_controllers_and_hardware_run_synchronously_with_notice(
     start_controllers(controller_manager, "low")
     assert controller_manager.switch(["low"], [], STRICT)[0]
     controller_manager.cycle(1, 0.01)
-    assert value(controller_manager, "hip/velocity") == 0.5
+    assert command_value(controller_manager, "hip/velocity") == 0.5
     lines = [line for line in logged("INFO") if "is_async" in line]
     assert (
         lines[0] == "hardware 'arm': is_async is not supported, so the hardware is read and written in the control loop"

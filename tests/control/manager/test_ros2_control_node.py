@@ -1,3 +1,5 @@
+"""`ros2_control_node`: its services, topics, descriptions and update cycles."""
+
 from __future__ import annotations
 
 import pytest
@@ -11,7 +13,7 @@ from linkwright.nodes.options import NodeOptions
 from tests.control.robots import joint, robot
 
 CONTROL = robot(joint("hip", initial="0.5") + joint("knee"))
-FILE = """
+PARAMETER_FILE = """
 controller_manager:
   ros__parameters:
     update_rate: 100
@@ -24,9 +26,9 @@ positions:
 """
 
 
-def start(graph, tmp_path, text=None, **parameters):
+def start_manager_node(graph, tmp_path, text=None, **parameters):
     path = tmp_path / "controllers.yaml"
-    path.write_text(FILE)
+    path.write_text(PARAMETER_FILE)
     words = ["--ros-args", "--params-file", str(path), "-r", "/positions/commands:=/wanted"]
     if text is not None:
         parameters["robot_description"] = text
@@ -50,8 +52,8 @@ async def advance(graph, clock, count):
 
 
 async def test_controllers_are_managed_by_services_and_topics(graph, clock, tmp_path, logged):
-    node_under_test = start(graph, tmp_path, CONTROL)
-    node = graph.create_node("audience")
+    node_under_test = start_manager_node(graph, tmp_path, CONTROL)
+    node = graph.create_node("test_node")
     states, activity = [], []
     node.create_subscription("sensor_msgs/msg/JointState", "/joint_states", states.append, 10)
     latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -95,8 +97,8 @@ async def test_controllers_are_managed_by_services_and_topics(graph, clock, tmp_
 
 
 async def test_process_remappings_apply_to_controllers(graph, clock, tmp_path):
-    node_under_test = start(graph, tmp_path, CONTROL)
-    node = graph.create_node("audience")
+    node_under_test = start_manager_node(graph, tmp_path, CONTROL)
+    node = graph.create_node("test_node")
     states = []
     node.create_subscription("sensor_msgs/msg/JointState", "/joint_states", states.append, 10)
     publisher = node.create_publisher("std_msgs/msg/Float64MultiArray", "/wanted", 10)
@@ -113,8 +115,8 @@ async def test_process_remappings_apply_to_controllers(graph, clock, tmp_path):
 
 
 async def test_description_is_received_from_topic(graph, clock, tmp_path, logged):
-    node_under_test = start(graph, tmp_path)
-    node = graph.create_node("audience")
+    node_under_test = start_manager_node(graph, tmp_path)
+    node = graph.create_node("test_node")
     node.create_publisher(String, "/robot_description", DESCRIPTION_QOS).publish(String(data=CONTROL))
     await graph.settle()
     components = (await call_service(graph, node, "list_hardware_components")).component
@@ -126,8 +128,8 @@ async def test_description_is_received_from_topic(graph, clock, tmp_path, logged
 
 
 async def test_malformed_description_is_reported_and_next_one_used(graph, clock, tmp_path, logged):
-    node_under_test = start(graph, tmp_path)
-    publisher = graph.create_node("audience").create_publisher(String, "/robot_description", DESCRIPTION_QOS)
+    node_under_test = start_manager_node(graph, tmp_path)
+    publisher = graph.create_node("test_node").create_publisher(String, "/robot_description", DESCRIPTION_QOS)
     publisher.publish(String(data="<robot"))
     await graph.settle()
     assert logged("ERROR")[0].startswith("The published robot description file (urdf) seems not to be genuine")
@@ -137,8 +139,8 @@ async def test_malformed_description_is_reported_and_next_one_used(graph, clock,
     node_under_test.close()
 
 
-def cycles_of(node_under_test, during_cycle=lambda: None):
-    """Return the periods in seconds of the manager's next cycles; `during` is called in each."""
+def record_cycle_periods(node_under_test, during_cycle=lambda: None):
+    """Return the periods in seconds of the manager's next cycles; each calls `during_cycle`."""
     periods, cycle = [], node_under_test._manager.cycle
 
     def count_cycle(time_ns, period_s):
@@ -157,7 +159,7 @@ OVERRUN = (
 
 
 @pytest.mark.parametrize(
-    ("parameters", "then", "message"),
+    ("parameters", "expected_periods", "message"),
     [
         ({}, [0.025, 0.005, 0.01], [OVERRUN]),
         ({"overruns.print_warnings": False}, [0.025, 0.005, 0.01], []),
@@ -165,26 +167,28 @@ OVERRUN = (
     ],
 )
 async def test_missed_updates_are_skipped_with_warning_or_caught_up(
-    graph, clock, tmp_path, logged, parameters, then, message
+    graph, clock, tmp_path, logged, parameters, expected_periods, message
 ):
-    node_under_test = start(graph, tmp_path, CONTROL, **parameters)
+    node_under_test = start_manager_node(graph, tmp_path, CONTROL, **parameters)
     await graph.settle()
     warnings_before = logged("WARN")
-    slow = iter([0.0, 0.025])
-    periods = cycles_of(node_under_test, lambda: clock._move_to(clock.steady_ns() + round(next(slow, 0.0) * 1e9)))
+    delays = iter([0.0, 0.025])
+    periods = record_cycle_periods(
+        node_under_test, lambda: clock._move_to(clock.steady_ns() + round(next(delays, 0.0) * 1e9))
+    )
     await clock.advance(0.06)
-    assert periods == [0.01, 0.01, *then]
+    assert periods == [0.01, 0.01, *expected_periods]
     assert logged("WARN") == warnings_before + message
     node_under_test.close()
 
 
 async def test_simulated_time_jump_is_not_an_overrun(graph, clock, tmp_path, logged):
-    node_under_test = start(graph, tmp_path, CONTROL, use_sim_time=True)
+    node_under_test = start_manager_node(graph, tmp_path, CONTROL, use_sim_time=True)
     await graph.settle()
     time = node_under_test._node.get_clock()
     time.override(1_000_000_000)
     await graph.settle()
-    periods = cycles_of(node_under_test)
+    periods = record_cycle_periods(node_under_test)
     count_before = len(logged("WARN"))
     for now_ns in (1_010_000_000, 1_050_000_000, 20_000_000, 30_000_000, 40_000_000):
         time.override(now_ns)
@@ -201,8 +205,8 @@ async def test_simulated_time_jump_is_not_an_overrun(graph, clock, tmp_path, log
     "plugin", ["gazebo_ros2_control/GazeboSystem", "gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"]
 )
 async def test_simulator_hardware_is_left_to_simulator(graph, tmp_path, logged, plugin):
-    start(graph, tmp_path, CONTROL.replace("mock_components/GenericSystem", plugin))
+    start_manager_node(graph, tmp_path, CONTROL.replace("mock_components/GenericSystem", plugin))
     await graph.settle()
     assert [line for line in logged("ERROR") if plugin in line]
-    services = graph.create_node("audience").get_service_names_and_types()
+    services = graph.create_node("test_node").get_service_names_and_types()
     assert not [name for name, _ in services if name.endswith("/list_controllers")]

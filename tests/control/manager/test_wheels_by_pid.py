@@ -8,14 +8,14 @@ import pytest
 
 from linkwright.control.manager.switching import STRICT
 from linkwright.messages import get_message, get_service
-from tests.control.robots import joint, manager, robot
+from tests.control.robots import joint, make_manager, robot
 
 WHEELS = ("left", "right")
 TWIST = "geometry_msgs/msg/Twist"
-RADIUS = 0.015
+WHEEL_RADIUS = 0.015
 
 
-def pid(wheel: str) -> dict[str, Any]:
+def pid_parameters(wheel: str) -> dict[str, Any]:
     gains = {"p": 0.15, "i": 1.0, "i_clamp_min": -2.0, "i_clamp_max": 2.0, "antiwindup": True, "feedforward_gain": 0.95}
     return {
         "dof_names": [wheel],
@@ -32,12 +32,14 @@ async def test_drive_turns_wheels_through_pid_controllers(graph):
         "left_wheel_names": ["pid_left/left"],
         "right_wheel_names": ["pid_right/right"],
         "wheel_separation": 0.1,
-        "wheel_radius": RADIUS,
+        "wheel_radius": WHEEL_RADIUS,
         "position_feedback": False,
         "use_stamped_vel": False,
     }
     text = robot("".join(joint(wheel, "velocity") for wheel in WHEELS), joints=WHEELS)
-    controller_manager = manager(graph, text, types, pid_left=pid("left"), pid_right=pid("right"), base=base)
+    controller_manager = make_manager(
+        graph, text, types, pid_left=pid_parameters("left"), pid_right=pid_parameters("right"), base=base
+    )
     for name in types:
         assert controller_manager.load(name)
         assert controller_manager.configure(name)
@@ -55,4 +57,4 @@ async def test_drive_turns_wheels_through_pid_controllers(graph):
         await graph.settle()
         controller_manager.cycle(number * 10_000_000, 0.01)
     speeds = [state.value for state in controller_manager.resources.states([f"{wheel}/velocity" for wheel in WHEELS])]
-    assert speeds == pytest.approx([0.3 / RADIUS] * 2, rel=0.01)
+    assert speeds == pytest.approx([0.3 / WHEEL_RADIUS] * 2, rel=0.01)

@@ -12,40 +12,43 @@ from hypothesis import strategies as st
 from linkwright.control.motion.splines import MotionState, Segment
 from linkwright.control.motion.trajectory import Sample, Trajectory, TrajectoryPoint, shortest_turn
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 numbers = st.floats(-10.0, 10.0)
 durations = st.floats(0.1, 10.0)
 
 
-def point(seconds: float, *lists: list[float]) -> TrajectoryPoint:
+def trajectory_point(seconds: float, *lists: list[float]) -> TrajectoryPoint:
     """Return a point with some of positions, velocities and accelerations."""
-    return TrajectoryPoint(round(seconds * SECOND), MotionState(*lists))
+    return TrajectoryPoint(round(seconds * SECOND_NS), MotionState(*lists))
 
 
 def sample_at(trajectory: Trajectory, seconds: float) -> Sample:
     """Return the sample at a time in seconds."""
-    sample = trajectory.sample(round(seconds * SECOND))
+    sample = trajectory.sample(round(seconds * SECOND_NS))
     assert sample is not None
     return sample
 
 
-def solution(start: list[float], end: list[float], duration: float) -> np.ndarray:
-    """Return the polynomial with given derivatives at both ends, by solving the linear system; lowest power first."""
+def solve_polynomial(start: list[float], end: list[float], duration: float) -> np.ndarray:
+    """Return the polynomial with given derivatives at both ends, lowest power first.
+
+    The linear system is solved.
+    """
     order = len(start) + len(end)
-    rows = []
+    equations = []
     for time in (0.0, duration):
         for derivative in range(len(start)):
-            unit = [np.polynomial.Polynomial.basis(power).deriv(derivative)(time) for power in range(order)]
-            rows.append([float(coefficient) for coefficient in unit])
-    return np.linalg.solve(np.array(rows), np.array([*start, *end]))
+            basis_values = [np.polynomial.Polynomial.basis(power).deriv(derivative)(time) for power in range(order)]
+            equations.append([float(coefficient) for coefficient in basis_values])
+    return np.linalg.solve(np.array(equations), np.array([*start, *end]))
 
 
 @given(numbers, numbers, durations)
 def test_segment_of_positions_is_linear(p0: float, p1: float, duration: float):
     segment = Segment(MotionState([p0]), MotionState([p1]), duration)
-    for share in (0.0, 0.3, 1.0):
-        state = segment.at(share * duration)
-        assert state.positions == pytest.approx([p0 + share * (p1 - p0)], abs=1e-9)
+    for fraction in (0.0, 0.3, 1.0):
+        state = segment.at(fraction * duration)
+        assert state.positions == pytest.approx([p0 + fraction * (p1 - p0)], abs=1e-9)
         assert state.velocities == pytest.approx([(p1 - p0) / duration])
         assert state.accelerations == [0.0]
 
@@ -54,14 +57,14 @@ def test_segment_of_positions_is_linear(p0: float, p1: float, duration: float):
 def test_segment_is_polynomial_through_both_points(p0, v0, a0, p1, v1, a1, duration, derivative_count):
     start, end = [p0, v0, a0][:derivative_count], [p1, v1, a1][:derivative_count]
     segment = Segment(MotionState(*([value] for value in start)), MotionState(*([value] for value in end)), duration)
-    theory = np.polynomial.Polynomial(solution(start, end, duration))
+    expected = np.polynomial.Polynomial(solve_polynomial(start, end, duration))
     scale = 1.0 + max(map(abs, (p0, p1, v0, v1, a0, a1))) * max(1.0, duration, duration**-2)
-    for share in (0.0, 0.1, 0.5, 0.9, 1.0):
-        time = share * duration
+    for fraction in (0.0, 0.1, 0.5, 0.9, 1.0):
+        time = fraction * duration
         state = segment.at(time)
-        assert state.positions[0] == pytest.approx(float(theory(time)), abs=1e-9 * scale)
-        assert state.velocities[0] == pytest.approx(float(theory.deriv()(time)), abs=1e-8 * scale)
-        assert state.accelerations[0] == pytest.approx(float(theory.deriv(2)(time)), abs=1e-7 * scale)
+        assert state.positions[0] == pytest.approx(float(expected(time)), abs=1e-9 * scale)
+        assert state.velocities[0] == pytest.approx(float(expected.deriv()(time)), abs=1e-8 * scale)
+        assert state.accelerations[0] == pytest.approx(float(expected.deriv(2)(time)), abs=1e-7 * scale)
 
 
 def test_segment_uses_only_values_given_at_both_points():
@@ -73,42 +76,44 @@ def test_segment_uses_only_values_given_at_both_points():
 
 
 def test_trajectory_starts_at_joint_state_and_ends_at_last_point():
-    trajectory = Trajectory([point(1.0, [1.0]), point(3.0, [2.0])])
-    trajectory.begin(10 * SECOND, MotionState([0.0]))
-    assert trajectory.sample(9 * SECOND) is None
+    trajectory = Trajectory([trajectory_point(1.0, [1.0]), trajectory_point(3.0, [2.0])])
+    trajectory.begin(10 * SECOND_NS, MotionState([0.0]))
+    assert trajectory.sample(9 * SECOND_NS) is None
     assert [sample_at(trajectory, time).state.positions[0] for time in (10.0, 10.5, 11.0, 12.0, 13.0, 99.0)] == (
         pytest.approx([0.0, 0.5, 1.0, 1.5, 2.0, 2.0])
     )
     assert [sample_at(trajectory, time).index for time in (10.0, 11.0, 12.9, 13.0)] == [0, 0, 0, 1]
     assert [sample_at(trajectory, time).has_ended for time in (12.9, 13.0)] == [False, True]
-    assert sample_at(trajectory, 99.0).point_ns == 13 * SECOND
+    assert sample_at(trajectory, 99.0).point_ns == 13 * SECOND_NS
     assert sample_at(trajectory, 99.0).state == MotionState([2.0], [0.0], [0.0])
 
 
 def test_trajectory_can_be_sampled_backwards():
-    trajectory = Trajectory([point(float(seconds), [float(seconds)]) for seconds in range(1, 6)])
-    trajectory.begin(SECOND, MotionState([0.0]))
+    trajectory = Trajectory([trajectory_point(float(seconds), [float(seconds)]) for seconds in range(1, 6)])
+    trajectory.begin(SECOND_NS, MotionState([0.0]))
     assert [sample_at(trajectory, time).state.positions[0] for time in (5.5, 1.5, 3.5)] == pytest.approx(
         [4.5, 0.5, 2.5]
     )
 
 
 def test_trajectory_with_future_start_moves_to_first_point_from_now():
-    trajectory = Trajectory([point(0.0, [1.0])], start_ns=4 * SECOND)
-    trajectory.begin(2 * SECOND, MotionState([0.0]))
+    trajectory = Trajectory([trajectory_point(0.0, [1.0])], start_ns=4 * SECOND_NS)
+    trajectory.begin(2 * SECOND_NS, MotionState([0.0]))
     assert sample_at(trajectory, 3.0).state.positions == pytest.approx([0.5])
     assert sample_at(trajectory, 4.0).has_ended
 
 
 def test_trajectory_with_past_start_continues_at_current_segment():
-    trajectory = Trajectory([point(1.0, [1.0]), point(5.0, [5.0])], start_ns=SECOND)
-    trajectory.begin(4 * SECOND, MotionState([0.0]))
+    trajectory = Trajectory([trajectory_point(1.0, [1.0]), trajectory_point(5.0, [5.0])], start_ns=SECOND_NS)
+    trajectory.begin(4 * SECOND_NS, MotionState([0.0]))
     assert sample_at(trajectory, 4.0).state.positions == pytest.approx([3.0])
 
 
 def test_missing_positions_and_velocities_are_integrated():
-    trajectory = Trajectory([point(1.0, [], [2.0]), point(2.0, [], [4.0]), point(3.0, [], [], [0.0])])
-    trajectory.begin(SECOND, MotionState([0.0]))
+    trajectory = Trajectory(
+        [trajectory_point(1.0, [], [2.0]), trajectory_point(2.0, [], [4.0]), trajectory_point(3.0, [], [], [0.0])]
+    )
+    trajectory.begin(SECOND_NS, MotionState([0.0]))
     assert [point.state.positions for point in trajectory.points] == [[1.0], [4.0], [8.0]]
     assert trajectory.points[2].state.velocities == [4.0]
 
@@ -121,14 +126,14 @@ def test_missing_positions_and_velocities_are_integrated():
 def test_trajectory_is_continuous_through_its_points(points, begin, derivative_count):
     times = np.cumsum([point[0] for point in points])
     trajectory_points = [
-        point(float(time), *([value] for value in values[:derivative_count]))
+        trajectory_point(float(time), *([value] for value in values[:derivative_count]))
         for time, (_, *values) in zip(times, points, strict=True)
     ]
     trajectory = Trajectory(trajectory_points)
     trajectory.begin(0, MotionState([begin], [0.0], [0.0]))
     assert sample_at(trajectory, 0.0).state.positions == pytest.approx([begin])
     for time, (_, position, *_rest) in zip(times, points, strict=True):
-        ns = round(float(time) * SECOND)
+        ns = round(float(time) * SECOND_NS)
         earlier, later = trajectory.sample(ns - 1), trajectory.sample(ns)
         assert earlier is not None
         assert later is not None
@@ -138,8 +143,8 @@ def test_trajectory_is_continuous_through_its_points(points, begin, derivative_c
 
 
 def test_points_are_sampled_when_due_without_interpolation():
-    trajectory = Trajectory([point(1.0, [1.0]), point(2.0, [2.0])], interpolated=False)
-    trajectory.begin(SECOND, MotionState([0.0]))
+    trajectory = Trajectory([trajectory_point(1.0, [1.0]), trajectory_point(2.0, [2.0])], interpolated=False)
+    trajectory.begin(SECOND_NS, MotionState([0.0]))
     assert [sample_at(trajectory, time).state.positions for time in (1.5, 2.0, 3.0)] == [[0.0], [2.0], [2.0]]
 
 
@@ -152,7 +157,7 @@ def test_shortest_turn_is_at_most_half_a_turn(start: float, end: float):
 
 
 def test_continuous_joint_turns_shorter_way():
-    trajectory = Trajectory([point(1.0, [-3.0, -3.0])])
+    trajectory = Trajectory([trajectory_point(1.0, [-3.0, -3.0])])
     trajectory.begin(0, MotionState([3.0, 3.0]), (True, False))
     middle = sample_at(trajectory, 0.5).state.positions
     assert middle == pytest.approx([-pi, 0.0])

@@ -15,7 +15,7 @@ from linkwright.control.nodes.teleop.keyboard import TeleopTwistKeyboard
 from linkwright.control.nodes.teleop.keys import keys_in
 from linkwright.diagnostics import LinkwrightError
 from linkwright.nodes import NodeOptions
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 if sys.platform == "win32":
     pytest.skip("Windows has no pseudo-terminals", allow_module_level=True)
@@ -25,7 +25,7 @@ import termios
 TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"
 
 
-def echoes(descriptor: int) -> bool:
+def is_echoing(descriptor: int) -> bool:
     return bool(termios.tcgetattr(descriptor)[3] & termios.ECHO)
 
 
@@ -42,14 +42,14 @@ def terminal() -> Iterator[tuple[int, int]]:
 class Driver:
     """A typing user, with the published velocities and the printed text."""
 
-    def __init__(self, stage, typing_end, program_end, kind=TWIST, **parameters):
-        self.stage, self.typing_end, self.program_end = stage, typing_end, program_end
+    def __init__(self, harness, typing_end, program_end, kind=TWIST, **parameters):
+        self.harness, self.typing_end, self.program_end = harness, typing_end, program_end
         self.messages, self.printed = [], []
         self.closed = False
         if kind:
-            stage.node.create_subscription(kind, "/cmd_vel", self.messages.append, 10)
+            harness.node.create_subscription(kind, "/cmd_vel", self.messages.append, 10)
         options = NodeOptions(parameters=parameters, output=self.printed.append, terminal=program_end)
-        self.node = TeleopTwistKeyboard(stage.graph, options)
+        self.node = TeleopTwistKeyboard(harness.graph, options)
 
     async def type(self, text, messages):
         """Press keys, wait for a number of messages, and return the last as x, y, z, yaw rate."""
@@ -68,21 +68,21 @@ class Driver:
 
 
 @pytest.fixture
-def start(stage, terminal):
+def start_driver(harness, terminal):
     drivers = []
 
-    def driver(**options):
-        drivers.append(Driver(stage, *terminal, **options))
+    def start_driver(**options):
+        drivers.append(Driver(harness, *terminal, **options))
         return drivers[-1]
 
-    yield driver
-    for started_driver in drivers:
-        if not started_driver.closed:
-            started_driver.close()
+    yield start_driver
+    for driver in drivers:
+        if not driver.closed:
+            driver.close()
 
 
-async def test_keys_match_teleop_twist_keyboard(start):
-    driver = start()
+async def test_keys_match_teleop_twist_keyboard(start_driver):
+    driver = start_driver()
     forwards = {"i": (0.5, 0, 0, 0), "o": (0.5, 0, 0, -1), "u": (0.5, 0, 0, 1), "j": (0, 0, 0, 1), "l": (0, 0, 0, -1)}
     backwards = {",": (-0.5, 0, 0, 0), ".": (-0.5, 0, 0, 1), "m": (-0.5, 0, 0, -1), "k": (0, 0, 0, 0)}
     sideways = {"I": (0.5, 0, 0, 0), "O": (0.5, -0.5, 0, 0), "U": (0.5, 0.5, 0, 0), "J": (0, 0.5, 0, 0)}
@@ -93,8 +93,8 @@ async def test_keys_match_teleop_twist_keyboard(start):
         assert await driver.type(key, count) == velocity, key
 
 
-async def test_speed_keys_change_by_ten_percent_and_print_speed(start):
-    driver = start(speed=0.2, turn=2.0)
+async def test_speed_keys_change_by_ten_percent_and_print_speed(start_driver):
+    driver = start_driver(speed=0.2, turn=2.0)
     assert "u    i    o" in driver.printed[0]
     assert driver.printed[1] == "currently:\tspeed 0.2\tturn 2.0 "
     await driver.type("i", 1)
@@ -107,66 +107,66 @@ async def test_speed_keys_change_by_ten_percent_and_print_speed(start):
     assert sum("u    i    o" in line for line in driver.printed) == 2, "the help is printed again after fifteen changes"
 
 
-async def test_arrow_keys_stop_robot(start):
-    driver = start()
+async def test_arrow_keys_stop_robot(start_driver):
+    driver = start_driver()
     await driver.type("i", 1)
     assert await driver.type("\x1bOC", 2) == (0, 0, 0, 0)
     assert list(keys_in("\x1b[1;5Ai\x1b")) == ["\x1b[1;5A", "i", "\x1b"]
 
 
-async def test_message_type_matches_subscriber(start, stage):
-    driver = start(kind=TWIST_STAMPED, frame_id="base_link")
+async def test_message_type_matches_subscriber(start_driver, harness):
+    driver = start_driver(kind=TWIST_STAMPED, frame_id="base_link")
     await driver.type("i", 1)
     assert driver.messages[0].header.frame_id == "base_link"
-    assert driver.messages[0].header.stamp.sec == stage.clock.now_ns() // 10**9
+    assert driver.messages[0].header.stamp.sec == harness.clock.now_ns() // 10**9
 
 
-async def test_message_type_follows_late_subscriber(start, stage):
-    driver = start(kind=None)
-    stage.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.messages.append, 10)
-    await stage.clock.advance(0.6)
+async def test_message_type_follows_late_subscriber(start_driver, harness):
+    driver = start_driver(kind=None)
+    harness.node.create_subscription(TWIST_STAMPED, "/cmd_vel", driver.messages.append, 10)
+    await harness.clock.advance(0.6)
     await driver.type("i", 1)
 
 
 @pytest.mark.parametrize(("stamped", "kind"), [(True, TWIST_STAMPED), (False, TWIST)])
-async def test_message_type_matches_stamped_parameter(start, stage, stamped, kind):
-    start(kind=None, stamped=stamped)
-    assert [endpoint.type_name for endpoint in stage.graph.endpoints() if endpoint.name == "/cmd_vel"] == [kind]
+async def test_message_type_matches_stamped_parameter(start_driver, harness, stamped, kind):
+    start_driver(kind=None, stamped=stamped)
+    assert [endpoint.type_name for endpoint in harness.graph.endpoints() if endpoint.name == "/cmd_vel"] == [kind]
 
 
-async def test_key_timeout_stops_robot(start, stage):
-    driver = start(key_timeout=0.6)
+async def test_key_timeout_stops_robot(start_driver, harness):
+    driver = start_driver(key_timeout=0.6)
     await driver.type("i", 1)
-    await stage.clock.advance(0.5)
+    await harness.clock.advance(0.5)
     await driver.type("i", 2)
-    await stage.clock.advance(0.5)
+    await harness.clock.advance(0.5)
     assert len(driver.messages) == 2
-    await stage.clock.advance(0.2)
+    await harness.clock.advance(0.2)
     assert driver.last() == (0, 0, 0, 0)
-    await stage.clock.advance(5.0)
+    await harness.clock.advance(5.0)
     assert len(driver.messages) == 3, "the robot is stopped only once"
 
 
-async def test_repeat_rate_republishes_velocity(start, stage):
-    driver = start(repeat_rate=10.0)
+async def test_repeat_rate_republishes_velocity(start_driver, harness):
+    driver = start_driver(repeat_rate=10.0)
     await driver.type("u", 1)
-    await stage.clock.advance(1.05)
+    await harness.clock.advance(1.05)
     assert len(driver.messages) == 11
     assert driver.last() == (0.5, 0, 0, 1)
 
 
-async def test_missing_subscriber_is_reported_once(start, stage, logged):
-    driver = start(kind=None)
+async def test_missing_subscriber_is_reported_once(start_driver, harness, logged):
+    driver = start_driver(kind=None)
     os.write(driver.typing_end, b"i")
     await eventually(lambda: driver.node._direction.x == 1.0)
-    await stage.clock.advance(3.0)
+    await harness.clock.advance(3.0)
     assert logged("WARN") == ["no node subscribes to /cmd_vel; run `linkwright doctor` for details"]
 
 
 @pytest.mark.parametrize("end", ["\x03", "closed"])
-async def test_exit_stops_robot_and_restores_terminal(start, end):
-    driver = start()
-    assert not echoes(driver.program_end)
+async def test_exit_stops_robot_and_restores_terminal(start_driver, end):
+    driver = start_driver()
+    assert not is_echoing(driver.program_end)
     await driver.type("i", 1)
     if end == "closed":
         os.close(driver.typing_end)
@@ -177,30 +177,30 @@ async def test_exit_stops_robot_and_restores_terminal(start, end):
         os.write(driver.typing_end, end.encode())
     await eventually(driver.node.finished.done)
     assert driver.node.finished.result() == 0
-    await driver.stage.graph.settle()
+    await driver.harness.graph.settle()
     assert driver.last() == (0, 0, 0, 0)
-    assert end == "closed" or echoes(driver.program_end)
+    assert end == "closed" or is_echoing(driver.program_end)
 
 
-async def test_closing_node_stops_robot(start):
-    driver = start()
+async def test_closing_node_stops_robot(start_driver):
+    driver = start_driver()
     await driver.type("i", 1)
     driver.close()
-    await driver.stage.graph.settle()
+    await driver.harness.graph.settle()
     assert driver.last() == (0, 0, 0, 0)
-    assert echoes(driver.program_end)
+    assert is_echoing(driver.program_end)
 
 
-async def test_missing_terminal_is_reported(stage):
+async def test_missing_terminal_is_reported(harness):
     with pytest.raises(LinkwrightError) as error:
-        TeleopTwistKeyboard(stage.graph, NodeOptions())
+        TeleopTwistKeyboard(harness.graph, NodeOptions())
     assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["NODE901"]
-    assert stage.graph.topics().get("/cmd_vel") is None
+    assert harness.graph.topics().get("/cmd_vel") is None
 
 
-async def test_negative_speed_is_rejected(stage):
+async def test_negative_speed_is_rejected(harness):
     with pytest.raises(LinkwrightError) as error:
-        TeleopTwistKeyboard(stage.graph, NodeOptions(parameters={"speed": -1.0}))
+        TeleopTwistKeyboard(harness.graph, NodeOptions(parameters={"speed": -1.0}))
     assert [diagnostic.code for diagnostic in error.value.diagnostics] == ["NODE902"]
 
 
@@ -218,15 +218,15 @@ def test_process_restores_terminal(terminal, tmp_path, end):
         output = b""
         while b"currently:" not in output or not output.endswith(b"\n"):
             output += os.read(typing_end, 4096)
-        assert not echoes(program_end)
+        assert not is_echoing(program_end)
         if end is None:
             os.close(typing_end)
         else:
             process.send_signal(end)
         assert process.stderr is not None
         assert process.stderr.read() == b""
-        assert process.wait(SECONDS) == 0
-        assert end is None or echoes(program_end)
+        assert process.wait(TIMEOUT_S) == 0
+        assert end is None or is_echoing(program_end)
     finally:
         if process.poll() is None:
             process.kill()

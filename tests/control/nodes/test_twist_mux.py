@@ -24,11 +24,11 @@ PARAMETERS = {
 class MuxHarness:
     """The inputs, outputs and diagnostics of a twist_mux."""
 
-    def __init__(self, stage, message_type=TWIST):
-        self.stage, self.velocity_type = stage, message_type
+    def __init__(self, harness, message_type=TWIST):
+        self.harness, self.velocity_type = harness, message_type
         self.forwarded, self.diagnostics = [], []
-        stage.node.create_subscription(message_type, "/cmd_vel_out", self.forwarded.append, 10)
-        stage.node.create_subscription(
+        harness.node.create_subscription(message_type, "/cmd_vel_out", self.forwarded.append, 10)
+        harness.node.create_subscription(
             "diagnostic_msgs/msg/DiagnosticArray", "/diagnostics", self.diagnostics.append, 10
         )
         self.publishers = {}
@@ -36,7 +36,7 @@ class MuxHarness:
     async def send(self, topic, value):
         """Publish a velocity or a lock, and return the forwarded velocities."""
         message_type = BOOL if isinstance(value, bool) else self.velocity_type
-        publisher = self.publishers.setdefault(topic, self.stage.node.create_publisher(message_type, topic, 10))
+        publisher = self.publishers.setdefault(topic, self.harness.node.create_publisher(message_type, topic, 10))
         message = message_type()
         if isinstance(value, bool):
             message.data = value
@@ -44,72 +44,72 @@ class MuxHarness:
             getattr(message, "twist", message).linear.x = value
         self.forwarded.clear()
         publisher.publish(message)
-        await self.stage.graph.settle()
+        await self.harness.graph.settle()
         return [getattr(message, "twist", message).linear.x for message in self.forwarded]
 
     async def status_values(self):
-        await self.stage.clock.advance(1.0)
+        await self.harness.clock.advance(1.0)
         (status,) = self.diagnostics[-1].status
         assert (status.name, status.message) == ("twist_mux: Twist mux status", "ok")
         return {pair.key: pair.value for pair in status.values}
 
 
 @pytest.fixture
-def harness(stage):
-    return MuxHarness(stage)
+def mux_harness(harness):
+    return MuxHarness(harness)
 
 
-def mux(stage, **more):
-    return TwistMux(stage.graph, NodeOptions(parameters={**PARAMETERS, **more}))
+def start_mux(harness, **parameters):
+    return TwistMux(harness.graph, NodeOptions(parameters={**PARAMETERS, **parameters}))
 
 
-async def test_highest_priority_topic_is_forwarded_until_timeout(stage, harness):
-    mux(stage)
-    assert await harness.send("nav_vel", 1.0) == [1.0]
-    assert await harness.send("joy_vel", 2.0) == [2.0]
-    assert await harness.send("nav_vel", 1.0) == []
-    await stage.clock.advance(0.6)
-    assert await harness.send("nav_vel", 1.0) == [1.0]
+async def test_highest_priority_topic_is_forwarded_until_timeout(harness, mux_harness):
+    start_mux(harness)
+    assert await mux_harness.send("nav_vel", 1.0) == [1.0]
+    assert await mux_harness.send("joy_vel", 2.0) == [2.0]
+    assert await mux_harness.send("nav_vel", 1.0) == []
+    await harness.clock.advance(0.6)
+    assert await mux_harness.send("nav_vel", 1.0) == [1.0]
 
 
-async def test_topic_without_timeout_stays_active_after_first_message(stage, harness):
-    mux(stage, topics={**PARAMETERS["topics"], "tablet": {"topic": "tab_vel", "timeout": 0.0, "priority": 20}})
-    assert await harness.send("nav_vel", 1.0) == [1.0]
-    assert await harness.send("tab_vel", 3.0) == [3.0]
-    await stage.clock.advance(60.0)
-    assert await harness.send("nav_vel", 1.0) == []
+async def test_topic_without_timeout_stays_active_after_first_message(harness, mux_harness):
+    start_mux(harness, topics={**PARAMETERS["topics"], "tablet": {"topic": "tab_vel", "timeout": 0.0, "priority": 20}})
+    assert await mux_harness.send("nav_vel", 1.0) == [1.0]
+    assert await mux_harness.send("tab_vel", 3.0) == [3.0]
+    await harness.clock.advance(60.0)
+    assert await mux_harness.send("nav_vel", 1.0) == []
 
 
-async def test_lock_blocks_lower_priorities(stage, harness):
-    mux(stage)
-    assert await harness.send("pause", True) == []
-    assert await harness.send("nav_vel", 1.0) == []
-    assert await harness.send("joy_vel", 2.0) == [2.0]
-    await harness.send("pause", False)
-    await stage.clock.advance(0.6)
-    assert await harness.send("nav_vel", 1.0) == [1.0]
+async def test_lock_blocks_lower_priorities(harness, mux_harness):
+    start_mux(harness)
+    assert await mux_harness.send("pause", True) == []
+    assert await mux_harness.send("nav_vel", 1.0) == []
+    assert await mux_harness.send("joy_vel", 2.0) == [2.0]
+    await mux_harness.send("pause", False)
+    await harness.clock.advance(0.6)
+    assert await mux_harness.send("nav_vel", 1.0) == [1.0]
 
 
-async def test_silent_lock_with_timeout_blocks(stage, harness):
-    mux(stage, locks={"watchdog": {"topic": "alive", "timeout": 0.5, "priority": 255}})
-    assert await harness.send("joy_vel", 2.0) == []
-    await harness.send("alive", False)
-    assert await harness.send("joy_vel", 2.0) == [2.0]
-    await stage.clock.advance(0.6)
-    assert await harness.send("joy_vel", 2.0) == []
+async def test_silent_lock_with_timeout_blocks(harness, mux_harness):
+    start_mux(harness, locks={"watchdog": {"topic": "alive", "timeout": 0.5, "priority": 255}})
+    assert await mux_harness.send("joy_vel", 2.0) == []
+    await mux_harness.send("alive", False)
+    assert await mux_harness.send("joy_vel", 2.0) == [2.0]
+    await harness.clock.advance(0.6)
+    assert await mux_harness.send("joy_vel", 2.0) == []
 
 
-async def test_stamped_velocities_are_supported(stage):
-    harness = MuxHarness(stage, get_message("geometry_msgs/msg/TwistStamped"))
-    mux(stage, use_stamped=True)
-    assert await harness.send("nav_vel", 1.0) == [1.0]
+async def test_stamped_velocities_are_supported(harness):
+    mux_harness = MuxHarness(harness, get_message("geometry_msgs/msg/TwistStamped"))
+    start_mux(harness, use_stamped=True)
+    assert await mux_harness.send("nav_vel", 1.0) == [1.0]
 
 
-async def test_diagnostics_report_masked_topics(stage, harness):
-    mux(stage)
-    await harness.send("pause", True)
-    await harness.send("joy_vel", 2.0)
-    values = await harness.status_values()
+async def test_diagnostics_report_masked_topics(harness, mux_harness):
+    start_mux(harness)
+    await mux_harness.send("pause", True)
+    await mux_harness.send("joy_vel", 2.0)
+    values = await mux_harness.status_values()
     assert values["velocity joystick"] == " masked (listening to joy_vel @ 0.500000s with priority #100)"
     assert values["velocity navigation"].startswith(" masked (listening to nav_vel")
     assert values["lock pause"] == " locked (listening to pause @ 0.000000s with priority #50)"
@@ -124,24 +124,24 @@ async def test_diagnostics_report_masked_topics(stage, harness):
         ({"a": {"topic": "a", "timeout": 0.5}}, "topics.a.priority"),
     ],
 )
-async def test_incomplete_topic_parameters_are_rejected(stage, topics, parameter):
+async def test_incomplete_topic_parameters_are_rejected(harness, topics, parameter):
     with pytest.raises(LinkwrightError) as error:
-        TwistMux(stage.graph, NodeOptions(parameters={"topics": topics}))
+        TwistMux(harness.graph, NodeOptions(parameters={"topics": topics}))
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "NODE904"
     assert f"'{parameter}'" in diagnostic.message
 
 
-async def test_missing_topics_are_reported_and_node_runs(stage, logged):
-    TwistMux(stage.graph, NodeOptions())
+async def test_missing_topics_are_reported_and_node_runs(harness, logged):
+    TwistMux(harness.graph, NodeOptions())
     assert logged("WARN") == ["no parameter topics.NAME.topic is set, so nothing is forwarded"]
 
 
-async def test_two_publishers_on_one_input_topic_are_reported(harness):
-    mux(harness.stage)
-    transport = RemoteTransport(harness.stage.graph)
+async def test_two_publishers_on_one_input_topic_are_reported(mux_harness):
+    start_mux(mux_harness.harness)
+    transport = RemoteTransport(mux_harness.harness.graph)
     topics_and_nodes = (("/tab_vel", "tab"), ("/joy_vel", "joy"), ("/joy_vel", "pad"))
-    tablet, joystick, other = (RemotePublisher(transport, topic, node) for topic, node in topics_and_nodes)
+    tablet, joystick, second_joystick = (RemotePublisher(transport, topic, node) for topic, node in topics_and_nodes)
 
     async def drive(*sources):
         for _ in range(20):
@@ -149,32 +149,32 @@ async def test_two_publishers_on_one_input_topic_are_reported(harness):
                 message = TWIST()
                 message.linear.x = float(speed)
                 source.send(message)
-                await harness.stage.clock.advance(0.1)
+                await mux_harness.harness.clock.advance(0.1)
 
     def conflict_warnings():
-        return [record.text for record in harness.stage.log if "several nodes drive the robot" in record.text]
+        return [record.text for record in mux_harness.harness.log if "several nodes drive the robot" in record.text]
 
     await drive(tablet, joystick)
     assert not conflict_warnings()
-    await drive(tablet, joystick, other)
+    await drive(tablet, joystick, second_joystick)
     (text,) = conflict_warnings()
     assert "'/joy', '/pad' send commands on '/joy_vel'" in text
 
 
-async def test_lost_publisher_of_last_velocity_stops_robot(harness):
-    mux(harness.stage)
-    transport = RemoteTransport(harness.stage.graph)
+async def test_lost_publisher_of_last_velocity_stops_robot(mux_harness):
+    start_mux(mux_harness.harness)
+    transport = RemoteTransport(mux_harness.harness.graph)
     tablet, joystick = (RemotePublisher(transport, topic, topic[1:]) for topic in ("/tab_vel", "/joy_vel"))
     for source, speed in ((tablet, 0.1), (joystick, 0.3)):
         message = TWIST()
         message.linear.x = speed
         source.send(message)
-    await harness.stage.graph.settle()
+    await mux_harness.harness.graph.settle()
     tablet.disappear()
-    await harness.stage.graph.settle()
-    assert [twist.linear.x for twist in harness.forwarded] == [0.1, 0.3]
+    await mux_harness.harness.graph.settle()
+    assert [twist.linear.x for twist in mux_harness.forwarded] == [0.1, 0.3]
     joystick.disappear()
-    await harness.stage.graph.settle()
-    assert [twist.linear.x for twist in harness.forwarded] == [0.1, 0.3, 0.0]
-    (text,) = [record.text for record in harness.stage.log if "was lost" in record.text]
+    await mux_harness.harness.graph.settle()
+    assert [twist.linear.x for twist in mux_harness.forwarded] == [0.1, 0.3, 0.0]
+    (text,) = [record.text for record in mux_harness.harness.log if "was lost" in record.text]
     assert text.endswith("a stop command is sent to '/cmd_vel_out'")

@@ -19,7 +19,7 @@ ROBOT = (
 )
 
 
-def raised(path: Path, z: float) -> EditPlan:
+def raise_link(path: Path, z: float) -> EditPlan:
     return plan_edit(examine(path), EditRequest("joint", "j", xyz=(0, 0, z)))
 
 
@@ -37,7 +37,7 @@ def test_edit_and_undo_preserve_other_bytes(tmp_path: Path, bytes_of: Callable[[
     path = tmp_path / "robot.urdf"
     path.write_bytes(bytes_of(ROBOT))
     history = EditHistory()
-    history.apply(raised(path, 2))
+    history.apply(raise_link(path, 2))
     after = bytes_of(ROBOT.replace("0 0 1", "0 0 2"))
     assert path.read_bytes() == after
     assert (history.can_undo, history.can_redo) == (True, False)
@@ -51,14 +51,14 @@ def test_edit_and_undo_preserve_other_bytes(tmp_path: Path, bytes_of: Callable[[
 def test_file_changed_meanwhile_is_not_overwritten(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
     path.write_bytes(ROBOT.encode())
-    plan, history = raised(path, 2), EditHistory()
+    plan, history = raise_link(path, 2), EditHistory()
     path.write_text(ROBOT.replace("é", "e"))
     with pytest.raises(EditRefusedError) as caught:
         history.apply(plan)
     assert caught.value.diagnostic.code == "EDIT107"
     assert path.read_text() == ROBOT.replace("é", "e").replace("\r\n", "\n")
 
-    history.apply(raised(path, 2))
+    history.apply(raise_link(path, 2))
     path.write_text("mine")
     with pytest.raises(EditRefusedError):
         history.undo()
@@ -89,7 +89,7 @@ def test_symlink_is_preserved(tmp_path: Path) -> None:
     real, link = tmp_path / "real.urdf", tmp_path / "robot.urdf"
     real.write_bytes(ROBOT.encode())
     link.symlink_to(real)
-    EditHistory().apply(raised(link, 2))
+    EditHistory().apply(raise_link(link, 2))
     assert link.is_symlink()
     assert "0 0 2" in real.read_text()
 
@@ -100,11 +100,11 @@ def test_workspace_is_package_repository_or_src_parent(tmp_path: Path) -> None:
     main = folder / "robot.urdf"
     main.write_text("")
     assert Workspace(main).folder == (tmp_path / "ws").resolve()
-    lone = tmp_path / "lone" / "urdf"
-    lone.mkdir(parents=True)
-    assert Workspace(lone / "robot.urdf").folder == lone.resolve()
+    lone_folder = tmp_path / "lone" / "urdf"
+    lone_folder.mkdir(parents=True)
+    assert Workspace(lone_folder / "robot.urdf").folder == lone_folder.resolve()
     (tmp_path / "lone" / "package.xml").write_text("")
-    assert Workspace(lone / "robot.urdf").folder == (tmp_path / "lone").resolve()
+    assert Workspace(lone_folder / "robot.urdf").folder == (tmp_path / "lone").resolve()
 
 
 def test_files_outside_workspace_or_installed_are_rejected(tmp_path: Path) -> None:
@@ -116,14 +116,14 @@ def test_files_outside_workspace_or_installed_are_rejected(tmp_path: Path) -> No
 
     other = tmp_path / "other.xacro"
     other.write_text("")
-    ours = Path(descriptions.__file__).resolve()
+    program_file = Path(descriptions.__file__).resolve()
     installed = tmp_path / "mine" / "install" / "share" / "robot" / "robot.urdf"
     installed.parent.mkdir(parents=True)
     installed.write_text("")
     (installed.parents[1] / "ament_index").mkdir()
-    for path, why in ((other, "outside the workspace"), (ours, "this program"), (installed, "installed")):
+    for path, reason in ((other, "outside the workspace"), (program_file, "this program"), (installed, "installed")):
         refusal = workspace.refusal(os.path.realpath(path))
         assert refusal is not None
         assert refusal.code == "EDIT106"
         assert path.name in refusal.message
-        assert why in refusal.message
+        assert reason in refusal.message

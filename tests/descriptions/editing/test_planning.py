@@ -24,7 +24,7 @@ from tests.corpora import OWN, Model
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
-def edited(folder: Path, text: str, request: EditRequest, **files: str) -> str:
+def edit_text(folder: Path, text: str, request: EditRequest, **files: str) -> str:
     """Return the text of the only changed file after an edit."""
     path = folder / "robot.urdf.xacro"
     path.write_bytes(text.encode())
@@ -43,7 +43,7 @@ def refused(folder: Path, text: str, request: EditRequest) -> Diagnostic:
     return caught.value.diagnostic
 
 
-def robot(body: str, joint: str = '<origin xyz="0 0 0.250"/>') -> str:
+def robot_text(body: str, joint: str = '<origin xyz="0 0 0.250"/>') -> str:
     return (
         f'<robot name="r" {XACRO}>\n  {body}\n  <link name="a"/>\n  <link name="b"/>\n'
         f'  <joint name="j" type="revolute">\n    {joint}\n    <parent link="a"/>\n    <child link="b"/>\n'
@@ -124,8 +124,8 @@ def changed_lines(before: str, after: str) -> list[str]:
 def test_position_edit_changes_text_that_produced_it(
     tmp_path: Path, body: str, joint: str, target: tuple[float, ...], line: str
 ) -> None:
-    text = robot(body, joint)
-    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=target))
+    text = robot_text(body, joint)
+    after = edit_text(tmp_path, text, EditRequest("joint", "j", xyz=target))
     assert changed_lines(text, after) == [line]
 
 
@@ -143,33 +143,33 @@ def test_position_edit_changes_text_that_produced_it(
     ],
 )
 def test_angles_keep_their_notation(tmp_path: Path, joint: str, rpy: tuple[float, ...], line: str) -> None:
-    text = robot("", joint)
-    assert changed_lines(text, edited(tmp_path, text, EditRequest("joint", "j", rpy=rpy))) == [line]
+    text = robot_text("", joint)
+    assert changed_lines(text, edit_text(tmp_path, text, EditRequest("joint", "j", rpy=rpy))) == [line]
 
 
 def test_quaternion_is_kept(tmp_path: Path) -> None:
-    text = robot("", '<origin quat_xyzw="0 0 0 1"/>')
-    after = edited(tmp_path, text, EditRequest("joint", "j", rpy=(0, 0, math.pi / 2)))
+    text = robot_text("", '<origin quat_xyzw="0 0 0 1"/>')
+    after = edit_text(tmp_path, text, EditRequest("joint", "j", rpy=(0, 0, math.pi / 2)))
     assert changed_lines(text, after) == ['<origin quat_xyzw="0 0 0.707106781 0.707106781"/>']
 
 
 def test_unchanged_value_plans_no_edit(tmp_path: Path) -> None:
     path = tmp_path / "robot.urdf"
-    path.write_text(robot(""))
+    path.write_text(robot_text(""))
     assert plan_edit(examine(path), EditRequest("joint", "j", xyz=(0, 0, 0.25), rpy=(0, 0, 0))).texts == {}
 
 
 def test_missing_origin_and_axis_are_inserted_with_indentation(tmp_path: Path) -> None:
-    text = robot("", "").replace("\n", "\r\n").replace("    ", "\t\t")
-    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.5)))
+    text = robot_text("", "").replace("\n", "\r\n").replace("    ", "\t\t")
+    after = edit_text(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.5)))
     assert '\r\n\t\t<origin xyz="0 0 0.5"/>\r\n\t\t<parent' in after
     assert "\n" not in after.replace("\r\n", "")
-    after = edited(tmp_path, text, EditRequest("axis", "j", xyz=(0, 0, 1)))
+    after = edit_text(tmp_path, text, EditRequest("axis", "j", xyz=(0, 0, 1)))
     assert '<child link="b"/>\r\n\t\t<axis xyz="0 0 1"/>\r\n' in after
 
 
 def test_zero_axis_is_rejected(tmp_path: Path) -> None:
-    assert refused(tmp_path, robot(""), EditRequest("axis", "j", xyz=(0, 0, 0))).code == "EDIT102"
+    assert refused(tmp_path, robot_text(""), EditRequest("axis", "j", xyz=(0, 0, 0))).code == "EDIT102"
 
 
 WHEELS = f"""<robot name="r" {XACRO}>
@@ -188,14 +188,14 @@ WHEELS = f"""<robot name="r" {XACRO}>
 
 
 def test_macro_argument_is_edited_in_macro_call(tmp_path: Path) -> None:
-    after = edited(tmp_path, WHEELS, EditRequest("joint", "left_joint", xyz=(0.1, 0.3, 0.1)))
+    after = edit_text(tmp_path, WHEELS, EditRequest("joint", "left_joint", xyz=(0.1, 0.3, 0.1)))
     assert changed_lines(WHEELS, after) == ['<xacro:wheel side="left" y="0.3"/>']
-    after = edited(tmp_path, WHEELS, EditRequest("joint", "right_joint", xyz=(0.1, 0.05, 0.1)))
+    after = edit_text(tmp_path, WHEELS, EditRequest("joint", "right_joint", xyz=(0.1, 0.05, 0.1)))
     assert changed_lines(WHEELS, after) == ['<xacro:wheel side="right" y="${0.05}"/>']
 
 
 def test_macro_call_relying_on_default_gets_argument(tmp_path: Path) -> None:
-    after = edited(tmp_path, WHEELS, EditRequest("visual", "left", xyz=(0, 0, 0.4)))
+    after = edit_text(tmp_path, WHEELS, EditRequest("visual", "left", xyz=(0, 0, 0.4)))
     assert changed_lines(WHEELS, after) == ['<xacro:wheel side="left" y="0.2" at="0 0 0.4"/>']
 
 
@@ -210,10 +210,13 @@ def test_edit_of_repeated_macro_text_is_rejected_with_side_effects(tmp_path: Pat
 
 
 def test_rejection_names_text_with_fewest_side_effects(tmp_path: Path) -> None:
-    """The text of the sum in the macro is named, because it affects fewer joints than the shared length."""
+    """The text of the sum in the macro is named.
+
+    It affects fewer joints than the shared length.
+    """
     joint = '<origin xyz="${lift} 0 0"/><parent link="base"/><child link="tip"/>'
-    more = f'<link name="tip"/>\n  <joint name="far" type="fixed">{joint}</joint>\n</robot>'
-    text = WHEELS.replace("</robot>", more)
+    tip_joint = f'<link name="tip"/>\n  <joint name="far" type="fixed">{joint}</joint>\n</robot>'
+    text = WHEELS.replace("</robot>", tip_joint)
     diagnostic = refused(tmp_path, text, EditRequest("joint", "left_joint", xyz=(0.1, 0.2, 0.3)))
     assert "joint 'right_joint'" in diagnostic.message
     assert "far" not in diagnostic.message
@@ -261,20 +264,20 @@ def test_factor_selecting_side_is_kept(tmp_path: Path) -> None:
 
 def test_property_used_by_plugin_is_kept(tmp_path: Path) -> None:
     body = '<xacro:property name="h" value="0.5"/>\n  <gazebo><plugin name="p"><height>${h}</height></plugin></gazebo>'
-    text = robot(body, '<origin xyz="0 0 ${h}"/>')
-    after = edited(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.6)))
+    text = robot_text(body, '<origin xyz="0 0 ${h}"/>')
+    after = edit_text(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.6)))
     assert changed_lines(text, after) == ['<origin xyz="0 0 ${h + 0.1}"/>']
 
 
 def test_value_from_yaml_file_is_edited_there(tmp_path: Path) -> None:
     body = '<xacro:property name="c" value="${xacro.load_yaml(\'sizes.yaml\')}"/>'
-    text = robot(body, "<origin xyz=\"0 0 ${c['mast']['height']}\" rpy=\"${c['mast']['tilt']} 0 0\"/>")
+    text = robot_text(body, "<origin xyz=\"0 0 ${c['mast']['height']}\" rpy=\"${c['mast']['tilt']} 0 0\"/>")
     sizes = "base: {height: 1}  # wide\nmast:\n  height: 0.250  # high\n  tilt: !degrees 10\n"
-    assert edited(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.3)), sizes_yaml=sizes) == sizes.replace(
+    assert edit_text(tmp_path, text, EditRequest("joint", "j", xyz=(0, 0, 0.3)), sizes_yaml=sizes) == sizes.replace(
         "0.250", "0.3"
     )
     turned = EditRequest("joint", "j", rpy=(math.radians(20), 0, 0))
-    assert edited(tmp_path, text, turned, sizes_yaml=sizes) == sizes.replace("10", "20")
+    assert edit_text(tmp_path, text, turned, sizes_yaml=sizes) == sizes.replace("10", "20")
 
 
 def test_block_is_edited_in_macro_call(tmp_path: Path) -> None:
@@ -287,33 +290,33 @@ def test_block_is_edited_in_macro_call(tmp_path: Path) -> None:
   <xacro:mount name="two"><origin xyz="0 0 1"/></xacro:mount>
 </robot>
 """
-    after = edited(tmp_path, text, EditRequest("joint", "two_joint", xyz=(0, 0, 2)))
+    after = edit_text(tmp_path, text, EditRequest("joint", "two_joint", xyz=(0, 0, 2)))
     assert changed_lines(text, after) == ['<xacro:mount name="two"><origin xyz="0 0 2"/></xacro:mount>']
 
 
 def test_included_file_is_edited_only_if_writable(tmp_path: Path) -> None:
     (tmp_path / "part.xacro").write_text(f'<robot {XACRO}><xacro:property name="h" value="0.5"/></robot>')
-    text = robot('<xacro:include filename="part.xacro"/>', '<origin xyz="0 0 ${h}"/>')
+    text = robot_text('<xacro:include filename="part.xacro"/>', '<origin xyz="0 0 ${h}"/>')
     path = tmp_path / "robot.urdf.xacro"
     path.write_text(text)
     request = EditRequest("joint", "j", xyz=(0, 0, 0.6))
     part = os.path.realpath(tmp_path / "part.xacro")
     assert list(plan_edit(examine(path), request).texts) == [part]
 
-    why = Diagnostic("EDIT106", "no")
-    plan = plan_edit(examine(path), request, lambda file: why if file == part else None)
+    rejection = Diagnostic("EDIT106", "no")
+    plan = plan_edit(examine(path), request, lambda file: rejection if file == part else None)
     assert changed_lines(text, *plan.texts.values()) == ['<origin xyz="0 0 ${h + 0.1}"/>']
     with pytest.raises(EditRefusedError) as caught:
-        plan_edit(examine(path), request, lambda _: why)
-    assert caught.value.diagnostic is why
+        plan_edit(examine(path), request, lambda _: rejection)
+    assert caught.value.diagnostic is rejection
 
 
 def test_missing_elements_and_infinite_values_are_rejected(tmp_path: Path) -> None:
-    assert refused(tmp_path, robot(""), EditRequest("joint", "k", xyz=(0, 0, 1))).code == "EDIT101"
-    assert refused(tmp_path, robot(""), EditRequest("visual", "a", 0, xyz=(0, 0, 1))).code == "EDIT101"
-    assert refused(tmp_path, robot(""), EditRequest("joint", "j", xyz=(0, 0, math.inf))).code == "EDIT102"
+    assert refused(tmp_path, robot_text(""), EditRequest("joint", "k", xyz=(0, 0, 1))).code == "EDIT101"
+    assert refused(tmp_path, robot_text(""), EditRequest("visual", "a", 0, xyz=(0, 0, 1))).code == "EDIT101"
+    assert refused(tmp_path, robot_text(""), EditRequest("joint", "j", xyz=(0, 0, math.inf))).code == "EDIT102"
     with pytest.raises(EditRefusedError):
-        plan_edit(examine(robot("")), EditRequest("joint", "j", xyz=(0, 0, 1)))
+        plan_edit(examine(robot_text("")), EditRequest("joint", "j", xyz=(0, 0, 1)))
 
 
 # --- the robots of the corpus -----------------------------------------------------------------------------------------
@@ -329,7 +332,7 @@ def parts_of(robot_model: Robot) -> list[tuple[Any, str, int]]:
     return parts
 
 
-def with_edit(robot_model: Robot, request: EditRequest) -> Robot:
+def apply_edit(robot_model: Robot, request: EditRequest) -> Robot:
     """Return the robot that an edit should produce."""
     assert request.xyz is not None
     x, y, z = request.xyz
@@ -338,36 +341,36 @@ def with_edit(robot_model: Robot, request: EditRequest) -> Robot:
         joint = replace(robot_model.joints[name], axis=(x, y, z))
         return replace(robot_model, joints={**robot_model.joints, name: joint})
     if request.part == "joint":
-        joint = replace(robot_model.joints[name], origin=moved(robot_model.joints[name].origin, request))
+        joint = replace(robot_model.joints[name], origin=moved_origin(robot_model.joints[name].origin, request))
         return replace(robot_model, joints={**robot_model.joints, name: joint})
     link = robot_model.links[name]
     if request.part == "inertial":
         assert link.inertial is not None
-        inertial = replace(link.inertial, origin=moved(link.inertial.origin, request))
+        inertial = replace(link.inertial, origin=moved_origin(link.inertial.origin, request))
         return replace(robot_model, links={**robot_model.links, name: replace(link, inertial=inertial)})
     field = f"{request.part}s"
     shapes = list(getattr(link, field))
-    shapes[i] = replace(shapes[i], origin=moved(shapes[i].origin, request))
+    shapes[i] = replace(shapes[i], origin=moved_origin(shapes[i].origin, request))
     return replace(robot_model, links={**robot_model.links, name: replace(link, **{field: tuple(shapes)})})
 
 
-def moved(origin: Pose, request: EditRequest) -> Pose:
+def moved_origin(origin: Pose, request: EditRequest) -> Pose:
     assert request.xyz is not None
     x, y, z = request.xyz
     rpy = origin.rpy if request.rpy is None else (request.rpy[0], request.rpy[1], request.rpy[2])
     return Pose((x, y, z), rpy)
 
 
-def rounded(value: Any) -> Any:
+def round_value(value: Any) -> Any:
     """Round poses and axes to the nanometer, so that robots can be compared."""
     if isinstance(value, float):
         return round(value, 7) + 0.0
     if isinstance(value, dict):
-        return {key: rounded(member) for key, member in value.items()}
-    return tuple(map(rounded, value)) if isinstance(value, (tuple, list)) else value
+        return {key: round_value(member) for key, member in value.items()}
+    return tuple(map(round_value, value)) if isinstance(value, (tuple, list)) else value
 
 
-def facts(robot_model: Robot) -> Any:
+def robot_facts(robot_model: Robot) -> Any:
     joints = {
         name: (joint.type, joint.parent, joint.child, joint.origin.xyz, joint.origin.rpy, joint.axis)
         for name, joint in robot_model.joints.items()
@@ -386,17 +389,17 @@ def facts(robot_model: Robot) -> Any:
         for name, link in robot_model.links.items()
         if link.inertial is not None
     }
-    return rounded(joints), rounded(links), rounded(masses)
+    return round_value(joints), round_value(links), round_value(masses)
 
 
-def unedited(root: Element) -> Iterator[tuple[str, dict[str, str], str]]:
+def without_edits(root: Element) -> Iterator[tuple[str, dict[str, str], str]]:
     """Return a document without origins and axes."""
     for element in root.walk():
         if element.tag not in ("origin", "axis"):
             yield element.tag, element.attributes, " ".join(element.text().split())
 
 
-def described(model: Model) -> Description:
+def describe_model(model: Model) -> Description:
     return examine(model.path, arguments=model.arguments, packages=model.packages)
 
 
@@ -412,7 +415,7 @@ NUMBERS = st.integers(-2000, 2000).map(lambda number: number / 1000)
 
 
 def test_joint_without_axis_has_no_axis_to_edit(tmp_path: Path) -> None:
-    text = robot("").replace('type="revolute"', 'type="floating"')
+    text = robot_text("").replace('type="revolute"', 'type="floating"')
     diagnostic = refused(tmp_path, text, EditRequest("axis", "j", xyz=(0, 0, 1)))
     assert diagnostic.code == "EDIT101"
     assert "'j' has no axis" in diagnostic.message
@@ -422,7 +425,7 @@ def test_joint_without_axis_has_no_axis_to_edit(tmp_path: Path) -> None:
 @given(st.data())
 def test_expansion_changes_only_edited_values(data: st.DataObject) -> None:
     model = data.draw(st.sampled_from(ROBOTS))
-    before = described(model)
+    before = describe_model(model)
     assert before.robot is not None
     parts = parts_of(before.robot)
     if not parts:
@@ -438,6 +441,6 @@ def test_expansion_changes_only_edited_values(data: st.DataObject) -> None:
         return
     after = examine(model.path, arguments=model.arguments, packages=model.packages, overlay=Overlay({**plan.texts}))
     assert after.robot is not None
-    assert facts(after.robot) == facts(with_edit(before.robot, request))
-    assert list(unedited(after.document.root)) == list(unedited(before.document.root))
+    assert robot_facts(after.robot) == robot_facts(apply_edit(before.robot, request))
+    assert list(without_edits(after.document.root)) == list(without_edits(before.document.root))
     assert [text for path, text in plan.old_texts.items() if text == plan.texts[path]] == []

@@ -1,3 +1,5 @@
+"""The `--ros-args` of a command line: remappings, parameters and logging."""
+
 from __future__ import annotations
 
 import pytest

@@ -1,4 +1,7 @@
-"""Several simultaneous commanders: sequences of commands that contradict each other, and the report about them."""
+"""Several simultaneous commanders.
+
+The tests cover sequences of contradictory commands, and the report about them.
+"""
 
 from __future__ import annotations
 
@@ -13,16 +16,18 @@ from linkwright.graph.log.logger import Logger
 from linkwright.messages import get_message
 
 Twist, Stamped = get_message("geometry_msgs/msg/Twist"), get_message("geometry_msgs/msg/TwistStamped")
-Sent = tuple[float, str, float]
+SentCommand = tuple[float, str, float]
 """A command: the time in seconds, the name of the publisher, and the speed."""
 
 
-def stream(sender: str, begin: float, end: float, rate: float, speed: float) -> list[Sent]:
+def command_stream(sender: str, begin: float, end: float, rate: float, speed: float) -> list[SentCommand]:
     """Return periodic commands."""
     return [(begin + number / rate, sender, speed) for number in range(round((end - begin) * rate))]
 
 
-def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -> list[tuple[float, set[object]]]:
+def find_disputes(
+    *streams: Iterable[SentCommand], dispute: DisputeDetector | None = None
+) -> list[tuple[float, set[object]]]:
     """Return the times of reports, and the disputing publishers."""
     dispute = dispute or DisputeDetector()
     reports = []
@@ -35,44 +40,46 @@ def disputes(*streams: Iterable[Sent], dispute: DisputeDetector | None = None) -
 @pytest.mark.parametrize(
     "streams",
     [
-        (stream("keys", 0, 60, 10, 0.3),),
-        (stream("keys", 0, 10, 10, 0.3), stream("planner", 10, 60, 20, 0.5)),
-        (stream("keys", 0, 60, 10, 0.3), stream("planner", 0.05, 60, 10, 0.3)),
-        (stream("keys", 0, 60, 10, 0.0), stream("planner", 0.05, 60, 10, 0.0)),
-        (stream("planner", 0, 60, 20, 0.5), [(20.01, "behaviors", 0.0), (40.01, "behaviors", 0.0)]),
-        (stream("smoother", 0, 11.3, 20, 0.3), stream("behaviors", 10, 30, 10, -0.05)),
-        (stream("planner", 0, 60, 20, 0.5), [(10.0 * tap, "keys", 0.1) for tap in range(1, 6)]),
+        (command_stream("keys", 0, 60, 10, 0.3),),
+        (command_stream("keys", 0, 10, 10, 0.3), command_stream("planner", 10, 60, 20, 0.5)),
+        (command_stream("keys", 0, 60, 10, 0.3), command_stream("planner", 0.05, 60, 10, 0.3)),
+        (command_stream("keys", 0, 60, 10, 0.0), command_stream("planner", 0.05, 60, 10, 0.0)),
+        (command_stream("planner", 0, 60, 20, 0.5), [(20.01, "behaviors", 0.0), (40.01, "behaviors", 0.0)]),
+        (command_stream("smoother", 0, 11.3, 20, 0.3), command_stream("behaviors", 10, 30, 10, -0.05)),
+        (command_stream("planner", 0, 60, 20, 0.5), [(10.0 * tap, "keys", 0.1) for tap in range(1, 6)]),
         (
-            stream("planner", 0, 5, 20, 0.5),
-            stream("behaviors", 5, 8, 10, -0.05),
-            stream("planner", 8, 12, 20, 0.5),
-            stream("behaviors", 12, 15, 10, 1.0),
+            command_stream("planner", 0, 5, 20, 0.5),
+            command_stream("behaviors", 5, 8, 10, -0.05),
+            command_stream("planner", 8, 12, 20, 0.5),
+            command_stream("behaviors", 12, 15, 10, 1.0),
         ),
     ],
     ids=["one", "handover", "alike", "both still", "stops", "a smoother that runs out", "taps", "recoveries"],
 )
 def test_normal_command_patterns_are_not_reported(streams):
-    assert disputes(*streams) == []
+    assert find_disputes(*streams) == []
 
 
 @pytest.mark.parametrize(("first", "second"), [(10.0, 10.0), (1.0, 1.0), (50.0, 1.0), (100.0, 20.0)])
 def test_contradicting_publishers_are_reported_once(first, second):
-    ((when, senders),) = disputes(stream("keys", 5, 60, first, 0.3), stream("planner", 10.003, 60, second, -0.1))
+    ((when, senders),) = find_disputes(
+        command_stream("keys", 5, 60, first, 0.3), command_stream("planner", 10.003, 60, second, -0.1)
+    )
     assert senders == {"keys", "planner"}
     assert 12.9 <= when <= 14.1
 
 
 def test_publisher_of_zero_commands_counts_as_driver():
-    assert disputes(stream("joystick", 0, 9, 10, 0.0), stream("planner", 0.03, 9, 20, 0.5))
+    assert find_disputes(command_stream("joystick", 0, 9, 10, 0.0), command_stream("planner", 0.03, 9, 20, 0.5))
 
 
 def test_third_driver_is_reported_and_all_again_after_a_break():
-    reports = disputes(
-        stream("a", 0, 20, 10, 0.1),
-        stream("b", 0.01, 20, 10, 0.2),
-        stream("c", 10.02, 20, 10, 0.3),
-        stream("a", 40, 50, 10, 0.1),
-        stream("b", 40.01, 50, 10, 0.2),
+    reports = find_disputes(
+        command_stream("a", 0, 20, 10, 0.1),
+        command_stream("b", 0.01, 20, 10, 0.2),
+        command_stream("c", 10.02, 20, 10, 0.3),
+        command_stream("a", 40, 50, 10, 0.1),
+        command_stream("b", 40.01, 50, 10, 0.2),
     )
     assert [senders for _, senders in reports] == [{"a", "b"}, {"a", "b", "c"}, {"a", "b"}]
 
@@ -80,26 +87,33 @@ def test_third_driver_is_reported_and_all_again_after_a_break():
 def test_short_break_is_not_reported_again():
     bursts = [(0, 5), (9, 14), (18, 23)]
     streams = [
-        stream(sender, begin + shift, end, 10, 0.1 + shift)
+        command_stream(sender, begin + shift, end, 10, 0.1 + shift)
         for sender, shift in (("a", 0), ("b", 0.01))
         for begin, end in bursts
     ]
-    assert len(disputes(*streams)) == 1
+    assert len(find_disputes(*streams)) == 1
 
 
 def test_time_jump_back_resets_dispute():
     dispute = DisputeDetector()
-    assert disputes(stream("a", 100, 102, 10, 0.1), stream("b", 100.01, 102, 10, 0.2), dispute=dispute) == []
-    assert disputes(stream("a", 0, 2, 10, 0.1), stream("b", 0.01, 2, 10, 0.2), dispute=dispute) == []
-    assert disputes(stream("a", 2, 4, 10, 0.1), stream("b", 2.01, 4, 10, 0.2), dispute=dispute)
+    assert (
+        find_disputes(
+            command_stream("a", 100, 102, 10, 0.1), command_stream("b", 100.01, 102, 10, 0.2), dispute=dispute
+        )
+        == []
+    )
+    assert (
+        find_disputes(command_stream("a", 0, 2, 10, 0.1), command_stream("b", 0.01, 2, 10, 0.2), dispute=dispute) == []
+    )
+    assert find_disputes(command_stream("a", 2, 4, 10, 0.1), command_stream("b", 2.01, 4, 10, 0.2), dispute=dispute)
 
 
 class KnownPublishers:
     """A graph with publishers of named nodes."""
 
-    def __init__(self, nodes: dict[bytes, str | None], twice: str = "") -> None:
+    def __init__(self, nodes: dict[bytes, str | None], duplicate_name: str = "") -> None:
         self._nodes = nodes
-        self._names = [*{name for name in nodes.values() if name}, *([twice] if twice else [])]
+        self._names = [*{name for name in nodes.values() if name}, *([duplicate_name] if duplicate_name else [])]
 
     def endpoints(self) -> list[EndpointInfo]:
         kind, qos = EndpointKind.PUBLISHER, QoSProfile(10)
@@ -112,7 +126,7 @@ class KnownPublishers:
         return [NodeIdentity(name, "/") for name in self._names]
 
 
-def warnings_about(graph: KnownPublishers, message_type: type = Twist) -> list[str]:
+def find_warnings(graph: KnownPublishers, message_type: type = Twist) -> list[str]:
     """Return the warnings about publishers that drive for five seconds."""
     log: list[str] = []
     now = 0
@@ -132,7 +146,7 @@ def warnings_about(graph: KnownPublishers, message_type: type = Twist) -> list[s
 
 @pytest.mark.parametrize("message_type", [Twist, Stamped])
 def test_warning_names_nodes_and_suggests_fixes(message_type):
-    (text,) = warnings_about(KnownPublishers({b"1": "keys", b"2": "planner", b"3": "keys"}), message_type)
+    (text,) = find_warnings(KnownPublishers({b"1": "keys", b"2": "planner", b"3": "keys"}), message_type)
     assert text == (
         "several nodes drive the robot: '/keys', '/planner' send commands on '/cmd_vel', and the robot jerks because "
         "it follows each message in turn. Stop all but one of them, remap their topics (-r /cmd_vel:=...), or let "
@@ -141,10 +155,10 @@ def test_warning_names_nodes_and_suggests_fixes(message_type):
 
 
 def test_dispute_compares_nodes_instead_of_publishers():
-    assert warnings_about(KnownPublishers({b"1": "keys", b"2": "keys"})) == []
-    (text,) = warnings_about(KnownPublishers({b"1": "keys", b"2": "keys"}, twice="keys"))
+    assert find_warnings(KnownPublishers({b"1": "keys", b"2": "keys"})) == []
+    (text,) = find_warnings(KnownPublishers({b"1": "keys", b"2": "keys"}, duplicate_name="keys"))
     assert text.startswith("several nodes drive the robot: '/keys', '/keys' send commands on")
 
 
 def test_unknown_publishers_are_not_reported():
-    assert warnings_about(KnownPublishers({b"1": "keys", b"2": None})) == []
+    assert find_warnings(KnownPublishers({b"1": "keys", b"2": None})) == []

@@ -1,3 +1,5 @@
+"""Content filters of subscriptions: their expressions, and the messages that pass."""
+
 from contextlib import suppress
 
 import pytest
@@ -9,10 +11,10 @@ from linkwright.graph.qos.profile import DESCRIPTION_QOS
 from linkwright.messages import Header, JointState, String, get_message, serialize
 
 Bool = get_message("std_msgs/msg/Bool")
-STATE = JointState(header=Header(frame_id="base_link"), name=["left", "right"], position=[0.5, -2.0])
+JOINT_STATE = JointState(header=Header(frame_id="base_link"), name=["left", "right"], position=[0.5, -2.0])
 
 
-def accepts(expression, *parameters, message=STATE):
+def filter_accepts(expression, *parameters, message=JOINT_STATE):
     return ContentFilter(ContentFilterOptions(expression, parameters), type(message)).accepts(message)
 
 
@@ -39,19 +41,19 @@ def accepts(expression, *parameters, message=STATE):
     ],
 )
 def test_filter_accepts_true_conditions(expression, parameters):
-    assert accepts(expression, *parameters)
-    assert not accepts(f"NOT ({expression})", *parameters)
+    assert filter_accepts(expression, *parameters)
+    assert not filter_accepts(f"NOT ({expression})", *parameters)
 
 
 @pytest.mark.parametrize("expression", ["position[7] > 0", "position > 0", "header.frame_id > 5 AND name[9] = 'x'"])
 def test_filter_rejects_incomparable_values(expression):
-    assert not accepts(expression)
+    assert not filter_accepts(expression)
 
 
 def test_filter_compares_booleans_and_numeric_strings():
-    assert accepts("data = TRUE", message=Bool(data=True))
-    assert not accepts("data = %0", "false", message=Bool(data=True))
-    assert accepts("data = %0", "5", message=String(data="5"))
+    assert filter_accepts("data = TRUE", message=Bool(data=True))
+    assert not filter_accepts("data = %0", "false", message=Bool(data=True))
+    assert filter_accepts("data = %0", "5", message=String(data="5"))
 
 
 @pytest.mark.parametrize(
@@ -71,13 +73,13 @@ def test_filter_compares_booleans_and_numeric_strings():
 )
 def test_invalid_filter_expressions_are_rejected(expression, problem):
     with pytest.raises(ContentFilterError, match=problem):
-        accepts(expression)
+        filter_accepts(expression)
 
 
 @given(st.text(alphabet="position[0]headr.fm_ ()<>=!%'\"ANDORTBEWLIKM123.-"))
 def test_random_filter_expressions_are_parsed_or_rejected(expression):
     with suppress(ContentFilterError):
-        assert accepts(expression) in (True, False)
+        assert filter_accepts(expression) in (True, False)
 
 
 async def test_latched_messages_are_filtered(graph):

@@ -1,3 +1,5 @@
+"""Events of endpoints: incompatible QoS, matches, deadlines and liveliness."""
+
 import pytest
 
 from linkwright.graph import (
@@ -21,7 +23,7 @@ def node(graph):
     return graph.create_node("node")
 
 
-def nothing(_message):
+def ignore(_message):
     pass
 
 
@@ -34,7 +36,7 @@ async def test_publisher_receives_incompatible_qos_events(graph, node, log):
         node.create_subscription(
             String,
             "topic",
-            nothing,
+            ignore,
             QoSProfile(5, durability=DurabilityPolicy.TRANSIENT_LOCAL),
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
@@ -51,7 +53,7 @@ async def test_matched_events_count_endpoints(graph, node):
         String, "topic", 1, event_callbacks=PublisherEventCallbacks(matched=published.append)
     )
     subscription = node.create_subscription(
-        String, "topic", nothing, 1, event_callbacks=SubscriptionEventCallbacks(matched=subscribed.append)
+        String, "topic", ignore, 1, event_callbacks=SubscriptionEventCallbacks(matched=subscribed.append)
     )
     subscription.set_remote_count(2)
     await graph.settle()
@@ -66,33 +68,33 @@ async def test_matched_events_count_endpoints(graph, node):
 
 
 async def test_deadline_missed_events_are_sent_to_both_sides(graph, node, clock):
-    offered, requested = [], []
+    offered_events, requested_events = [], []
     qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
     publisher = node.create_publisher(
-        String, "topic", qos, event_callbacks=PublisherEventCallbacks(deadline=offered.append)
+        String, "topic", qos, event_callbacks=PublisherEventCallbacks(deadline=offered_events.append)
     )
     node.create_subscription(
-        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(deadline=requested.append)
+        String, "topic", ignore, qos, event_callbacks=SubscriptionEventCallbacks(deadline=requested_events.append)
     )
     await clock.advance(5.0)
-    assert (offered, requested) == ([], [])  # the deadline begins with the first message, as in DDS
+    assert (offered_events, requested_events) == ([], [])  # the deadline begins with the first message, as in DDS
     for _ in range(10):
         publisher.publish(String())
         await clock.advance(0.9)
-    assert (offered, requested) == ([], [])
+    assert (offered_events, requested_events) == ([], [])
     await clock.advance(2.5)
-    assert [event.total_count for event in offered] == [1, 2, 3]
-    assert [event.total_count for event in requested] == [1, 2, 3]
+    assert [event.total_count for event in offered_events] == [1, 2, 3]
+    assert [event.total_count for event in requested_events] == [1, 2, 3]
     node.destroy_node()
     await clock.advance(10.0)
-    assert len(offered) == 3
+    assert len(offered_events) == 3
 
 
 async def test_remote_messages_satisfy_deadline(node, clock):
     missed = []
     qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
     events = SubscriptionEventCallbacks(deadline=missed.append)
-    subscription = node.create_subscription(String, "topic", nothing, qos, event_callbacks=events)
+    subscription = node.create_subscription(String, "topic", ignore, qos, event_callbacks=events)
     subscription.set_remote_count(1)
     await clock.advance(5.0)
     for _ in range(10):
@@ -107,7 +109,7 @@ async def test_deadline_is_missed_without_running_executor(graph, node, clock):
     missed = []
     qos = QoSProfile(depth=1, deadline=Duration(seconds=1.0))
     node.create_subscription(
-        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(deadline=missed.append)
+        String, "topic", ignore, qos, event_callbacks=SubscriptionEventCallbacks(deadline=missed.append)
     )
     publisher = node.create_publisher(String, "topic", qos)
     node.handle.set_dispatcher(None)
@@ -128,7 +130,7 @@ async def test_liveliness_events_are_sent_to_both_sides(graph, node, clock):
         String, "topic", qos, event_callbacks=PublisherEventCallbacks(liveliness=lost.append)
     )
     node.create_subscription(
-        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=events.append)
+        String, "topic", ignore, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=events.append)
     )
     for _ in range(3):
         publisher.assert_liveliness()
@@ -149,7 +151,7 @@ async def test_destroyed_lost_publisher_decrements_not_alive_count(graph, node, 
     publisher = node.create_publisher(String, "topic", qos, event_callbacks=PublisherEventCallbacks())
     await clock.advance(2.0)
     node.create_subscription(
-        String, "topic", nothing, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=events.append)
+        String, "topic", ignore, qos, event_callbacks=SubscriptionEventCallbacks(liveliness=events.append)
     )
     publisher.assert_liveliness()
     await clock.advance(2.0)
@@ -161,7 +163,7 @@ async def test_destroyed_lost_publisher_decrements_not_alive_count(graph, node, 
 async def test_liveliness_of_remote_publishers_is_counted(graph, node):
     events = []
     subscription = node.create_subscription(
-        String, "topic", nothing, 1, event_callbacks=SubscriptionEventCallbacks(liveliness=events.append)
+        String, "topic", ignore, 1, event_callbacks=SubscriptionEventCallbacks(liveliness=events.append)
     )
     for alive, not_alive in [(2, 0), (2, 0), (1, 1), (0, 1), (0, 0)]:
         subscription.set_remote_count(alive + not_alive)
@@ -174,7 +176,7 @@ async def test_liveliness_of_remote_publishers_is_counted(graph, node):
 async def test_message_lost_events_count_messages(graph, node):
     lost = []
     subscription = node.create_subscription(
-        String, "topic", nothing, 2, event_callbacks=SubscriptionEventCallbacks(message_lost=lost.append)
+        String, "topic", ignore, 2, event_callbacks=SubscriptionEventCallbacks(message_lost=lost.append)
     )
     publisher = node.create_publisher(String, "topic", 10)
     for _ in range(5):

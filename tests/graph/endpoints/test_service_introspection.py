@@ -1,3 +1,5 @@
+"""The events that services publish about their requests and responses."""
+
 import pytest
 
 from linkwright.graph import InvalidHandleError
@@ -11,7 +13,7 @@ Info = get_message("service_msgs/msg/ServiceEventInfo")
 OFF, METADATA, CONTENTS = ServiceIntrospectionState
 
 
-def add(request, response):
+def add_two_ints(request, response):
     response.sum = request.a + request.b
     return response
 
@@ -23,7 +25,7 @@ def nodes(graph):
 
 @pytest.fixture
 def service(nodes):
-    return nodes[0].create_service(AddTwoInts, "add", add)
+    return nodes[0].create_service(AddTwoInts, "add", add_two_ints)
 
 
 @pytest.fixture
@@ -38,7 +40,7 @@ def events(graph, service):
     return events
 
 
-def configure(endpoint, state):
+def configure_introspection(endpoint, state):
     endpoint.configure_introspection(ROSClock(timebase=endpoint.node.timebase), SERVICES_QOS, state)
 
 
@@ -51,7 +53,7 @@ async def test_service_events_are_off_by_default(graph, client, events):
 
 async def test_metadata_events_have_no_contents(graph, service, client, events):
     for endpoint in (service, client):
-        configure(endpoint, METADATA)
+        configure_introspection(endpoint, METADATA)
     await client.call_async(AddTwoInts.Request(a=1, b=2))
     await graph.settle()
     kinds = [event.info.event_type for event in events]
@@ -61,7 +63,7 @@ async def test_metadata_events_have_no_contents(graph, service, client, events):
 
 async def test_service_events_have_client_gid_and_sequence_number(graph, service, client, events):
     for endpoint in (service, client):
-        configure(endpoint, METADATA)
+        configure_introspection(endpoint, METADATA)
     for _ in range(2):
         await client.call_async(AddTwoInts.Request())
     await graph.settle()
@@ -71,7 +73,7 @@ async def test_service_events_have_client_gid_and_sequence_number(graph, service
 
 async def test_content_events_contain_request_and_response(graph, service, client, events):
     for endpoint in (service, client):
-        configure(endpoint, CONTENTS)
+        configure_introspection(endpoint, CONTENTS)
     await client.call_async(AddTwoInts.Request(a=1, b=2))
     await graph.settle()
     request_sent, request_received, response_sent, response_received = events
@@ -82,27 +84,27 @@ async def test_content_events_contain_request_and_response(graph, service, clien
 
 
 async def test_introspection_can_be_enabled_on_service_only(graph, service, client, events):
-    configure(service, METADATA)
+    configure_introspection(service, METADATA)
     await client.call_async(AddTwoInts.Request())
     await graph.settle()
     assert [event.info.event_type for event in events] == [Info.REQUEST_RECEIVED, Info.RESPONSE_SENT]
 
 
 async def test_service_events_use_given_clock(graph, clock, service, client, events):
-    own = Clock(timebase=graph.timebase)
-    service.configure_introspection(own, SERVICES_QOS, METADATA)
+    clock_of_events = Clock(timebase=graph.timebase)
+    service.configure_introspection(clock_of_events, SERVICES_QOS, METADATA)
     await client.call_async(AddTwoInts.Request())
     await graph.settle()
-    assert events[0].info.stamp == own.now().to_msg()
+    assert events[0].info.stamp == clock_of_events.now().to_msg()
 
 
 async def test_introspection_state_can_change_and_be_disabled(graph, service, client, events):
-    configure(service, METADATA)
-    configure(service, CONTENTS)
+    configure_introspection(service, METADATA)
+    configure_introspection(service, CONTENTS)
     await client.call_async(AddTwoInts.Request(a=4, b=0))
     await graph.settle()
     assert events[0].request[0].a == 4
-    configure(service, OFF)
+    configure_introspection(service, OFF)
     assert not list(graph.bus.publishers("/add/_service_event"))
     await client.call_async(AddTwoInts.Request())
     await graph.settle()
@@ -110,13 +112,13 @@ async def test_introspection_state_can_change_and_be_disabled(graph, service, cl
 
 
 async def test_destroyed_client_removes_event_publisher(graph, service, client):
-    configure(client, METADATA)
+    configure_introspection(client, METADATA)
     client.destroy()
     assert not list(graph.bus.publishers("/add/_service_event"))
     with pytest.raises(InvalidHandleError):
-        configure(client, METADATA)
+        configure_introspection(client, METADATA)
 
 
 async def test_invalid_introspection_state_is_rejected(service):
     with pytest.raises(ValueError, match="7"):
-        configure(service, 7)
+        configure_introspection(service, 7)

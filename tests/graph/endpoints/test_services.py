@@ -1,3 +1,5 @@
+"""Services and clients within one graph."""
+
 import asyncio
 import threading
 
@@ -11,7 +13,7 @@ AddTwoInts = get_service("example_interfaces/srv/AddTwoInts")
 SetBool = get_service("std_srvs/srv/SetBool")
 
 
-def add(request, response):
+def add_two_ints(request, response):
     response.sum = request.a + request.b
     return response
 
@@ -23,7 +25,7 @@ def nodes(graph):
 
 async def test_service_answers_request(graph, nodes):
     server, user = nodes
-    service = server.create_service(AddTwoInts, "add", add)
+    service = server.create_service(AddTwoInts, "add", add_two_ints)
     client = user.create_client(AddTwoInts, "add")
     assert (service.service_name, client.srv_name) == ("/robot/add", "/robot/add")
     assert client.service_is_ready()
@@ -35,7 +37,7 @@ async def test_service_answers_request(graph, nodes):
 
 async def test_concurrent_requests_receive_matching_responses(graph, nodes):
     server, user = nodes
-    server.create_service(AddTwoInts, "add", add)
+    server.create_service(AddTwoInts, "add", add_two_ints)
     client = user.create_client(AddTwoInts, "add")
     futures = [client.call_async(AddTwoInts.Request(a=number, b=1)) for number in range(5)]
     assert [response.sum for response in await asyncio.gather(*futures)] == [1, 2, 3, 4, 5]
@@ -43,17 +45,17 @@ async def test_concurrent_requests_receive_matching_responses(graph, nodes):
 
 async def test_service_callback_can_be_coroutine(graph, nodes):
     server, user = nodes
-    gate = asyncio.Event()
+    may_finish = asyncio.Event()
 
     async def slow(request, response):
-        await gate.wait()
-        return add(request, response)
+        await may_finish.wait()
+        return add_two_ints(request, response)
 
     server.create_service(AddTwoInts, "add", slow)
     future = user.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=1))
     await graph.settle()
     assert not future.done()
-    gate.set()
+    may_finish.set()
     assert (await future).sum == 2
 
 
@@ -74,14 +76,14 @@ async def test_request_waits_for_server(graph, nodes):
     assert not client.service_is_ready()
     assert not client.wait_for_service(timeout_sec=0.01)
     future = client.call_async(AddTwoInts.Request(a=1, b=2))
-    server.create_service(AddTwoInts, "add", add)
+    server.create_service(AddTwoInts, "add", add_two_ints)
     assert client.wait_for_service(timeout_sec=0.01)
     assert (await future).sum == 3
 
 
 async def test_removed_pending_request_receives_no_response(graph, nodes):
     server, user = nodes
-    server.create_service(AddTwoInts, "add", add)
+    server.create_service(AddTwoInts, "add", add_two_ints)
     client = user.create_client(AddTwoInts, "add")
     future = client.call_async(AddTwoInts.Request())
     client.remove_pending_request(future)
@@ -129,7 +131,7 @@ async def test_invalid_request_and_response_types_are_reported(graph, nodes, log
 
 async def test_service_names_are_remapped(graph):
     server = graph.create_node("server", remappings=[("add", "sum"), ("rostopic://sum", "never")])
-    server.create_service(AddTwoInts, "add", add)
+    server.create_service(AddTwoInts, "add", add_two_ints)
     client = graph.create_node("client").create_client(AddTwoInts, "/sum")
     assert (await client.call_async(AddTwoInts.Request(a=1, b=1))).sum == 2
 
@@ -137,7 +139,7 @@ async def test_service_names_are_remapped(graph):
 def test_blocking_call_is_answered_in_another_thread():
     graph = Graph(threads=True, on_log=print)
     server, user = graph.create_node("server"), graph.create_node("client")
-    server.create_service(AddTwoInts, "add", add)
+    server.create_service(AddTwoInts, "add", add_two_ints)
     client = user.create_client(AddTwoInts, "add")
     executor = MultiThreadedExecutor(2)
     executor.add_node(server)
@@ -165,14 +167,14 @@ def test_wait_for_service_ends_when_graph_closes():
     graph = Graph(threads=True, on_log=print)
     client = graph.create_node("node").create_client(AddTwoInts, "add")
     results = []
-    thread = threading.Thread(target=lambda: results.append(_waits(client)))
+    thread = threading.Thread(target=lambda: results.append(_has_pending_requests(client)))
     thread.start()
     graph.close_threadsafe()
     thread.join(60.0)
     assert results == [False]
 
 
-def _waits(client):
+def _has_pending_requests(client):
     try:
         return client.wait_for_service()
     except InvalidHandleError:
@@ -182,7 +184,7 @@ def _waits(client):
 def test_spinning_executor_answers_service():
     graph = Graph(threads=True, on_log=print)
     node = graph.create_node("node")
-    node.create_service(AddTwoInts, "add", add)
+    node.create_service(AddTwoInts, "add", add_two_ints)
     future = node.create_client(AddTwoInts, "add").call_async(AddTwoInts.Request(a=1, b=2))
     executor = SingleThreadedExecutor()
     executor.add_node(node)

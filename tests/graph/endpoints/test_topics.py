@@ -1,3 +1,5 @@
+"""Publishers and subscriptions within one graph: order, queues and latched messages."""
+
 import asyncio
 
 import pytest
@@ -19,7 +21,7 @@ LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 BEST_EFFORT = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
-def texts(received):
+def received_texts(received):
     return [message.data for message in received]
 
 
@@ -32,7 +34,7 @@ async def test_messages_arrive_in_order_and_outside_publish(graph):
         publisher.publish(String(data=str(number)))
     assert received == []
     await graph.settle()
-    assert texts(received) == ["0", "1", "2"]
+    assert received_texts(received) == ["0", "1", "2"]
     assert publisher.get_subscription_count() == 1
 
 
@@ -56,7 +58,7 @@ async def test_malformed_messages_in_batch_are_skipped(graph):
     for message in (String(data="a"), b"no CDR", String(data="b")):
         subscription.receive(message)
     await graph.settle()
-    assert texts(received) == ["a", "b"]
+    assert received_texts(received) == ["a", "b"]
     assert subscription.malformed_count == 1
 
 
@@ -119,7 +121,7 @@ async def test_failing_callback_is_logged_and_others_continue(graph, log):
         node.create_subscription(String, "topic", callback, 10)
     node.create_publisher(String, "topic", 10).publish(String(data="boom"))
     await graph.settle()
-    assert texts(received) == ["boom"]
+    assert received_texts(received) == ["boom"]
     bug, user_error = log
     assert (bug.level, bug.node) == (LogLevel.ERROR, "robot.node")
     assert bug.text.startswith("callback of topic '/robot/topic' failed:\nTraceback")
@@ -129,15 +131,15 @@ async def test_failing_callback_is_logged_and_others_continue(graph, log):
 
 async def test_queue_keeps_last_messages_up_to_depth(graph):
     node = graph.create_node("node")
-    last, everything = [], []
-    node.create_subscription(String, "topic", last.append, 2)
-    node.create_subscription(String, "topic", everything.append, QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL))
+    last_texts, all_texts = [], []
+    node.create_subscription(String, "topic", last_texts.append, 2)
+    node.create_subscription(String, "topic", all_texts.append, QoSProfile(depth=1, history=HistoryPolicy.KEEP_ALL))
     publisher = node.create_publisher(String, "topic", 1)
     for number in range(5):
         publisher.publish(String(data=str(number)))
     await graph.settle()
-    assert texts(last) == ["3", "4"]
-    assert texts(everything) == ["0", "1", "2", "3", "4"]
+    assert received_texts(last_texts) == ["3", "4"]
+    assert received_texts(all_texts) == ["0", "1", "2", "3", "4"]
 
 
 async def test_late_subscription_receives_latched_messages(graph):
@@ -150,8 +152,8 @@ async def test_late_subscription_receives_latched_messages(graph):
     node.create_subscription(String, "topic", volatile.append, 5)
     publisher.publish(String(data="d"))
     await graph.settle()
-    assert texts(latched) == ["b", "c", "d"]
-    assert texts(volatile) == ["d"]
+    assert received_texts(latched) == ["b", "c", "d"]
+    assert received_texts(volatile) == ["d"]
 
 
 async def test_late_subscription_does_not_receive_expired_messages(graph, clock):
@@ -165,8 +167,8 @@ async def test_late_subscription_does_not_receive_expired_messages(graph, clock)
     node.create_subscription(String, "topic", received.append, QoSProfile(5, durability=LATCHED.durability))
     publisher.set_remote_sender(sent_messages.append)
     await graph.settle()
-    assert texts(received) == ["c"]
-    assert texts(sent_messages) == ["c"]
+    assert received_texts(received) == ["c"]
+    assert received_texts(sent_messages) == ["c"]
 
 
 async def test_volatile_publisher_keeps_no_messages(graph):
@@ -229,7 +231,7 @@ async def test_subscription_can_request_less_than_offered(graph, log, requested)
     node.create_subscription(String, "topic", received.append, requested)
     node.create_publisher(String, "topic", LATCHED).publish(String(data="x"))
     await graph.settle()
-    assert texts(received) == ["x"]
+    assert received_texts(received) == ["x"]
     assert log == []
 
 
@@ -274,7 +276,7 @@ async def test_destroyed_publishers_and_subscriptions_are_silent(graph):
     with pytest.raises(InvalidHandleError, match="destruction was requested"):
         publisher.publish(String(data="too late"))
     await graph.settle()
-    assert texts(received) == ["sent"]
+    assert received_texts(received) == ["sent"]
     assert ignored == []
     assert graph.node_names() == ["/listener"]
     assert graph.count_publishers("/topic") == 0

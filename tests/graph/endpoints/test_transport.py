@@ -14,8 +14,8 @@ from linkwright.messages import String, get_service, serialize
 
 Trigger = get_service("std_srvs/srv/Trigger")
 LATCHED = QoSProfile(depth=3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-ELSEWHERE = NodeIdentity("elsewhere", "/far")
-OWN = ("/parameter_events", "/rosout")
+REMOTE_NODE = NodeIdentity("elsewhere", "/far")
+OWN_TOPICS = ("/parameter_events", "/rosout")
 
 
 class FakeTransport:
@@ -28,7 +28,7 @@ class FakeTransport:
         self.lose = None
 
     def _known(self, endpoint):
-        return endpoint.name not in OWN and "parameter" not in endpoint.name
+        return endpoint.name not in OWN_TOPICS and "parameter" not in endpoint.name
 
     def open_node(self, node):
         self.open.append(node.name)
@@ -77,10 +77,10 @@ async def test_transport_mirrors_nodes_and_endpoints(graph, transport):
     node.create_publisher(String, "topic", 1)
     graph.attach(transport)
     assert transport.open == ["early", (EndpointKind.PUBLISHER, "/topic")]
-    late = graph.create_node("late")
-    late.create_subscription(String, "topic", print, 1)
-    late.create_service(Trigger, "trigger", print)
-    client = late.create_client(Trigger, "trigger")
+    late_node = graph.create_node("late")
+    late_node.create_subscription(String, "topic", print, 1)
+    late_node.create_service(Trigger, "trigger", print)
+    client = late_node.create_client(Trigger, "trigger")
     assert transport.open[2:] == [
         "late",
         (EndpointKind.SUBSCRIPTION, "/topic"),
@@ -257,38 +257,38 @@ async def test_message_info_is_passed_to_callbacks_that_accept_it(graph, clock):
 async def test_requests_use_transport_without_local_server(graph):
     node = graph.create_node("node")
     client = node.create_client(Trigger, "trigger")
-    early = client.call_async(Trigger.Request())
-    answers, forgotten = [], []
+    early_future = client.call_async(Trigger.Request())
+    responses, forgotten = [], []
 
     class RemoteServer:
-        def send(self, request, answer, number):
-            answers.append(answer)
+        def send(self, request, response, number):
+            responses.append(response)
             return lambda: forgotten.append(request)
 
     assert not client.service_is_ready()
     client.set_remote_service(RemoteServer())
     assert client.service_is_ready()
-    late = client.call_async(Trigger.Request())
-    assert len(answers) == 2
-    for number, answer in enumerate(answers):
-        answer(Trigger.Response(message=str(number)))
-        answer(Trigger.Response(message="again"))
-    assert ((await early).message, (await late).message) == ("0", "1")
+    late_future = client.call_async(Trigger.Request())
+    assert len(responses) == 2
+    for number, response in enumerate(responses):
+        response(Trigger.Response(message=str(number)))
+        response(Trigger.Response(message="again"))
+    assert ((await early_future).message, (await late_future).message) == ("0", "1")
     given_up = client.call_async(Trigger.Request())
     client.remove_pending_request(given_up)
     assert len(forgotten) == 1
     node.create_service(Trigger, "trigger", lambda _request, _response: Trigger.Response(message="here"))
     assert (await client.call_async(Trigger.Request())).message == "here"
-    assert len(answers) == 3
+    assert len(responses) == 3
 
 
 async def test_incoming_requests_are_answered(graph):
     node = graph.create_node("node")
     service = node.create_service(Trigger, "trigger", lambda _request, _response: Trigger.Response(message="yes"))
-    answers = []
-    service.receive(Trigger.Request(), answers.append)
+    responses = []
+    service.receive(Trigger.Request(), responses.append)
     await graph.settle()
-    assert [answer.message for answer in answers] == ["yes"]
+    assert [response.message for response in responses] == ["yes"]
 
 
 async def test_graph_queries_include_local_and_remote_endpoints(graph, transport):
@@ -296,9 +296,9 @@ async def test_graph_queries_include_local_and_remote_endpoints(graph, transport
     node.create_publisher(String, "topic", LATCHED)
     node.create_service(Trigger, "trigger", print)
     graph.attach(transport)
-    transport.nodes.append(ELSEWHERE)
+    transport.nodes.append(REMOTE_NODE)
     transport.endpoints.extend(
-        EndpointInfo(kind, ELSEWHERE, name, kind_name, QoSProfile(5), bytes(range(16)), "RIHS01_x")
+        EndpointInfo(kind, REMOTE_NODE, name, kind_name, QoSProfile(5), bytes(range(16)), "RIHS01_x")
         for kind, name, kind_name in (
             (EndpointKind.PUBLISHER, "/topic", "std_msgs/msg/Bool"),
             (EndpointKind.SUBSCRIPTION, "/topic", "std_msgs/msg/String"),
@@ -323,10 +323,18 @@ async def test_graph_queries_include_local_and_remote_endpoints(graph, transport
     ]
     assert (node.count_publishers("topic"), node.count_subscribers("topic")) == (2, 1)
     assert (node.count_services("trigger"), node.count_clients("trigger")) == (1, 1)
-    mine, theirs = node.get_publishers_info_by_topic("topic")
-    assert (mine.node_name, mine.topic_type, mine.qos_profile.depth) == ("here", "std_msgs/msg/String", 3)
-    assert (theirs.node_namespace, theirs.endpoint_gid, theirs.topic_type_hash) == ("/far", list(range(16)), "RIHS01_x")
-    assert theirs.endpoint_type.name == "PUBLISHER"
+    local_info, remote_info = node.get_publishers_info_by_topic("topic")
+    assert (local_info.node_name, local_info.topic_type, local_info.qos_profile.depth) == (
+        "here",
+        "std_msgs/msg/String",
+        3,
+    )
+    assert (remote_info.node_namespace, remote_info.endpoint_gid, remote_info.topic_type_hash) == (
+        "/far",
+        list(range(16)),
+        "RIHS01_x",
+    )
+    assert remote_info.endpoint_type.name == "PUBLISHER"
     with pytest.raises(RuntimeError, match="'nobody' in namespace '/'"):
         node.get_publisher_names_and_types_by_node("nobody", "/")
 
@@ -346,7 +354,7 @@ async def test_wait_for_node_finds_remote_node(graph, transport):
     loop = asyncio.get_running_loop()
     waiting = loop.run_in_executor(None, graph.wait_for_node, "far/elsewhere", 60.0)
     await asyncio.sleep(0.01)
-    transport.nodes.append(ELSEWHERE)
+    transport.nodes.append(REMOTE_NODE)
     transport.tell()
     assert await waiting
     assert not graph.wait_for_node("/far/nobody", 0.01)

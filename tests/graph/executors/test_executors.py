@@ -21,10 +21,10 @@ from linkwright.graph.executors import (
 )
 from linkwright.graph.loop.future import Future
 from linkwright.messages import String
-from tests.waiting import SECONDS, is_waiting, wait_until
+from tests.waiting import TIMEOUT_S, is_waiting, wait_until
 from tests.work import lines_run
 
-BOTH = pytest.mark.parametrize("kind", [SingleThreadedExecutor, MultiThreadedExecutor])
+both_executors = pytest.mark.parametrize("kind", [SingleThreadedExecutor, MultiThreadedExecutor])
 
 
 class Context:
@@ -66,21 +66,24 @@ def executor(node):
 
 
 def spin_in_thread(executor):
-    """Spin an executor in a daemon thread, so that a failing test does not block the others; return the thread."""
+    """Spin an executor in a daemon thread, and return the thread.
+
+    A failing test then does not block the others.
+    """
     thread = threading.Thread(target=executor.spin, daemon=True)
     thread.start()
     return thread
 
 
 class TestWaiting:
-    @BOTH
+    @both_executors
     def test_timer_is_called(self, kind, node):
         called = threading.Event()
         node.create_timer(0.02, called.set)
         with kind() as executor:
             executor.add_node(node)
-            executor.spin_once(timeout_sec=SECONDS)
-            assert called.wait(SECONDS)
+            executor.spin_once(timeout_sec=TIMEOUT_S)
+            assert called.wait(TIMEOUT_S)
 
     def test_spin_once_waits_for_timeout(self, executor):
         start = time.monotonic()
@@ -128,8 +131,8 @@ class TestWaiting:
             wait_until(lambda: is_waiting(thread))
             node.create_timer(0.01, called.set)
             executor.add_node(node)
-            assert called.wait(SECONDS)
-        thread.join(SECONDS)
+            assert called.wait(TIMEOUT_S)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
     def test_message_from_another_thread_ends_wait(self, node, executor):
@@ -141,7 +144,7 @@ class TestWaiting:
         publisher.publish(String())
         wait_until(lambda: received)
         executor.shutdown()
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
 
     def test_waiting_does_not_busy_loop(self, node, executor):
         node.create_timer(10.0, lambda: None)
@@ -237,11 +240,11 @@ class TestFaults:
             raise ValueError("mine")
 
         timer = node.create_timer(0.01, fail)
-        executor.spin_once(timeout_sec=SECONDS)
+        executor.spin_once(timeout_sec=TIMEOUT_S)
         timer.cancel()
         future.set_result(None)
         with pytest.raises(ValueError, match="mine"):
-            executor.spin_once(timeout_sec=SECONDS)
+            executor.spin_once(timeout_sec=TIMEOUT_S)
 
     def test_spin_continues_after_exception(self, node, executor):
         received = []
@@ -267,7 +270,7 @@ class TestShutdown:
         thread = spin_in_thread(executor)
         wait_until(lambda: is_waiting(thread))
         assert executor.shutdown() is True
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
     def test_shutdown_can_be_called_from_callback(self, node, executor):
@@ -275,21 +278,21 @@ class TestShutdown:
         executor.spin()
 
     def test_shutdown_waits_for_running_callback(self, node, executor):
-        begun, may_end, ended = threading.Event(), threading.Event(), []
+        has_begun, may_end, ended = threading.Event(), threading.Event(), []
 
         def work():
-            begun.set()
-            assert may_end.wait(SECONDS)
+            has_begun.set()
+            assert may_end.wait(TIMEOUT_S)
             ended.append(1)
 
         node.create_timer(0.01, work)
         thread = spin_in_thread(executor)
-        assert begun.wait(SECONDS)
+        assert has_begun.wait(TIMEOUT_S)
         assert executor.shutdown(timeout_sec=0.01) is False
         threading.Timer(0.05, may_end.set).start()
         assert executor.shutdown() is True
         assert ended == [1]
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
 
     def test_shutdown_ends_threads(self, node):
         before = threading.active_count()
@@ -297,20 +300,20 @@ class TestShutdown:
         node.create_timer(0.01, called.set)
         executor = MultiThreadedExecutor(4)
         executor.add_node(node)
-        executor.spin_once(timeout_sec=SECONDS)
-        assert called.wait(SECONDS)
+        executor.spin_once(timeout_sec=TIMEOUT_S)
+        assert called.wait(TIMEOUT_S)
         assert threading.active_count() > before
         assert executor.shutdown() is True
         assert threading.active_count() == before
 
-    @BOTH
+    @both_executors
     def test_waiting_for_callbacks_after_shutdown_raises(self, kind):
         executor = kind()
         executor.shutdown()
         with pytest.raises(ShutdownException):
             executor.wait_for_ready_callbacks()
 
-    @BOTH
+    @both_executors
     def test_spin_after_shutdown_returns_immediately(self, kind):
         executor = kind()
         executor.shutdown()
@@ -343,15 +346,15 @@ class TestContext:
 
 
 class TestFutures:
-    @BOTH
+    @both_executors
     def test_spin_until_future_complete_returns_after_result(self, kind):
         future = Future()
         with kind() as executor:
             threading.Timer(0.05, future.set_result, ["done"]).start()
-            executor.spin_until_future_complete(future, timeout_sec=SECONDS)
+            executor.spin_until_future_complete(future, timeout_sec=TIMEOUT_S)
         assert future.result() == "done"
 
-    @BOTH
+    @both_executors
     def test_spin_until_future_complete_times_out(self, kind, node):
         node.create_timer(0.003, lambda: None)
         with kind() as executor:
@@ -374,7 +377,7 @@ class TestFutures:
     def test_canceled_future_ends_wait(self, executor):
         future = Future()
         threading.Timer(0.05, future.cancel).start()
-        executor.spin_until_future_complete(future, timeout_sec=SECONDS)
+        executor.spin_until_future_complete(future, timeout_sec=TIMEOUT_S)
         assert future.cancelled()
 
     def test_repeated_waits_leave_one_waiter(self, executor):
@@ -389,7 +392,7 @@ class TestFutures:
         node.create_publisher(String, "chatter", 10).publish(String())
         future = Future()
         future.set_result(None)
-        executor.spin_once_until_future_complete(future, timeout_sec=SECONDS)
+        executor.spin_once_until_future_complete(future, timeout_sec=TIMEOUT_S)
         assert received == []
 
 
@@ -414,7 +417,7 @@ class TestGroups:
                 publisher.publish(String())
             wait_until(lambda: len(peaks) == 15)
             executor.shutdown()
-            thread.join(SECONDS)
+            thread.join(TIMEOUT_S)
         assert max(peaks) == 1
 
     def test_default_group_is_mutually_exclusive(self, node):
@@ -436,7 +439,7 @@ class TestGroups:
                 publisher.publish(String())
             wait_until(lambda: len(peaks) == 10)
             executor.shutdown()
-            thread.join(SECONDS)
+            thread.join(TIMEOUT_S)
         assert max(peaks) == 1
 
     def test_reentrant_group_runs_callback_concurrently(self, node):
@@ -456,7 +459,7 @@ class TestGroups:
                 publisher.publish(String())
             wait_until(lambda: len(passed) == 3)
             executor.shutdown()
-            thread.join(SECONDS)
+            thread.join(TIMEOUT_S)
 
     def test_mutually_exclusive_group_keeps_message_order(self, node):
         received = []
@@ -469,7 +472,7 @@ class TestGroups:
                 publisher.publish(String(data=str(number)))
             wait_until(lambda: len(received) == 500)
             executor.shutdown()
-            thread.join(SECONDS)
+            thread.join(TIMEOUT_S)
         assert received == list(range(500))
 
     def test_coroutine_holds_mutually_exclusive_group_until_end(self, node, executor):
@@ -481,9 +484,9 @@ class TestGroups:
             await future
             order.append("ends")
 
-        guard = node.create_guard_condition(first, callback_group=group)
+        guard_condition = node.create_guard_condition(first, callback_group=group)
         other = node.create_guard_condition(lambda: order.append("other"), callback_group=group)
-        guard.trigger()
+        guard_condition.trigger()
         other.trigger()
         for _ in range(3):
             executor.spin_once(timeout_sec=0)
@@ -499,11 +502,11 @@ class TestGroups:
 
         def outer():
             inner.trigger()
-            executor.spin_once(timeout_sec=SECONDS)
+            executor.spin_once(timeout_sec=TIMEOUT_S)
             calls.append("outer")
 
         node.create_guard_condition(outer).trigger()
-        executor.spin_once(timeout_sec=SECONDS)
+        executor.spin_once(timeout_sec=TIMEOUT_S)
         assert calls == ["inner", "outer"]
 
     def test_custom_callback_group_decides_execution(self, node, executor):
@@ -514,8 +517,8 @@ class TestGroups:
                 return self.allowed and super().can_execute(entity)
 
         group, calls = Every(), []
-        guard = node.create_guard_condition(lambda: calls.append(1), callback_group=group)
-        guard.trigger()
+        guard_condition = node.create_guard_condition(lambda: calls.append(1), callback_group=group)
+        guard_condition.trigger()
         executor.spin_once(timeout_sec=0)
         assert calls == []
         group.allowed = True
@@ -536,7 +539,7 @@ class TestOwnExecutors:
         received = []
         subscription = node.create_subscription(String, "chatter", received.append, 10)
         node.create_publisher(String, "chatter", 10).publish(String())
-        handler, entity, its_node = executor.wait_for_ready_callbacks(timeout_sec=SECONDS)
+        handler, entity, its_node = executor.wait_for_ready_callbacks(timeout_sec=TIMEOUT_S)
         assert (entity, its_node) == (subscription, node)
         assert received == []
         handler()
@@ -548,7 +551,7 @@ class TestOwnExecutors:
             raise ValueError("mine")
 
         node.create_guard_condition(fail).trigger()
-        handler, _, _ = executor.wait_for_ready_callbacks(timeout_sec=SECONDS)
+        handler, _, _ = executor.wait_for_ready_callbacks(timeout_sec=TIMEOUT_S)
         handler()
         assert str(handler.exception()) == "mine"
 

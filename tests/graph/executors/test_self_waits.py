@@ -20,14 +20,16 @@ from linkwright.graph.executors import (
 )
 from linkwright.graph.loop import future as self_waits
 from linkwright.messages import get_action, get_service
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 TRIGGER = get_service("std_srvs/srv/Trigger")
 FIBONACCI = get_action("example_interfaces/action/Fibonacci")
 
 
 class CallingScene:
-    """Two nodes: a server of a service and an action, and a client whose timer's callback calls one of them.
+    """A server of a service and an action, and a client of them.
+
+    A callback of the client's timer calls one of them.
 
     Attributes:
         errors: the texts of logged errors.
@@ -55,7 +57,7 @@ class CallingScene:
         self.action = ActionClient(client, FIBONACCI, "count", callback_group=client_group)
         self.executor = executor()
 
-    def run(self, ask: Callable[[], Any], *, seconds: float = SECONDS) -> bool:
+    def run(self, ask: Callable[[], Any], *, seconds: float = TIMEOUT_S) -> bool:
         """Run a callback in the client's default group, and return whether it ended in time."""
         ended = threading.Event()
 
@@ -138,9 +140,9 @@ def test_waits_outside_callbacks_and_completed_futures_are_not_reported(make_sce
     asks = make_scene()
     future = asks.client.call_async(TRIGGER.Request())
     assert asks.run(lambda: None)
-    assert future.wait(SECONDS)
+    assert future.wait(TIMEOUT_S)
     asks.executor.spin_until_future_complete(future)
-    assert asks.client.call(TRIGGER.Request(), timeout_sec=SECONDS) is not None
+    assert asks.client.call(TRIGGER.Request(), timeout_sec=TIMEOUT_S) is not None
     assert asks.errors == []
 
 

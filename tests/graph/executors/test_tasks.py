@@ -284,11 +284,11 @@ class TestTaskInExecutor:
             return "done"
 
         task = executor.create_task(work)
-        waiting = asyncio.ensure_future(_result_of(task))
+        waiting = asyncio.ensure_future(_get_result(task))
         await asyncio.sleep(0)
         executor.spin_once(timeout_sec=0)
         assert await waiting == "done"
 
 
-async def _result_of(task):
+async def _get_result(task):
     return await task

@@ -1,4 +1,7 @@
-"""The queue and the workers of an executor: which thread wakes when, and Ctrl-C at any point of a wait."""
+"""The queue and the workers of an executor.
+
+The tests cover which thread wakes when, and Ctrl-C at any point of a wait.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ import pytest
 
 from linkwright.graph.executors.multi_threaded import Workers
 from linkwright.graph.executors.work import WorkQueue
-from tests.waiting import SECONDS, is_waiting, wait_until
+from tests.waiting import TIMEOUT_S, is_waiting, wait_until
 
 
 class InterruptedAt:
@@ -49,7 +52,10 @@ class InterruptedAt:
 
 @cache
 def signal_check_offsets(code: CodeType) -> frozenset[int]:
-    """Return the offsets at which Python checks for signals: the first, and those after calls and backward jumps."""
+    """Return the offsets at which Python checks for signals.
+
+    These are the first one, and those after calls and backward jumps.
+    """
     instructions = list(dis.get_instructions(code))
     return frozenset(
         later.offset
@@ -75,7 +81,7 @@ def test_interrupt_during_wait_raises_keyboard_interrupt_and_keeps_queue() -> No
     thread.start()
     wait_until(lambda: is_waiting(thread))
     queue.add("something")
-    thread.join(SECONDS)
+    thread.join(TIMEOUT_S)
     assert not thread.is_alive()
 
 
@@ -88,7 +94,7 @@ def test_wake_notifies_all_waiting_threads(rouse: Any) -> None:
     wait_until(lambda: all(map(is_waiting, threads)))
     rouse(queue)
     for thread in threads:
-        thread.join(SECONDS)
+        thread.join(TIMEOUT_S)
         assert not thread.is_alive()
 
 
@@ -108,7 +114,7 @@ def test_earlier_alarm_shortens_wait() -> None:
     wait_until(lambda: is_waiting(thread))
     called: list[int] = []
     queue.call_at(0, lambda: called.append(1))
-    thread.join(SECONDS)
+    thread.join(TIMEOUT_S)
     assert not thread.is_alive()
     assert queue.take() is None
     assert called == [1]

@@ -13,15 +13,15 @@ def test_shared_name_is_reported_once_until_node_disappears():
     graph.create_node("talker", namespace="/robot")
     graph.create_node("listener")
     monitor = SharedNameMonitor()
-    there = [NodeIdentity("talker", "/robot", "/"), NodeIdentity("listener", "/robot", "/")]
+    identities = [NodeIdentity("talker", "/robot", "/"), NodeIdentity("listener", "/robot", "/")]
     monitor.update(graph.nodes(), [])
-    monitor.update(graph.nodes(), there)
-    monitor.update(graph.nodes(), there)
+    monitor.update(graph.nodes(), identities)
+    monitor.update(graph.nodes(), identities)
     (record,) = log
     assert record.text.startswith("Another process has a node of the exact name '/robot/talker' too: ")
     assert "ROS_DOMAIN_ID" in record.text
     monitor.update(graph.nodes(), [])
-    monitor.update(graph.nodes(), there)
+    monitor.update(graph.nodes(), identities)
     assert len(log) == 2
     graph.close_threadsafe()
 
@@ -43,8 +43,8 @@ def test_shared_name_callback_receives_changes_without_logging():
     graph.create_node("listener")
     monitor = SharedNameMonitor(messages.append)
     talker, listener = NodeIdentity("talker", "/", "/"), NodeIdentity("listener", "/", "/")
-    for there in ([], [talker], [talker, NodeIdentity("other", "/", "/")], [talker, listener], [listener], []):
-        monitor.update(graph.nodes(), there)
+    for identities in ([], [talker], [talker, NodeIdentity("other", "/", "/")], [talker, listener], [listener], []):
+        monitor.update(graph.nodes(), identities)
     assert messages == [
         frozenset({"/talker"}),
         frozenset({"/talker", "/listener"}),

@@ -21,10 +21,10 @@ async def request_description(graph: Graph, node: Node, **request: Any) -> Any:
     asking = graph.create_node("asking")
     service = get_service("type_description_interfaces/srv/GetTypeDescription")
     client = asking.create_client(service, f"{node.get_fully_qualified_name()}/get_type_description")
-    answer = client.call_async(service.Request(**request))
+    response = client.call_async(service.Request(**request))
     await graph.settle()
     asking.destroy_node()
-    return answer.result()
+    return response.result()
 
 
 async def test_message_description_includes_nested_types(graph: Graph) -> None:
@@ -95,12 +95,12 @@ async def test_humble_nodes_have_no_type_description_service(
     assert not node.has_parameter("start_type_description_service")
 
 
-@pytest.mark.parametrize(("distribution", "wanted"), [("humble", True), ("jazzy", False)])
+@pytest.mark.parametrize(("distribution", "is_enabled"), [("humble", True), ("jazzy", False)])
 async def test_parameter_enables_type_description_service(
-    graph: Graph, monkeypatch: pytest.MonkeyPatch, distribution: str, wanted: bool
+    graph: Graph, monkeypatch: pytest.MonkeyPatch, distribution: str, is_enabled: bool
 ) -> None:
     monkeypatch.setenv("ROS_DISTRO", distribution)
-    node = graph.create_node("node", parameters={"start_type_description_service": wanted})
-    assert ("/node/get_type_description" in dict(node.get_service_names_and_types())) is wanted
-    assert node.get_parameter("start_type_description_service").value is wanted
+    node = graph.create_node("node", parameters={"start_type_description_service": is_enabled})
+    assert ("/node/get_type_description" in dict(node.get_service_names_and_types())) is is_enabled
+    assert node.get_parameter("start_type_description_service").value is is_enabled
     assert node.describe_parameter("start_type_description_service").read_only

@@ -1,3 +1,5 @@
+"""Managed nodes: transitions, callbacks, errors and lifecycle publishers."""
+
 from __future__ import annotations
 
 import pytest
@@ -208,8 +210,8 @@ async def test_lifecycle_services_change_state(graph, managed, log):
         (4, "deactivate", "deactivating"),
         (7, "shutdown", "shuttingdown"),
     ]
-    whole = (await ask("get_transition_graph", "GetAvailableTransitions")).available_transitions
-    assert [description.transition.id for description in whole] == [
+    transitions = (await ask("get_transition_graph", "GetAvailableTransitions")).available_transitions
+    assert [description.transition.id for description in transitions] == [
         *(1, 10, 11, 12, 2, 20, 21, 22, 3, 30, 31, 32, 4, 40, 41, 42, 5, 6, 7, 50, 51, 52, 60, 61, 62),
     ]
     assert [(event.start_state.label, event.goal_state.label) for event in events] == [

@@ -1,3 +1,5 @@
+"""The log: console formats, colors, files, levels and `/rosout`."""
+
 from __future__ import annotations
 
 import io
@@ -14,7 +16,7 @@ from linkwright.graph.logger_services import LoggerServices
 from linkwright.graph.qos.profile import ROSOUT_QOS
 from linkwright.messages import get_message, get_service
 
-RECORD = LogRecord("robot.node", LogLevel.WARN, 1_700_000_000_123_456_789, "hello", "/src/a.py", "run", 7)
+LOG_RECORD = LogRecord("robot.node", LogLevel.WARN, 1_700_000_000_123_456_789, "hello", "/src/a.py", "run", 7)
 
 
 async def test_console_format_matches_rcutils(capsys):
@@ -50,12 +52,12 @@ async def test_console_format_matches_rcutils(capsys):
 )
 def test_console_format_is_read_from_environment(monkeypatch, form, line):
     monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", form)
-    assert console_line(RECORD) == line
+    assert console_line(LOG_RECORD) == line
 
 
 def test_newer_format_tokens_are_supported(monkeypatch):
     monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", "{date_time_with_ms} {thread_id}")
-    assert re.fullmatch(r"2023-11-1\d \d\d:\d\d:20\.123 \d+", console_line(RECORD))
+    assert re.fullmatch(r"2023-11-1\d \d\d:\d\d:20\.123 \d+", console_line(LOG_RECORD))
 
 
 async def test_terminal_output_is_colored_unless_disabled(capsys, monkeypatch):
@@ -203,20 +205,20 @@ def test_log_folder_is_read_from_environment(monkeypatch, tmp_path):
 def test_log_files_are_named_like_spdlog(tmp_path):
     file = LogFile("talker", tmp_path / "deep")
     assert list(tmp_path.iterdir()) == []
-    file.write(RECORD)
+    file.write(LOG_RECORD)
     file.close()
-    file.write(RECORD)
+    file.write(LOG_RECORD)
     (path,) = (tmp_path / "deep").iterdir()
     assert re.fullmatch(rf"talker_{os.getpid()}_\d{{13}}\.log", path.name)
     assert path.read_text() == "[WARN] [1700000000.123456789] [robot.node]: hello\n"
     (tmp_path / "blocked").write_text("")
-    LogFile("talker", tmp_path / "blocked").write(RECORD)
+    LogFile("talker", tmp_path / "blocked").write(LOG_RECORD)
 
 
 def test_ros_arguments_select_log_outputs_and_levels(monkeypatch, tmp_path, capsys):
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
     silent = set_up(parse(["--ros-args", "--disable-stdout-logs", "--log-level", "a.b:=error"]), "talker")
-    silent.sink(RECORD)
+    silent.sink(LOG_RECORD)
     silent.close()
     assert capsys.readouterr().err == ""
     assert len(list(tmp_path.iterdir())) == 1
@@ -224,12 +226,12 @@ def test_ros_arguments_select_log_outputs_and_levels(monkeypatch, tmp_path, caps
         LogLevel.ERROR,
         LogLevel.INFO,
     )
-    loud = set_up(
+    debug_log = set_up(
         parse(["--ros-args", "--disable-external-lib-logs", "--disable-rosout-logs", "--log-level", "debug"]), "talker"
     )
-    loud.sink(RECORD)
+    debug_log.sink(LOG_RECORD)
     assert "hello" in capsys.readouterr().err
-    assert (loud.file, loud.rosout, loud.levels.effective_level("x")) == (None, False, LogLevel.DEBUG)
+    assert (debug_log.file, debug_log.rosout, debug_log.levels.effective_level("x")) == (None, False, LogLevel.DEBUG)
 
 
 async def test_logger_level_services_set_and_get_levels(graph):
@@ -239,12 +241,12 @@ async def test_logger_level_services_set_and_get_levels(graph):
     set_levels = asking.create_client(get_service("rcl_interfaces/srv/SetLoggerLevels"), "/node/set_logger_levels")
     get_levels = asking.create_client(get_service("rcl_interfaces/srv/GetLoggerLevels"), "/node/get_logger_levels")
     level = get_message("rcl_interfaces/msg/LoggerLevel")
-    answer = set_levels.call_async(
+    response = set_levels.call_async(
         set_levels.srv_type.Request(levels=[level(name="node", level=10), level(name="node", level=11)])
     )
     await graph.settle()
-    assert [result.successful for result in answer.result().results] == [True, False]
+    assert [result.successful for result in response.result().results] == [True, False]
     assert node.get_logger().level is LogLevel.DEBUG
-    answer = get_levels.call_async(get_levels.srv_type.Request(names=["node", "x"]))
+    response = get_levels.call_async(get_levels.srv_type.Request(names=["node", "x"]))
     await graph.settle()
-    assert [(level.name, level.level) for level in answer.result().levels] == [("node", 10), ("x", 0)]
+    assert [(level.name, level.level) for level in response.result().levels] == [("node", 10), ("x", 0)]

@@ -1,3 +1,5 @@
+"""The dispatch of callbacks: fairness, reproducible order and callback groups."""
+
 import asyncio
 import gc
 import random
@@ -23,8 +25,8 @@ Trigger = get_service("std_srvs/srv/Trigger")
 async def test_flooded_topic_does_not_starve_others(graph):
     node = graph.create_node("node")
     order = []
-    everything = QoSProfile(history=HistoryPolicy.KEEP_ALL)
-    node.create_subscription(String, "flood", lambda _message: order.append("flood"), everything)
+    keep_all = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+    node.create_subscription(String, "flood", lambda _message: order.append("flood"), keep_all)
     node.create_subscription(String, "drop", lambda _message: order.append("drop"), 10)
     flood, drop = node.create_publisher(String, "flood", 10), node.create_publisher(String, "drop", 10)
     for _ in range(10_000):
@@ -53,41 +55,44 @@ async def test_self_publishing_topic_does_not_starve_others(graph):
     node.create_subscription(String, "loop", again, 1)
     node.create_subscription(String, "other", other, 100)
     publisher.publish(String())
-    others = node.create_publisher(String, "other", 100)
+    other_publisher = node.create_publisher(String, "other", 100)
     for _ in range(10):
-        others.publish(String())
+        other_publisher.publish(String())
     for _ in range(25):
         await asyncio.sleep(0)
     assert counts["other"] == 10
     assert counts["loop"] >= 10
 
 
-def run_of(seed):
-    """Return the events and their times in a graph of nodes that answer each other, generated from a seed."""
-    chance = random.Random(seed)
-    happened = []
+def record_run(seed):
+    """Return the events and their times in a graph of nodes that answer each other.
+
+    The graph is generated from a seed.
+    """
+    rng = random.Random(seed)
+    events = []
 
     async def play():
         clock = JumpClock()
-        graph = Graph(clock=clock, on_log=lambda record: happened.append(record.text))
+        graph = Graph(clock=clock, on_log=lambda record: events.append(record.text))
         nodes = [graph.create_node(f"node_{number}") for number in range(4)]
         publishers = []
         for node in nodes:
-            for topic in chance.sample("abcdef", 3):
+            for topic in rng.sample("abcdef", 3):
                 publishers.append(node.create_publisher(String, topic, 10))
 
                 def receive(message, node=node, topic=topic):
-                    happened.append((clock.steady_ns(), node.get_name(), topic, message.data))
+                    events.append((clock.steady_ns(), node.get_name(), topic, message.data))
                     if len(message.data) < 4:
-                        chance.choice(publishers).publish(String(data=message.data + topic))
+                        rng.choice(publishers).publish(String(data=message.data + topic))
 
-                node.create_subscription(String, topic, receive, chance.randint(1, 10))
-            period = chance.choice((0.1, 0.25, 0.3))
-            node.create_timer(period, lambda node=node: chance.choice(publishers).publish(String(data="")))
+                node.create_subscription(String, topic, receive, rng.randint(1, 10))
+            period = rng.choice((0.1, 0.25, 0.3))
+            node.create_timer(period, lambda node=node: rng.choice(publishers).publish(String(data="")))
 
             async def wait(_request, response, node=node):
                 await asyncio.sleep(0)
-                happened.append((node.get_name(), "served"))
+                events.append((node.get_name(), "served"))
                 return response
 
             node.create_service(Trigger, "trigger", wait)
@@ -97,15 +102,15 @@ def run_of(seed):
         await graph.close()
 
     asyncio.run(play())
-    return happened
+    return events
 
 
 @pytest.mark.parametrize("seed", [1, 2])
 def test_dispatch_order_is_reproducible(seed):
-    first = run_of(seed)
+    first = record_run(seed)
     assert len(first) > 100
-    assert run_of(seed) == first
-    assert run_of(seed + 10) != first
+    assert record_run(seed) == first
+    assert record_run(seed + 10) != first
 
 
 async def test_coroutines_of_node_run_one_at_a_time(graph):
@@ -114,9 +119,9 @@ async def test_coroutines_of_node_run_one_at_a_time(graph):
     gates, order = deque(asyncio.Event() for _ in range(3)), []
 
     async def work(message):
-        gate = gates.popleft()
+        may_finish = gates.popleft()
         order.append(f"begin {message.data}")
-        await gate.wait()
+        await may_finish.wait()
         order.append(f"end {message.data}")
 
     waiting = list(gates)
@@ -138,11 +143,11 @@ async def test_coroutines_of_node_run_one_at_a_time(graph):
 @pytest.mark.parametrize("group", [FREE_GROUP, ReentrantCallbackGroup()])
 async def test_coroutines_of_free_group_overlap(graph, group):
     node = graph.create_node("node")
-    inside, gate = [], asyncio.Event()
+    inside, may_finish = [], asyncio.Event()
 
     async def work(message):
         inside.append(message)
-        await gate.wait()
+        await may_finish.wait()
 
     node.create_subscription(String, "topic", work, 10, callback_group=group)
     publisher = node.create_publisher(String, "topic", 10)
@@ -155,11 +160,11 @@ async def test_coroutines_of_free_group_overlap(graph, group):
 @pytest.mark.parametrize("make", [MutuallyExclusiveCallbackGroup])
 async def test_callback_groups_apply_across_nodes(graph, make):
     group = make()
-    gate, order = asyncio.Event(), []
+    may_finish, order = asyncio.Event(), []
 
     async def work(message):
         order.append(message.data)
-        await gate.wait()
+        await may_finish.wait()
 
     for name in ("one", "two"):
         node = graph.create_node(name)
@@ -167,7 +172,7 @@ async def test_callback_groups_apply_across_nodes(graph, make):
         node.create_publisher(String, name, 10).publish(String(data=name))
     await graph.settle()
     assert order == ["one"]
-    gate.set()
+    may_finish.set()
     await graph.settle()
     assert order == ["one", "two"]
 
@@ -224,10 +229,10 @@ async def test_coroutine_exceptions_are_logged(graph, log):
 async def test_messages_from_other_threads_arrive_on_event_loop(graph):
     node = graph.create_node("node")
     received, all_received = [], asyncio.Event()
-    here = threading.get_ident()
+    loop_thread = threading.get_ident()
 
     def receive(message):
-        received.append((message.data, threading.get_ident() == here))
+        received.append((message.data, threading.get_ident() == loop_thread))
         if len(received) == 4000:
             all_received.set()
 
@@ -271,7 +276,7 @@ def test_callbacks_wait_for_dispatcher():
     for text in "abc":
         publisher.publish(String(data=text))
     wait_until(timer.is_ready)
-    dispatcher = Collecting()
+    dispatcher = CollectingDispatcher()
     node.handle.set_dispatcher(dispatcher)
     dispatcher.run()
     assert received == ["b", "c"]
@@ -286,7 +291,7 @@ def test_callbacks_wait_for_dispatcher():
     graph.close_threadsafe()
 
 
-class Collecting:
+class CollectingDispatcher:
     """A dispatcher that only collects its entities and alarms."""
 
     def __init__(self):
@@ -309,7 +314,7 @@ class Collecting:
 def test_flooded_subscription_is_announced_once():
     graph = Graph(threads=True, on_log=print)
     node = graph.create_node("node")
-    dispatcher = Collecting()
+    dispatcher = CollectingDispatcher()
     node.handle.set_dispatcher(dispatcher)
     node.create_subscription(String, "topic", print, 5)
     publisher = node.create_publisher(String, "topic", 5)
@@ -322,11 +327,11 @@ def test_flooded_subscription_is_announced_once():
 def test_blocking_subscriber_does_not_delay_others():
     graph = Graph(threads=True, on_log=print)
     slow, quick = graph.create_node("slow"), graph.create_node("quick")
-    gate, blocked, received = threading.Event(), threading.Event(), []
+    may_finish, blocked, received = threading.Event(), threading.Event(), []
 
     def block(_message):
         blocked.set()
-        gate.wait(60.0)
+        may_finish.wait(60.0)
 
     all_received = threading.Event()
 
@@ -350,7 +355,7 @@ def test_blocking_subscriber_does_not_delay_others():
             publisher.publish(String())
         assert all_received.wait(60.0)
     finally:
-        gate.set()
+        may_finish.set()
         executor.shutdown()
         thread.join(60.0)
         graph.close_threadsafe()
@@ -360,7 +365,7 @@ async def test_close_leaves_no_threads_tasks_or_objects():
     """Also no alarms are left."""
     threads, loop = set(threading.enumerate()), asyncio.get_running_loop()
     graph = Graph(on_log=print)
-    left = _busy_nodes(graph)
+    left = _create_busy_nodes(graph)
     await asyncio.sleep(0.02)
     await graph.close()
     assert set(threading.enumerate()) == threads
@@ -372,7 +377,7 @@ async def test_close_leaves_no_threads_tasks_or_objects():
     assert [node() for node in left] == [None, None, None]
 
 
-def _busy_nodes(graph):
+def _create_busy_nodes(graph):
     nodes = [graph.create_node(f"node_{number}", parameters={"use_sim_time": number == 1}) for number in range(3)]
     publisher = nodes[0].create_publisher(String, "topic", 10)
 

@@ -1,3 +1,5 @@
+"""Futures: results, errors, cancellation and threads."""
+
 import asyncio
 import threading
 
@@ -81,12 +83,12 @@ async def test_future_can_be_awaited():
 async def test_future_completed_by_another_thread_resumes_await():
     future = Future()
     threading.Timer(0.01, future.set_result, [7]).start()
-    assert await asyncio.wait_for(_value(future), 5.0) == 7
+    assert await asyncio.wait_for(_return_value(future), 5.0) == 7
 
 
 async def test_task_awaiting_future_can_be_canceled():
     future = Future()
-    task = asyncio.ensure_future(_value(future))
+    task = asyncio.ensure_future(_return_value(future))
     await asyncio.sleep(0)
     task.cancel()
     with pytest.raises(asyncio.CancelledError):
@@ -95,14 +97,14 @@ async def test_task_awaiting_future_can_be_canceled():
     await asyncio.sleep(0)
 
 
-async def _value(future):
+async def _return_value(future):
     return await future
 
 
 async def test_executor_steps_coroutine_inside_event_loop():
     """In rclpy's executors, a coroutine yields the future that it awaits."""
     future = Future()
-    coroutine = _value(future)
+    coroutine = _return_value(future)
     with StepsByExecutor():
         assert coroutine.send(None) is future
         future.set_result(4)

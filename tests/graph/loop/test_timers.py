@@ -1,3 +1,5 @@
+"""Timers: periods, order, resets and cancellation."""
+
 import asyncio
 
 import pytest
@@ -41,7 +43,9 @@ async def test_repeated_reset_sets_one_alarm_per_period(monkeypatch):
     clock = JumpClock()
     alarms = []
     monkeypatch.setattr(
-        clock, "call_at", lambda loop, at, call: (alarms.append(at), JumpClock.call_at(clock, loop, at, call))[1]
+        clock,
+        "call_at",
+        lambda loop, time_ns, call: (alarms.append(time_ns), JumpClock.call_at(clock, loop, time_ns, call))[1],
     )
     graph = Graph(clock=clock)
     calls = []
@@ -126,19 +130,19 @@ async def test_timer_period_must_not_be_negative(graph):
 async def test_guard_condition_runs_once_for_many_triggers(graph):
     node = graph.create_node("node")
     calls = []
-    guard = node.create_guard_condition(lambda: calls.append(1))
+    guard_condition = node.create_guard_condition(lambda: calls.append(1))
     for _ in range(5):
-        guard.trigger()
+        guard_condition.trigger()
     assert calls == []
     await graph.settle()
     assert calls == [1]
-    guard.trigger()
+    guard_condition.trigger()
     await graph.settle()
     assert calls == [1, 1]
-    guard.trigger()
+    guard_condition.trigger()
     node.destroy_node()
     await graph.settle()
-    guard.trigger()
+    guard_condition.trigger()
     await graph.settle()
     assert calls == [1, 1]
 

@@ -1,3 +1,5 @@
+"""Names of topics, nodes and namespaces: expansion, validation and remapping."""
+
 import pytest
 
 from linkwright.diagnostics import LinkwrightError

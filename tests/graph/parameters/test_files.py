@@ -1,3 +1,5 @@
+"""Parameter files: values, nested names and node name wildcards."""
+
 from __future__ import annotations
 
 import math
@@ -8,12 +10,12 @@ from linkwright.diagnostics import LinkwrightError, Severity, SourceText
 from linkwright.graph.parameters.files import parse_parameters, parse_value, read_parameter_file
 
 
-def read(text: str):
+def read_rules(text: str):
     return parse_parameters(SourceText("params.yaml", text))
 
 
-def values(text: str):
-    return read(f"/**:\n  ros__parameters:\n    {text}\n").for_node("/node")
+def parameter_values(text: str):
+    return read_rules(f"/**:\n  ros__parameters:\n    {text}\n").for_node("/node")
 
 
 @pytest.mark.parametrize(
@@ -59,18 +61,18 @@ def values(text: str):
     ],
 )
 def test_scalars_are_parsed_like_rcl(word, value):
-    value_read = values(f"p: {word}")["p"]
+    value_read = parameter_values(f"p: {word}")["p"]
     assert (value_read, type(value_read)) == (value, type(value))
     assert parse_value(word, "p") == value
 
 
 def test_nan_is_parsed():
-    assert math.isnan(values("p: .nan")["p"])
-    assert math.isnan(values("p: .NaN")["p"])
+    assert math.isnan(parameter_values("p: .nan")["p"])
+    assert math.isnan(parameter_values("p: .NaN")["p"])
 
 
 def test_nested_names_are_joined_and_later_entries_override():
-    rules = read(
+    rules = read_rules(
         """
 talker:
   ros__parameters: {a: 1, nested: {b: {c: 2}, d: 3}}
@@ -104,19 +106,19 @@ talker:
     ],
 )
 def test_node_name_wildcards_match(pattern, fits, misses):
-    rules = read(f"{pattern}: {{ros__parameters: {{a: 1}}}}")
+    rules = read_rules(f"{pattern}: {{ros__parameters: {{a: 1}}}}")
     assert [name for name in [*fits, *misses] if rules.for_node(name)] == fits
 
 
 def test_patterns_apply_in_order_of_appearance():
-    rules = read("/**: {ros__parameters: {a: 1, b: 1}}\n/node: {ros__parameters: {a: 2}}")
+    rules = read_rules("/**: {ros__parameters: {a: 1, b: 1}}\n/node: {ros__parameters: {a: 2}}")
     assert rules.for_node("/node") == {"a": 2, "b": 1}
-    more = read("/**: {ros__parameters: {a: 3}}")
-    rules.add(more)
+    later_rules = read_rules("/**: {ros__parameters: {a: 3}}")
+    rules.add(later_rules)
     assert rules.for_node("/node") == {"a": 2, "b": 1}
     assert rules.for_node("/other") == {"a": 3, "b": 1}
-    other = read("/node: {ros__parameters: {a: 2}}")
-    other.add(more)
+    other = read_rules("/node: {ros__parameters: {a: 2}}")
+    other.add(later_rules)
     assert other.for_node("/node") == {"a": 3}
 
 
@@ -132,7 +134,7 @@ def test_patterns_apply_in_order_of_appearance():
 def test_unsupported_list_is_skipped_and_rest_is_read(value, message):
     """rcl has no type for lists of mappings, which the example of gpio_controllers contains."""
     any_node = f"/**:\n  ros__parameters:\n    first: 1\n    a:\n      b: {value}\n      c: [2]\n"
-    rules = read(f"{any_node}x:\n  ros__parameters: {{y: 3}}\n")
+    rules = read_rules(f"{any_node}x:\n  ros__parameters: {{y: 3}}\n")
     assert rules.for_node("/x") == {"first": 1, "a.c": [2], "y": 3}
     (finding,) = rules.skipped_findings_for("/x")
     assert (finding.message, finding.severity) == (message, Severity.WARNING)
@@ -141,7 +143,7 @@ def test_unsupported_list_is_skipped_and_rest_is_read(value, message):
 
 @pytest.mark.parametrize("text", ["", "# only a comment\n", "node:\n  ros__parameters:\n"])
 def test_empty_files_and_sections_are_accepted(text):
-    assert read(text).for_node("/node") == {}
+    assert read_rules(text).for_node("/node") == {}
 
 
 @pytest.mark.parametrize(
@@ -213,7 +215,7 @@ def test_empty_files_and_sections_are_accepted(text):
 )
 def test_invalid_file_is_reported_with_location(text, place, message, hint):
     with pytest.raises(LinkwrightError) as caught:
-        read(text)
+        read_rules(text)
     (diagnostic,) = caught.value.diagnostics
     assert (diagnostic.code, diagnostic.message, diagnostic.hint) == ("GRAPH212", message, hint)
     assert str(diagnostic.span) == f"params.yaml:{place}"
@@ -221,10 +223,10 @@ def test_invalid_file_is_reported_with_location(text, place, message, hint):
 
 def test_tabs_and_yaml_errors_are_reported():
     with pytest.raises(LinkwrightError, match=r"params.yaml:2:1: parameter file is not YAML: ") as caught:
-        read("node:\n\tros__parameters:\n\t\ta: 1")
+        read_rules("node:\n\tros__parameters:\n\t\ta: 1")
     assert caught.value.diagnostics[0].hint == "line 2: indent with spaces: YAML does not allow tabs"
     with pytest.raises(LinkwrightError, match="parameter file is not YAML"):
-        read("node: {ros__parameters: {a: [1, ")
+        read_rules("node: {ros__parameters: {a: [1, ")
 
 
 def test_missing_file_suggests_nearest(tmp_path):

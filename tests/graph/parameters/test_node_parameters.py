@@ -1,3 +1,5 @@
+"""Parameters of a node: declaration, overrides, types, ranges and callbacks."""
+
 from __future__ import annotations
 
 import pytest
@@ -280,17 +282,17 @@ async def test_descriptors_are_returned_and_replaced(graph):
         "p",
         "use_sim_time",
     ]
-    tight = DescriptorMessage(type=2, integer_range=[IntegerRange(from_value=0, to_value=3)])
+    narrow_range = DescriptorMessage(type=2, integer_range=[IntegerRange(from_value=0, to_value=3)])
     with pytest.raises(InvalidParameterValueException):
-        node.set_descriptor("p", tight)
-    assert node.set_descriptor("p", tight, Parameter("p", value=2).get_parameter_value()).integer_value == 2
+        node.set_descriptor("p", narrow_range)
+    assert node.set_descriptor("p", narrow_range, Parameter("p", value=2).get_parameter_value()).integer_value == 2
     assert node.get_parameter("p").value == 2
-    assert node.describe_parameter("p") is tight
+    assert node.describe_parameter("p") is narrow_range
     node.declare_parameter("fixed", 1, DescriptorMessage(read_only=True))
     with pytest.raises(ParameterImmutableException):
-        node.set_descriptor("fixed", tight)
+        node.set_descriptor("fixed", narrow_range)
     with pytest.raises(ParameterNotDeclaredException):
-        node.set_descriptor("gone", tight)
+        node.set_descriptor("gone", narrow_range)
 
 
 async def test_undeclare_parameter_removes_parameter(graph):
@@ -320,10 +322,10 @@ async def test_set_callbacks_reject_with_reason(graph):
     node.add_post_set_parameters_callback(
         lambda parameters: applied.append([parameter.name for parameter in parameters])
     )
-    good, bad = Parameter("a", value=2), Parameter("b", value=-2)
-    assert node.set_parameters([good, bad])[1].reason == "must not be negative"
+    valid, invalid = Parameter("a", value=2), Parameter("b", value=-2)
+    assert node.set_parameters([valid, invalid])[1].reason == "must not be negative"
     assert (node.get_parameter("a").value, node.get_parameter("b").value) == (2, 1)
-    assert not node.set_parameters_atomically([Parameter("a", value=3), bad]).successful
+    assert not node.set_parameters_atomically([Parameter("a", value=3), invalid]).successful
     assert node.get_parameter("a").value == 2
     assert node.set_parameters_atomically([Parameter("a", value=3), Parameter("b", value=4)]).successful
     assert applied == [["a"], ["a", "b"]]
@@ -382,8 +384,8 @@ async def test_parameters_are_listed_by_prefix_and_depth(graph):
         result = node.list_parameters(prefixes, depth)
         return list(result.names), list(result.prefixes)
 
-    everything = ["use_sim_time", "a", "arm.b", "arm.hand.c", "arm.hand.d", "army"]
-    assert listed([], 0) == (everything, ["arm", "arm.hand"])
+    all_names = ["use_sim_time", "a", "arm.b", "arm.hand.c", "arm.hand.d", "army"]
+    assert listed([], 0) == (all_names, ["arm", "arm.hand"])
     assert listed([], 1) == (["use_sim_time", "a", "army"], [])
     assert listed(["arm"], 0) == (["arm.b", "arm.hand.c", "arm.hand.d"], ["arm", "arm.hand"])
     assert listed(["arm"], 1) == (["arm.b"], ["arm"])

@@ -1,3 +1,5 @@
+"""QoS profiles that parameters override."""
+
 from __future__ import annotations
 
 import pytest
@@ -6,11 +8,11 @@ from linkwright.graph.parameters.qos_overrides import InvalidQosOverridesError, 
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from linkwright.graph.time.values import Duration
 
-START = "qos_overrides./chatter.publisher"
+PREFIX = "qos_overrides./chatter.publisher"
 
 
 async def test_parameters_override_qos_in_code(graph):
-    node = graph.create_node("node", parameters={f"{START}.depth": 3, f"{START}.reliability": "best_effort"})
+    node = graph.create_node("node", parameters={f"{PREFIX}.depth": 3, f"{PREFIX}.reliability": "best_effort"})
     default_profile = QoSProfile(depth=10)
     profile = override_qos(node, "publisher", "/chatter", default_profile, QoSOverridingOptions.with_default_policies())
     assert (profile.depth, profile.reliability, profile.history) == (
@@ -19,12 +21,12 @@ async def test_parameters_override_qos_in_code(graph):
         HistoryPolicy.KEEP_LAST,
     )
     assert (default_profile.depth, default_profile.reliability) == (10, ReliabilityPolicy.RELIABLE)
-    assert {name: node.get_parameter(f"{START}.{name}").value for name in ("history", "depth", "reliability")} == {
+    assert {name: node.get_parameter(f"{PREFIX}.{name}").value for name in ("history", "depth", "reliability")} == {
         "history": "keep_last",
         "depth": 3,
         "reliability": "best_effort",
     }
-    descriptor = node.describe_parameter(f"{START}.depth")
+    descriptor = node.describe_parameter(f"{PREFIX}.depth")
     assert descriptor.read_only
     assert descriptor.description == "depth for publisher `/chatter` with id `None`"
     second_profile = override_qos(
@@ -47,7 +49,7 @@ async def test_all_policies_and_entity_id_are_supported(graph):
 
 
 async def test_invalid_qos_overrides_are_rejected(graph):
-    node = graph.create_node("node", parameters={f"{START}.reliability": "relyable"})
+    node = graph.create_node("node", parameters={f"{PREFIX}.reliability": "relyable"})
     with pytest.raises(InvalidQosOverridesError, match="Unexpected QoS override for policy `reliability`") as caught:
         override_qos(
             node, "publisher", "/chatter", QoSProfile(depth=1), QoSOverridingOptions([QoSPolicyKind.RELIABILITY])

@@ -1,3 +1,5 @@
+"""The parameter services of a node, and their clients."""
+
 from __future__ import annotations
 
 import pytest
@@ -23,7 +25,7 @@ def client(graph: Graph, server):
     return AsyncParameterClient(graph.create_node("asking"), "/robot/server")
 
 
-async def answer(graph, future):
+async def get_response(graph, future):
     await graph.settle()
     assert future.done()
     return future.result()
@@ -53,24 +55,28 @@ async def test_parameter_services_can_be_disabled(graph):
 async def test_parameter_client_gets_values_types_and_descriptions(graph, client):
     assert client.services_are_ready()
     assert client.wait_for_services(0.0)
-    values = (await answer(graph, client.get_parameters(["rate", "arm.name"]))).values
+    values = (await get_response(graph, client.get_parameters(["rate", "arm.name"]))).values
     assert [values[0].integer_value, values[1].string_value] == [30, "left"]
-    assert list((await answer(graph, client.get_parameter_types(["rate", "any", "late"]))).types) == [2, 0, 0]
-    descriptors = (await answer(graph, client.describe_parameters(["arm.name"]))).descriptors
+    assert list((await get_response(graph, client.get_parameter_types(["rate", "any", "late"]))).types) == [
+        2,
+        0,
+        0,
+    ]
+    descriptors = (await get_response(graph, client.describe_parameters(["arm.name"]))).descriptors
     assert [(descriptor.name, descriptor.type, descriptor.description) for descriptor in descriptors] == [
         ("arm.name", 4, "which")
     ]
-    listing = (await answer(graph, client.list_parameters(["arm"]))).result
+    listing = (await get_response(graph, client.list_parameters(["arm"]))).result
     assert (list(listing.names), list(listing.prefixes)) == (["arm.name"], ["arm"])
-    assert len((await answer(graph, client.list_parameters(depth=1))).result.names) == 4
+    assert len((await get_response(graph, client.list_parameters(depth=1))).result.names) == 4
 
 
 async def test_unknown_parameter_empties_response(graph, client):
     for ask in (client.get_parameters, client.get_parameter_types, client.describe_parameters):
-        response = await answer(graph, ask(["rate", "gone"]))
+        response = await get_response(graph, ask(["rate", "gone"]))
         (field,) = response.get_fields_and_field_types()
         assert len(getattr(response, field)) == 0
-    assert len((await answer(graph, client.get_parameters(["rate", "late"]))).values) == 0
+    assert len((await get_response(graph, client.get_parameters(["rate", "late"]))).values) == 0
 
 
 async def test_parameter_client_sets_parameters(graph, server, client):
@@ -82,25 +88,25 @@ async def test_parameter_client_sets_parameters(graph, server, client):
         [Parameter("rate", value=1), Parameter("rate", value=13), Parameter("gone", value=1)],
         callback=lambda completed: messages.append(completed.result()),
     )
-    results = (await answer(graph, future)).results
+    results = (await get_response(graph, future)).results
     assert [result.successful for result in results] == [True, False, False]
     assert results[1].reason == "unlucky"
     assert results[2].reason == "Invalid access to undeclared parameter(s): ['gone']"
     assert len(messages) == 1
-    response = await answer(
+    response = await get_response(
         graph, client.set_parameters_atomically([Parameter("rate", value=2), Parameter("rate", value="x")])
     )
     assert not response.result.successful
     assert server.get_parameter("rate").value == 1
-    assert (await answer(graph, client.set_parameters([Parameter("any", value=[1.5])]))).results[0].successful
-    assert (await answer(graph, client.delete_parameters(["any"]))).results[0].successful
+    assert (await get_response(graph, client.set_parameters([Parameter("any", value=[1.5])]))).results[0].successful
+    assert (await get_response(graph, client.delete_parameters(["any"]))).results[0].successful
     assert not server.has_parameter("any")
 
 
 async def test_value_of_unknown_type_is_rejected(graph, client):
     message = Parameter("rate", value=1).to_parameter_msg()
     message.value.type = 77
-    response = await answer(graph, client.set_parameters([message]))
+    response = await get_response(graph, client.set_parameters([message]))
     assert not response.results[0].successful
 
 
@@ -109,9 +115,9 @@ async def test_parameter_client_loads_file(graph, server, client, tmp_path):
     file.write_text(
         "/**: {ros__parameters: {rate: 1}}\n/robot/server: {ros__parameters: {rate: 2, arm: {name: right}}}\n"
     )
-    assert (await answer(graph, client.load_parameter_file(str(file), use_wildcard=True))).results[0].successful
+    assert (await get_response(graph, client.load_parameter_file(str(file), use_wildcard=True))).results[0].successful
     assert (server.get_parameter("rate").value, server.get_parameter("arm.name").value) == (2, "right")
-    response = await answer(graph, client.load_parameter_file_atomically(str(file)))
+    response = await get_response(graph, client.load_parameter_file_atomically(str(file)))
     assert response.result.successful
     messages = parameter_dict_from_yaml_file(str(file), target_nodes=["/robot/server"], namespace="x.")
     assert list(messages) == ["x.rate", "x.arm.name"]
@@ -155,7 +161,7 @@ async def test_parameter_event_handler_reports_single_parameters(graph, server):
         "rate", "server", lambda parameter: messages.append(("rate", parameter.value.integer_value))
     )
     handler.add_parameter_callback("rate", "/other", lambda parameter: messages.append(("other", parameter)))
-    own = handler.add_parameter_callback(
+    callback_handle = handler.add_parameter_callback(
         "mine", "", lambda parameter: messages.append(("mine", parameter.value.bool_value))
     )
     event = handler.add_parameter_event_callback(lambda parameter_event: messages.append(parameter_event.node))
@@ -164,7 +170,7 @@ async def test_parameter_event_handler_reports_single_parameters(graph, server):
     await graph.settle()
     assert messages == [("rate", 3), "/robot/server", ("mine", True), "/robot/watcher"]
     handler.remove_parameter_callback(rate)
-    handler.remove_parameter_callback(own)
+    handler.remove_parameter_callback(callback_handle)
     handler.remove_parameter_event_callback(event)
     for remove, handle in ((handler.remove_parameter_callback, rate), (handler.remove_parameter_event_callback, event)):
         with pytest.raises(RuntimeError, match="Callback doesn't exist"):

@@ -1,3 +1,5 @@
+"""QoS profiles, and which of them are compatible."""
+
 import itertools
 
 import pytest
@@ -23,7 +25,7 @@ from linkwright.graph.time.values import INFINITE
 
 RELIABLE, BEST_EFFORT = ReliabilityPolicy.RELIABLE, ReliabilityPolicy.BEST_EFFORT
 VOLATILE, TRANSIENT_LOCAL = DurabilityPolicy.VOLATILE, DurabilityPolicy.TRANSIENT_LOCAL
-BY_HAND = LivelinessPolicy.MANUAL_BY_TOPIC
+MANUAL_BY_TOPIC = LivelinessPolicy.MANUAL_BY_TOPIC
 
 
 def seconds(value):
@@ -94,40 +96,50 @@ class TestProfiles:
         assert chosen.deadline == chosen.lifespan == chosen.liveliness_lease_duration == INFINITE
 
 
-def profile(**policies):
+def make_profile(**policies):
     return QoSProfile(depth=1, **policies)
 
 
 MISMATCHES = [
-    (profile(reliability=BEST_EFFORT), profile(), "RELIABILITY", "Best effort publisher and reliable subscription"),
     (
-        profile(),
-        profile(durability=TRANSIENT_LOCAL),
+        make_profile(reliability=BEST_EFFORT),
+        make_profile(),
+        "RELIABILITY",
+        "Best effort publisher and reliable subscription",
+    ),
+    (
+        make_profile(),
+        make_profile(durability=TRANSIENT_LOCAL),
         "DURABILITY",
         "Volatile publisher and transient local subscription",
     ),
-    (profile(), profile(deadline=seconds(1)), "DEADLINE", "Subscription has a deadline, but publisher does not"),
     (
-        profile(deadline=seconds(2)),
-        profile(deadline=seconds(1)),
+        make_profile(),
+        make_profile(deadline=seconds(1)),
+        "DEADLINE",
+        "Subscription has a deadline, but publisher does not",
+    ),
+    (
+        make_profile(deadline=seconds(2)),
+        make_profile(deadline=seconds(1)),
         "DEADLINE",
         "Subscription deadline is less than publisher deadline",
     ),
     (
-        profile(liveliness=LivelinessPolicy.AUTOMATIC),
-        profile(liveliness=BY_HAND),
+        make_profile(liveliness=LivelinessPolicy.AUTOMATIC),
+        make_profile(liveliness=MANUAL_BY_TOPIC),
         "LIVELINESS",
         "Publisher's liveliness is automatic and subscription's is manual by topic",
     ),
     (
-        profile(),
-        profile(liveliness_lease_duration=seconds(1)),
+        make_profile(),
+        make_profile(liveliness_lease_duration=seconds(1)),
         "LIVELINESS",
         "Subscription has a liveliness lease duration, but publisher does not",
     ),
     (
-        profile(liveliness_lease_duration=seconds(2)),
-        profile(liveliness_lease_duration=seconds(1)),
+        make_profile(liveliness_lease_duration=seconds(2)),
+        make_profile(liveliness_lease_duration=seconds(1)),
         "LIVELINESS",
         "Subscription liveliness lease duration is less than publisher",
     ),
@@ -143,14 +155,14 @@ class TestCompatibility:
 
     def test_all_incompatible_policies_are_reported(self):
         verdict, reason = qos_check_compatible(
-            profile(reliability=BEST_EFFORT), profile(durability=TRANSIENT_LOCAL, deadline=seconds(1))
+            make_profile(reliability=BEST_EFFORT), make_profile(durability=TRANSIENT_LOCAL, deadline=seconds(1))
         )
         assert verdict is QoSCompatibility.ERROR
         assert reason.count("ERROR: ") == 3
 
     def test_unknown_policies_cause_warning(self):
-        unknown = profile(reliability=ReliabilityPolicy.UNKNOWN, liveliness=LivelinessPolicy.AUTOMATIC)
-        assert qos_check_compatible(unknown, profile(liveliness=LivelinessPolicy.AUTOMATIC)) == (
+        unknown = make_profile(reliability=ReliabilityPolicy.UNKNOWN, liveliness=LivelinessPolicy.AUTOMATIC)
+        assert qos_check_compatible(unknown, make_profile(liveliness=LivelinessPolicy.AUTOMATIC)) == (
             QoSCompatibility.WARNING,
             "WARNING: Reliable subscription, but publisher is unknown;",
         )
@@ -159,9 +171,9 @@ class TestCompatibility:
         ("reliability", "durability"), [*itertools.product((RELIABLE, BEST_EFFORT), (VOLATILE, TRANSIENT_LOCAL))]
     )
     def test_best_available_profile_is_compatible(self, reliability, durability):
-        there = profile(reliability=reliability, durability=durability, deadline=seconds(3))
-        chosen = best_available(BEST_AVAILABLE_QOS, [there], publisher=False)
+        remote_profile = make_profile(reliability=reliability, durability=durability, deadline=seconds(3))
+        chosen = best_available(BEST_AVAILABLE_QOS, [remote_profile], publisher=False)
         assert (chosen.reliability, chosen.durability, chosen.deadline) == (reliability, durability, seconds(3))
-        assert incompatible_policies(there, chosen) == []
-        offered = best_available(BEST_AVAILABLE_QOS, [there], publisher=True)
-        assert incompatible_policies(offered, there) == []
+        assert incompatible_policies(remote_profile, chosen) == []
+        offered = best_available(BEST_AVAILABLE_QOS, [remote_profile], publisher=True)
+        assert incompatible_policies(offered, remote_profile) == []

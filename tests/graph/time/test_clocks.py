@@ -1,3 +1,5 @@
+"""Times, durations, clocks, simulated time and rates."""
+
 import asyncio
 import threading
 import time
@@ -24,11 +26,11 @@ from linkwright.messages import get_message
 
 ClockMessage = get_message("rosgraph_msgs/msg/Clock")
 TimeMessage = get_message("builtin_interfaces/msg/Time")
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 
 
 def clock_at(seconds):
-    return ClockMessage(clock=TimeMessage(sec=int(seconds), nanosec=round(seconds % 1 * SECOND)))
+    return ClockMessage(clock=TimeMessage(sec=int(seconds), nanosec=round(seconds % 1 * SECOND_NS)))
 
 
 class TestArithmetic:
@@ -38,7 +40,7 @@ class TestArithmetic:
         assert (point + Duration(seconds=1.5)).nanoseconds == 11_500_000_005
         assert Duration(seconds=1.5) + point == point + Duration(seconds=1.5)
         assert (point - Duration(seconds=10)).nanoseconds == 5
-        assert point - Time(seconds=11, clock_type=ClockType.ROS_TIME) == Duration(nanoseconds=5 - SECOND)
+        assert point - Time(seconds=11, clock_type=ClockType.ROS_TIME) == Duration(nanoseconds=5 - SECOND_NS)
         assert Duration(seconds=1) * 2.5 == Duration(seconds=2.5)
         assert Duration(seconds=1) * float("inf") == INFINITE
         assert Duration(seconds=2) - Duration(seconds=1) < Duration(seconds=1.5) <= Duration(seconds=1.5)
@@ -89,7 +91,7 @@ class TestClocks:
     def test_clock_type_selects_clock(self):
         assert isinstance(Clock(clock_type=ClockType.ROS_TIME), ROSClock)
         assert repr(Clock(clock_type=ClockType.STEADY_TIME)) == "Clock(clock_type=STEADY_TIME)"
-        assert abs(Clock().now().nanoseconds - time.time_ns()) < SECOND
+        assert abs(Clock().now().nanoseconds - time.time_ns()) < SECOND_NS
         assert Clock(clock_type=ClockType.STEADY_TIME).now().clock_type is ClockType.STEADY_TIME
         with pytest.raises(TypeError):
             Clock(clock_type=3)
@@ -177,19 +179,19 @@ class TestClocks:
         clock = ROSClock()
         clock.set_ros_time_is_active(True)
         slept = []
-        until = Time(seconds=5, clock_type=ClockType.ROS_TIME)
-        thread = threading.Thread(target=lambda: slept.append(clock.sleep_until(until)))
+        wake_time = Time(seconds=5, clock_type=ClockType.ROS_TIME)
+        thread = threading.Thread(target=lambda: slept.append(clock.sleep_until(wake_time)))
         thread.start()
         clock.set_ros_time_override(Time(seconds=4, clock_type=ClockType.ROS_TIME))
         thread.join(0.05)
         assert slept == []
-        clock.set_ros_time_override(until)
+        clock.set_ros_time_override(wake_time)
         thread.join(60.0)
         assert slept == [True]
 
 
 @pytest.fixture
-def simulated(graph):
+def simulated_time(graph):
     """Return a node with simulated time, and a function that sets that time."""
     node = graph.create_node("simulated", parameters={"use_sim_time": True})
     publisher = graph.create_node("simulator").create_publisher(ClockMessage, "/clock", 10)
@@ -197,14 +199,14 @@ def simulated(graph):
 
 
 class TestSimulatedTime:
-    async def test_clock_follows_clock_topic(self, simulated):
-        node, set_time = simulated
+    async def test_clock_follows_clock_topic(self, simulated_time):
+        node, set_time = simulated_time
         assert node.get_clock().ros_time_is_active
         assert node.get_clock().now().nanoseconds == 0
         set_time(12.5)
         assert node.get_clock().now() == Time(seconds=12.5, clock_type=ClockType.ROS_TIME)
         set_time(3)
-        assert node.get_clock().now_ns() == 3 * SECOND
+        assert node.get_clock().now_ns() == 3 * SECOND_NS
 
     async def test_use_sim_time_can_be_set_later(self, graph):
         node = graph.create_node("node")
@@ -212,16 +214,16 @@ class TestSimulatedTime:
         assert publisher.get_subscription_count() == 0
         node.set_parameters([Parameter("use_sim_time", value=True)])
         publisher.publish(clock_at(7))
-        assert node.get_clock().now_ns() == 7 * SECOND
+        assert node.get_clock().now_ns() == 7 * SECOND_NS
         node.set_parameters([Parameter("use_sim_time", value=False)])
         assert publisher.get_subscription_count() == 0
         assert node.get_clock().now_ns() == graph.clock.now_ns()
 
-    async def test_timers_follow_simulated_time(self, graph, simulated, clock):
-        node, set_time = simulated
+    async def test_timers_follow_simulated_time(self, graph, simulated_time, clock):
+        node, set_time = simulated_time
         set_time(100)
         calls = []
-        node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND))
+        node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND_NS))
         await clock.advance(60.0)
         assert calls == []
         for seconds in (100.5, 101.0, 101.9, 102.1, 105.5, 106.0):
@@ -229,17 +231,17 @@ class TestSimulatedTime:
             await graph.settle()
         assert calls == [101.0, 102.1, 105.5, 106.0]
 
-    async def test_time_jump_back_keeps_timers(self, graph, simulated):
-        node, set_time = simulated
+    async def test_time_jump_back_keeps_timers(self, graph, simulated_time):
+        node, set_time = simulated_time
         set_time(100)
         calls = []
-        timer = node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND))
-        once = node.create_timer(50.0, lambda: calls.append("once"))
+        timer = node.create_timer(1.0, lambda: calls.append(node.get_clock().now_ns() / SECOND_NS))
+        slow_timer = node.create_timer(50.0, lambda: calls.append("once"))
         set_time(101)
         await graph.settle()
         set_time(5)
-        assert timer.time_until_next_call() == SECOND
-        assert once.time_until_next_call() == 50 * SECOND
+        assert timer.time_until_next_call() == SECOND_NS
+        assert slow_timer.time_until_next_call() == 50 * SECOND_NS
         for seconds in (5.9, 6.0, 7.0):
             set_time(seconds)
             await graph.settle()
@@ -265,8 +267,8 @@ class TestSimulatedTime:
         await clock.advance(0.1)
         assert calls == [1]
 
-    async def test_steady_timers_ignore_simulated_time(self, graph, simulated, clock):
-        node, set_time = simulated
+    async def test_steady_timers_ignore_simulated_time(self, graph, simulated_time, clock):
+        node, set_time = simulated_time
         calls = []
         steady = Clock(clock_type=ClockType.STEADY_TIME, timebase=graph.timebase)
         node.create_timer(1.0, lambda: calls.append(1), clock=steady)
@@ -282,8 +284,8 @@ class TestSimulatedTime:
         assert not result.successful
         assert not node.get_clock().ros_time_is_active
 
-    async def test_rates_follow_simulated_time(self, graph, simulated):
-        node, set_time = simulated
+    async def test_rates_follow_simulated_time(self, graph, simulated_time):
+        node, set_time = simulated_time
         set_time(10)
         rate = node.create_rate(2.0)
         turns = []
@@ -291,7 +293,7 @@ class TestSimulatedTime:
         async def work():
             for _ in range(3):
                 await rate.wait()
-                turns.append(node.get_clock().now_ns() / SECOND)
+                turns.append(node.get_clock().now_ns() / SECOND_NS)
 
         task = asyncio.ensure_future(work())
         await graph.settle()
@@ -302,8 +304,8 @@ class TestSimulatedTime:
         assert turns == [10.5, 11.2, 11.5]
         await task
 
-    async def test_simulated_time_ends_with_node(self, graph, simulated):
-        node, set_time = simulated
+    async def test_simulated_time_ends_with_node(self, graph, simulated_time):
+        node, set_time = simulated_time
         calls = []
         node.create_timer(1.0, lambda: calls.append(1))
         node.destroy_node()

@@ -1,3 +1,5 @@
+"""Alarms of an event loop with finer resolution than its own timers."""
+
 from __future__ import annotations
 
 import asyncio
@@ -12,7 +14,7 @@ from linkwright.graph import SystemClock
 from linkwright.graph.time.fine_alarms import FineAlarms, fine_alarms
 from tests.waiting import eventually
 
-MILLISECOND = 1_000_000
+MILLISECOND_NS = 1_000_000
 
 
 async def alarms() -> FineAlarms:
@@ -25,12 +27,12 @@ async def alarms() -> FineAlarms:
 async def test_alarms_are_called_in_order_and_never_early():
     fine, now_ns = await alarms(), time.monotonic_ns()
     calls = []
-    for late_ns in (3 * MILLISECOND, 400_000, 0, 400_000, -5):
+    for late_ns in (3 * MILLISECOND_NS, 400_000, 0, 400_000, -5):
         due_ns = now_ns + late_ns
         fine.call_at(due_ns, lambda due_ns=due_ns: calls.append((due_ns, time.monotonic_ns())))
     assert calls == []
     await eventually(lambda: len(calls) == 5)
-    assert [due_ns - now_ns for due_ns, _ in calls] == [-5, 0, 400_000, 400_000, 3 * MILLISECOND]
+    assert [due_ns - now_ns for due_ns, _ in calls] == [-5, 0, 400_000, 400_000, 3 * MILLISECOND_NS]
     assert all(called_ns >= due_ns for due_ns, called_ns in calls)
 
 
@@ -90,10 +92,10 @@ async def test_exception_in_alarm_keeps_other_alarms():
 async def test_short_waits_use_fine_alarms_and_long_waits_the_event_loop():
     await alarms()
     clock, loop = SystemClock(), asyncio.get_running_loop()
-    long = clock.call_at(loop, clock.steady_ns() + 1000 * MILLISECOND, lambda: None)
+    long = clock.call_at(loop, clock.steady_ns() + 1000 * MILLISECOND_NS, lambda: None)
     assert isinstance(long, asyncio.TimerHandle)
     long.cancel()
-    short = clock.call_at(loop, clock.steady_ns() + MILLISECOND, lambda: None)
+    short = clock.call_at(loop, clock.steady_ns() + MILLISECOND_NS, lambda: None)
     assert not isinstance(short, asyncio.TimerHandle)
 
 
@@ -123,12 +125,12 @@ def test_timer_file_is_closed_with_event_loop(monkeypatch):
             super().add_reader(file, *call)
 
     loop = Watching()
-    gone, is_fine = weakref.ref(loop), fine_alarms(loop) is not None
+    loop_reference, is_fine = weakref.ref(loop), fine_alarms(loop) is not None
     loop.close()
     del loop
     if not is_fine:
         pytest.skip("this system's event loops wait with a resolution of microseconds")
     gc.collect()
-    assert gone() is None
+    assert loop_reference() is None
     assert watched
     assert set(watched) <= set(closed)

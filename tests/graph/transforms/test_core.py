@@ -1,3 +1,5 @@
+"""Transform lookups: interpolation, extrapolation and errors."""
+
 from __future__ import annotations
 
 from math import cos, inf, nan, pi, sin, sqrt
@@ -20,10 +22,10 @@ from linkwright.graph.time.values import Duration, Time
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.messages import TFMessage, TransformBatch, TransformStamped
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 
 
-def stamped(parent, child, seconds=0.0, x=0.0, yaw=0.0):
+def make_transform(parent, child, seconds=0.0, x=0.0, yaw=0.0):
     message = TransformStamped()
     message.header.frame_id, message.child_frame_id = parent, child
     message.header.stamp = Time(seconds=seconds).to_msg()
@@ -50,17 +52,17 @@ def buffer(logged):
     return BufferCore(logger=logger)
 
 
-def fill(buffer, *transforms, static=False):
+def fill_buffer(buffer, *transforms, static=False):
     for transform in transforms:
         (buffer.set_transform_static if static else buffer.set_transform)(transform, "me")
 
 
-def x_of(buffer, target, source, time=LATEST):
+def look_up_x(buffer, target, source, time=LATEST):
     return buffer.lookup_transform_core(target, source, time).transform.translation.x
 
 
 def test_lookup_returns_pose_of_source_in_target(buffer):
-    fill(buffer, stamped("map", "base", 1, x=1.0, yaw=pi / 2), stamped("base", "arm", 1, x=2.0))
+    fill_buffer(buffer, make_transform("map", "base", 1, x=1.0, yaw=pi / 2), make_transform("base", "arm", 1, x=2.0))
     transform = buffer.lookup_transform_core("map", "arm", LATEST)
     assert (transform.header.frame_id, transform.child_frame_id, transform.header.stamp.sec) == ("map", "arm", 1)
     translation, rotation = transform.transform.translation, transform.transform.rotation
@@ -76,12 +78,12 @@ def test_number_is_rejected_as_time(buffer):
 
 
 def test_poses_are_interpolated_between_stamps(buffer):
-    fill(buffer, stamped("a", "b", 1, x=0.0, yaw=0.0), stamped("a", "b", 3, x=4.0, yaw=pi / 2))
-    assert x_of(buffer, "a", "b", time_at(1.5)) == pytest.approx(1.0)
+    fill_buffer(buffer, make_transform("a", "b", 1, x=0.0, yaw=0.0), make_transform("a", "b", 3, x=4.0, yaw=pi / 2))
+    assert look_up_x(buffer, "a", "b", time_at(1.5)) == pytest.approx(1.0)
     rotation = buffer.lookup_transform_core("a", "b", time_at(2.0)).transform.rotation
     assert (rotation.z, rotation.w) == (pytest.approx(sin(pi / 8)), pytest.approx(cos(pi / 8)))
-    assert [x_of(buffer, "a", "b", time_at(time)) for time in (1.0, 3.0)] == [0.0, 4.0]
-    assert x_of(buffer, "a", "b") == 4.0
+    assert [look_up_x(buffer, "a", "b", time_at(time)) for time in (1.0, 3.0)] == [0.0, 4.0]
+    assert look_up_x(buffer, "a", "b") == 4.0
     assert buffer.lookup_transform_core("a", "b", time_at(2.0).to_msg()).transform.translation.x == pytest.approx(2.0)
 
 
@@ -94,14 +96,21 @@ def test_interpolation_takes_shorter_rotation():
 
 
 def test_reparented_frame_keeps_earlier_poses(buffer):
-    fill(buffer, stamped("a", "c", 1, x=1.0), stamped("b", "c", 3, x=9.0), stamped("a", "b", 1, x=5.0))
-    fill(buffer, stamped("a", "b", 3, x=5.0))
-    assert x_of(buffer, "a", "c", time_at(2.0)) == 1.0
-    assert x_of(buffer, "a", "c", time_at(3.0)) == 14.0
+    fill_buffer(
+        buffer,
+        make_transform("a", "c", 1, x=1.0),
+        make_transform("b", "c", 3, x=9.0),
+        make_transform("a", "b", 1, x=5.0),
+    )
+    fill_buffer(buffer, make_transform("a", "b", 3, x=5.0))
+    assert look_up_x(buffer, "a", "c", time_at(2.0)) == 1.0
+    assert look_up_x(buffer, "a", "c", time_at(3.0)) == 14.0
 
 
 def test_extrapolation_is_rejected_like_tf2(buffer):
-    fill(buffer, stamped("map", "base", 10), stamped("map", "base", 11), stamped("base", "arm", 10))
+    fill_buffer(
+        buffer, make_transform("map", "base", 10), make_transform("map", "base", 11), make_transform("base", "arm", 10)
+    )
     for time, text in (
         (
             12,
@@ -133,33 +142,38 @@ def test_extrapolation_is_rejected_like_tf2(buffer):
 
 
 def test_latest_common_time_is_of_slowest_frame(buffer):
-    fill(buffer, stamped("map", "base", 1, x=1.0), stamped("map", "base", 5, x=5.0), stamped("base", "arm", 3, x=10.0))
+    fill_buffer(
+        buffer,
+        make_transform("map", "base", 1, x=1.0),
+        make_transform("map", "base", 5, x=5.0),
+        make_transform("base", "arm", 3, x=10.0),
+    )
     transform = buffer.lookup_transform_core("map", "arm", LATEST)
     assert transform.header.stamp.sec == 3
     assert transform.transform.translation.x == pytest.approx(13.0)
     assert buffer.get_latest_common_time("map", "arm") == time_at(3)
     assert buffer.get_latest_common_time("arm", "base") == time_at(3)
     assert buffer.get_latest_common_time("base", "base") == time_at(5)
-    fill(buffer, stamped("base", "leg"), static=True)
+    fill_buffer(buffer, make_transform("base", "leg"), static=True)
     assert buffer.get_latest_common_time("arm", "leg") == time_at(3)
     assert buffer.get_latest_common_time("base", "leg") == LATEST
 
 
 def test_static_transforms_hold_at_all_times(buffer):
-    fill(buffer, stamped("base", "camera", 100, x=1.0), static=True)
-    assert [x_of(buffer, "base", "camera", time_at(time)) for time in (0, 1, 1000)] == [1.0, 1.0, 1.0]
+    fill_buffer(buffer, make_transform("base", "camera", 100, x=1.0), static=True)
+    assert [look_up_x(buffer, "base", "camera", time_at(time)) for time in (0, 1, 1000)] == [1.0, 1.0, 1.0]
     assert buffer.lookup_transform_core("base", "camera", time_at(7)).header.stamp.sec == 7
-    fill(buffer, stamped("base", "camera", 1, x=2.0), static=True)
-    assert x_of(buffer, "base", "camera", time_at(5)) == 2.0
-    fill(buffer, stamped("base", "camera", 3, x=3.0))
-    assert x_of(buffer, "base", "camera") == 3.0
+    fill_buffer(buffer, make_transform("base", "camera", 1, x=2.0), static=True)
+    assert look_up_x(buffer, "base", "camera", time_at(5)) == 2.0
+    fill_buffer(buffer, make_transform("base", "camera", 3, x=3.0))
+    assert look_up_x(buffer, "base", "camera") == 3.0
     with pytest.raises(ExtrapolationException):
-        x_of(buffer, "base", "camera", time_at(5))
+        look_up_x(buffer, "base", "camera", time_at(5))
 
 
 def test_time_travel_uses_fixed_frame(buffer):
-    fill(buffer, *(stamped("world", "robot", time, x=float(time)) for time in range(1, 6)))
-    fill(buffer, stamped("world", "other", 1, x=100.0), stamped("world", "other", 5, x=100.0))
+    fill_buffer(buffer, *(make_transform("world", "robot", time, x=float(time)) for time in range(1, 6)))
+    fill_buffer(buffer, make_transform("world", "other", 1, x=100.0), make_transform("world", "other", 5, x=100.0))
     transform = buffer.lookup_transform_full_core("robot", time_at(4), "robot", time_at(1.5), "world")
     assert transform.transform.translation.x == pytest.approx(-2.5)
     assert (transform.header.frame_id, transform.child_frame_id, transform.header.stamp.sec) == ("robot", "robot", 4)
@@ -174,7 +188,7 @@ def test_time_travel_uses_fixed_frame(buffer):
 
 
 def test_unknown_and_unconnected_frames_are_rejected(buffer):
-    fill(buffer, stamped("map", "base", 1), stamped("x", "y", 1))
+    fill_buffer(buffer, make_transform("map", "base", 1), make_transform("x", "y", 1))
     for call, kind, text in (
         (("mapp", "base"), LookupException, '"mapp" passed to lookupTransform argument target_frame does not exist. '),
         (("map", "bas"), LookupException, '"bas" passed to lookupTransform argument source_frame does not exist. '),
@@ -211,11 +225,17 @@ def test_unknown_and_unconnected_frames_are_rejected(buffer):
     assert buffer.can_transform_core("map", "/y", LATEST)[1].endswith("in tf2 frame_ids cannot start with a '/'")
     assert not buffer.can_transform_core("map", "y", LATEST)[0]
     assert buffer.can_transform_core("anything", "anything", LATEST) == (True, "")
-    assert x_of(buffer, "anything", "anything") == 0.0
+    assert look_up_x(buffer, "anything", "anything") == 0.0
 
 
 def test_frame_loop_is_reported(buffer):
-    fill(buffer, stamped("a", "b", 1), stamped("b", "c", 1), stamped("c", "a", 1), stamped("x", "y", 1))
+    fill_buffer(
+        buffer,
+        make_transform("a", "b", 1),
+        make_transform("b", "c", 1),
+        make_transform("c", "a", 1),
+        make_transform("x", "y", 1),
+    )
     for time in (LATEST, time_at(1)):
         with pytest.raises(LookupException, match=r"it contains a loop.\nFrame b exists"):
             buffer.lookup_transform_core("x", "b", time)
@@ -225,22 +245,22 @@ def test_frame_loop_is_reported(buffer):
     ("transform", "text"),
     [
         (
-            stamped("a", ""),
+            make_transform("a", ""),
             'TF_NO_CHILD_FRAME_ID: Ignoring transform from authority "me" because child_frame_id not set ',
         ),
         (
-            stamped("", "b"),
+            make_transform("", "b"),
             'TF_NO_FRAME_ID: Ignoring transform with child_frame_id "b"  from authority "me" because frame_id not set',
         ),
         (
-            stamped("/a", "a"),
+            make_transform("/a", "a"),
             (
                 'TF_SELF_TRANSFORM: Ignoring transform from authority "me" with frame_id and  child_frame_id "a" '
                 "because they are the same"
             ),
         ),
         (
-            stamped("a", "b", x=nan),
+            make_transform("a", "b", x=nan),
             (
                 'TF_NAN_INPUT: Ignoring transform for child_frame_id "b" from authority "me" because of a nan value in '
                 "the transform (nan 0.000000 0.000000) (0.000000 0.000000 0.000000 1.000000)"
@@ -249,17 +269,17 @@ def test_frame_loop_is_reported(buffer):
     ],
 )
 def test_invalid_transforms_are_ignored_and_reported(buffer, logged, transform, text):
-    fill(buffer, transform)
+    fill_buffer(buffer, transform)
     assert logged == [("ERROR", text)]
     assert buffer.all_frames_as_string() == ""
 
 
 def test_quaternion_must_have_unit_length(buffer, logged):
-    bad = stamped("a", "b")
-    bad.transform.rotation.w = 0.9
-    fill(buffer, bad)
-    bad.transform.rotation.w = inf
-    fill(buffer, bad)
+    invalid = make_transform("a", "b")
+    invalid.transform.rotation.w = 0.9
+    fill_buffer(buffer, invalid)
+    invalid.transform.rotation.w = inf
+    fill_buffer(buffer, invalid)
     assert logged[0] == (
         "ERROR",
         (
@@ -271,12 +291,17 @@ def test_quaternion_must_have_unit_length(buffer, logged):
 
 
 def test_old_data_is_ignored_and_out_of_order_data_sorted(buffer, logged):
-    fill(buffer, stamped("a", "b", 100, x=1.0), stamped("a", "b", 95, x=2.0), stamped("a", "b", 98, x=3.0))
-    assert [x_of(buffer, "a", "b", time_at(time)) for time in (95, 98, 100)] == [2.0, 3.0, 1.0]
-    assert x_of(buffer, "a", "b", time_at(99)) == pytest.approx(2.0)
-    fill(buffer, stamped("a", "b", 98, x=3.0))
+    fill_buffer(
+        buffer,
+        make_transform("a", "b", 100, x=1.0),
+        make_transform("a", "b", 95, x=2.0),
+        make_transform("a", "b", 98, x=3.0),
+    )
+    assert [look_up_x(buffer, "a", "b", time_at(time)) for time in (95, 98, 100)] == [2.0, 3.0, 1.0]
+    assert look_up_x(buffer, "a", "b", time_at(99)) == pytest.approx(2.0)
+    fill_buffer(buffer, make_transform("a", "b", 98, x=3.0))
     assert logged == []
-    fill(buffer, *(stamped("a", "b", 89, x=4.0) for _ in range(9)))
+    fill_buffer(buffer, *(make_transform("a", "b", 89, x=4.0) for _ in range(9)))
     assert logged == [
         (
             "WARN",
@@ -291,16 +316,16 @@ def test_old_data_is_ignored_and_out_of_order_data_sorted(buffer, logged):
 def test_data_older_than_cache_time_is_dropped(logged):
     buffer = BufferCore(Duration(seconds=2))
     for tick in range(3000):
-        buffer.set_transform(stamped("a", "b", 1 + tick * 0.01, x=float(tick)), "me")
+        buffer.set_transform(make_transform("a", "b", 1 + tick * 0.01, x=float(tick)), "me")
     with pytest.raises(ExtrapolationException, match="into the past"):
         buffer.lookup_transform_core("a", "b", time_at(28.0))
-    assert x_of(buffer, "a", "b", time_at(29.5)) == pytest.approx(2850.0)
+    assert look_up_x(buffer, "a", "b", time_at(29.5)) == pytest.approx(2850.0)
     assert "rate: 100." in buffer.all_frames_as_yaml()
 
 
 def test_clear_keeps_static_transforms(buffer):
-    fill(buffer, stamped("map", "base", 1))
-    fill(buffer, stamped("base", "camera"), static=True)
+    fill_buffer(buffer, make_transform("map", "base", 1))
+    fill_buffer(buffer, make_transform("base", "camera"), static=True)
     buffer.clear()
     assert buffer.can_transform_core("base", "camera", LATEST)[0]
     assert not buffer.can_transform_core("map", "base", LATEST)[0]
@@ -309,8 +334,8 @@ def test_clear_keeps_static_transforms(buffer):
 def test_all_frames_are_printed_as_text_yaml_and_dot(buffer):
     assert buffer.all_frames_as_yaml() == "[]"
     assert "no tf data recieved" in buffer.all_frames_as_dot()
-    fill(buffer, stamped("map", "base", 1), stamped("map", "base", 3))
-    fill(buffer, stamped("base", "camera"), static=True)
+    fill_buffer(buffer, make_transform("map", "base", 1), make_transform("map", "base", 3))
+    fill_buffer(buffer, make_transform("base", "camera"), static=True)
     assert buffer.all_frames_as_string() == (
         "Frame base exists with parent map.\nFrame camera exists with parent base.\n"
     )
@@ -328,10 +353,10 @@ def test_all_frames_are_printed_as_text_yaml_and_dot(buffer):
 
 
 def test_chain_contains_frames_between_two_frames(buffer):
-    fill(
+    fill_buffer(
         buffer,
-        *(stamped(parent, child, 1) for parent, child in (("map", "base"), ("base", "arm"), ("arm", "hand"))),
-        stamped("base", "leg", 1),
+        *(make_transform(parent, child, 1) for parent, child in (("map", "base"), ("base", "arm"), ("arm", "hand"))),
+        make_transform("base", "leg", 1),
     )
     assert buffer._chain("leg", LATEST, "hand", LATEST, "base") == ["hand", "arm", "base", "leg"]
     assert buffer._chain("hand", LATEST, "map", LATEST, "map") == ["map", "base", "arm", "hand"]
@@ -339,14 +364,14 @@ def test_chain_contains_frames_between_two_frames(buffer):
 
 
 def test_velocity_is_computed_from_poses(buffer):
-    fill(buffer, *(stamped("world", "robot", time, x=3.0 * time, yaw=0.1 * time) for time in range(6)))
+    fill_buffer(buffer, *(make_transform("world", "robot", time, x=3.0 * time, yaw=0.1 * time) for time in range(6)))
     linear, angular = buffer.lookupVelocityCore("robot", "world", time_at(3), Duration(seconds=2))
     assert (angular[2], linear[2]) == (pytest.approx(0.1), pytest.approx(0.0))
-    whole = buffer.lookupVelocityFullCore(
+    velocity = buffer.lookupVelocityFullCore(
         "robot", "world", "world", (0.0, 0.0, 0.0), "robot", time_at(3), Duration(seconds=2)
     )
-    assert whole == (linear, angular)
-    fill(buffer, *(stamped("world", "cart", time, x=3.0 * time) for time in range(6)))
+    assert velocity == (linear, angular)
+    fill_buffer(buffer, *(make_transform("world", "cart", time, x=3.0 * time) for time in range(6)))
     linear, angular = buffer.lookupVelocityCore("cart", "world", time_at(0), Duration(seconds=4, nanoseconds=1_000_000))
     assert linear == pytest.approx((3.0, 0.0, 0.0), abs=0.01)
     assert angular == pytest.approx((0.0, 0.0, 0.0))
@@ -354,9 +379,11 @@ def test_velocity_is_computed_from_poses(buffer):
 
 def test_messages_can_contain_arrays(buffer):
     poses = np.array([[1.0, 0, 0, 0, 0, 0, 1], [2.0, 0, 0, 0, 0, 0, 1]])
-    buffer.update(TFMessage(batch=TransformBatch(("a", "b"), ("b", "c"), 5 * SECOND, poses)), static=False)
-    assert x_of(buffer, "a", "c") == 3.0
-    buffer.update(TFMessage(transforms=[stamped("a", "b", 6, x=7.0), stamped("b", "c", 7, x=0.5)]), static=False)
+    buffer.update(TFMessage(batch=TransformBatch(("a", "b"), ("b", "c"), 5 * SECOND_NS, poses)), static=False)
+    assert look_up_x(buffer, "a", "c") == 3.0
+    buffer.update(
+        TFMessage(transforms=[make_transform("a", "b", 6, x=7.0), make_transform("b", "c", 7, x=0.5)]), static=False
+    )
     assert buffer.get_latest_common_time("a", "c") == time_at(6)
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.launch.engine import guardian_program
-from tests.waiting import SECONDS
+from tests.waiting import TIMEOUT_S
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "killpg"), reason="this system has no process groups")
 MARK = "LINKWRIGHT_GUARDED"
@@ -54,10 +54,10 @@ def start() -> Iterator[Start]:
     yield run
     for process in processes:
         process.kill()
-        process.communicate(timeout=SECONDS)
+        process.communicate(timeout=TIMEOUT_S)
 
 
-def guard(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> None:
+def run_guardian(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(text))
     guardian_program.main(f"{MARK}={mark}")
 
@@ -65,19 +65,19 @@ def guard(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> N
 def test_guardian_ends_processes_and_removes_folder(
     start: Start, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    meek, stubborn, gone = start(), start("SIGINT", "SIGTERM"), start()
+    ordinary, stubborn, ended = start(), start("SIGINT", "SIGTERM"), start()
     folder = tmp_path / "files of the launch"
     folder.mkdir()
-    guard(monkeypatch, f"+{meek.pid}\n+{stubborn.pid}\n+{gone.pid}\n={folder}\n-{gone.pid}\n")
-    assert meek.wait(SECONDS) in (1, -signal.SIGINT)
-    assert stubborn.wait(SECONDS) == -signal.SIGKILL
-    assert gone.poll() is None
+    run_guardian(monkeypatch, f"+{ordinary.pid}\n+{stubborn.pid}\n+{ended.pid}\n={folder}\n-{ended.pid}\n")
+    assert ordinary.wait(TIMEOUT_S) in (1, -signal.SIGINT)
+    assert stubborn.wait(TIMEOUT_S) == -signal.SIGKILL
+    assert ended.poll() is None
     assert not folder.exists()
 
 
 def test_guardian_ignores_launch_that_ended_normally(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     process = start()
-    guard(monkeypatch, f"+{process.pid}\n.\n")
+    run_guardian(monkeypatch, f"+{process.pid}\n.\n")
     assert process.poll() is None
 
 
@@ -86,6 +86,6 @@ def test_guardian_ignores_launch_that_ended_normally(start: Start, monkeypatch: 
 )
 def test_guardian_finds_unreported_processes_by_mark(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
     marked, other = start(**{MARK: "mine"}), start(**{MARK: "theirs"})
-    guard(monkeypatch, "", "mine")
-    assert marked.wait(SECONDS) in (1, -signal.SIGINT)
+    run_guardian(monkeypatch, "", "mine")
+    assert marked.wait(TIMEOUT_S) in (1, -signal.SIGINT)
     assert other.poll() is None

@@ -29,16 +29,16 @@ from launch_ros.actions import Node, RosTimer, SetROSLogDir, SetUseSimTime
 from launch import LaunchContext
 from linkwright.hosting.network import Network
 from tests.domains import own_domain
-from tests.launch.ending import ends_when, printed
+from tests.launch.ending import end_when, has_printed
 
 Write = Callable[[str, str], Path]
 
 
-def talker(**options: Any) -> Node:
+def make_talker(**options: Any) -> Node:
     return Node(package="demo_nodes_cpp", executable="talker", **options)
 
 
-def prefixed(prefix: str, pattern: str) -> list[Any]:
+def read_prefixed(prefix: str, pattern: str) -> list[Any]:
     configurations = {"launch-prefix": prefix, "launch-prefix-filter": pattern}
     return [SetLaunchConfiguration(name, value) for name, value in configurations.items()]
 
@@ -48,8 +48,8 @@ class TestProcessChoice:
         start_handler = RegisterEventHandler(
             OnProcessExit(on_exit=lambda event, _: LogInfo(msg=f"{event.process_name} {event.returncode}"))
         )
-        speaks = ends_when(printed("] [tk]: Publishing: 'Hello World: 1'"))
-        result = await launch(talker(name="tk"), start_handler, speaks, session_options={"isolate": True})
+        speaks = end_when(has_printed("] [tk]: Publishing: 'Hello World: 1'"))
+        result = await launch(make_talker(name="tk"), start_handler, speaks, session_options={"isolate": True})
         assert "[INFO] [talker-1]: process started with pid [" in result.err
         assert "[talker-1] [INFO] [" in result.err
         assert "] [tk]: Publishing: 'Hello World: 1'" in result.err
@@ -69,20 +69,20 @@ class TestProcessChoice:
     async def test_node_with_prefix_or_own_domain_runs_as_process(
         self, launch, options: Any, before: list[Any]
     ) -> None:
-        result = await launch(*before, talker(**options), ends_when(printed("[talker-1]: process started")))
+        result = await launch(*before, make_talker(**options), end_when(has_printed("[talker-1]: process started")))
         assert "[INFO] [talker-1]: process started with pid [" in result.err
 
     @pytest.mark.parametrize(
         ("options", "before"),
         [
             ({"additional_env": {"DISPLAY": ":1"}, "emulate_tty": True, "respawn": True}, []),
-            ({}, prefixed("env", "x")),
+            ({}, read_prefixed("env", "x")),
         ],
     )
     async def test_irrelevant_options_keep_node_in_launcher_process(
         self, launch, options: Any, before: list[Any]
     ) -> None:
-        result = await launch(*before, talker(**options), ends_when(printed("[talker-1]: started in")))
+        result = await launch(*before, make_talker(**options), end_when(has_printed("[talker-1]: started in")))
         assert "[INFO] [talker-1]: started in the launcher's process" in result.err
 
 
@@ -97,8 +97,11 @@ class TestOutput:
             folder = tmp_path / "ros_log" / "latest"
             return all((folder / name).is_file() and text in (folder / name).read_text() for name, text in logs.items())
 
-        quiet, loud = talker(output="own_log", exec_name="quiet"), talker(name="loud", output="both")
-        result = await launch(quiet, loud, ends_when(are_written))
+        log_only, both_outputs = (
+            make_talker(output="own_log", exec_name="quiet"),
+            make_talker(name="loud", output="both"),
+        )
+        result = await launch(log_only, both_outputs, end_when(are_written))
         assert are_written(result.session.context)
         assert "[quiet-1] [INFO]" not in result.err
         assert "[talker-2] [INFO] [" in result.err
@@ -129,10 +132,10 @@ class TestOutput:
         node = Node(
             package="demo_nodes_py", executable="talker_qos", arguments=["-n", "1"], respawn=True, respawn_delay=60.0
         )
-        began = time.monotonic()
-        result = await launch(node, ends_when(printed("has finished cleanly")))
+        start_s = time.monotonic()
+        result = await launch(node, end_when(has_printed("has finished cleanly")))
         assert result.err.count("started in the launcher's process") == 1
-        assert time.monotonic() - began < 60.0
+        assert time.monotonic() - start_s < 60.0
 
     async def test_invalid_node_arguments_fail_launch(self, launch) -> None:
         node = Node(package="demo_nodes_py", executable="talker_qos", arguments=["--number_of_cycles", "x"])
@@ -143,10 +146,10 @@ class TestOutput:
 
 class TestManyNodes:
     async def test_five_hundred_nodes_start_in_one_launch(self, launch) -> None:
-        up: list[int] = []
+        started_numbers: list[int] = []
 
         def look(context: LaunchContext) -> None:
-            up.append(len(context.session.host.graph.node_names()))
+            started_numbers.append(len(context.session.host.graph.node_names()))
 
         nodes = [
             Node(
@@ -162,7 +165,7 @@ class TestManyNodes:
         result = await launch(*nodes, RegisterEventHandler(last))
         assert result.succeeded, result.err[-2000:]
         assert result.err.count("has finished cleanly") == 500
-        assert up[0] >= 500
+        assert started_numbers[0] >= 500
 
     async def test_event_loop_runs_between_node_starts(self, launch) -> None:
         counts: list[int] = []
@@ -173,7 +176,7 @@ class TestManyNodes:
                 await asyncio.sleep(0)
             context.emit_event_sync(ShutdownEvent())
 
-        nodes = [talker(name=f"n{number}") for number in range(100)]
+        nodes = [make_talker(name=f"n{number}") for number in range(100)]
         await launch(OpaqueCoroutine(coroutine=watch), *nodes)
         assert all(later - before <= 1 for before, later in pairwise(counts))
 
@@ -189,10 +192,10 @@ class TestScope:
         assert result.messages == [str(tmp_path / "ros_log" / "inner"), "/elsewhere"]
 
     async def test_ros_timer_runs_actions_after_period(self, launch) -> None:
-        began = time.monotonic()
+        start_s = time.monotonic()
         result = await launch(RosTimer(period=0.3, actions=[LogInfo(msg="now")]))
         assert result.messages == ["now"]
-        assert time.monotonic() - began >= 0.3
+        assert time.monotonic() - start_s >= 0.3
 
     async def test_ros_timer_can_be_canceled(self, launch) -> None:
         timer = RosTimer(period=60.0, actions=[LogInfo(msg="never")])
@@ -233,28 +236,28 @@ class TestNetwork:
         monkeypatch.delenv("LINKWRIGHT_DDS")
         await launch(LogInfo(msg="no nodes"))
         assert joined == []
-        speaks = printed("Publishing: 'Hello World: 1'")
-        await launch(talker(), ends_when(speaks))
+        speaks = has_printed("Publishing: 'Hello World: 1'")
+        await launch(make_talker(), end_when(speaks))
         assert len(joined) == 1
-        await launch(talker(), ends_when(speaks), session_options={"network": False})
+        await launch(make_talker(), end_when(speaks), session_options={"network": False})
         monkeypatch.setenv("LINKWRIGHT_DDS", "0")
-        await launch(talker(), ends_when(speaks))
+        await launch(make_talker(), end_when(speaks))
         assert len(joined) == 1
 
     async def test_viewer_starts_before_network_is_joined(self, launch, monkeypatch: pytest.MonkeyPatch) -> None:
         joined: list[float] = []
         monkeypatch.setattr(Network, "_join", lambda self: joined.append(time.monotonic()))
         monkeypatch.delenv("LINKWRIGHT_DDS")
-        began = time.monotonic()
-        await launch(talker(), Node(package="rviz2", executable="rviz2"), ends_when(lambda _: joined))
-        assert joined[0] - began > 0.7
+        start_s = time.monotonic()
+        await launch(make_talker(), Node(package="rviz2", executable="rviz2"), end_when(lambda _: joined))
+        assert joined[0] - start_s > 0.7
 
 
 async def test_requested_port_is_used_by_only_one_viewer(launch) -> None:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = server.getsockname()[1]
-    two = [Node(package="rviz2", executable="rviz2", name=name) for name in ("one", "other")]
-    result = await launch(*two, ends_when(printed("Viewer: ", times=2)), session_options={"port": port})
+    viewers = [Node(package="rviz2", executable="rviz2", name=name) for name in ("one", "other")]
+    result = await launch(*viewers, end_when(has_printed("Viewer: ", times=2)), session_options={"port": port})
     assert result.succeeded, result.err
     pages = re.findall(r"Viewer: http://127\.0\.0\.1:(\d+)/", result.out)
     assert str(port) in pages

@@ -13,7 +13,7 @@ from launch_ros.descriptions import ComposableNode
 from launch_ros.substitutions import FindPackageShare
 
 from linkwright.packages import PackageFinder
-from tests.launch.ending import ends_when, printed
+from tests.launch.ending import end_when, has_printed
 
 Write = Callable[[str, str], Path]
 SKIP = {"skip_missing": True}
@@ -78,7 +78,10 @@ async def test_error_offers_skip_missing_command(launch) -> None:
 
 
 class TestMissingPackagesByDefault:
-    """Parts that need missing third-party packages are skipped by default, because robots start many."""
+    """Parts that need missing third-party packages are skipped by default.
+
+    Robots start many such parts.
+    """
 
     async def test_nodes_of_missing_packages_are_skipped(self, launch) -> None:
         result = await launch(
@@ -131,19 +134,19 @@ class TestMissingPackagesByDefault:
                 executable="component_container",
                 composable_node_descriptions=[ComposableNode(package="zzz_of_others", plugin="zzz::Driver")],
             ),
-            ends_when(printed("skipped")),
+            end_when(has_printed("skipped")),
         )
         assert "one part of the launch is skipped, and the rest runs" in result.err
         assert "'zzz::Driver'" in result.err
         assert result.succeeded
 
     async def test_misspelled_names_end_launch(self, launch, write: Write) -> None:
-        for wrong in (
+        for misspelled in (
             Node(package="robot_state_publishr", executable="robot_state_publisher"),
             Node(package="robot_state_publisher", executable="robot_state_publishr"),
             IncludeLaunchDescription(str(write("there.launch.py", "").with_name("ther.launch.py"))),
         ):
-            result = await launch(wrong, LogInfo(msg="rest"))
+            result = await launch(misspelled, LogInfo(msg="rest"))
             assert result.messages == []
             assert "skipped" not in result.err
             assert not result.succeeded

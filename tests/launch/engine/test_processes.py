@@ -1,3 +1,5 @@
+"""Processes that a launch starts: output, exits, environment and signals."""
+
 from __future__ import annotations
 
 import os
@@ -35,7 +37,7 @@ time.sleep(60)
 """
 
 
-def python(program: str, **options: object) -> ExecuteProcess:
+def execute_python(program: str, **options: object) -> ExecuteProcess:
     options.setdefault("output", "screen")
     options.setdefault("name", "py")
     return ExecuteProcess(cmd=[sys.executable, "-c", program], **options)
@@ -55,7 +57,9 @@ def is_gone(pid: int) -> bool:
 
 
 async def test_process_output_and_exit_are_logged(launch) -> None:
-    result = await launch(python("import sys; print('out'); print('err', file=sys.stderr); sys.stdout.write('rest')"))
+    result = await launch(
+        execute_python("import sys; print('out'); print('err', file=sys.stderr); sys.stdout.write('rest')")
+    )
     assert result.out.splitlines() == ["[py-1] out", "[py-1] rest"]
     assert "[INFO] [py-1]: process started with pid [" in result.err
     assert "[py-1] err" in result.err
@@ -110,11 +114,11 @@ async def test_prefix_and_log_cmd_are_applied(launch) -> None:
 
 async def test_emulate_tty_provides_pseudo_terminal(launch) -> None:
     program = "import sys; print(sys.stdout.isatty(), sys.stderr.isatty())"
-    assert (await launch(python(program, emulate_tty=True))).out == "[py-1] True True\n"
-    assert (await launch(python(program))).out == "[py-1] False False\n"
+    assert (await launch(execute_python(program, emulate_tty=True))).out == "[py-1] True True\n"
+    assert (await launch(execute_python(program))).out == "[py-1] False False\n"
 
 
-def written_below(folder: Path) -> dict[str, list[str]]:
+def read_process_logs(folder: Path) -> dict[str, list[str]]:
     """Return the output of processes in the log files of the only launch, without times."""
     (launch,) = [path for path in folder.iterdir() if not path.is_symlink()]
     lines_by_file = {path.name: sorted(path.read_text().splitlines()) for path in launch.iterdir()}
@@ -149,13 +153,13 @@ class TestOutput:
     async def test_output_mode_selects_screen_and_log_files(
         self, launch, tmp_path: Path, mode: object, out: bool, err: bool, files: dict
     ) -> None:
-        result = await launch(python(self.PROGRAM, output=mode))
+        result = await launch(execute_python(self.PROGRAM, output=mode))
         assert ("[py-1] out" in result.out) is out
         assert ("[py-1] err" in result.err) is err
-        assert written_below(tmp_path / "ros_log") == files
+        assert read_process_logs(tmp_path / "ros_log") == files
 
     async def test_launch_log_contains_all_launcher_lines(self, launch, tmp_path: Path) -> None:
-        result = await launch(python("0"))
+        result = await launch(execute_python("0"))
         folder = (tmp_path / "ros_log" / "latest").resolve()
         assert result.err.splitlines()[:2] == [
             f"[INFO] [launch]: All log files can be found below {folder}",
@@ -177,7 +181,7 @@ class TestOutput:
     async def test_unwritable_log_folder_is_reported_once(self, launch, tmp_path: Path, monkeypatch) -> None:
         (tmp_path / "file").write_text("")
         monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "file" / "logs"))
-        result = await launch(python("print('out')", output="both"))
+        result = await launch(execute_python("print('out')", output="both"))
         assert result.err.count("warning[LAUNCH145]") == 1
         assert "log files can be found" not in result.err
         assert result.out == "[py-1] out\n"
@@ -185,15 +189,15 @@ class TestOutput:
 
     async def test_process_output_override_is_read_from_environment(self, launch, monkeypatch) -> None:
         monkeypatch.setenv("OVERRIDE_LAUNCH_PROCESS_OUTPUT", "both")
-        assert "[py-1] out" in (await launch(python(self.PROGRAM, output="own_log"))).out
+        assert "[py-1] out" in (await launch(execute_python(self.PROGRAM, output="own_log"))).out
 
     async def test_unknown_output_mode_is_rejected(self, launch) -> None:
-        result = await launch(python("0", output="scren"))
+        result = await launch(execute_python("0", output="scren"))
         assert "error[LAUNCH141]: output destination 'scren' does not exist" in result.err
         assert "did you mean 'screen'?" in result.err
 
     async def test_output_format_and_cached_output_are_applied(self, launch) -> None:
-        action = python(
+        action = execute_python(
             self.PROGRAM, output_format="<{this.process_description.final_name}> {line}", cached_output=True
         )
         assert (await launch(action)).out == "<py-1> out\n"
@@ -207,14 +211,14 @@ def test_process_description_is_available_before_start() -> None:
     context.launch_configurations["word"] = "b"
     action = ExecuteProcess(cmd=["echo", ["a", LaunchConfiguration("word")]], cwd="/", env={"A": "1"}, name="py")
     action.prepare(context)
-    about = action.process_description
-    assert about.final_name.startswith("py-")
-    assert (about.final_cmd, about.final_cwd, about.final_env) == (["echo", "ab"], "/", {"A": "1"})
+    description = action.process_description
+    assert description.final_name.startswith("py-")
+    assert (description.final_cmd, description.final_cwd, description.final_env) == (["echo", "ab"], "/", {"A": "1"})
 
 
 class TestFailures:
     async def test_exit_status_is_logged(self, launch) -> None:
-        result = await launch(python("raise SystemExit(3)"))
+        result = await launch(execute_python("raise SystemExit(3)"))
         assert "[ERROR] [py-1]: process has died [pid " in result.err
         assert "exit code 3, cmd '" in result.err
         assert result.succeeded  # as with ros2 launch
@@ -229,14 +233,14 @@ class TestFailures:
 
     async def test_missing_terminal_emulator_is_reported(self, launch, monkeypatch) -> None:
         monkeypatch.setenv("PATH", "/no/such/folder")
-        result = await launch(python("0", prefix="xterm -e"), LogInfo(msg="others go on"))
+        result = await launch(execute_python("0", prefix="xterm -e"), LogInfo(msg="others go on"))
         assert "program 'xterm' does not exist" in result.err
         assert "install 'xterm'" in result.err
         assert "linkwright run" in result.err
         assert result.messages == ["others go on"]
 
     async def test_missing_working_directory_is_reported(self, launch) -> None:
-        result = await launch(python("0", cwd="/no/such/folder"))
+        result = await launch(execute_python("0", cwd="/no/such/folder"))
         assert "folder '/no/such/folder' does not exist" in result.err
 
     async def test_empty_command_is_rejected(self, launch) -> None:
@@ -245,7 +249,7 @@ class TestFailures:
 
 class TestHandlers:
     async def test_process_start_io_and_exit_handlers_run(self, launch) -> None:
-        first, second = python("import os; os.write(1, b'hello\\n')", output="log"), python("0")
+        first, second = execute_python("import os; os.write(1, b'hello\\n')", output="log"), execute_python("0")
         result = await launch(
             first,
             RegisterEventHandler(OnProcessStart(target_action=first, on_start=[LogInfo(msg="started")])),
@@ -264,14 +268,16 @@ class TestHandlers:
 
     async def test_handle_once_runs_handler_once(self, launch) -> None:
         result = await launch(
-            RegisterEventHandler(OnProcessExit(on_exit=LogInfo(msg="one"), handle_once=True)), python("0"), python("0")
+            RegisterEventHandler(OnProcessExit(on_exit=LogInfo(msg="one"), handle_once=True)),
+            execute_python("0"),
+            execute_python("0"),
         )
         assert result.messages == ["one"]
 
     async def test_on_exit_shutdown_ends_other_processes(self, launch) -> None:
         result = await launch(
-            python("import time; time.sleep(60)", name="other"),
-            TimerAction(period=0.3, actions=[python("0", on_exit=Shutdown(reason="over"))]),
+            execute_python("import time; time.sleep(60)", name="other"),
+            TimerAction(period=0.3, actions=[execute_python("0", on_exit=Shutdown(reason="over"))]),
             RegisterEventHandler(OnShutdown(on_shutdown=lambda event, _: LogInfo(msg=event.reason))),
         )
         assert result.messages == ["over"]
@@ -280,7 +286,7 @@ class TestHandlers:
 
     async def test_on_exit_accepts_function(self, launch) -> None:
         result = await launch(
-            python("raise SystemExit(4)", on_exit=lambda event, _: LogInfo(msg=f"rc {event.returncode}"))
+            execute_python("raise SystemExit(4)", on_exit=lambda event, _: LogInfo(msg=f"rc {event.returncode}"))
         )
         assert result.messages == ["rc 4"]
 
@@ -289,7 +295,7 @@ class TestHandlers:
             OnProcessExit(target_action="talker", on_exit=[])
 
     async def test_execution_complete_is_emitted_when_process_has_ended(self, launch) -> None:
-        first, second = LogInfo(msg="first"), python("0", on_exit=[LogInfo(msg="exited")])
+        first, second = LogInfo(msg="first"), execute_python("0", on_exit=[LogInfo(msg="exited")])
         third = OpaqueFunction(function=lambda _: None)
         result = await launch(
             RegisterEventHandler(OnExecutionComplete(target_action=first, on_completion=[LogInfo(msg="then"), second])),
@@ -307,36 +313,38 @@ class TestHandlers:
 
 class TestProcessExits:
     async def test_respawn_repeats_up_to_max_retries(self, launch) -> None:
-        result = await launch(python("print('up')", respawn=True, respawn_delay=0.01, respawn_max_retries=2))
+        result = await launch(execute_python("print('up')", respawn=True, respawn_delay=0.01, respawn_max_retries=2))
         assert result.out == "[py-1] up\n" * 3
 
     async def test_failing_action_ends_processes_that_are_starting(self, launch) -> None:
-        began = time.monotonic()
+        start_s = time.monotonic()
         result = await launch(
-            python("import time; time.sleep(60)"),
-            python("import time; time.sleep(60)"),
+            execute_python("import time; time.sleep(60)"),
+            execute_python("import time; time.sleep(60)"),
             LogInfo(msg=LaunchConfiguration("x")),
         )
-        assert time.monotonic() - began < 60.0
+        assert time.monotonic() - start_s < 60.0
         assert not result.succeeded
 
     async def test_failing_action_ends_started_process_and_runs_on_exit(self, launch) -> None:
         result = await launch(
-            python("import time; time.sleep(60)", on_exit=LogInfo(msg="exited")), LogInfo(msg=LaunchConfiguration("x"))
+            execute_python("import time; time.sleep(60)", on_exit=LogInfo(msg="exited")),
+            LogInfo(msg=LaunchConfiguration("x")),
         )
         assert result.messages == ["exited"]
         assert "sending signal 'SIGINT' to process[py-1]" in result.err
 
     async def test_pending_respawn_is_canceled_at_shutdown(self, launch) -> None:
-        began = time.monotonic()
+        start_s = time.monotonic()
         result = await launch(
-            python("0", respawn=True, respawn_delay=60.0), TimerAction(period=0.3, actions=[Shutdown(reason="over")])
+            execute_python("0", respawn=True, respawn_delay=60.0),
+            TimerAction(period=0.3, actions=[Shutdown(reason="over")]),
         )
-        assert time.monotonic() - began < 60.0
+        assert time.monotonic() - start_s < 60.0
         assert result.err.count("process started") == 1
 
     async def test_shutdown_escalates_to_sigterm_and_sigkill(self, launch) -> None:
-        action = python(STUBBORN, sigterm_timeout=0.15, sigkill_timeout="0.15")
+        action = execute_python(STUBBORN, sigterm_timeout=0.15, sigkill_timeout="0.15")
         result = await launch(
             action,
             RegisterEventHandler(
@@ -355,7 +363,7 @@ class TestProcessExits:
         assert action.return_code == -9
 
     async def test_signal_process_event_sends_signal(self, launch) -> None:
-        action = python("import time; print('ready', flush=True); time.sleep(60)")
+        action = execute_python("import time; print('ready', flush=True); time.sleep(60)")
         result = await launch(
             action,
             RegisterEventHandler(
@@ -372,10 +380,10 @@ class TestProcessExits:
     async def test_grandchildren_are_ended_with_launch(self, launch, tmp_path: Path) -> None:
         pid_file = tmp_path / "pid"
         program = f"sleep 60 & echo $! > {pid_file}; exit 0"
-        began = time.monotonic()
+        start_s = time.monotonic()
         result = await launch(ExecuteProcess(cmd=["sh", "-c", program], output="screen"))
         assert result.succeeded
-        assert time.monotonic() - began < 60.0
+        assert time.monotonic() - start_s < 60.0
         assert is_gone(int(pid_file.read_text()))
 
 

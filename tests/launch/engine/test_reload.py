@@ -1,3 +1,5 @@
+"""Descriptions that a launch reloads when their files change."""
+
 from __future__ import annotations
 
 import asyncio
@@ -22,19 +24,19 @@ from linkwright.hosting.reload import FileWatch
 from linkwright.launch.engine.session import LaunchSession
 from linkwright.launch.engine.supervisor import SessionOptions
 from linkwright.packages import PackageFinder, use_finder
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 XACRO = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 
 
-def model(link: str) -> str:
+def model_text(link: str) -> str:
     return f'<robot name="r" {XACRO}><link name="{link}"/></robot>'
 
 
 BROKEN = f'<robot name="r" {XACRO}>\n  <link name="${{nothing}}"/>\n</robot>'
 
 
-class Bench:
+class ReloadedLaunch:
     """A running launch of robot_state_publisher and viewer on one model."""
 
     def __init__(self, session: LaunchSession, err: io.StringIO, out: io.StringIO) -> None:
@@ -66,7 +68,10 @@ class Bench:
         await self.until(lambda: f'<link name="{link}"/>' in self.description())
 
     async def watching(self) -> None:
-        """Wait until files are watched, which is the case when a change of an unrelated file is reported."""
+        """Wait until files are watched.
+
+        This is the case when a change of an unrelated file is reported.
+        """
         await self.until(lambda: self.session.reload._watch is not None)
         watch = self.session.reload._watch
         assert watch is not None
@@ -85,7 +90,9 @@ class Bench:
 
 
 @asynccontextmanager
-async def running(path: Path, *arguments: str, viewer: bool = True, delay: float | None = None) -> AsyncIterator[Bench]:
+async def run_launch(
+    path: Path, *arguments: str, viewer: bool = True, delay: float | None = None
+) -> AsyncIterator[ReloadedLaunch]:
     out, err = io.StringIO(), io.StringIO()
     description = ParameterValue(Command(["xacro ", str(path)]), value_type=str)
     entities = [
@@ -104,42 +111,42 @@ async def running(path: Path, *arguments: str, viewer: bool = True, delay: float
         session = LaunchSession(finder, SessionOptions(port=0, open_browser=False), LaunchLog(out, err))
         task = asyncio.create_task(session.run(LaunchDescription(entities)))
         try:
-            yield Bench(session, err, out)
+            yield ReloadedLaunch(session, err, out)
         finally:
             session.interrupt("the test is over")
-            await asyncio.wait_for(task, SECONDS)
+            await asyncio.wait_for(task, TIMEOUT_S)
 
 
 async def test_saved_file_reaches_running_node(write) -> None:
-    path = write("r.xacro", model("a"))
-    async with running(path) as bench:
+    path = write("r.xacro", model_text("a"))
+    async with run_launch(path) as bench:
         await bench.wait_until_shown("a")
         await bench.watching()
         for link in ("b", "c", "d"):
-            path.write_text(model(link))
+            path.write_text(model_text(link))
             await bench.wait_until_shown(link)
         assert "reloaded" in bench.err
 
 
 async def test_node_started_later_receives_reloaded_description(write) -> None:
-    path = write("r.xacro", model("a"))
-    async with running(path, delay=0.2) as bench:
+    path = write("r.xacro", model_text("a"))
+    async with run_launch(path, delay=0.2) as bench:
         await bench.wait_until_shown("a")
         await bench.watching()
-        path.write_text(model("b"))
+        path.write_text(model_text("b"))
         await bench.wait_until_shown("b")
 
 
 async def test_file_replaced_by_rename_is_reloaded(write) -> None:
-    path = write("r.xacro", model("a"))
-    async with running(path) as bench:
+    path = write("r.xacro", model_text("a"))
+    async with run_launch(path) as bench:
         await bench.wait_until_shown("a")
         await bench.watching()
         for link in ("b", "c"):
             path.rename(path.with_suffix(".bak"))
             await asyncio.sleep(0.08)
             new = path.with_suffix(".new")
-            new.write_text(model(link))
+            new.write_text(model_text(link))
             new.replace(path)
             await bench.wait_until_shown(link)
         assert "error" not in bench.err
@@ -151,7 +158,7 @@ async def test_include_behind_symlink_is_watched(write, tmp_path: Path) -> None:
     link.parent.mkdir()
     link.symlink_to(real)
     path = write("share/r.xacro", f'<robot name="r" {XACRO}><xacro:include filename="part.xacro"/></robot>')
-    async with running(path) as bench:
+    async with run_launch(path) as bench:
         await bench.wait_until_shown("a")
         await bench.watching()
         real.write_text(f'<robot {XACRO}><link name="b"/></robot>')
@@ -159,9 +166,9 @@ async def test_include_behind_symlink_is_watched(write, tmp_path: Path) -> None:
 
 
 async def test_new_include_is_watched(write) -> None:
-    path = write("r.xacro", model("a"))
+    path = write("r.xacro", model_text("a"))
     part = write("parts/part.xacro", f'<robot {XACRO}><link name="b"/></robot>')
-    async with running(path) as bench:
+    async with run_launch(path) as bench:
         await bench.wait_until_shown("a")
         await bench.watching()
         path.write_text(f'<robot name="r" {XACRO}><xacro:include filename="parts/part.xacro"/></robot>')
@@ -172,8 +179,8 @@ async def test_new_include_is_watched(write) -> None:
 
 
 async def test_broken_file_keeps_last_valid_robot_until_fixed(write) -> None:
-    path = write("r.xacro", model("a"))
-    async with running(path) as bench:
+    path = write("r.xacro", model_text("a"))
+    async with run_launch(path) as bench:
         await bench.wait_until_shown("a")
         await bench.watching()
         path.write_text(BROKEN)
@@ -184,7 +191,7 @@ async def test_broken_file_keeps_last_valid_robot_until_fixed(write) -> None:
         assert "nothing" in finding.message
         assert bench.err.count("error[XAC") == 1
         assert '<link name="a"/>' in bench.description()
-        path.write_text(model("c"))
+        path.write_text(model_text("c"))
         await bench.wait_until_shown("c")
         await bench.until(lambda: not bench.findings())
         assert "repaired" in bench.err
@@ -192,7 +199,7 @@ async def test_broken_file_keeps_last_valid_robot_until_fixed(write) -> None:
 
 async def test_description_with_two_roots_is_rejected(write) -> None:
     path = write("r.urdf", '<robot name="r"><link name="a"/></robot>')
-    async with running(path) as bench:
+    async with run_launch(path) as bench:
         await bench.wait_until_shown("a")
         await bench.watching()
         path.write_text('<robot name="r"><link name="a"/><link name="b"/></robot>')
@@ -202,62 +209,62 @@ async def test_description_with_two_roots_is_rejected(write) -> None:
 
 
 async def test_deleted_file_is_reported_and_reloaded_when_recreated(write) -> None:
-    path = write("r.xacro", model("a"))
-    async with running(path) as bench:
+    path = write("r.xacro", model_text("a"))
+    async with run_launch(path) as bench:
         await bench.wait_until_shown("a")
         await bench.watching()
         path.unlink()
         await bench.until(lambda: bool(bench.findings()))
         assert '<link name="a"/>' in bench.description()
-        path.write_text(model("b"))
+        path.write_text(model_text("b"))
         await bench.wait_until_shown("b")
 
 
 @pytest.mark.parametrize("start", [BROKEN, '<robot name="r"><link name="a"/><link name="b"/></robot>', "<robot", ""])
 async def test_model_broken_at_start_is_loaded_once_fixed(write, start: str) -> None:
     path = write("r.xacro", start)
-    async with running(path) as bench:
+    async with run_launch(path) as bench:
         await bench.until(lambda: "Viewer: " in bench.out and bool(bench.findings()))
         assert "error[" in bench.err
         assert bench.description() == ""
         await bench.watching()
-        path.write_text(model("good"))
+        path.write_text(model_text("good"))
         await bench.wait_until_shown("good")
         await bench.until(lambda: not bench.findings())
         await bench.watching()
-        path.write_text(model("better"))
+        path.write_text(model_text("better"))
         await bench.wait_until_shown("better")
 
 
 async def test_broken_model_without_viewer_ends_launch(write) -> None:
     path = write("r.xacro", BROKEN)
-    async with running(path, viewer=False) as bench:
+    async with run_launch(path, viewer=False) as bench:
         await bench.until(lambda: bench.session.is_ending)
         assert bench.err.count("error[XAC") == 1
 
 
 async def test_missing_model_ends_launch(tmp_path: Path) -> None:
-    async with running(tmp_path / "none.urdf") as bench:
+    async with run_launch(tmp_path / "none.urdf") as bench:
         await bench.until(lambda: bench.session.is_ending)
         assert bench.err.count("error[") == 1
         assert "Viewer:" not in bench.out
 
 
 async def test_change_before_watch_starts_is_detected(write) -> None:
-    path = write("r.xacro", model("a"))
-    async with running(path) as bench:
+    path = write("r.xacro", model_text("a"))
+    async with run_launch(path) as bench:
         await bench.wait_until_shown("a")
-        path.write_text(model("b"))
+        path.write_text(model_text("b"))
         os.utime(path, ns=(time.time_ns() + 10**9,) * 2)
         await bench.wait_until_shown("b")
 
 
 async def test_whitespace_change_updates_source_positions(write) -> None:
-    path = write("r.xacro", model("a"))
-    async with running(path) as bench:
+    path = write("r.xacro", model_text("a"))
+    async with run_launch(path) as bench:
         await bench.wait_until_shown("a")
         await bench.watching()
-        path.write_text("\n\n" + model("a"))
+        path.write_text("\n\n" + model_text("a"))
         await bench.until(lambda: "reloaded" in bench.err)
         robot = bench.session.descriptions.library.read(bench.description()).robot
         assert robot is not None
@@ -268,7 +275,7 @@ async def test_whitespace_change_updates_source_positions(write) -> None:
 
 async def test_package_added_later_fixes_model(write, tmp_path: Path) -> None:
     path = write("r.xacro", f'<robot name="r" {XACRO}><xacro:include filename="$(find late)/part.xacro"/></robot>')
-    async with running(path) as bench:
+    async with run_launch(path) as bench:
         await bench.until(lambda: "Viewer: " in bench.out and bool(bench.findings()))
         assert bench.findings()[0].code == "PKG101"
         await bench.watching()
@@ -289,7 +296,7 @@ async def test_viewer_messages_have_node_name_prefix(write) -> None:
         "Visualization Manager:\n  Displays:\n    - Class: rviz_default_plugins/RobotModel\n      Enabled: true\n"
         "      Name: RobotModel\n      Description Topic: {Value: /robot_description}\n",
     )
-    async with running(path, "-d", str(config)) as bench:
+    async with run_launch(path, "-d", str(config)) as bench:
         await bench.until(lambda: "none_at_all" in bench.err)
         line = next(line for line in bench.err.splitlines() if "none_at_all" in line and line.startswith("["))
         assert line.startswith("[rviz2-2] [ERROR]")
@@ -302,12 +309,12 @@ async def test_recreated_folder_is_watched_again(tmp_path: Path, depth: int) -> 
 
     def build(link: str) -> None:
         path.parent.mkdir(parents=True)
-        path.write_text(model(link))
+        path.write_text(model_text(link))
 
     build("a")
-    async with running(path, viewer=False) as bench:
+    async with run_launch(path, viewer=False) as bench:
         await bench.wait_until_shown("a")
-        path.write_text(model("b"))
+        path.write_text(model_text("b"))
         await bench.until(lambda: '<link name="b"/>' in bench.description())
         for link in ("c", "d"):
             shutil.rmtree(top)
@@ -320,8 +327,8 @@ async def test_recreated_folder_is_watched_again(tmp_path: Path, depth: int) -> 
 async def test_file_deleted_before_watch_starts_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(FileWatch, "watch", lambda *_: True)  # the watch never begins
     path = tmp_path / "m.xacro"
-    path.write_text(model("a"))
-    async with running(path, viewer=False) as bench:
+    path.write_text(model_text("a"))
+    async with run_launch(path, viewer=False) as bench:
         await bench.wait_until_shown("a")
         path.unlink()
         bench.session.reload._reload_missed()
@@ -330,8 +337,8 @@ async def test_file_deleted_before_watch_starts_is_reported(tmp_path: Path, monk
 
 async def test_urdf_findings_are_reported_with_xacro_error(tmp_path: Path) -> None:
     path = tmp_path / "m.xacro"
-    path.write_text(model("good"))
-    async with running(path, viewer=False) as bench:
+    path.write_text(model_text("good"))
+    async with run_launch(path, viewer=False) as bench:
         await bench.wait_until_shown("good")
         await bench.watching()
         path.write_text(

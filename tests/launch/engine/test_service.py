@@ -33,7 +33,7 @@ from launch import Event, LaunchContext, LaunchDescription, LaunchIntrospector, 
 
 
 @pytest.fixture(autouse=True)
-def _alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def _isolated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
 
 
@@ -41,7 +41,7 @@ class Custom(Event):
     name = "test.Custom"
 
 
-def run(*entities: Any) -> int:
+def run_service(*entities: Any) -> int:
     service = LaunchService()
     service.include_launch_description(LaunchDescription(entities))
     return service.run()
@@ -57,7 +57,7 @@ def test_run_executes_process_and_exit_handler() -> None:
     ended: list[int] = []
     process = ExecuteProcess(cmd=[sys.executable, "-c", "import sys; print('out'); sys.exit(3)"], cached_output=True)
     handler = OnProcessExit(target_action=process, on_exit=lambda event, context: ended.append(event.returncode))
-    assert run(process, RegisterEventHandler(handler)) == 0
+    assert run_service(process, RegisterEventHandler(handler)) == 0
     assert ended == [3]
     assert process.return_code == 3
     assert process.get_stdout() == "out\n"
@@ -75,7 +75,7 @@ def test_exception_ends_processes_and_returns_1() -> None:
         cmd=[sys.executable, "-c", "import time; time.sleep(60)"], on_exit=lambda event, context: ended.append(event)
     )
     handler = OnProcessStart(target_action=process, on_start=[OpaqueFunction(function=fail)])
-    assert run(RegisterEventHandler(handler), process) == 1
+    assert run_service(RegisterEventHandler(handler), process) == 1
     assert len(ended) == 1
 
 
@@ -118,7 +118,7 @@ def test_timer_with_cancel_on_shutdown_false_outlasts_shutdown() -> None:
     reasons: list[str] = []
     listener = RegisterEventHandler(OnShutdown(on_shutdown=lambda event, context: reasons.append(event.reason)))
     assert (
-        run(
+        run_service(
             listener,
             TimerAction(period=0.05, actions=[Shutdown(reason="fast")]),
             TimerAction(period=0.1, actions=[Shutdown(reason="never")]),
@@ -144,9 +144,11 @@ def test_opaque_coroutine_is_awaited_or_canceled() -> None:
         finally:
             messages.append("cancelled")
 
-    assert run(OpaqueCoroutine(coroutine=work, args=["done"])) == 0
+    assert run_service(OpaqueCoroutine(coroutine=work, args=["done"])) == 0
     assert (
-        run(OpaqueCoroutine(coroutine=for_ever, ignore_context=True), TimerAction(period=0.1, actions=[Shutdown()]))
+        run_service(
+            OpaqueCoroutine(coroutine=for_ever, ignore_context=True), TimerAction(period=0.1, actions=[Shutdown()])
+        )
         == 0
     )
     assert messages == ["done", "cancelled"]
@@ -155,18 +157,18 @@ def test_opaque_coroutine_is_awaited_or_canceled() -> None:
 
 
 def test_filename_substitution_is_scoped_to_its_launch_file(tmp_path: Path) -> None:
-    inner = tmp_path / "inner.launch.xml"
-    inner.write_text('<launch><set_env name="INNER" value="$(filename)"/></launch>')
-    outer = tmp_path / "outer.launch.yaml"
-    outer.write_text(
+    inner_file = tmp_path / "inner.launch.xml"
+    inner_file.write_text('<launch><set_env name="INNER" value="$(filename)"/></launch>')
+    outer_file = tmp_path / "outer.launch.yaml"
+    outer_file.write_text(
         "launch:\n- include: {file: $(dirname)/inner.launch.xml}\n- set_env: {name: OUTER, value: $(filename)}\n"
     )
     service = LaunchService()
-    service.include_launch_description(LaunchDescription([IncludeLaunchDescription(str(outer))]))
+    service.include_launch_description(LaunchDescription([IncludeLaunchDescription(str(outer_file))]))
     assert service.run() == 0
-    assert service.context.environment["INNER"] == str(inner)
-    assert service.context.environment["OUTER"] == str(outer)
-    assert run(IncludeLaunchDescription(str(outer)), SetEnvironmentVariable("X", ThisLaunchFile())) == 1
+    assert service.context.environment["INNER"] == str(inner_file)
+    assert service.context.environment["OUTER"] == str(outer_file)
+    assert run_service(IncludeLaunchDescription(str(outer_file)), SetEnvironmentVariable("X", ThisLaunchFile())) == 1
 
 
 def test_emit_event_rejects_other_types() -> None:

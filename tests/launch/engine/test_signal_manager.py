@@ -1,3 +1,5 @@
+"""Signal handlers that run in the event loop."""
+
 from __future__ import annotations
 
 import asyncio

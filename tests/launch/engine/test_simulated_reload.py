@@ -20,7 +20,7 @@ from linkwright.packages import PackageFinder, use_finder
 from linkwright.simulation.nodes.simulator import Simulator
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.worlds import GROUND, box
-from tests.waiting import SECONDS, eventually
+from tests.waiting import TIMEOUT_S, eventually
 
 FALLING = box("falling", "0 0 9 0 0 0")
 ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"/><link name="tip"><inertial>
@@ -29,11 +29,11 @@ ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro"><link nam
 MORE = '<link name="more"/><joint name="on" type="fixed"><parent link="tip"/><child link="more"/></joint>'
 
 
-def world(*parts: str) -> str:
+def world_text(*parts: str) -> str:
     return f'<sdf version="1.7"><world name="w">{GROUND}{"".join(parts)}</world></sdf>'
 
 
-class Launched:
+class SimulatedLaunch:
     """A running launch of a paused simulator and of a program that spawns a robot in its world."""
 
     def __init__(self, session: LaunchSession, err: io.StringIO) -> None:
@@ -55,7 +55,7 @@ class Launched:
 
 
 @asynccontextmanager
-async def launched(folder: Path) -> AsyncIterator[Launched]:
+async def run_launch(folder: Path) -> AsyncIterator[SimulatedLaunch]:
     err = io.StringIO()
     description = ParameterValue(Command(["xacro ", str(folder / "arm.xacro")]), value_type=str)
     facts = {"robot_description": description}
@@ -78,17 +78,17 @@ async def launched(folder: Path) -> AsyncIterator[Launched]:
         session = LaunchSession(finder, SessionOptions(port=0, open_browser=False), LaunchLog(io.StringIO(), err))
         task = asyncio.create_task(session.run(LaunchDescription(entities)))
         try:
-            yield Launched(session, err)
+            yield SimulatedLaunch(session, err)
         finally:
             session.interrupt("the test is over")
-            await asyncio.wait_for(task, SECONDS)
+            await asyncio.wait_for(task, TIMEOUT_S)
 
 
 async def test_launched_simulation_reloads_world_and_robot(write) -> None:
-    files = write("a.world", world(FALLING)), write("arm.xacro", ARM.format(""))
-    async with launched(files[0].parent) as running:
+    files = write("a.world", world_text(FALLING)), write("arm.xacro", ARM.format(""))
+    async with run_launch(files[0].parent) as running:
         await running.wait_until(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one"})
-        files[0].write_text(world(FALLING, box("new", "5 5 1 0 0 0")))
+        files[0].write_text(world_text(FALLING, box("new", "5 5 1 0 0 0")))
         await running.wait_until(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one", "new"})
         files[1].write_text(ARM.format(MORE))
         await running.wait_until(lambda simulation: "one::more" in simulation.scene.bodies)

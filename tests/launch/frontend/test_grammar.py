@@ -23,7 +23,7 @@ from launch import LaunchContext, Substitution
 from linkwright.diagnostics import LinkwrightError
 
 
-class Said(Substitution):
+class FixedSubstitution(Substitution):
     def __init__(self, text: str) -> None:
         self.text = text
 
@@ -32,11 +32,11 @@ class Said(Substitution):
 
 
 @expose_substitution("said")
-def parse_said(data):
-    return Said, {"text": "|".join("".join(part.perform(None) for part in word) for word in data)}
+def parse_fixed(data):
+    return FixedSubstitution, {"text": "|".join("".join(part.perform(None) for part in word) for word in data)}
 
 
-def texts(value: str) -> list[str]:
+def substitution_texts(value: str) -> list[str]:
     return [part.perform(LaunchContext()) for part in parse_substitution(value)]
 
 
@@ -59,7 +59,7 @@ def texts(value: str) -> list[str]:
     ],
 )
 def test_text_is_split_into_substitutions(written: str, parts: list[str]) -> None:
-    assert texts(written) == parts
+    assert substitution_texts(written) == parts
 
 
 def test_substitution_names_map_to_classes() -> None:
@@ -67,8 +67,8 @@ def test_substitution_names_map_to_classes() -> None:
     assert isinstance(environment, EnvironmentVariable)
     assert environment.name[0].perform(None) == "NAME"
     assert environment.default_value[0].perform(None) == "a b"
-    [bare] = parse_substitution("$(env NAME)")
-    assert bare.default_value is None
+    [environment_variable] = parse_substitution("$(env NAME)")
+    assert environment_variable.default_value is None
     assert isinstance(parse_substitution("$(dirname)")[0], ThisLaunchFileDir)
     assert isinstance(parse_substitution("$(path-join a b)")[0], PathJoinSubstitution)
     assert isinstance(parse_substitution("$(any 1 0)")[0], AnySubstitution)
@@ -151,7 +151,7 @@ def test_parse_if_substitutions_keeps_plain_values() -> None:
     assert parse_if_substitutions("a") == "a"
     assert len(parse_if_substitutions("[$(said a), $(said b)]")) == 5
     mixed = parse_if_substitutions(["$(said a)", 1])
-    assert isinstance(mixed[0][0], Said)
+    assert isinstance(mixed[0][0], FixedSubstitution)
     assert mixed[1] == 1
     with pytest.raises(ValueError, match="non-uniform"):
         parse_if_substitutions(["$(said a)", 1, 1.0])
@@ -160,7 +160,7 @@ def test_parse_if_substitutions_keeps_plain_values() -> None:
 @given(st.text(max_size=40))
 def test_escaped_text_round_trips(text: str) -> None:
     escaped = "".join("\\" + character if character in "\\$" else character for character in text)
-    assert "".join(texts(escaped)) == text
+    assert "".join(substitution_texts(escaped)) == text
 
 
 @given(st.text(alphabet="$()'\" \\avr", max_size=25))

@@ -25,23 +25,23 @@ MARKUP = '<launch><let name="kind" value="markup"/></launch>'
 
 
 @pytest.fixture(autouse=True)
-def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def _launch_file_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
-def count(description: LaunchDescription) -> int:
+def count_entities(description: LaunchDescription) -> int:
     return len(description.entities)
 
 
 def test_python_file_is_loaded_as_module_or_description() -> None:
     Path("a.launch.py").write_text(PYTHON)
-    assert count(load_python_launch_file_as_module("a.launch.py").generate_launch_description()) == 1
-    assert count(get_launch_description_from_python_launch_file("a.launch.py")) == 1
+    assert count_entities(load_python_launch_file_as_module("a.launch.py").generate_launch_description()) == 1
+    assert count_entities(get_launch_description_from_python_launch_file("a.launch.py")) == 1
 
 
 def test_xml_file_is_loaded_as_description() -> None:
     Path("a.launch.xml").write_text(MARKUP)
-    assert count(get_launch_description_from_frontend_launch_file("a.launch.xml")) == 1
+    assert count_entities(get_launch_description_from_frontend_launch_file("a.launch.xml")) == 1
 
 
 def test_custom_parser_is_used() -> None:
@@ -61,7 +61,7 @@ def test_custom_parser_is_used() -> None:
 @pytest.mark.parametrize(("name", "text"), [("a.py", PYTHON), ("a.xml", MARKUP), ("b.txt", PYTHON), ("c.py", MARKUP)])
 def test_file_type_is_detected_by_name_or_content(name: str, text: str) -> None:
     Path(name).write_text(text)
-    assert count(get_launch_description_from_any_launch_file(name)) == 1
+    assert count_entities(get_launch_description_from_any_launch_file(name)) == 1
 
 
 def test_file_of_unknown_type_is_rejected_with_both_reasons() -> None:

@@ -1,3 +1,5 @@
+"""Launch files in Python: loading, and the location of errors."""
+
 from __future__ import annotations
 
 import sys
@@ -17,14 +19,14 @@ Write = Callable[[str, str], Path]
 HEAD = "from launch import LaunchDescription\n"
 
 
-def fault(path: Path) -> Diagnostic:
+def load_diagnostic(path: Path) -> Diagnostic:
     with pytest.raises(LinkwrightError) as caught:
         load_python_launch_file(path)
     (diagnostic,) = caught.value.diagnostics
     return diagnostic
 
 
-def marked(diagnostic: Diagnostic) -> str:
+def marked_text(diagnostic: Diagnostic) -> str:
     """Return the text at the location of the diagnostic, in one line."""
     span, source = diagnostic.span, diagnostic.source
     assert span is not None
@@ -43,11 +45,11 @@ def test_launch_file_has_absolute_file_variable(write: Write) -> None:
 
 def test_missing_file_is_reported_with_hint(write: Write, tmp_path: Path) -> None:
     write("display.launch.py", "")
-    diagnostic = fault(tmp_path / "dispaly.launch.py")
+    diagnostic = load_diagnostic(tmp_path / "dispaly.launch.py")
     assert diagnostic.code == "LAUNCH101"
     assert diagnostic.hint == "did you mean 'display.launch.py'?"
-    assert "does not exist" in (fault(tmp_path / "no" / "x.launch.py").hint or "")
-    assert "is a folder" in fault(tmp_path).message
+    assert "does not exist" in (load_diagnostic(tmp_path / "no" / "x.launch.py").hint or "")
+    assert "is a folder" in load_diagnostic(tmp_path).message
 
 
 def test_unreadable_file_is_reported(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -57,17 +59,17 @@ def test_unreadable_file_is_reported(write: Write, monkeypatch: pytest.MonkeyPat
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(python_file, "read_text", refuse)  # root, as on some test machines, may read all files
-    assert fault(path).code == "LAUNCH102"
+    assert load_diagnostic(path).code == "LAUNCH102"
 
 
 def test_binary_file_is_rejected(tmp_path: Path) -> None:
     path = tmp_path / "a.launch.py"
     path.write_bytes(b"\xff\xfe\x00")
-    assert fault(path).code == "LAUNCH102"
+    assert load_diagnostic(path).code == "LAUNCH102"
 
 
 def test_syntax_error_is_reported_with_line(write: Write) -> None:
-    diagnostic = fault(write("a.launch.py", "x = 1\nfor y in (1, 2:\n    pass\n"))
+    diagnostic = load_diagnostic(write("a.launch.py", "x = 1\nfor y in (1, 2:\n    pass\n"))
     assert diagnostic.code == "LAUNCH103"
     assert diagnostic.span is not None
     assert diagnostic.span.line == 2
@@ -75,7 +77,7 @@ def test_syntax_error_is_reported_with_line(write: Write) -> None:
 
 
 def test_indentation_error_is_reported_with_line(write: Write) -> None:
-    diagnostic = fault(write("a.launch.py", "def f():\npass\n"))
+    diagnostic = load_diagnostic(write("a.launch.py", "def f():\npass\n"))
     assert diagnostic.code == "LAUNCH103"
     assert diagnostic.span is not None
     assert diagnostic.span.line == 2
@@ -87,7 +89,7 @@ def test_exception_points_at_innermost_user_line(write: Write) -> None:
         "import json\ndef helper(text):\n    return json.loads(text)\n"
         "def generate_launch_description():\n    return helper('{')\n",
     )
-    diagnostic = fault(path)
+    diagnostic = load_diagnostic(path)
     assert diagnostic.code == "LAUNCH104"
     assert "raised JSONDecodeError: Expecting property name" in diagnostic.message
     assert diagnostic.span is not None
@@ -129,7 +131,7 @@ def test_exception_points_at_innermost_user_line(write: Write) -> None:
     ],
 )
 def test_exceptions_have_plain_messages_and_hints(write: Write, line: str, message: str, hint: str | None) -> None:
-    diagnostic = fault(write("a.launch.py", f"{HEAD}{line}\n"))
+    diagnostic = load_diagnostic(write("a.launch.py", f"{HEAD}{line}\n"))
     assert diagnostic.code == "LAUNCH104"
     assert message in diagnostic.message
     assert "standins" not in diagnostic.message
@@ -143,30 +145,32 @@ NODE = "from launch_ros.actions import Node\n"
 
 
 def test_misspelled_node_argument_has_hint(write: Write) -> None:
-    diagnostic = fault(write("a.launch.py", f"{NODE}Node(executable='a', paramters=[])\n"))
+    diagnostic = load_diagnostic(write("a.launch.py", f"{NODE}Node(executable='a', paramters=[])\n"))
     assert diagnostic.hint == "did you mean 'parameters'?"
-    diagnostic = fault(write("b.launch.py", f"{NODE}Node(exectuable='a')\n"))
+    diagnostic = load_diagnostic(write("b.launch.py", f"{NODE}Node(exectuable='a')\n"))
     assert diagnostic.hint == "argument 'executable' is missing; the call passes 'exectuable'"
 
 
 def test_multiline_call_is_located_at_first_line(write: Write) -> None:
-    diagnostic = fault(write("a.launch.py", f"{NODE}n = Node(\n    executable='a',\n    parameters={{'a': 1}},\n)\n"))
+    diagnostic = load_diagnostic(
+        write("a.launch.py", f"{NODE}n = Node(\n    executable='a',\n    parameters={{'a': 1}},\n)\n")
+    )
     assert diagnostic.code == "LAUNCH132"
     assert diagnostic.message == "'parameters' of a node must be a list"
     assert diagnostic.span is not None
     assert diagnostic.span.line == 2
-    assert marked(diagnostic).startswith(("Node(", "n = Node("))
+    assert marked_text(diagnostic).startswith(("Node(", "n = Node("))
 
 
 def test_columns_count_characters(write: Write) -> None:
-    diagnostic = fault(write("a.launch.py", "x = '机器人'; y = nothing\n"))
+    diagnostic = load_diagnostic(write("a.launch.py", "x = '机器人'; y = nothing\n"))
     assert diagnostic.span is not None
-    assert marked(diagnostic) in ("nothing", "x = '机器人'; y = nothing")
+    assert marked_text(diagnostic) in ("nothing", "x = '机器人'; y = nothing")
 
 
 def test_missing_package_is_reported(write: Write, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)  # the search includes folders below the current one
-    diagnostic = fault(
+    diagnostic = load_diagnostic(
         write(
             "a.launch.py",
             "from ament_index_python.packages import get_package_share_path\n"
@@ -199,19 +203,24 @@ def test_package_error_can_be_caught_by_ros_name(write: Write) -> None:
     ],
 )
 def test_missing_or_invalid_launch_description_is_rejected(write: Write, text: str, code: str, message: str) -> None:
-    diagnostic = fault(write("a.launch.py", text))
+    diagnostic = load_diagnostic(write("a.launch.py", text))
     assert diagnostic.code == code
     assert message in diagnostic.message
 
 
 def test_non_action_in_group_is_rejected(write: Write) -> None:
-    diagnostic = fault(write("a.launch.py", "from launch.actions import GroupAction\nGroupAction(['a node'])\n"))
+    diagnostic = load_diagnostic(
+        write("a.launch.py", "from launch.actions import GroupAction\nGroupAction(['a node'])\n")
+    )
     assert "expected launch actions, got 'a node' of type str" in diagnostic.message
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="symbolic links need a privilege on Windows")
 class TestLinkedShareFolder:
-    """A package whose share folder has another layout than its sources, and contains links to them."""
+    """A package whose share folder has another layout than its sources.
+
+    The folder contains links to them.
+    """
 
     @pytest.fixture
     def share(self, write: Write, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:

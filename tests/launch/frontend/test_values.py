@@ -20,9 +20,9 @@ def test_type_annotations_are_recognized() -> None:
     assert type_utils.extract_type(List[bool]) == (bool, True)  # noqa: UP006
     assert type_utils.extract_type(list[str]) == (str, True)
     assert type_utils.extract_type(float) == (float, False)
-    for wrong in (bytes, List, Union[int, str]):  # noqa: UP006, UP007
+    for unsupported in (bytes, List, Union[int, str]):  # noqa: UP006, UP007
         with pytest.raises(ValueError, match="Unrecognized data type"):
-            type_utils.extract_type(wrong)
+            type_utils.extract_type(unsupported)
 
 
 def test_is_instance_of_checks_values_and_strings() -> None:

@@ -58,7 +58,7 @@ launch.frontend.launch_extension =
 
 
 @pytest.fixture(autouse=True)
-def _tables_as_before() -> Iterator[None]:
+def _restored_tables() -> Iterator[None]:
     before = [(table, dict(table)) for table in (action_parse_methods, substitution_parse_methods)]
     modules = set(sys.modules)
     yield
@@ -70,7 +70,7 @@ def _tables_as_before() -> Iterator[None]:
             del sys.modules[name]
 
 
-def read(text: str, folder: Path, **environment: str) -> list[object]:
+def read_launch(text: str, folder: Path, **environment: str) -> list[object]:
     with use_finder(PackageFinder(start=folder, environment=environment)):
         root, parser = Parser.load(io.StringIO(text))
         return list(parser.parse_description(root).entities)
@@ -83,7 +83,9 @@ def test_tag_of_source_package_is_found(tmp_path: Path, write: Callable[[str, st
     write(f"src/{name}/{file}", IN_SETUP[file].format(name))
     write(f"src/{name}/{name}/__init__.py", "")
     write(f"src/{name}/{name}/tags.py", MODULE.format(name=f"wave_{name}"))
-    action, log = read(f'<launch><wave_{name} hands="2"/><log_info message="$(wave_{name}-text)"/></launch>', tmp_path)
+    action, log = read_launch(
+        f'<launch><wave_{name} hands="2"/><log_info message="$(wave_{name}-text)"/></launch>', tmp_path
+    )
     assert (type(action).__name__, action.hands) == ("Wave", 2)
     assert [part.perform(LaunchContext()) for part in log.msg] == ["waved"]
 
@@ -98,7 +100,7 @@ def test_tag_of_built_package_outside_python_path_is_found(tmp_path: Path, write
     )
     write(f"{site}/{name}/__init__.py", MODULE.format(name="wave_built"))
     prefix = str(tmp_path / "install" / name)
-    (action,) = read('<launch><wave_built hands="1"/></launch>', tmp_path, AMENT_PREFIX_PATH=prefix)
+    (action,) = read_launch('<launch><wave_built hands="1"/></launch>', tmp_path, AMENT_PREFIX_PATH=prefix)
     assert action.hands == 1
 
 
@@ -114,4 +116,4 @@ def test_failing_extension_module_is_reported_and_tag_stays_unknown(
         pytest.warns(UserWarning, match="Failed to load the launch extension: waving_wrong.tags"),
         pytest.raises(LinkwrightError, match="no action has the tag 'wave_wrong'"),
     ):
-        read('<launch><wave_wrong hands="1"/></launch>', tmp_path)
+        read_launch('<launch><wave_wrong hands="1"/></launch>', tmp_path)

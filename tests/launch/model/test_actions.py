@@ -1,3 +1,5 @@
+"""Actions of launch: conditions, arguments, configurations, groups and includes."""
+
 from __future__ import annotations
 
 import asyncio
@@ -44,7 +46,7 @@ from launch import Action, LaunchContext, LaunchDescription, LaunchDescriptionSo
 Write = Callable[[str, str], Path]
 
 
-def say(*parts: object) -> LogInfo:
+def log_text(*parts: object) -> LogInfo:
     return LogInfo(msg=list(parts))
 
 
@@ -59,12 +61,12 @@ async def test_conditions_control_execution(launch) -> None:
 
 class TestDeclareLaunchArgument:
     async def test_default_value_is_used_unless_given(self, launch) -> None:
-        entities = (DeclareLaunchArgument("x", default_value=["d", "1"]), say(LaunchConfiguration("x")))
+        entities = (DeclareLaunchArgument("x", default_value=["d", "1"]), log_text(LaunchConfiguration("x")))
         assert (await launch(*entities)).messages == ["d1"]
         assert (await launch(*entities, x="mine")).messages == ["mine"]
 
     async def test_required_argument_is_reported_if_missing(self, launch) -> None:
-        result = await launch(DeclareLaunchArgument("x", description="the x"), say("after"))
+        result = await launch(DeclareLaunchArgument("x", description="the x"), log_text("after"))
         assert "error[LAUNCH114]: argument 'x' (the x) is required, but was not given" in result.err
         assert "test_actions.py" in result.err
         assert result.messages == []
@@ -85,16 +87,16 @@ class TestDeclareLaunchArgument:
 async def test_launch_configurations_are_set_and_unset(launch) -> None:
     result = await launch(
         SetLaunchConfiguration("x", ["1", "2"]),
-        say(LaunchConfiguration("x")),
+        log_text(LaunchConfiguration("x")),
         UnsetLaunchConfiguration("x"),
         UnsetLaunchConfiguration("never"),
-        say(LaunchConfiguration("x", default="none")),
+        log_text(LaunchConfiguration("x", default="none")),
         SetLaunchConfiguration("x", "3"),
         PushLaunchConfigurations(),
         ResetLaunchConfigurations({"y": [LaunchConfiguration("x"), "y"]}),
-        say(LaunchConfiguration("x", default="none"), LaunchConfiguration("y")),
+        log_text(LaunchConfiguration("x", default="none"), LaunchConfiguration("y")),
         PopLaunchConfigurations(),
-        say(LaunchConfiguration("x")),
+        log_text(LaunchConfiguration("x")),
     )
     assert result.messages == ["12", "none", "none3y", "3"]
 
@@ -106,10 +108,10 @@ async def test_environment_variables_are_set_appended_and_unset(launch, monkeypa
         AppendEnvironmentVariable("LW_A", "c"),
         AppendEnvironmentVariable("LW_A", "0", prepend=True, separator=","),
         AppendEnvironmentVariable("LW_C", "new"),
-        say(EnvironmentVariable("LW_A"), EnvironmentVariable("LW_B"), EnvironmentVariable("LW_C")),
-        OpaqueFunction(function=lambda context: say(os.environ["LW_B"])),
+        log_text(EnvironmentVariable("LW_A"), EnvironmentVariable("LW_B"), EnvironmentVariable("LW_C")),
+        OpaqueFunction(function=lambda context: log_text(os.environ["LW_B"])),
         UnsetEnvironmentVariable("LW_B"),
-        say(EnvironmentVariable("LW_B", default_value="gone")),
+        log_text(EnvironmentVariable("LW_B", default_value="gone")),
     )
     assert result.messages == [f"0,a{os.pathsep}cbnew", "b", "gone"]
 
@@ -122,11 +124,11 @@ class TestGroupAction:
                 [
                     SetLaunchConfiguration("x", "inner"),
                     SetEnvironmentVariable("LW_G", "1"),
-                    say(LaunchConfiguration("x")),
+                    log_text(LaunchConfiguration("x")),
                 ],
                 launch_configurations={"y": "given"},
             ),
-            say(
+            log_text(
                 LaunchConfiguration("x"),
                 LaunchConfiguration("y", default="-"),
                 EnvironmentVariable("LW_G", default_value="-"),
@@ -136,7 +138,7 @@ class TestGroupAction:
 
     async def test_unscoped_group_keeps_changes(self, launch) -> None:
         result = await launch(
-            GroupAction([SetLaunchConfiguration("x", "inner")], scoped=False), say(LaunchConfiguration("x"))
+            GroupAction([SetLaunchConfiguration("x", "inner")], scoped=False), log_text(LaunchConfiguration("x"))
         )
         assert result.messages == ["inner"]
 
@@ -144,11 +146,11 @@ class TestGroupAction:
         result = await launch(
             SetLaunchConfiguration("x", "outer"),
             GroupAction(
-                [say(LaunchConfiguration("x", default="none"), LaunchConfiguration("y"))],
+                [log_text(LaunchConfiguration("x", default="none"), LaunchConfiguration("y"))],
                 forwarding=False,
                 launch_configurations={"y": LaunchConfiguration("x")},
             ),
-            say(LaunchConfiguration("x")),
+            log_text(LaunchConfiguration("x")),
         )
         assert result.messages == ["noneouter", "outer"]
 
@@ -156,7 +158,7 @@ class TestGroupAction:
 class TestOpaqueFunction:
     async def test_arguments_are_passed_and_returned_actions_run(self, launch) -> None:
         def function(context: LaunchContext, first: str, *, second: str) -> list[Action]:
-            return [say(first, second, context.launch_configurations["x"])]
+            return [log_text(first, second, context.launch_configurations["x"])]
 
         result = await launch(OpaqueFunction(function=function, args=["1"], kwargs={"second": "2"}), x="3")
         assert result.messages == ["123"]
@@ -179,7 +181,7 @@ class TestOpaqueFunction:
 async def test_custom_action_returns_actions(launch) -> None:
     class Twice(Action):
         def execute(self, context: LaunchContext) -> list[Action]:
-            return [say("again"), say("again")]
+            return [log_text("again"), log_text("again")]
 
     assert (await launch(Twice())).messages == ["again", "again"]
 
@@ -187,14 +189,14 @@ async def test_custom_action_returns_actions(launch) -> None:
 class TestTimerAction:
     async def test_timers_run_in_order_of_period(self, launch) -> None:
         result = await launch(
-            TimerAction(period=0.02, actions=[say("later")]),
-            TimerAction(period=["0", ".01"], actions=[say("sooner")]),
-            say("now"),
+            TimerAction(period=0.02, actions=[log_text("later")]),
+            TimerAction(period=["0", ".01"], actions=[log_text("sooner")]),
+            log_text("now"),
         )
         assert result.messages == ["now", "sooner", "later"]
 
     async def test_timer_can_be_canceled(self, launch) -> None:
-        timer = TimerAction(period=10.0, actions=[say("never")])
+        timer = TimerAction(period=10.0, actions=[log_text("never")])
         result = await launch(
             timer, TimerAction(period=0.01, actions=[OpaqueFunction(function=lambda _: timer.cancel())])
         )
@@ -211,15 +213,15 @@ class TestTimerAction:
 class TestEvents:
     async def test_shutdown_handlers_receive_reason(self, launch) -> None:
         result = await launch(
-            RegisterEventHandler(OnShutdown(on_shutdown=[say(LocalSubstitution("event.reason"))])),
+            RegisterEventHandler(OnShutdown(on_shutdown=[log_text(LocalSubstitution("event.reason"))])),
             Shutdown(reason=["enough ", "of it"]),
-            TimerAction(period=30.0, actions=[say("never")]),
+            TimerAction(period=30.0, actions=[log_text("never")]),
         )
         assert result.messages == ["enough of it"]
         assert result.succeeded
 
     async def test_emit_event_triggers_handler(self, launch) -> None:
-        handler = OnShutdown(on_shutdown=lambda event, context: say("function ", event.reason))
+        handler = OnShutdown(on_shutdown=lambda event, context: log_text("function ", event.reason))
         result = await launch(
             RegisterEventHandler(handler),
             EmitEvent(event=ShutdownEvent(reason="r")),
@@ -228,7 +230,7 @@ class TestEvents:
         assert result.messages == ["function r"]
 
     async def test_unregistered_handler_is_not_called(self, launch) -> None:
-        handler = OnShutdown(on_shutdown=say("never"))
+        handler = OnShutdown(on_shutdown=log_text("never"))
         result = await launch(RegisterEventHandler(handler), UnregisterEventHandler(handler))
         assert result.messages == []
 
@@ -261,37 +263,41 @@ def generate_launch_description():
 
 class TestIncludeLaunchDescription:
     async def test_include_passes_arguments_and_shares_configurations(self, launch, write: Write) -> None:
-        inner = write("sub/inner.launch.py", INNER.replace("{default}", ""))
+        inner_file = write("sub/inner.launch.py", INNER.replace("{default}", ""))
         result = await launch(
             SetLaunchConfiguration("fast", "9"),
             IncludeLaunchDescription(
-                PythonLaunchDescriptionSource([str(inner.parent), "/inner.launch.py"]),
+                PythonLaunchDescriptionSource([str(inner_file.parent), "/inner.launch.py"]),
                 launch_arguments={"speed": LaunchConfiguration("fast")}.items(),
             ),
-            say(LaunchConfiguration("leaks"), LaunchConfiguration("speed")),
+            log_text(LaunchConfiguration("leaks"), LaunchConfiguration("speed")),
         )
-        assert result.messages == [f"inner 9 {inner.parent}", "yes9"]
+        assert result.messages == [f"inner 9 {inner_file.parent}", "yes9"]
 
     @pytest.mark.parametrize("source", [AnyLaunchDescriptionSource, str])
     async def test_any_source_and_path_are_accepted(
         self, launch, write: Write, source: Callable[[str], object]
     ) -> None:
-        inner = write("inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
-        assert (await launch(IncludeLaunchDescription(source(str(inner))))).messages[0].startswith("inner 1")
+        inner_file = write("inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
+        assert (await launch(IncludeLaunchDescription(source(str(inner_file))))).messages[0].startswith("inner 1")
 
     async def test_non_text_argument_fails_only_when_include_runs(self, launch, write: Write) -> None:
-        inner = write("inner.launch.py", INNER.replace("{default}", ""))
+        inner_file = write("inner.launch.py", INNER.replace("{default}", ""))
         pairs: Any = {"speed": None}.items()
-        never = IncludeLaunchDescription(str(inner), launch_arguments=pairs, condition=IfCondition("false"))
-        result = await launch(never, say("before"), IncludeLaunchDescription(str(inner), launch_arguments=pairs))
+        skipped_include = IncludeLaunchDescription(
+            str(inner_file), launch_arguments=pairs, condition=IfCondition("false")
+        )
+        result = await launch(
+            skipped_include, log_text("before"), IncludeLaunchDescription(str(inner_file), launch_arguments=pairs)
+        )
         assert result.messages == ["before"]
         assert "error[LAUNCH114]: the value of argument 'speed' is None, which is not a string" in result.err
         assert not result.succeeded
 
     async def test_missing_argument_is_reported_before_actions_run(self, launch, write: Write) -> None:
-        inner = write("inner.launch.py", INNER.replace("{default}", ""))
-        result = await launch(IncludeLaunchDescription(str(inner), launch_arguments=[("sped", "1")]))
-        text = f"the included launch file '{inner}' requires argument 'speed', which is not given"
+        inner_file = write("inner.launch.py", INNER.replace("{default}", ""))
+        result = await launch(IncludeLaunchDescription(str(inner_file), launch_arguments=[("sped", "1")]))
+        text = f"the included launch file '{inner_file}' requires argument 'speed', which is not given"
         assert f"error[LAUNCH114]: {text}" in result.err
         assert "did you mean 'speed' instead of 'sped'?" in result.err
         assert result.messages == []
@@ -321,16 +327,16 @@ class TestIncludeLaunchDescription:
         assert f"--> {write(name, text)}" in result.err
 
     async def test_missing_argument_of_inline_description_is_reported(self, launch) -> None:
-        inner = LaunchDescriptionSource(LaunchDescription([DeclareLaunchArgument("speed")]))
-        result = await launch(IncludeLaunchDescription(inner))
+        inner_file = LaunchDescriptionSource(LaunchDescription([DeclareLaunchArgument("speed")]))
+        result = await launch(IncludeLaunchDescription(inner_file))
         assert "the included launch description requires argument 'speed', which is not given" in result.err
         assert "add ('speed', VALUE) to launch_arguments" in result.err
 
     async def test_error_in_included_file_names_that_file(self, launch, write: Write) -> None:
-        inner = write("inner.launch.py", "def generate_launch_description():\n    return nothing\n")
-        result = await launch(IncludeLaunchDescription(str(inner)))
+        inner_file = write("inner.launch.py", "def generate_launch_description():\n    return nothing\n")
+        result = await launch(IncludeLaunchDescription(str(inner_file)))
         assert "raised NameError: name 'nothing' is not defined" in result.err
-        assert f"{inner.name}:2:" in result.err
+        assert f"{inner_file.name}:2:" in result.err
 
     async def test_missing_included_file_names_including_line(self, launch, tmp_path: Path) -> None:
         result = await launch(IncludeLaunchDescription(str(tmp_path / "none.launch.py")))
@@ -339,7 +345,7 @@ class TestIncludeLaunchDescription:
 
     async def test_this_launch_file_dir_is_restored_after_include(self, launch, write: Write) -> None:
         write("sub/inner.launch.py", INNER.replace("{default}", ", default_value='1'"))
-        outer = write(
+        outer_file = write(
             "outer.launch.py",
             """
 from launch import LaunchDescription
@@ -353,17 +359,17 @@ def generate_launch_description():
     ])
 """,
         )
-        result = await launch(IncludeLaunchDescription(str(outer)))
-        assert result.messages == [f"inner 1 {outer.parent / 'sub'}", str(outer.parent)]
+        result = await launch(IncludeLaunchDescription(str(outer_file)))
+        assert result.messages == [f"inner 1 {outer_file.parent / 'sub'}", str(outer_file.parent)]
 
 
 def test_launch_arguments_of_description_are_listed(write: Write) -> None:
-    inner = write("inner.launch.py", INNER.replace("{default}", ""))
+    inner_file = write("inner.launch.py", INNER.replace("{default}", ""))
     description = LaunchDescription(
         [
             DeclareLaunchArgument("a", default_value="1"),
             GroupAction([DeclareLaunchArgument("b")], condition=IfCondition("true")),
-            IncludeLaunchDescription(str(inner)),
+            IncludeLaunchDescription(str(inner_file)),
             IncludeLaunchDescription([ThisLaunchFileDir(), "/unknown.launch.py"]),
         ]
     )
@@ -372,6 +378,8 @@ def test_launch_arguments_of_description_are_listed(write: Write) -> None:
 
 
 def test_argument_given_by_include_is_not_listed(write: Write) -> None:
-    inner = write("inner.launch.py", INNER.replace("{default}", ""))
-    description = LaunchDescription([IncludeLaunchDescription(str(inner), launch_arguments={"speed": "1"}.items())])
+    inner_file = write("inner.launch.py", INNER.replace("{default}", ""))
+    description = LaunchDescription(
+        [IncludeLaunchDescription(str(inner_file), launch_arguments={"speed": "1"}.items())]
+    )
     assert description.get_launch_arguments() == []

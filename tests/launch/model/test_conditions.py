@@ -1,3 +1,5 @@
+"""Conditions of launch actions."""
+
 from __future__ import annotations
 
 import pytest

@@ -1,3 +1,5 @@
+"""Substitutions that are declared by a class with typed arguments."""
+
 from __future__ import annotations
 
 import inspect

@@ -13,11 +13,11 @@ from launch.events.process import ProcessExited, ProcessIO, ProcessStarted
 
 from launch import Action, LaunchContext
 
-ABOUT = {"name": "p", "cmd": ["ls"], "cwd": None, "env": None, "pid": 1}
+PROCESS_FIELDS = {"name": "p", "cmd": ["ls"], "cwd": None, "env": None, "pid": 1}
 
 
-def exited(action: object) -> ProcessExited:
-    return ProcessExited(action=action, returncode=0, **ABOUT)  # type: ignore[arg-type]
+def make_exit_event(action: object) -> ProcessExited:
+    return ProcessExited(action=action, returncode=0, **PROCESS_FIELDS)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("kind", [OnProcessExit, OnProcessStart, OnProcessIO])
@@ -33,11 +33,11 @@ def test_target_action_must_be_a_process(kind: type) -> None:
 def test_handler_matches_event_type_and_target() -> None:
     process = NonCallableMock(spec=ExecuteProcess)
     handler = OnProcessExit(target_action=process, on_exit=Mock())
-    assert handler.matches(exited(process))
-    assert not handler.matches(exited(NonCallableMock(spec=ExecuteProcess)))
-    assert not handler.matches(ProcessStarted(action=process, **ABOUT))  # type: ignore[arg-type]
+    assert handler.matches(make_exit_event(process))
+    assert not handler.matches(make_exit_event(NonCallableMock(spec=ExecuteProcess)))
+    assert not handler.matches(ProcessStarted(action=process, **PROCESS_FIELDS))  # type: ignore[arg-type]
     by_function = OnProcessExit(target_action=lambda action: action is process, on_exit=Mock())
-    assert by_function.matches(exited(process))
+    assert by_function.matches(make_exit_event(process))
     log_action = LogInfo(msg="")
     handler_of_action = OnExecutionComplete(target_action=log_action, on_completion=lambda *_: None)
     assert handler_of_action.matches(ExecutionComplete(action=log_action))
@@ -47,7 +47,7 @@ def test_handler_matches_event_type_and_target() -> None:
 def test_functions_and_actions_are_handled() -> None:
     context = Mock(spec=LaunchContext)
     function = Mock()
-    event = exited(None)
+    event = make_exit_event(None)
     OnProcessExit(on_exit=function).handle(event, context)
     function.assert_called_once_with(event, context)
     context.extend_locals.assert_called_once_with({"event": event})
@@ -62,14 +62,14 @@ def test_functions_and_actions_are_handled() -> None:
 def test_handle_once_unregisters_handler() -> None:
     context = Mock(spec=LaunchContext)
     handler = OnShutdown(on_shutdown=Mock(), handle_once=True)
-    handler.handle(exited(None), context)
+    handler.handle(make_exit_event(None), context)
     context.unregister_event_handler.assert_called_once_with(handler)
 
 
 @pytest.mark.parametrize(("number", "name"), [(0, "on_stdin"), (1, "on_stdout"), (2, "on_stderr")])
 def test_process_io_is_dispatched_by_stream(number: int, name: str) -> None:
     functions = {name: Mock() for name in ("on_stdin", "on_stdout", "on_stderr")}
-    event = ProcessIO(action=None, text=b"x", fd=number, **ABOUT)  # type: ignore[arg-type]
+    event = ProcessIO(action=None, text=b"x", fd=number, **PROCESS_FIELDS)  # type: ignore[arg-type]
     handler = OnProcessIO(**functions)
     assert handler.matches(event)
     handler.handle(event, Mock(spec=LaunchContext))

@@ -1,4 +1,7 @@
-"""Programs that are replaced by nodes through entry points, from Linkwright and other packages."""
+"""Programs that nodes replace through entry points.
+
+The nodes are from Linkwright and from other packages.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +18,13 @@ from linkwright.nodes.node_command import NodeCommand
 NOWHERE = {"PATH": "/nowhere"}
 
 
-def sail(words: Sequence[str]) -> NodeCommand | None:
+def parse_sail(words: Sequence[str]) -> NodeCommand | None:
     """Parse a command line of a third-party simulator."""
     return NodeCommand("my_sea", "boat", {"wind": float(words[2])}) if words[1:2] == ["sail"] else None
 
 
 @pytest.fixture
-def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def installed_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     metadata = tmp_path / "my_sea-1.0.dist-info"
     metadata.mkdir()
     (metadata / "entry_points.txt").write_text(
@@ -38,7 +41,7 @@ def test_builtin_replacements_can_be_imported(name: str) -> None:
     assert callable(replaced_programs()[name].load())
 
 
-def test_program_of_another_package_is_replaced(installed: None) -> None:
+def test_program_of_another_package_is_replaced(installed_package: None) -> None:
     assert replacing_node(["/opt/bin/sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
     assert replacing_node(["ruby", "sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
     assert replacing_node(["sea", "--version"], NOWHERE) is None
@@ -46,14 +49,14 @@ def test_program_of_another_package_is_replaced(installed: None) -> None:
     assert replacing_node([], NOWHERE) is None
 
 
-def test_installed_program_is_not_replaced(installed: None, tmp_path: Path) -> None:
+def test_installed_program_is_not_replaced(installed_package: None, tmp_path: Path) -> None:
     program = tmp_path / "sea"
     program.touch(mode=0o755)
     assert replacing_node(["sea", "sail", "3"], {"PATH": str(tmp_path)}) is None
     assert replacing_node([str(program), "sail", "3"], NOWHERE) is None
 
 
-def test_failed_import_names_the_package(installed: None) -> None:
+def test_failed_import_names_the_package(installed_package: None) -> None:
     with pytest.raises(LinkwrightError, match="the node that replaces 'sunk' cannot be imported") as caught:
         replacing_node(["sunk"], NOWHERE)
     assert caught.value.diagnostics[0].code == "NODE002"

@@ -1,3 +1,5 @@
+"""Substitutions of launch: their values, and the errors that they report."""
+
 from __future__ import annotations
 
 import os
@@ -45,7 +47,7 @@ def context() -> LaunchContext:
     return context
 
 
-def text(substitution: Substitution, context: LaunchContext) -> str:
+def perform_text(substitution: Substitution, context: LaunchContext) -> str:
     return context.perform_substitution(substitution)
 
 
@@ -54,23 +56,23 @@ def test_texts_and_substitutions_are_joined(context: LaunchContext) -> None:
     assert perform_substitutions(context, normalize_to_list_of_substitutions(parts)) == "xacro arm.urdf/x"
 
 
-@pytest.mark.parametrize("wrong", [3, None, [3], b"x"])
-def test_non_text_values_are_rejected(wrong: object) -> None:
+@pytest.mark.parametrize("invalid_value", [3, None, [3], b"x"])
+def test_non_text_values_are_rejected(invalid_value: object) -> None:
     with pytest.raises(TypeError, match="expected a text"):
-        normalize_to_list_of_substitutions(wrong)
+        normalize_to_list_of_substitutions(invalid_value)
 
 
 def test_launch_configuration_returns_value_or_default(context: LaunchContext) -> None:
-    assert text(LaunchConfiguration("model"), context) == "arm"
-    assert text(LaunchConfiguration(["mo", "del"]), context) == "arm"
-    assert text(LaunchConfiguration("none", default="d"), context) == "d"
-    assert text(LaunchConfiguration("none", default=["d", LaunchConfiguration("count")]), context) == "d2"
-    assert text(LaunchConfiguration("none", default=5), context) == "5"
+    assert perform_text(LaunchConfiguration("model"), context) == "arm"
+    assert perform_text(LaunchConfiguration(["mo", "del"]), context) == "arm"
+    assert perform_text(LaunchConfiguration("none", default="d"), context) == "d"
+    assert perform_text(LaunchConfiguration("none", default=["d", LaunchConfiguration("count")]), context) == "d2"
+    assert perform_text(LaunchConfiguration("none", default=5), context) == "5"
 
 
 def test_unset_launch_configuration_suggests_name_and_line(context: LaunchContext) -> None:
     with pytest.raises(LinkwrightError, match="launch configuration 'modle' is not set") as caught:
-        text(LaunchConfiguration("modle"), context)
+        perform_text(LaunchConfiguration("modle"), context)
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "LAUNCH121"
     assert diagnostic.hint == "did you mean 'model'?"
@@ -82,39 +84,39 @@ def test_unset_launch_configuration_suggests_name_and_line(context: LaunchContex
 
 def test_environment_variable_returns_value_or_default(context: LaunchContext, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("MBOT_COLOR", "here")
-    assert text(EnvironmentVariable("MBOT_COLOR"), context) == "here"
-    assert text(EnvironmentVariable("LINKWRIGHT_NONE", default_value="d"), context) == "d"
+    assert perform_text(EnvironmentVariable("MBOT_COLOR"), context) == "here"
+    assert perform_text(EnvironmentVariable("LINKWRIGHT_NONE", default_value="d"), context) == "d"
     with pytest.raises(LinkwrightError, match="environment variable 'MBOT_COLUOR' is not set") as caught:
-        text(EnvironmentVariable("MBOT_COLUOR"), context)
+        perform_text(EnvironmentVariable("MBOT_COLUOR"), context)
     assert caught.value.diagnostics[0].hint == "did you mean 'MBOT_COLOR'?"
 
 
 def test_local_substitution_evaluates_attributes(context: LaunchContext) -> None:
     context.extend_locals({"event": ValueError("x")})
-    assert text(LocalSubstitution("event.args"), context) == "('x',)"
+    assert perform_text(LocalSubstitution("event.args"), context) == "('x',)"
     for expression in ("evnt", "event.argz"):
         with pytest.raises(LinkwrightError):
-            text(LocalSubstitution(expression), context)
+            perform_text(LocalSubstitution(expression), context)
 
 
 def test_this_launch_file_returns_path_and_folder(context: LaunchContext) -> None:
     with pytest.raises(LinkwrightError, match="the launch description was not read from a file"):
-        text(ThisLaunchFile(), context)
+        perform_text(ThisLaunchFile(), context)
     context.extend_locals({"current_launch_file_path": "/a/b.launch.py"})
-    assert text(ThisLaunchFile(), context) == "/a/b.launch.py"
-    assert text(ThisLaunchFileDir(), context) == "/a"
+    assert perform_text(ThisLaunchFile(), context) == "/a/b.launch.py"
+    assert perform_text(ThisLaunchFileDir(), context) == "/a"
 
 
 def test_path_join_joins_parts(context: LaunchContext) -> None:
     joined = PathJoinSubstitution(["/a", ["b_", LaunchConfiguration("model")], "c"])
-    assert text(joined, context) == "/a/b_arm/c"
-    assert text(joined / "d", context) == "/a/b_arm/c/d"
+    assert perform_text(joined, context) == "/a/b_arm/c"
+    assert perform_text(joined / "d", context) == "/a/b_arm/c/d"
 
 
 def test_find_executable_returns_path_on_path_variable(context: LaunchContext) -> None:
-    assert os.access(text(FindExecutable(name="sh"), context), os.X_OK)
+    assert os.access(perform_text(FindExecutable(name="sh"), context), os.X_OK)
     with pytest.raises(LinkwrightError, match="program 'no-such-program' is not on PATH"):
-        text(FindExecutable(name="no-such-program"), context)
+        perform_text(FindExecutable(name="no-such-program"), context)
 
 
 @pytest.mark.parametrize("program", ["xacro", "gz", "ign", "gazebo", "gzserver"])
@@ -122,14 +124,14 @@ def test_builtin_programs_are_found_if_not_installed(
     context: LaunchContext, monkeypatch: pytest.MonkeyPatch, program: str
 ) -> None:
     monkeypatch.setenv("PATH", "/nowhere")
-    assert text(FindExecutable(name=program), context) == program
+    assert perform_text(FindExecutable(name=program), context) == program
 
 
 def test_file_content_returns_text(context: LaunchContext, tmp_path: Path) -> None:
     (tmp_path / "x").write_text("inside")
-    assert text(FileContent(str(tmp_path / "x")), context) == "inside"
+    assert perform_text(FileContent(str(tmp_path / "x")), context) == "inside"
     with pytest.raises(LinkwrightError, match="does not exist"):
-        text(FileContent(str(tmp_path / "y")), context)
+        perform_text(FileContent(str(tmp_path / "y")), context)
 
 
 @pytest.mark.parametrize(
@@ -141,16 +143,16 @@ def test_file_content_returns_text(context: LaunchContext, tmp_path: Path) -> No
     ],
 )
 def test_python_expression_is_evaluated(context: LaunchContext, expression: list[object], value: str) -> None:
-    assert text(PythonExpression(expression), context) == value
+    assert perform_text(PythonExpression(expression), context) == value
 
 
 def test_python_expression_uses_given_module(context: LaunchContext) -> None:
-    assert text(PythonExpression(["os.sep"], ["os"]), context) == os.sep
+    assert perform_text(PythonExpression(["os.sep"], ["os"]), context) == os.sep
 
 
 def test_unquoted_python_expression_suggests_quotes(context: LaunchContext) -> None:
     with pytest.raises(LinkwrightError, match="NameError") as caught:
-        text(PythonExpression([LaunchConfiguration("model"), " == 'arm'"]), context)
+        perform_text(PythonExpression([LaunchConfiguration("model"), " == 'arm'"]), context)
     assert "put quotes around" in (caught.value.diagnostics[0].hint or "")
 
 
@@ -181,12 +183,12 @@ def test_unquoted_python_expression_suggests_quotes(context: LaunchContext) -> N
 def test_logic_substitutions_return_true_or_false(
     context: LaunchContext, substitution: Substitution, value: str
 ) -> None:
-    assert text(substitution, context) == value
+    assert perform_text(substitution, context) == value
 
 
 def test_logic_substitutions_reject_other_values(context: LaunchContext) -> None:
     with pytest.raises(LinkwrightError, match="NotSubstitution needs 'true' or 'false', not 'arm'"):
-        text(NotSubstitution(LaunchConfiguration("model")), context)
+        perform_text(NotSubstitution(LaunchConfiguration("model")), context)
 
 
 def test_package_substitutions_find_share_prefix_and_executable(context: LaunchContext, tmp_path: Path) -> None:
@@ -199,15 +201,15 @@ def test_package_substitutions_find_share_prefix_and_executable(context: LaunchC
     program.chmod(0o755)
     finder = PackageFinder(start=tmp_path, environment={"AMENT_PREFIX_PATH": str(tmp_path / "ros")})
     with use_finder(finder):
-        assert text(FindPackageShare("arm"), context) == str(share)
-        assert text(FindPackageShare(LaunchConfiguration("model")) / "urdf", context) == str(share / "urdf")
-        assert text(FindPackagePrefix("arm"), context) == str(tmp_path / "ros")
-        assert text(ExecutableInPackage("move", "arm"), context) == str(program)
+        assert perform_text(FindPackageShare("arm"), context) == str(share)
+        assert perform_text(FindPackageShare(LaunchConfiguration("model")) / "urdf", context) == str(share / "urdf")
+        assert perform_text(FindPackagePrefix("arm"), context) == str(tmp_path / "ros")
+        assert perform_text(ExecutableInPackage("move", "arm"), context) == str(program)
         with pytest.raises(LinkwrightError, match="package 'armm' not found") as caught:
-            text(FindPackageShare("armm"), context)
+            perform_text(FindPackageShare("armm"), context)
         assert caught.value.diagnostics[0].span is not None
         with pytest.raises(LinkwrightError, match="package 'arm' has no executable 'moev'") as caught:
-            text(ExecutableInPackage("moev", "arm"), context)
+            perform_text(ExecutableInPackage("moev", "arm"), context)
         assert caught.value.diagnostics[0].hint == "did you mean 'move'?"
 
 
@@ -229,17 +231,17 @@ def test_substitutions_describe_themselves(substitution: Substitution, descripti
 
 def test_custom_substitution_is_performed_and_can_fail(context: LaunchContext) -> None:
     class Upper(Substitution):
-        def __init__(self, inner: str) -> None:
-            self.inner = inner  # many classes do not call the base class's constructor
+        def __init__(self, inner_substitution: str) -> None:
+            self.inner = inner_substitution  # many classes do not call the base class's constructor
 
         def perform(self, context: LaunchContext) -> str:
             if not self.inner:
                 raise SubstitutionFailure("nothing to raise")
             return self.inner.upper()
 
-    assert text(Upper("a"), context) == "A"
+    assert perform_text(Upper("a"), context) == "A"
     with pytest.raises(LinkwrightError, match="nothing to raise") as caught:
-        text(Upper(""), context)
+        perform_text(Upper(""), context)
     assert caught.value.diagnostics[0].span is not None
 
 
@@ -248,24 +250,24 @@ class TestCommand:
         return [sys.executable, ' -c "', program, '"']
 
     def test_command_returns_stdout(self, context: LaunchContext) -> None:
-        assert text(Command(["echo ", LaunchConfiguration("model")]), context) == "arm\n"
+        assert perform_text(Command(["echo ", LaunchConfiguration("model")]), context) == "arm\n"
 
     def test_failing_command_is_reported_with_stderr(self, context: LaunchContext) -> None:
         with pytest.raises(LinkwrightError, match="failed with exit status 3:\nwhy") as caught:
-            text(Command(self.python("import sys; print('why', file=sys.stderr); sys.exit(3)")), context)
+            perform_text(Command(self.python("import sys; print('why', file=sys.stderr); sys.exit(3)")), context)
         assert caught.value.diagnostics[0].code == "LAUNCH129"
 
     def test_on_stderr_option_controls_stderr(self, context: LaunchContext, capsys: pytest.CaptureFixture[str]) -> None:
         words = self.python("import sys; print('out'); print('err', file=sys.stderr)")
         with pytest.raises(LinkwrightError, match="wrote to stderr:\nerr"):
-            text(Command(words), context)
-        assert text(Command(words, on_stderr="ignore"), context) == "out\n"
-        assert text(Command(words, on_stderr="capture"), context) == "out\nerr\n"
+            perform_text(Command(words), context)
+        assert perform_text(Command(words, on_stderr="ignore"), context) == "out\n"
+        assert perform_text(Command(words, on_stderr="capture"), context) == "out\nerr\n"
         capsys.readouterr()
-        assert text(Command(words, on_stderr="warn"), context) == "out\n"
+        assert perform_text(Command(words, on_stderr="warn"), context) == "out\n"
         assert "wrote to stderr" in capsys.readouterr().err
         with pytest.raises(LinkwrightError, match="'on_stderr' is 'panic'"):
-            text(Command(words, on_stderr="panic"), context)
+            perform_text(Command(words, on_stderr="panic"), context)
 
     @pytest.mark.parametrize(
         ("command", "message"),
@@ -280,7 +282,7 @@ class TestCommand:
     )
     def test_invalid_commands_are_rejected(self, context: LaunchContext, command: str, message: str) -> None:
         with pytest.raises(LinkwrightError, match=message) as caught:
-            text(Command(command), context)
+            perform_text(Command(command), context)
         assert caught.value.diagnostics[0].span is not None
 
     @pytest.mark.parametrize("program", ["xacro", "/opt/ros/bin/xacro", "ros2 run xacro xacro"])
@@ -290,7 +292,7 @@ class TestCommand:
             '<robot name="a" xmlns:xacro="http://www.ros.org/wiki/xacro">'
             '<xacro:arg name="link" default="x"/><link name="$(arg link)"/></robot>'
         )
-        expanded = text(Command([program, " --inorder ", str(model), " link:='two words'"]), context)
+        expanded = perform_text(Command([program, " --inorder ", str(model), " link:='two words'"]), context)
         assert '<link name="two words"/>' in expanded
 
     def test_unquoted_path_with_spaces_is_accepted_with_warning(
@@ -299,10 +301,10 @@ class TestCommand:
         model = tmp_path / "my robot" / "a.urdf"
         model.parent.mkdir()
         model.write_text('<robot name="a"><link name="x"/></robot>')
-        assert '<link name="x"/>' in text(Command(["xacro ", str(model)]), context)
-        assert '<link name="x"/>' in text(Command(["xacro ", str(model), " a:=b"]), context)
+        assert '<link name="x"/>' in perform_text(Command(["xacro ", str(model)]), context)
+        assert '<link name="x"/>' in perform_text(Command(["xacro ", str(model), " a:=b"]), context)
         assert "contains spaces but is not quoted" in capsys.readouterr().err
-        assert '<link name="x"/>' in text(Command(['xacro "', str(model), '"']), context)
+        assert '<link name="x"/>' in perform_text(Command(['xacro "', str(model), '"']), context)
         assert capsys.readouterr().err == ""
 
 

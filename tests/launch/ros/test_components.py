@@ -1,3 +1,5 @@
+"""Component containers, and the nodes that a launch loads into them."""
+
 from __future__ import annotations
 
 import time
@@ -24,13 +26,13 @@ from launch_ros.utilities import get_node_name_count
 from launch import LaunchContext
 from linkwright.diagnostics import LinkwrightError
 from linkwright.packages import PackageFinder
-from tests.launch.ending import ends_when, printed, when
+from tests.launch.ending import end_when, has_printed, run_when
 
 Write = Callable[[str, str], Path]
 URDF = '<robot name="r"><link name="base"/></robot>'
 
 
-def container(*nodes: ComposableNode, **options: Any) -> ComposableNodeContainer:
+def make_container(*nodes: ComposableNode, **options: Any) -> ComposableNodeContainer:
     options.setdefault("namespace", "")
     return ComposableNodeContainer(
         package="rclcpp_components",
@@ -41,7 +43,7 @@ def container(*nodes: ComposableNode, **options: Any) -> ComposableNodeContainer
     )
 
 
-def talker(**options: Any) -> ComposableNode:
+def make_talker(**options: Any) -> ComposableNode:
     return ComposableNode(package="composition", plugin="composition::Talker", **options)
 
 
@@ -56,7 +58,7 @@ def load_request(node: ComposableNode, *actions: Any, **configurations: str) -> 
 class TestRequests:
     def test_load_request_contains_names_and_remap_rules(self) -> None:
         request = load_request(
-            talker(name="tk", namespace="inner", remappings=[("chatter", "talk")]),
+            make_talker(name="tk", namespace="inner", remappings=[("chatter", "talk")]),
             PushRosNamespace("outer"),
             SetRemap("a", "b"),
         )
@@ -67,7 +69,7 @@ class TestRequests:
     def test_parameters_are_merged_in_order(self, write: Write) -> None:
         path = write("p.yaml", "/ns/tk: {ros__parameters: {c: 9}}\n/**: {ros__parameters: {c: 1, d: [1.5]}}\n")
         request = load_request(
-            talker(name="tk", namespace="ns", parameters=[{"b": {"x": LaunchConfiguration("v")}}, path]),
+            make_talker(name="tk", namespace="ns", parameters=[{"b": {"x": LaunchConfiguration("v")}}, path]),
             SetParameter("a", "text"),
             SetParametersFromFile(str(path)),
             v="true",
@@ -81,17 +83,17 @@ class TestRequests:
         assert parameters[3][1].bool_value is True
 
     def test_extra_arguments_are_passed(self) -> None:
-        request = load_request(talker(extra_arguments=[{"use_intra_process_comms": True}]))
+        request = load_request(make_talker(extra_arguments=[{"use_intra_process_comms": True}]))
         assert request.extra_arguments[0].name == "use_intra_process_comms"
         assert request.extra_arguments[0].value.bool_value is True
 
     def test_false_condition_skips_component(self) -> None:
-        assert load_request(talker(condition=IfCondition("false"))) is None
+        assert load_request(make_talker(condition=IfCondition("false"))) is None
 
     def test_malformed_wildcard_in_parameter_file_is_rejected(self, write: Write) -> None:
         path = write("p.yaml", "/***: {ros__parameters: {a: 1}}")
         with pytest.raises(RuntimeError) as caught:
-            load_request(talker(name="tk", parameters=[str(path)]))
+            load_request(make_talker(name="tk", parameters=[str(path)]))
         assert isinstance(caught.value, LinkwrightError)
         assert "'/***' is not a node name" in caught.value.diagnostics[0].message
 
@@ -109,7 +111,7 @@ class TestRequests:
         self, write: Write, capsys: pytest.CaptureFixture[str], section: str, names: dict[str, str], message: str
     ) -> None:
         path = write("p.yaml", f"{section}: {{ros__parameters: {{a: 1}}}}")
-        load_request(talker(parameters=[str(path)], **names))
+        load_request(make_talker(parameters=[str(path)], **names))
         output = capsys.readouterr().err
         assert ("warning[LAUNCH149]" in output) is bool(message)
         assert message in output
@@ -118,17 +120,17 @@ class TestRequests:
 
 class TestContainers:
     async def test_builtin_components_run_in_launcher_process(self, launch) -> None:
-        seen: dict[str, Any] = {}
+        components: dict[str, Any] = {}
 
         def look(context: LaunchContext) -> None:
-            seen["nodes"] = context.session.host.graph.node_names()
-            seen["counts"] = [
+            components["nodes"] = context.session.host.graph.node_names()
+            components["counts"] = [
                 get_node_name_count(context, name) for name in ("/ns/box", "/a/tk", "/robot_state_publisher")
             ]
 
         result = await launch(
-            container(
-                talker(name="tk", namespace="a"),
+            make_container(
+                make_talker(name="tk", namespace="a"),
                 ComposableNode(
                     package="robot_state_publisher",
                     plugin="robot_state_publisher::RobotStatePublisher",
@@ -142,15 +144,15 @@ class TestContainers:
                 ),
                 namespace="ns",
             ),
-            when(
-                printed("translation: (", "Robot initialized", "'/a/tk'", "'/fixed'", "'/robot_state_publisher'"),
+            run_when(
+                has_printed("translation: (", "Robot initialized", "'/a/tk'", "'/fixed'", "'/robot_state_publisher'"),
                 OpaqueFunction(function=look),
                 Shutdown(),
             ),
         )
         assert result.succeeded, result.err
-        assert {"/ns/box", "/a/tk", "/robot_state_publisher", "/fixed"} <= set(seen["nodes"])
-        assert seen["counts"] == [1, 1, 1]
+        assert {"/ns/box", "/a/tk", "/robot_state_publisher", "/fixed"} <= set(components["nodes"])
+        assert components["counts"] == [1, 1, 1]
         assert "Loaded node '/a/tk' in container '/ns/box'" in result.err
         assert "[component_container-1] [INFO] [" in result.err
         assert "] [robot_state_publisher]: Robot initialized" in result.err
@@ -161,8 +163,8 @@ class TestContainers:
         listener = ComposableNode(package="composition", plugin="composition::Listener", name="ear")
         result = await launch(
             LoadComposableNodes(target_container="box", composable_node_descriptions=[listener]),
-            TimerAction(period=0.1, actions=[container()]),
-            ends_when(printed("Loaded node")),
+            TimerAction(period=0.1, actions=[make_container()]),
+            end_when(has_printed("Loaded node")),
         )
         assert "Loaded node '/ear' in container '/box'" in result.err
 
@@ -171,15 +173,17 @@ class TestContainers:
             [
                 SetLaunchConfiguration("name", "inside"),
                 PushRosNamespace("scope"),
-                container(talker(name=LaunchConfiguration("name"), namespace="n")),
+                make_container(make_talker(name=LaunchConfiguration("name"), namespace="n")),
             ]
         )
-        result = await launch(group, ends_when(printed("Loaded node")))
+        result = await launch(group, end_when(has_printed("Loaded node")))
         assert "Loaded node '/scope/n/inside' in container '/scope/box'" in result.err
 
     async def test_unknown_plugin_suggests_name_and_line(self, launch) -> None:
-        wrong = ComposableNode(package="composition", plugin="composition::Talkr", name="tk")
-        result = await launch(container(wrong, talker(name="other")), ends_when(printed("LAUNCH139", "Loaded node")))
+        misspelled = ComposableNode(package="composition", plugin="composition::Talkr", name="tk")
+        result = await launch(
+            make_container(misspelled, make_talker(name="other")), end_when(has_printed("LAUNCH139", "Loaded node"))
+        )
         assert (
             "error[LAUNCH139]: Failed to load node 'tk' of type 'composition::Talkr' in container '/box'" in result.err
         )
@@ -190,17 +194,17 @@ class TestContainers:
 
     async def test_shutdown_abandons_wait_for_container(self, launch) -> None:
         result = await launch(
-            LoadComposableNodes(target_container="/nobody", composable_node_descriptions=[talker()]),
+            LoadComposableNodes(target_container="/nobody", composable_node_descriptions=[make_talker()]),
             TimerAction(period=0.1, actions=[Shutdown()]),
         )
         assert "Abandoning wait for the '/nobody/_container/load_node' service, due to shutdown." in result.err
 
     async def test_duplicate_node_names_are_reported(self, launch) -> None:
-        result = await launch(container(talker(name="box")), ends_when(printed("there are now at least")))
+        result = await launch(make_container(make_talker(name="box")), end_when(has_printed("there are now at least")))
         assert "there are now at least 2 nodes with the name /box created within this launch context" in result.err
 
     async def test_container_lists_and_unloads_nodes(self, launch) -> None:
-        answers: list[Any] = []
+        responses: list[Any] = []
 
         def ask(context: LaunchContext) -> None:
             node = context.session.host.launcher_node
@@ -216,22 +220,22 @@ class TestContainers:
                     request = client.srv_type.Request()
                     if fill is not None:
                         request.unique_id = fill
-                    answers.append(await client.call_async(request))
+                    responses.append(await client.call_async(request))
 
             context.session.spawn(work())
 
         await launch(
-            container(talker(name="a"), talker(name="b")),
-            when(printed("Loaded node '/b'"), OpaqueFunction(function=ask)),
-            ends_when(lambda _: len(answers) == 4),
+            make_container(make_talker(name="a"), make_talker(name="b")),
+            run_when(has_printed("Loaded node '/b'"), OpaqueFunction(function=ask)),
+            end_when(lambda _: len(responses) == 4),
         )
-        listed, missing, unloaded, rest = answers
+        listed, missing, unloaded, remaining = responses
         assert list(listed.full_node_names) == ["/a", "/b"]
         assert list(listed.unique_ids) == [1, 2]
         assert missing.success is False
         assert missing.error_message == "No node found with unique_id: 7"
         assert unloaded.success is True
-        assert list(rest.full_node_names) == ["/b"]
+        assert list(remaining.full_node_names) == ["/b"]
 
     async def test_composed_model_is_reloaded(self, launch, write: Write) -> None:
         path = write("r.urdf", URDF)
@@ -243,7 +247,10 @@ class TestContainers:
             return node.node.get_parameter("robot_description").value
 
         def is_reloaded(context: LaunchContext) -> bool:
-            """Save the file until the change is noticed, because watching begins after the node is loaded."""
+            """Save the file until the change is noticed.
+
+            Watching begins after the node is loaded.
+            """
             if not texts:
                 return False
             if not path.read_text().count("trunk") or time.time() - path.stat().st_mtime > 1.0:
@@ -260,9 +267,9 @@ class TestContainers:
             parameters=[{"robot_description": model}],
         )
         await launch(
-            container(publisher),
-            when(printed("Loaded node"), OpaqueFunction(function=look)),
-            when(is_reloaded, OpaqueFunction(function=look), Shutdown()),
+            make_container(publisher),
+            run_when(has_printed("Loaded node"), OpaqueFunction(function=look)),
+            run_when(is_reloaded, OpaqueFunction(function=look), Shutdown()),
         )
         assert '"base"' in texts[0]
         assert '"trunk"' in texts[1]
@@ -274,7 +281,11 @@ class TestContainers:
         prefix = real.parents[2]
         finder = PackageFinder(start=prefix, environment={"AMENT_PREFIX_PATH": str(prefix)})
         theirs = ComposableNode(package="camera", plugin="camera::Driver")
-        result = await launch(container(theirs, output="screen"), ends_when(printed("real --ros")), finder=finder)
+        result = await launch(
+            make_container(theirs, output="screen"), end_when(has_printed("real --ros")), finder=finder
+        )
         assert "[component_container-1] real --ros-args -r __node:=box -r __ns:=/" in result.out
-        result = await launch(container(talker()), ends_when(printed("started in the launcher")), finder=finder)
+        result = await launch(
+            make_container(make_talker()), end_when(has_printed("started in the launcher")), finder=finder
+        )
         assert "[component_container-1]: started in the launcher's process" in result.err

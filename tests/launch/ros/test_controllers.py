@@ -11,7 +11,7 @@ from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterFile
 
 from tests.control.robots import joint, robot
-from tests.launch.ending import ends_when, printed
+from tests.launch.ending import end_when, has_printed
 
 FILE = """
 controller_manager:
@@ -36,7 +36,7 @@ async def test_controller_log_messages_have_manager_process_prefix(launch: Any, 
     result = await launch(
         Node(package="controller_manager", executable="ros2_control_node", parameters=parameters),
         Node(package="controller_manager", executable="spawner", arguments=["arm"]),
-        ends_when(printed("Configured and activated arm")),
+        end_when(has_printed("Configured and activated arm")),
     )
     assert result.succeeded, result.err
     (line,) = [line for line in result.err.splitlines() if "open_lop_control" in line]
@@ -45,7 +45,10 @@ async def test_controller_log_messages_have_manager_process_prefix(launch: Any, 
 
 
 async def test_spawner_passes_on_parameter_files(launch: Any, write: Callable[[str, str], Path]):
-    """As in the first example of ros2_control_demos, the file has substitutions, and the manager has no file."""
+    """The spawner passes on parameter files with substitutions.
+
+    The manager has no file, as in the first example of ros2_control_demos.
+    """
     controller = (
         FILE[FILE.index("arm:\n  ros") :]
         .replace("arm:\n  ros__parameters:", ARM)
@@ -61,7 +64,7 @@ async def test_spawner_passes_on_parameter_files(launch: Any, write: Callable[[s
             parameters=[{"joint": "knee"}, file],
             arguments=["arm"],
         ),
-        ends_when(printed("Configured and activated arm")),
+        end_when(has_printed("Configured and activated arm")),
         joint="knee",
     )
     assert result.succeeded, result.err

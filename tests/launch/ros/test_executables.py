@@ -1,3 +1,5 @@
+"""Executables of packages: in sources, in installations and built in."""
+
 from __future__ import annotations
 
 import os

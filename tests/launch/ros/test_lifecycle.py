@@ -1,3 +1,5 @@
+"""Lifecycle nodes of launch: transitions, events and sequences."""
+
 from __future__ import annotations
 
 from importlib.metadata import EntryPoint
@@ -15,12 +17,12 @@ from launch import LaunchContext
 from linkwright.graph import Graph
 from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
 from linkwright.nodes import EXECUTABLES, NodeOptions
-from tests.launch.ending import ends_when, printed
+from tests.launch.ending import end_when, has_printed
 
-CONFIGURE, DEACTIVATE = 1, 4
+TRANSITION_CONFIGURE, TRANSITION_DEACTIVATE = 1, 4
 
 
-class Managed(LifecycleNodeMixin):
+class ManagedNode(LifecycleNodeMixin):
     """A lifecycle node of this process; a parameter makes its configuration fail."""
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
@@ -31,8 +33,8 @@ class Managed(LifecycleNodeMixin):
         LifecycleNodeMixin.__init__(self)
 
     def on_configure(self, state: Any) -> Any:
-        kind = type(super().on_configure(state))
-        return kind.FAILURE if self.fails else kind.SUCCESS
+        return_class = type(super().on_configure(state))
+        return return_class.FAILURE if self.fails else return_class.SUCCESS
 
     def close(self) -> None:
         self.node.destroy_node()
@@ -44,7 +46,7 @@ def _executable(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(EXECUTABLES.entry_points, ("life", "node"), entry)
 
 
-def managed(name: str = "one", **options: Any) -> LifecycleNode:
+def make_managed(name: str = "one", **options: Any) -> LifecycleNode:
     return LifecycleNode(package="life", executable="node", name=name, namespace="", **options)
 
 
@@ -53,15 +55,15 @@ def log_on_transition(text: str, **filters: Any) -> RegisterEventHandler:
 
 
 async def test_change_state_triggers_transition_and_event(launch) -> None:
-    node = managed()
-    change_state = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=CONFIGURE)
+    node = make_managed()
+    change_state = ChangeState(lifecycle_node_matcher=matches_action(node), transition_id=TRANSITION_CONFIGURE)
     result = await launch(
         node,
-        managed("two"),
+        make_managed("two"),
         log_on_transition("configured", target_lifecycle_node=node, transition="transition_success"),
         log_on_transition("inactive", goal_state="inactive", start_state="configuring"),
         EmitEvent(event=change_state),
-        ends_when(printed("[launch.user]: inactive")),
+        end_when(has_printed("[launch.user]: inactive")),
     )
     assert result.messages.count("inactive") == 1
     assert result.messages.count("configured") == 1
@@ -69,29 +71,31 @@ async def test_change_state_triggers_transition_and_event(launch) -> None:
 
 
 async def test_autostart_activates_node(launch) -> None:
-    node = managed(autostart=True)
+    node = make_managed(autostart=True)
     active = log_on_transition("active", target_lifecycle_node=node, goal_state="active")
-    result = await launch(node, active, ends_when(printed("[launch.user]: active")))
+    result = await launch(node, active, end_when(has_printed("[launch.user]: active")))
     assert result.messages == ["active"]
 
 
 async def test_lifecycle_transition_runs_sequence(launch) -> None:
-    nodes = [managed("one"), managed("two")]
-    row = LifecycleTransition(lifecycle_node_names=["one", "/two"], transition_ids=[CONFIGURE, "3", DEACTIVATE])
+    nodes = [make_managed("one"), make_managed("two")]
+    sequence = LifecycleTransition(
+        lifecycle_node_names=["one", "/two"], transition_ids=[TRANSITION_CONFIGURE, "3", TRANSITION_DEACTIVATE]
+    )
     off = log_on_transition("off", start_state="deactivating", goal_state="inactive")
-    result = await launch(*nodes, row, off, ends_when(printed("[launch.user]: off", times=2)))
+    result = await launch(*nodes, sequence, off, end_when(has_printed("[launch.user]: off", times=2)))
     assert result.messages == ["off", "off"]
 
 
 async def test_failed_transition_is_reported(launch) -> None:
-    node = managed(parameters=[{"fails": True}])
-    change_state = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=CONFIGURE)
-    result = await launch(node, EmitEvent(event=change_state), ends_when(printed("Failed to make transition")))
+    node = make_managed(parameters=[{"fails": True}])
+    change_state = ChangeState(lifecycle_node_matcher=matches_node_name("one"), transition_id=TRANSITION_CONFIGURE)
+    result = await launch(node, EmitEvent(event=change_state), end_when(has_printed("Failed to make transition")))
     assert "Failed to make transition 'TRANSITION_CONFIGURE' for LifecycleNode '/one'" in result.err
 
 
 def test_node_matchers_use_full_names() -> None:
-    node = managed()
+    node = make_managed()
     node._perform_substitutions(LaunchContext())
     assert matches_node_name("one")(node)
     assert matches_node_name("/one")(node)

@@ -1,3 +1,5 @@
+"""The `Node` action: nodes in processes, and hosted nodes."""
+
 from __future__ import annotations
 
 import json
@@ -27,7 +29,10 @@ URDF = '<robot name="r"><link name="base"/></robot>'
 
 @pytest.fixture
 def ros(tmp_path: Path) -> PackageFinder:
-    """Return a prefix with package ``arm``, whose executable ``tell`` writes its command line as JSON."""
+    """Return a prefix with the package ``arm``.
+
+    Its executable ``tell`` writes its command line as JSON.
+    """
     share = tmp_path / "ros" / "share" / "arm"
     share.mkdir(parents=True)
     (share / "package.xml").write_text("<package><name>arm</name></package>")
@@ -181,12 +186,12 @@ class TestProcessNodes:
         planned: list[HostedPlan] = []
         monkeypatch.setattr(NodeHost, "schedule_node", lambda _, plan: planned.append(plan))
         right = write("right.yaml", f"{name}: {{ros__parameters: {{a: 1}}}}\nother: {{ros__parameters: {{a: 2}}}}\n")
-        wrong = write("wrong.yaml", f"{name}x: {{ros__parameters: {{b: 1}}}}\n")
-        files = [str(right), str(wrong)]
+        other_file = write("wrong.yaml", f"{name}x: {{ros__parameters: {{b: 1}}}}\n")
+        files = [str(right), str(other_file)]
         result = await launch(Node(package=package, executable=executable, parameters=files))
         assert [plan.parameters for plan in planned] == [{"a": 1}]
         assert result.err.count("warning[LAUNCH149]") == 1
-        assert f"parameter file '{wrong}' has no section for node '/{name}'" in result.err
+        assert f"parameter file '{other_file}' has no section for node '/{name}'" in result.err
 
     async def test_temporary_files_are_removed_after_launch(self, launch, ros: PackageFinder) -> None:
         result = await launch(

@@ -27,7 +27,7 @@ class Remapping(NodeActionExtension):
         return [TextSubstitution(text="-r"), TextSubstitution(text=f"chatter:={self.NAME}")], changed
 
 
-class Broken:
+class BrokenExtension:
     def __init__(self) -> None:
         raise RuntimeError("no license")
 
@@ -55,7 +55,7 @@ def install(monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[..., None]]:
     node_extensions.node_extensions.cache_clear()
 
 
-def tell(tmp_path: Path, **options: Any) -> Node:
+def install_tell_program(tmp_path: Path, **options: Any) -> Node:
     program = tmp_path / "tell"
     program.write_text(f"#!{sys.executable}\nimport json, sys\nprint(json.dumps(sys.argv[1:]))\n")
     program.chmod(0o755)
@@ -64,7 +64,7 @@ def tell(tmp_path: Path, **options: Any) -> Node:
 
 async def test_extension_changes_process_arguments(launch, install, tmp_path: Path) -> None:
     install(mine=Remapping)
-    result = await launch(tell(tmp_path))
+    result = await launch(install_tell_program(tmp_path))
     words = json.loads(result.out.partition("] ")[2])
     assert words == ["--ros-args", "-r", "__node:=other", "-r", "__ns:=/ns", "-r", "chatter:=mine"]
 
@@ -80,13 +80,13 @@ async def test_extension_changes_hosted_node(launch, install, tmp_path: Path) ->
 
 
 async def test_extension_that_cannot_be_loaded_is_reported(launch, install, tmp_path: Path) -> None:
-    install(broken=Broken)
-    result = await launch(tell(tmp_path))
+    install(broken=BrokenExtension)
+    result = await launch(install_tell_program(tmp_path))
     assert not result.succeeded
     assert "error[LAUNCH155]: the node extension 'broken' cannot be loaded: no license" in result.err
 
 
 async def test_node_without_extensions_has_default_arguments(launch, install, tmp_path: Path) -> None:
     install()
-    result = await launch(tell(tmp_path))
+    result = await launch(install_tell_program(tmp_path))
     assert json.loads(result.out.partition("] ")[2]) == ["--ros-args", "-r", "__node:=talker", "-r", "__ns:=/ns"]

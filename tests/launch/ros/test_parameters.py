@@ -1,3 +1,5 @@
+"""Parameters of launched nodes: values, types and files."""
+
 from __future__ import annotations
 
 import io
@@ -30,11 +32,11 @@ def context() -> LaunchContext:
     return context
 
 
-def values(context: LaunchContext, *parameters: Any, node: str = "/talker") -> dict[str, Any]:
+def evaluated_parameters(context: LaunchContext, *parameters: Any, node: str = "/talker") -> dict[str, Any]:
     return own_parameters(normalize_parameters(list(parameters)), context).values(context, node)
 
 
-def message_of(error: BaseException) -> str:
+def error_message(error: BaseException) -> str:
     assert isinstance(error, LinkwrightError)
     (diagnostic,) = error.diagnostics
     return diagnostic.message
@@ -43,10 +45,10 @@ def message_of(error: BaseException) -> str:
 class TestParameters:
     def test_python_values_keep_their_types(self, context: LaunchContext) -> None:
         parameters = {"a": 1, "b": 1.5, "c": True, "d": "true", "e": [1, 2], "f": ["x", "y"], "g": [1, 2.5], "h": ""}
-        assert values(context, parameters) == {**parameters, "g": [1.0, 2.5]}
+        assert evaluated_parameters(context, parameters) == {**parameters, "g": [1.0, 2.5]}
 
     def test_substitutions_are_parsed_as_yaml(self, context: LaunchContext) -> None:
-        parameters = values(
+        parameters = evaluated_parameters(
             context,
             {
                 "a": LaunchConfiguration("number"),
@@ -74,25 +76,27 @@ class TestParameters:
         self, context: LaunchContext, name: str, kind: Any, value: Any
     ) -> None:
         context.launch_configurations["list"] = "[1, 2]"
-        parameters = values(context, {"p": ParameterValue(LaunchConfiguration(name), value_type=kind)})
+        parameters = evaluated_parameters(context, {"p": ParameterValue(LaunchConfiguration(name), value_type=kind)})
         assert parameters == {"p": value}
         assert type(parameters["p"]) is type(value)
 
     def test_value_of_wrong_type_is_rejected(self, context: LaunchContext) -> None:
         with pytest.raises(ValueError) as caught:
-            values(context, {"p": ParameterValue(LaunchConfiguration("word"), value_type=int)})
-        assert "parameter 'p' is not of the requested type int" in message_of(caught.value)
+            evaluated_parameters(context, {"p": ParameterValue(LaunchConfiguration("word"), value_type=int)})
+        assert "parameter 'p' is not of the requested type int" in error_message(caught.value)
 
     def test_nested_dictionaries_and_substituted_names_are_flattened(self, context: LaunchContext) -> None:
-        parameters = values(context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1})
+        parameters = evaluated_parameters(
+            context, {"zeros": {"joint": 1.0, ("n", LaunchConfiguration("number")): 2.0}, "a.b": 1}
+        )
         assert parameters == {"zeros.joint": 1.0, "zeros.n3": 2.0, "a.b": 1}
 
     def test_later_values_override_earlier(self, context: LaunchContext) -> None:
-        assert values(context, {"a": 1, "b": 1}, {"a": 2}, Parameter("b", 3)) == {"a": 2, "b": 3}
+        assert evaluated_parameters(context, {"a": 1, "b": 1}, {"a": 2}, Parameter("b", 3)) == {"a": 2, "b": 3}
 
     def test_untyped_description_is_one_error_with_fix(self, context: LaunchContext) -> None:
         with pytest.raises(LinkwrightError) as caught:
-            values(context, {"robot_description": LaunchConfiguration("model")})
+            evaluated_parameters(context, {"robot_description": LaunchConfiguration("model")})
         (diagnostic,) = caught.value.diagnostics
         assert diagnostic.code == "LAUNCH132"
         assert "parameter 'robot_description' has no type and is not YAML" in diagnostic.message
@@ -103,7 +107,9 @@ class TestParameters:
     def test_description_without_colons_is_passed_unchanged(self, context: LaunchContext) -> None:
         text = '<robot name="r">\n  <link name="a"/>\n</robot>'
         context.launch_configurations["model"] = text
-        assert values(context, {"robot_description": LaunchConfiguration("model")}) == {"robot_description": text}
+        assert evaluated_parameters(context, {"robot_description": LaunchConfiguration("model")}) == {
+            "robot_description": text
+        }
 
     @pytest.mark.parametrize(
         ("value", "message"),
@@ -117,12 +123,12 @@ class TestParameters:
     def test_unsupported_yaml_values_are_rejected(self, context: LaunchContext, value: str, message: str) -> None:
         context.launch_configurations["odd"] = value
         with pytest.raises(TypeError) as caught:
-            values(context, {"p": LaunchConfiguration("odd")})
-        assert message in message_of(caught.value)
+            evaluated_parameters(context, {"p": LaunchConfiguration("odd")})
+        assert message in error_message(caught.value)
 
     def test_empty_substitution_is_empty_string(self, context: LaunchContext) -> None:
         context.launch_configurations["nothing"] = ""
-        assert values(context, {"p": LaunchConfiguration("nothing")}) == {"p": ""}
+        assert evaluated_parameters(context, {"p": LaunchConfiguration("nothing")}) == {"p": ""}
 
     @pytest.mark.parametrize(
         ("parameters", "message"),
@@ -139,11 +145,11 @@ class TestParameters:
     def test_invalid_parameter_forms_are_rejected_at_construction(self, parameters: Any, message: str) -> None:
         with pytest.raises(TypeError) as caught:
             normalize_parameters(parameters)
-        assert message in message_of(caught.value)
+        assert message in error_message(caught.value)
 
     def test_plain_strings_are_not_parsed_as_yaml(self, context: LaunchContext) -> None:
         parameters = {"a": "1", "b": ["true", "2"], "c": "{x: y}"}
-        assert values(context, parameters) == parameters
+        assert evaluated_parameters(context, parameters) == parameters
 
     def test_evaluated_parameters_keep_files_and_flatten_dictionaries(self, context: LaunchContext) -> None:
         parameters = normalize_parameters(["/a.yaml", {"n": {"x": 1}, "l": [1, 2.5]}, Path("/b.yaml")])
@@ -183,9 +189,9 @@ listener:
         self, context: LaunchContext, write: Write, node: str, expected: dict
     ) -> None:
         path = write("p.yaml", self.FILE)
-        assert values(context, str(path), node=node) == expected
-        assert values(context, path, node=node) == expected
-        assert values(context, ParameterFile(path), node=node) == expected
+        assert evaluated_parameters(context, str(path), node=node) == expected
+        assert evaluated_parameters(context, path, node=node) == expected
+        assert evaluated_parameters(context, ParameterFile(path), node=node) == expected
 
     def test_substitutions_in_parameter_file_are_evaluated(self, context: LaunchContext, write: Write) -> None:
         path = write(
@@ -193,7 +199,7 @@ listener:
             "/**: {ros__parameters: {a: $(var number), b: $(env LW_NONE x), c: '$(var n$(var word) d)', "
             "d: $(find-pkg-share my_robot_description)}}",
         )
-        parameters = values(context, ParameterFile(path, allow_substs=True))
+        parameters = evaluated_parameters(context, ParameterFile(path, allow_substs=True))
         assert parameters["a"] == 3
         assert parameters["b"] == "x"
         assert parameters["c"] == "d"
@@ -213,7 +219,7 @@ listener:
         self, context: LaunchContext, write: Write, text: str, message: str
     ) -> None:
         with pytest.raises(LinkwrightError) as caught:
-            values(context, ParameterFile(write("p.yaml", text), allow_substs=True))
+            evaluated_parameters(context, ParameterFile(write("p.yaml", text), allow_substs=True))
         (diagnostic,) = caught.value.diagnostics
         assert message in diagnostic.message
         assert diagnostic.span is not None
@@ -221,7 +227,7 @@ listener:
 
     def test_comments_in_parameter_file_are_kept(self, context: LaunchContext, write: Write) -> None:
         text = "/**:  # $(nothing of the kind)\n  ros__parameters:\n    a: '# $(var number)'  # $(var none)\n"
-        assert values(context, ParameterFile(write("p.yaml", text), allow_substs=True)) == {"a": "# 3"}
+        assert evaluated_parameters(context, ParameterFile(write("p.yaml", text), allow_substs=True)) == {"a": "# 3"}
 
     def test_file_with_substitutions_is_written_and_cleaned_up(self, context: LaunchContext, write: Write) -> None:
         file = ParameterFile(write("p.yaml", "/**: {ros__parameters: {a: $(var number)}}"), allow_substs=True)
@@ -233,11 +239,11 @@ listener:
 
     def test_missing_parameter_file_raises_file_not_found(self, context: LaunchContext, tmp_path: Path) -> None:
         with pytest.raises(FileNotFoundError) as caught:
-            values(context, str(tmp_path / "none.yaml"))
-        assert "none.yaml' does not exist" in message_of(caught.value)
+            evaluated_parameters(context, str(tmp_path / "none.yaml"))
+        assert "none.yaml' does not exist" in error_message(caught.value)
 
     def test_empty_parameter_file_is_accepted(self, context: LaunchContext, write: Write) -> None:
-        assert values(context, str(write("p.yaml", ""))) == {}
+        assert evaluated_parameters(context, str(write("p.yaml", ""))) == {}
 
 
 @pytest.mark.parametrize(
@@ -252,15 +258,17 @@ listener:
 def test_typed_lists_are_parsed_in_xml_and_yaml(context: LaunchContext, kind: str, text: str, items: list[Any]) -> None:
     for type_name in (f"list_of_{kind}", f"list[{kind}]"):
         xml = f'<param name="p" value="{text}" value-sep="," type="{type_name}"/>'
-        assert values(context, *parsed(f'<launch><node pkg="a" exec="b">{xml}</node></launch>')) == {"p": items}
+        assert evaluated_parameters(
+            context, *parse_parameters(f'<launch><node pkg="a" exec="b">{xml}</node></launch>')
+        ) == {"p": items}
         parts = text.split(",")
         expected_parts = [f"'{part}'" for part in parts] if kind == "str" else parts
         tag = f"{{name: p, value: [{', '.join(expected_parts)}], type: '{type_name}'}}"
         yaml = f"launch:\n- node: {{pkg: a, exec: b, param: [{tag}]}}\n"
-        assert values(context, *parsed(yaml)) == {"p": items}
+        assert evaluated_parameters(context, *parse_parameters(yaml)) == {"p": items}
 
 
-def parsed(text: str) -> list[Any]:
+def parse_parameters(text: str) -> list[Any]:
     """Return the parameters of the only node of a launch file."""
     entity, parser = Parser.load(io.StringIO(text))
     (node,) = parser.parse_description(entity).entities

@@ -257,7 +257,10 @@ def test_pytest_plugin_imports_nothing_without_launch_tests(tmp_path):
 
 
 def test_real_launch_pytest_takes_precedence(tmp_path):
-    """A real launch_pytest module registers its own plugin, and the stand-in must not replace it."""
+    """The stand-in does not replace a real launch_pytest module.
+
+    The real module registers its own plugin.
+    """
     real = tmp_path / "launch_pytest"
     real.mkdir()
     (real / "__init__.py").write_text("")

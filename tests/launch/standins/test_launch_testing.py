@@ -1,4 +1,7 @@
-"""Test files for launch_testing, run by ``launch_test`` and by pytest with the stand-ins only."""
+"""Test files for launch_testing, run with the stand-ins only.
+
+They run by ``launch_test`` and by pytest.
+"""
 
 from __future__ import annotations
 
@@ -202,7 +205,7 @@ def test_invalid_file_and_arguments_are_reported(run, text: str, words: tuple[st
 
 
 @pytest.mark.parametrize(
-    ("expected", "strict", "found"),
+    ("expected", "is_strict", "found"),
     [
         ("b", False, (1, 2)),
         ("b", True, None),
@@ -214,8 +217,8 @@ def test_invalid_file_and_arguments_are_reported(run, text: str, words: tuple[st
         (["b", "a"], False, None),
     ],
 )
-def test_texts_are_matched_in_order(expected, strict, found) -> None:
-    assert build_text_match(expected, strict=strict)("abc") == found
+def test_texts_are_matched_in_order(expected, is_strict, found) -> None:
+    assert build_text_match(expected, strict=is_strict)("abc") == found
 
 
 def test_lines_are_matched_in_order() -> None:

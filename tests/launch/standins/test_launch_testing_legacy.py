@@ -13,14 +13,14 @@ from launch_testing.legacy import LaunchTestService, output
 from launch import LaunchDescription, LaunchService
 
 
-def python(program: str) -> Any:
+def execute_python(program: str) -> Any:
     return ExecuteProcess(cmd=[sys.executable, "-u", "-c", program])
 
 
 LASTS = "import time; time.sleep(600)"
 
 
-class Watched:
+class LaunchWithTests:
     """A launch description with its tests."""
 
     def __init__(self) -> None:
@@ -33,35 +33,35 @@ class Watched:
 
 
 @pytest.fixture
-def tests() -> Watched:
-    return Watched()
+def tests() -> LaunchWithTests:
+    return LaunchWithTests()
 
 
 def test_launch_returns_0_if_all_tests_pass(tests) -> None:
-    tests.service.add_fixture_action(tests.description, python(LASTS))
-    tests.service.add_test_action(tests.description, python("pass"))
+    tests.service.add_fixture_action(tests.description, execute_python(LASTS))
+    tests.service.add_test_action(tests.description, execute_python("pass"))
     tests.service.add_test_action(tests.description, OpaqueFunction(function=lambda _: None))
     assert tests.run() == 0
 
 
 def test_launch_returns_status_of_failed_test(tests) -> None:
-    tests.service.add_test_action(tests.description, python(LASTS))
-    tests.service.add_test_action(tests.description, python("raise SystemExit(7)"))
+    tests.service.add_test_action(tests.description, execute_python(LASTS))
+    tests.service.add_test_action(tests.description, execute_python("raise SystemExit(7)"))
     assert tests.run() == 7
 
 
 def test_ended_fixture_fails_launch(tests) -> None:
-    tests.service.add_test_action(tests.description, python(LASTS))
-    tests.service.add_fixture_action(tests.description, python("pass"), exit_allowed=[3])
+    tests.service.add_test_action(tests.description, execute_python(LASTS))
+    tests.service.add_fixture_action(tests.description, execute_python("pass"), exit_allowed=[3])
     assert tests.run() == 1
 
 
 @pytest.mark.parametrize(("expected", "status"), [(b"second", 0), (b"third", 1)])
 def test_process_output_is_compared_with_expected_lines(tests, expected, status) -> None:
-    talker = python("print('pid 7'); print('the first'); print('the second')")
+    talker = execute_python("print('pid 7'); print('the first'); print('the second')")
     tests.description.add_action(talker)
-    wanted = output.create_output_lines_test([b"first", expected])
-    tests.service.add_output_test(tests.description, talker, wanted)
+    expected_lines = output.create_output_lines_test([b"first", expected])
+    tests.service.add_output_test(tests.description, talker, expected_lines)
     assert tests.run() == status
 
 
@@ -69,9 +69,9 @@ def test_output_filters_and_expected_files_are_read(tmp_path) -> None:
     assert output.create_output_lines_filter()(b"pid 7\nthe first\n") == b"the first\n"
     (tmp_path / "lines.txt").write_bytes(b"first\n")
     (tmp_path / "patterns.regex").write_bytes(b"f.rst\n")
-    for name, wanted in ("lines", [b"first"]), ("patterns", [re.compile(b"f.rst")]):
+    for name, expected_lines in ("lines", [b"first"]), ("patterns", [re.compile(b"f.rst")]):
         _, _, matches, patterns = output.create_output_test_from_file(str(tmp_path / name))
-        assert list(patterns) == wanted
+        assert list(patterns) == expected_lines
         assert matches(b"the first\n", patterns[0])
     with pytest.raises(RuntimeError, match="could not find"):
         output.create_output_test_from_file(str(tmp_path / "none"))

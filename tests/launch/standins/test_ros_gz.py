@@ -42,8 +42,8 @@ def started(monkeypatch: pytest.MonkeyPatch) -> list[dict[str, Any]]:
 
 
 def test_gz_server_passes_world_file_or_string(started: list[dict[str, Any]]) -> None:
-    for given in ({"world_sdf_file": "a.sdf"}, {"world_sdf_string": [TextSubstitution(text="<sdf/>")]}):
-        GzServer(**given, use_composition=True).execute(LaunchContext())
+    for options in ({"world_sdf_file": "a.sdf"}, {"world_sdf_string": [TextSubstitution(text="<sdf/>")]}):
+        GzServer(**options, use_composition=True).execute(LaunchContext())
     assert [words["parameters"] for words in started] == [
         [{"world_sdf_file": "a.sdf"}],
         [{"world_sdf_string": "<sdf/>"}],

@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.learning.packing import making
-from tests.learning.packing.fake_index import package, write_source, write_wheel
+from tests.learning.packing.fake_index import package_entry, write_source, write_wheel
 
 PROGRAM = """
 import sys
@@ -78,11 +78,11 @@ def create_index(parent: Path, monkeypatch: pytest.MonkeyPatch) -> FakeIndex:
             "files": [],
         },
         "linkwright-core": {"needs": [{"key": "pure 1.0"}], "files": []},
-        "native 1.0": package(*(path for name, path in wheel.items() if name.startswith("native"))),
-        "pip 9.0": package(wheel["pip 9.0"]),
-        "pure 1.0": package(wheel["pure 1.0"]),
-        "source 1.0": package(source),
-        "windows-only 1.0": package(wheel["windows_only 1.0"], needs=[{"key": "pure 1.0"}]),
+        "native 1.0": package_entry(*(path for name, path in wheel.items() if name.startswith("native"))),
+        "pip 9.0": package_entry(wheel["pip 9.0"]),
+        "pure 1.0": package_entry(wheel["pure 1.0"]),
+        "source 1.0": package_entry(source),
+        "windows-only 1.0": package_entry(wheel["windows_only 1.0"], needs=[{"key": "pure 1.0"}]),
     }
     monkeypatch.setattr(making, "locked_packages", lambda: table)
     monkeypatch.setenv("PIP_NO_INDEX", "1")

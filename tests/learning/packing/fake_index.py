@@ -71,12 +71,12 @@ def write_source(folder: Path, name: str, version: str = "1.0", tag: str = "py3-
     return path
 
 
-def row(path: Path) -> list[object]:
+def file_row(path: Path) -> list[object]:
     """Return the row of a file in the table of locked files."""
     content = path.read_bytes()
     return [path.name, hashlib.sha256(content).hexdigest(), len(content)]
 
 
-def package(*files: Path, needs: Sequence[Mapping[str, object]] = ()) -> dict[str, object]:
+def package_entry(*files: Path, needs: Sequence[Mapping[str, object]] = ()) -> dict[str, object]:
     """Return the entry of a package in the table."""
-    return {"needs": list(needs), "files": [row(file) for file in files]}
+    return {"needs": list(needs), "files": [file_row(file) for file in files]}

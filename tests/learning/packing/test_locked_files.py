@@ -1,4 +1,7 @@
-"""The wheels in `uv.lock`: each system and Python has one for every package of the extra ``learn``."""
+"""The wheels in `uv.lock`.
+
+Each system and Python has one for every package of the extra ``learn``.
+"""
 
 from __future__ import annotations
 
@@ -16,9 +19,17 @@ pytestmark = pytest.mark.extra("learn")
 
 SOURCE_ONLY = {"srt"}
 """Packages of pure Python without a wheel, which packs build."""
-CONDITIONAL = {"async-timeout", "backports-asyncio-runner", "cffi", "colorama", "pycparser", "pywinpty", "tomli"}
+CONDITIONAL_PACKAGES = {
+    "async-timeout",
+    "backports-asyncio-runner",
+    "cffi",
+    "colorama",
+    "pycparser",
+    "pywinpty",
+    "tomli",
+}
 """Packages that some systems or versions of Python do not need."""
-MISSING = {
+MISSING_PARTS = {
     "windows": {"cyclonedds": ["3.14"], "pocketsphinx": ["3.14"]},
     "macos-arm64": {"cyclonedds": ["3.14"], "embreex": "all", "pocketsphinx": ["3.14"]},
     "macos-x86_64": {
@@ -38,26 +49,26 @@ MISSING = {
 def test_all_packages_of_course_have_wheels(target: Target) -> None:
     packages = locked_packages()
     files = list(needed_files(target, ["learn"], packages))
-    needed = {key.partition(" ")[0] for key in needed_packages(target, ["learn"], packages)}
-    assert {file.package for file in files} == needed
+    needed_names = {key.partition(" ")[0] for key in needed_packages(target, ["learn"], packages)}
+    assert {file.package for file in files} == needed_names
     assert {file.package for file in files if not file.is_wheel} <= SOURCE_ONLY
-    assert {"aiohttp", "numpy", "packaging", "pip", "vosk"} <= needed
+    assert {"aiohttp", "numpy", "packaging", "pip", "vosk"} <= needed_names
 
 
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: target.name)
 def test_missing_parts_match_table_of_system(target: Target) -> None:
     missing = {part.packages[0] for part in missing_parts(target, ["learn"], locked_packages())}
-    known = MISSING[target.system]
-    assert missing == {name for name, pythons in known.items() if pythons == "all" or target.python in pythons}
+    expected_parts = MISSING_PARTS[target.system]
+    assert missing == {name for name, pythons in expected_parts.items() if pythons == "all" or target.python in pythons}
 
 
 def test_packages_of_some_systems_belong_to_listed_parts() -> None:
     direct = {
         edge["key"].partition(" ")[0] for extra in locked_packages()["linkwright"]["extras"].values() for edge in extra
     }
-    here = [package_names(target, ["learn"], locked_packages()) for target in TARGETS]
-    sometimes = (set.union(*here) - set.intersection(*here)) & direct
-    assert sometimes - CONDITIONAL == {name for part in PARTS for name in part.packages}
+    names_by_target = [package_names(target, ["learn"], locked_packages()) for target in TARGETS]
+    sometimes = (set.union(*names_by_target) - set.intersection(*names_by_target)) & direct
+    assert sometimes - CONDITIONAL_PACKAGES == {name for part in PARTS for name in part.packages}
 
 
 def test_windows_targets_need_pywinpty() -> None:

@@ -14,10 +14,10 @@ import pytest
 from linkwright.cli import main
 from tests.full_disk import full_disk, needs_limits
 from tests.learning.packing.conftest import FakeIndex, create_index
-from tests.learning.packing.fake_index import package, write_source, write_wheel
+from tests.learning.packing.fake_index import package_entry, write_source, write_wheel
 
-ALL_OF = ("--systems", "windows,linux-x86_64", "--python", "3.12,3.13")
-LINUX = ("--systems", "linux-x86_64", "--python", "3.13")
+ALL_TARGETS = ("--systems", "windows,linux-x86_64", "--python", "3.12,3.13")
+LINUX_TARGET = ("--systems", "linux-x86_64", "--python", "3.13")
 pytestmark = pytest.mark.extra("learn")
 
 
@@ -26,7 +26,7 @@ def complete_pack(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A pack for all targets, made once, because pip is started for each of them."""
     parent = tmp_path_factory.mktemp("complete")
     with pytest.MonkeyPatch.context() as patch:
-        assert create_index(parent, patch).pack(parent / "pack", *ALL_OF) == 0
+        assert create_index(parent, patch).pack(parent / "pack", *ALL_TARGETS) == 0
     return parent / "pack"
 
 
@@ -36,12 +36,12 @@ def pack(complete_pack: Path, index: FakeIndex, tmp_path: Path) -> Path:
     return shutil.copytree(complete_pack, tmp_path / "pack", symlinks=True)
 
 
-def wheels(folder: Path) -> set[str]:
+def wheel_names(folder: Path) -> set[str]:
     return {path.name for path in (folder / "wheels").iterdir()}
 
 
 def test_pack_contains_each_wheel_once(pack: Path) -> None:
-    assert wheels(pack) == {
+    assert wheel_names(pack) == {
         "linkwright-1.0-py3-none-any.whl",
         "linkwright_core-1.0-py3-none-any.whl",
         "native-1.0-cp310-abi3-manylinux_2_17_x86_64.manylinux2014_x86_64.whl",
@@ -91,22 +91,22 @@ def test_interrupted_pack_is_continued(pack: Path, index: FakeIndex, capsys: pyt
     (pack / "wheels" / "pure-1.0-py3-none-any.whl").write_bytes(b"half of it")
     assert main(["learn", "pack", "--check", str(pack)]) == 1
     assert "is not complete" in capsys.readouterr().err
-    assert index.pack(pack, *ALL_OF) == 0
+    assert index.pack(pack, *ALL_TARGETS) == 0
     errors = capsys.readouterr().err
     assert "Windows, Python 3.12: 1 of 5 wheels to download, 0 MB" in errors
     assert "Linux x86-64, Python 3.13: 0 of 4 wheels to download, 0 MB" in errors
 
 
 def test_smaller_pack_removes_unneeded_wheels(pack: Path, index: FakeIndex) -> None:
-    assert index.pack(pack, *LINUX) == 0
-    assert not any("win" in name for name in wheels(pack))
+    assert index.pack(pack, *LINUX_TARGET) == 0
+    assert not any("win" in name for name in wheel_names(pack))
     assert [path.name for path in (pack / "requirements").iterdir()] == ["linux-x86_64-py3.13.txt"]
 
 
 def test_wheel_for_oldest_system_is_chosen(index: FakeIndex, tmp_path: Path) -> None:
     assert index.pack(tmp_path / "pack", "--systems", "macos-arm64", "--python", "3.13") == 0
-    assert "native-1.0-cp313-cp313-macosx_11_0_arm64.whl" in wheels(tmp_path / "pack")
-    assert "native-1.0-cp313-cp313-macosx_14_0_arm64.whl" not in wheels(tmp_path / "pack")
+    assert "native-1.0-cp313-cp313-macosx_11_0_arm64.whl" in wheel_names(tmp_path / "pack")
+    assert "native-1.0-cp313-cp313-macosx_14_0_arm64.whl" not in wheel_names(tmp_path / "pack")
 
 
 def test_wheel_for_newer_system_is_rejected(
@@ -169,7 +169,7 @@ def test_folder_with_other_files_is_refused(
 ) -> None:
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "file").write_text("mine")
-    assert index.pack(tmp_path / "mine", *LINUX) == 1
+    assert index.pack(tmp_path / "mine", *LINUX_TARGET) == 1
     assert "error[LEARN307]" in capsys.readouterr().err
     assert [path.name for path in (tmp_path / "mine").iterdir()] == ["file"]
     assert main(["learn", "pack", "--check", str(tmp_path / "mine")]) == 1
@@ -180,7 +180,7 @@ def test_wheel_missing_from_index_is_one_error(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (index.folder / "pure-1.0-py3-none-any.whl").unlink()
-    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    assert index.pack(tmp_path / "pack", *LINUX_TARGET) == 1
     errors = capsys.readouterr().err
     assert "error[LEARN303]: pip cannot download or build " in errors
     assert "Could not find a version that satisfies the requirement pure==1.0" in errors
@@ -191,7 +191,7 @@ def test_wheel_with_wrong_hash_is_rejected(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_wheel(index.folder, "pure", requires=["evil"])
-    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    assert index.pack(tmp_path / "pack", *LINUX_TARGET) == 1
     assert "error[LEARN303]: pip cannot download or build " in capsys.readouterr().err
 
 
@@ -199,8 +199,8 @@ def test_source_that_needs_compiler_is_rejected(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     source = write_source(index.folder, "source", tag="cp313-cp313-linux_x86_64")
-    index.table["source 1.0"].update(package(source))
-    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    index.table["source 1.0"].update(package_entry(source))
+    assert index.pack(tmp_path / "pack", *LINUX_TARGET) == 1
     assert "the wheel that was built from 'source-1.0.tar.gz' works only on this system" in capsys.readouterr().err
 
 
@@ -208,7 +208,7 @@ def test_pack_requires_both_linkwright_wheels(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     index.own.pop()
-    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    assert index.pack(tmp_path / "pack", *LINUX_TARGET) == 1
     assert "error[LEARN302]: a pack needs a wheel of linkwright and one of linkwright-core" in capsys.readouterr().err
 
 
@@ -216,14 +216,14 @@ def test_wheel_that_depends_on_local_files_is_rejected(
     index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     write_wheel(index.own[1].parent, "linkwright", requires=["linkwright-core @ file:///home/me/core"])
-    assert index.pack(tmp_path / "pack", *LINUX) == 1
+    assert index.pack(tmp_path / "pack", *LINUX_TARGET) == 1
     assert "depends on files of the computer that built it" in capsys.readouterr().err
 
 
 @needs_limits
 def test_full_disk_is_one_error(index: FakeIndex, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with full_disk(50):
-        status = index.pack(tmp_path / "pack", *LINUX)
+        status = index.pack(tmp_path / "pack", *LINUX_TARGET)
     errors = capsys.readouterr().err
     assert status == 1
     assert "error[LEARN304]: cannot write '" in errors
@@ -234,7 +234,7 @@ def test_documentation_is_copied_into_pack(index: FakeIndex, tmp_path: Path) -> 
     (tmp_path / "site" / "zh").mkdir(parents=True)
     for name in ("index.html", "zh/index.html"):
         (tmp_path / "site" / name).write_text("page")
-    assert index.pack(tmp_path / "pack", *LINUX, "--docs", str(tmp_path / "site")) == 0
+    assert index.pack(tmp_path / "pack", *LINUX_TARGET, "--docs", str(tmp_path / "site")) == 0
     assert (tmp_path / "pack" / "docs" / "zh" / "index.html").read_text() == "page"
 
 
@@ -247,16 +247,16 @@ def installable(index: FakeIndex, tmp_path: Path) -> Path:
     path = Path(shutil.copy(bundled[0], index.folder))
     version = path.name.split("-")[1]
     del index.table["pip 9.0"]  # type: ignore[attr-defined]
-    index.table[f"pip {version}"] = package(path)  # type: ignore[index]
-    assert index.pack(tmp_path / "pack", "--systems", "linux-x86_64", "--python", _this_python()) == 0
+    index.table[f"pip {version}"] = package_entry(path)  # type: ignore[index]
+    assert index.pack(tmp_path / "pack", "--systems", "linux-x86_64", "--python", _own_python_version()) == 0
     return tmp_path / "pack"
 
 
-def _this_python() -> str:
+def _own_python_version() -> str:
     return f"{sys.version_info[0]}.{sys.version_info[1]}"
 
 
-def install(pack: Path, home: Path, *words: str, **variables: str) -> subprocess.CompletedProcess[str]:
+def install_pack(pack: Path, home: Path, *words: str, **variables: str) -> subprocess.CompletedProcess[str]:
     home.mkdir(exist_ok=True)
     environment = {"HOME": str(home), "PATH": "/usr/bin:/bin", "PYTHON": sys.executable, **variables}
     command = ["sh", str(pack / "install.sh"), *words]
@@ -265,17 +265,17 @@ def install(pack: Path, home: Path, *words: str, **variables: str) -> subprocess
 
 def test_installer_installs_and_runs_linkwright(installable: Path, tmp_path: Path) -> None:
     home = tmp_path / "home of a learner"
-    result = install(installable, home)
+    result = install_pack(installable, home)
     assert (result.returncode, result.stderr) == (0, "")
     assert f". '{home}/linkwright/bin/activate'" in result.stdout
     assert "Linkwright 已安装" in result.stdout
-    again = install(installable, home)
-    assert (again.returncode, again.stderr) == (0, "")
+    second_run = install_pack(installable, home)
+    assert (second_run.returncode, second_run.stderr) == (0, "")
 
 
 def test_installer_rejects_damaged_wheel(installable: Path, tmp_path: Path) -> None:
     write_wheel(installable / "wheels", "pure", requires=["other"])
-    result = install(installable, tmp_path / "home")
+    result = install_pack(installable, tmp_path / "home")
     assert result.returncode == 1
     assert "THESE PACKAGES DO NOT MATCH THE HASHES" in result.stderr
     assert "这一步失败了" in result.stderr
@@ -284,7 +284,7 @@ def test_installer_rejects_damaged_wheel(installable: Path, tmp_path: Path) -> N
 def test_installer_refuses_folder_that_is_not_an_environment(installable: Path, tmp_path: Path) -> None:
     (tmp_path / "home" / "linkwright").mkdir(parents=True)
     (tmp_path / "home" / "linkwright" / "homework.urdf").write_text("mine")
-    result = install(installable, tmp_path / "home")
+    result = install_pack(installable, tmp_path / "home")
     assert result.returncode == 1
     assert "exists and is not an environment of Python" in result.stderr
     assert "不是 Python 环境" in result.stderr
@@ -292,7 +292,7 @@ def test_installer_refuses_folder_that_is_not_an_environment(installable: Path, 
 
 def test_installer_names_targets_of_pack(pack: Path, tmp_path: Path) -> None:
     shutil.rmtree(pack / "requirements")
-    result = install(pack, tmp_path / "home")
+    result = install_pack(pack, tmp_path / "home")
     assert result.returncode == 1
     assert "It has: windows, linux-x86_64; Python 3.12, 3.13." in result.stderr
 
@@ -305,7 +305,7 @@ def test_installer_gives_advice_without_python(pack: Path, tmp_path: Path) -> No
     tools.mkdir()
     for name in ("dirname", "uname", "cat", "sh"):
         (tools / name).symlink_to(shutil.which(name) or "")
-    result = install(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
+    result = install_pack(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
     assert result.returncode == 1
     assert "There is no Python that fits" in result.stderr
     assert "没有合适的 Python" in result.stderr
@@ -328,7 +328,7 @@ def test_installer_unpacks_python_archive_if_python_is_missing(pack: Path, tmp_p
         (tools / name).symlink_to(shutil.which(name) or "")
     script = (pack / "install.sh").read_text().replace("/usr/local/bin/", "/nowhere/")
     (pack / "install.sh").write_text(script)
-    result = install(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
+    result = install_pack(pack, tmp_path / "home", PATH=str(tools), PYTHON="")
     assert result.stdout == f"started {pack}/install.py\n"
 
 

@@ -1,4 +1,6 @@
-"""Runs of the sandbox as on other systems: in a container, as an ordinary user, or without some features of the kernel.
+"""Runs of the sandbox as on other systems.
+
+These are a container, an ordinary user, and a kernel without some features.
 
 ``python situations.py NAME`` reads a request from standard input, disables the features that the named system lacks,
 and prints the outcome. It uses only the standard library, because an ordinary user may have no access to this Python.
@@ -34,7 +36,7 @@ _NUMBERS = {
     "x86_64": {"audit": 0xC000003E, "unshare": 272, "mount": 165},
     "aarch64": {"audit": 0xC00000B7, "unshare": 97, "mount": 40},
 }
-_LANDLOCK = 444
+_LANDLOCK_SYSCALL = 444
 _CLONE_NEWUSER = 0x10000000
 
 # name of the system: whether the grader is root, the allowed namespaces, whether there is Landlock
@@ -86,9 +88,12 @@ def interpreter(name: str) -> str | None:
     return None
 
 
-def run_in_situation(name: str, arguments: list[str], folder: Path, limits: Limits, **more: Any) -> Outcome:
-    """Run a program in the sandbox of a situation. The word PYTHON among the arguments becomes its Python."""
-    request = {"arguments": arguments, "folder": str(folder), "limits": asdict(limits), **more}
+def run_in_situation(name: str, arguments: list[str], folder: Path, limits: Limits, **options: Any) -> Outcome:
+    """Run a program in the sandbox of a situation.
+
+    The word PYTHON among the arguments becomes its Python.
+    """
+    request = {"arguments": arguments, "folder": str(folder), "limits": asdict(limits), **options}
     if os.geteuid() == 0 and not SITUATIONS[name][0]:
         for path in (folder, *folder.rglob("*")):
             os.chown(path, _user(), _user(), follow_symlinks=False)
@@ -144,7 +149,7 @@ def _deny(denied: dict[str, int], *, allow_user_namespace: bool, deny_landlock: 
     numbers = _NUMBERS[os.uname().machine]
     rules = [(numbers[name], error) for name, error in denied.items()]
     if deny_landlock:
-        rules.append((_LANDLOCK, errno.ENOSYS))
+        rules.append((_LANDLOCK_SYSCALL, errno.ENOSYS))
     program: list[tuple[int, int, int, int]] = [(0x20, 0, 0, 0)]
     for number, error in rules:
         if number == numbers["unshare"] and allow_user_namespace:

@@ -30,7 +30,7 @@ LIMITS = Limits(
     processes=40,
     output_bytes=100_000,
 )
-MOST_OVERSHOOT = 400 * MEBIBYTE
+MAX_OVERSHOOT_BYTES = 400 * MEBIBYTE
 """The space that a run may use beyond its limit before the watchdog of a slow machine notices it."""
 
 
@@ -42,7 +42,9 @@ def situation(request: pytest.FixtureRequest) -> str:
     return name
 
 
-def attack(situation: str, folder: Path, program: str, *words: str, limits: Limits = LIMITS, mark: str = "") -> Outcome:
+def run_attack(
+    situation: str, folder: Path, program: str, *words: str, limits: Limits = LIMITS, mark: str = ""
+) -> Outcome:
     """Run a program in the sandbox, and expect the situation's protections and no process left."""
     mark = mark or uuid.uuid4().hex
     arguments = ["PYTHON", "-I", "-S", "-c", program, *words, mark]
@@ -53,82 +55,82 @@ def attack(situation: str, folder: Path, program: str, *words: str, limits: Limi
     return outcome
 
 
-def occupied(folder: Path) -> int:
+def occupied_bytes(folder: Path) -> int:
     return sum(path.lstat().st_blocks * 512 for path in folder.rglob("*"))
 
 
 def test_fork_bomb_is_killed_with_all_processes(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.FORK_BOMB)
+    outcome = run_attack(situation, student, attacks.FORK_BOMB)
     assert outcome.exceeded in {Exceeded.PROCESSES, Exceeded.CPU_SECONDS}
     assert outcome.seconds < LIMITS.seconds
 
 
 def test_daemons_end_with_their_run(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.DAEMONS)
+    outcome = run_attack(situation, student, attacks.DAEMONS)
     assert (outcome.status, outcome.exceeded) == (0, None)
 
 
 def test_endless_loop_ends_at_processor_time_limit(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.ENDLESS_LOOP, limits=replace(LIMITS, cpu_seconds=0.5))
+    outcome = run_attack(situation, student, attacks.ENDLESS_LOOP, limits=replace(LIMITS, cpu_seconds=0.5))
     assert outcome.exceeded is Exceeded.CPU_SECONDS
     assert outcome.stdout == b"begun\n"
     assert outcome.seconds < LIMITS.seconds
 
 
 def test_processor_time_limit_counts_all_processes(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.MANY_LOOPS, limits=replace(LIMITS, cpu_seconds=1.0))
+    outcome = run_attack(situation, student, attacks.MANY_LOOPS, limits=replace(LIMITS, cpu_seconds=1.0))
     assert outcome.exceeded is Exceeded.CPU_SECONDS
     assert 1.0 <= outcome.cpu_seconds < 3.0
 
 
 def test_waiting_program_ends_at_wall_time_limit(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.SLEEP, limits=replace(LIMITS, seconds=0.5))
+    outcome = run_attack(situation, student, attacks.SLEEP, limits=replace(LIMITS, seconds=0.5))
     assert (outcome.status, outcome.exceeded) == (-9, Exceeded.SECONDS)
 
 
 def test_file_size_is_limited(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.LARGE_FILE)
+    outcome = run_attack(situation, student, attacks.LARGE_FILE)
     assert outcome.exceeded is Exceeded.FILE_BYTES
     assert (student / "large").stat().st_size <= LIMITS.file_bytes
     assert b"sparse: File too large" in outcome.stdout
 
 
 def test_many_small_files_end_run(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.MANY_SMALL_FILES)
+    outcome = run_attack(situation, student, attacks.MANY_SMALL_FILES)
     assert outcome.exceeded in {Exceeded.FILES, Exceeded.DISK_BYTES}
     assert len(list(student.rglob("*"))) < 50_000
 
 
 def test_deeply_nested_folders_end_run(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.DEEP_FOLDERS)
+    outcome = run_attack(situation, student, attacks.DEEP_FOLDERS)
     assert outcome.exceeded is Exceeded.FILES
 
 
 def test_deleted_files_count_toward_disk_limit(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.DELETED_FILE)
+    outcome = run_attack(situation, student, attacks.DELETED_FILE)
     assert outcome.exceeded is Exceeded.DISK_BYTES
 
 
 def test_memory_limit_counts_all_processes(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.MEMORY)
+    outcome = run_attack(situation, student, attacks.MEMORY)
     assert outcome.exceeded is Exceeded.MEMORY
 
 
 @pytest.mark.parametrize("program", [attacks.SHARED_MEMORY, attacks.NAMELESS_FILES_IN_MEMORY])
 def test_shared_and_file_memory_is_limited(situation: str, student: Path, program: str) -> None:
-    outcome = attack(situation, student, program)
+    outcome = run_attack(situation, student, program)
     assert outcome.exceeded is Exceeded.MEMORY
 
 
 def test_endless_output_ends_run_and_keeps_beginning(situation: str, student: Path) -> None:
-    outcome = attack(situation, student, attacks.OUTPUT)
+    outcome = run_attack(situation, student, attacks.OUTPUT)
     assert outcome.exceeded is Exceeded.OUTPUT_BYTES
     assert len(outcome.stdout) + len(outcome.stderr) == LIMITS.output_bytes
 
 
 def test_system_temporary_folders_are_not_filled(situation: str, student: Path) -> None:
     mark = uuid.uuid4().hex
-    outcome = attack(situation, student, attacks.FILL_TEMPORARY, mark=mark)
+    outcome = run_attack(situation, student, attacks.FILL_TEMPORARY, mark=mark)
     written = {folder: int(size) for folder, size in (line.split() for line in outcome.stdout.decode().splitlines())}
     left = [path for folder in attacks.TEMPORARY_FOLDERS for path in Path(folder).glob(f"fill-{mark}-*")]
     for path in left:
@@ -143,7 +145,7 @@ def test_system_temporary_folders_are_not_filled(situation: str, student: Path) 
 def test_dangerous_files_are_removed_after_run(situation: str, student: Path) -> None:
     (student / "data").write_text("mine")
     (student.parent / "neighbor").mkdir()
-    outcome = attack(situation, student, attacks.TRAPS)
+    outcome = run_attack(situation, student, attacks.TRAPS)
     assert outcome.status == 0, outcome.stderr
     assert outcome.removed == ("neighbor", "outside", "package/further", "pipe", "root")
     assert (student / "inside").is_symlink()
@@ -164,36 +166,36 @@ def test_run_cannot_leave_sandbox(situation: str, student: Path) -> None:
         local_server.listen()
         Path(place).chmod(0o777)
         words = [str(neighbor), str(os.getpid()), str(server.getsockname()[1]), place]
-        outcome = attack(situation, student, attacks.TRESPASS, *words)
+        outcome = run_attack(situation, student, attacks.TRESPASS, *words)
     if not outcome.protections:
         assert outcome.status == -9
         return
     breaches = {name for name, was_done in json.loads(outcome.stdout).items() if was_done}
-    assert breaches <= _possible(outcome.protections)
+    assert breaches <= _find_possible_attacks(outcome.protections)
     if Protection.WRITE in outcome.protections:
         assert (neighbor / "secret").read_text() == "secret"
         assert sorted(path.name for path in student.parent.iterdir()) == ["neighbor", "server", "student"]
 
 
-def _possible(protections: frozenset[Protection]) -> set[str]:
+def _find_possible_attacks(protections: frozenset[Protection]) -> set[str]:
     """Return the actions that the protections do not forbid."""
-    possible = {"write above its folder"}  # the parent folder may belong to the sandbox
+    possible_attacks = {"write above its folder"}  # the parent folder may belong to the sandbox
     if Protection.READ not in protections:
-        possible |= {"read a neighbor's file", "list a neighbor's folder", "read by /proc/self/root"}
-        possible |= {"read by the grader's root"}
+        possible_attacks |= {"read a neighbor's file", "list a neighbor's folder", "read by /proc/self/root"}
+        possible_attacks |= {"read by the grader's root"}
     if Protection.WRITE not in protections:
-        possible |= {"write into a neighbor's folder", "change a neighbor's file", "truncate a neighbor's file"}
-        possible |= {"write into /var/tmp", "link a neighbor's file"}
+        possible_attacks |= {"write into a neighbor's folder", "change a neighbor's file", "truncate a neighbor's file"}
+        possible_attacks |= {"write into /var/tmp", "link a neighbor's file"}
     if Protection.PROCESSES not in protections:
-        possible |= {"read the grader's environment", "open the grader's memory", "trace the grader"}
-        possible |= {"trace its parent", "signal the grader"}
+        possible_attacks |= {"read the grader's environment", "open the grader's memory", "trace the grader"}
+        possible_attacks |= {"trace its parent", "signal the grader"}
     if Protection.NETWORK not in protections:
-        possible |= {"reach a server on this host", "reach another host", "reach a server by a file"}
-    return possible
+        possible_attacks |= {"reach a server on this host", "reach another host", "reach a server by a file"}
+    return possible_attacks
 
 
 def test_kill_of_all_processes_affects_only_run(situation: str, student: Path) -> None:
     if Protection.PROCESSES not in expected_protections(situation):
         pytest.skip("the attack would kill this test")
-    outcome = attack(situation, student, attacks.KILL_ALL)
+    outcome = run_attack(situation, student, attacks.KILL_ALL)
     assert outcome.exceeded is None

@@ -34,8 +34,8 @@ on_linux = pytest.mark.skipif(sys.platform != "linux", reason="needs Linux")
 LIMITS = Limits(seconds=60, cpu_seconds=20)
 
 
-def run_python(folder: Path, program: str, *words: str, limits: Limits = LIMITS, **more: object) -> Outcome:
-    return run_in_sandbox([sys.executable, "-c", program, *words], folder=folder, limits=limits, **more)  # type: ignore[arg-type]
+def run_python(folder: Path, program: str, *words: str, limits: Limits = LIMITS, **options: object) -> Outcome:
+    return run_in_sandbox([sys.executable, "-c", program, *words], folder=folder, limits=limits, **options)  # type: ignore[arg-type]
 
 
 def test_run_returns_status_and_output_of_program(student: Path) -> None:

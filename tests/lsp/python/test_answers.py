@@ -18,7 +18,7 @@ def complete(*answers: tuple[str, Any], character: int = 8) -> Any:
     return combine_responses("textDocument/completion", answers, TEXT, parameters)
 
 
-def edit(start: int, end: int, text: str) -> dict[str, Any]:
+def text_edit(start: int, end: int, text: str) -> dict[str, Any]:
     place = {"start": {"line": 0, "character": start}, "end": {"line": 0, "character": end}}
     return {"label": text, "textEdit": {"range": place, "newText": text}}
 
@@ -34,22 +34,22 @@ def test_first_non_empty_answer_applies(empty: Any) -> None:
 
 
 def test_completions_of_all_servers_are_combined_without_duplicates() -> None:
-    own = [edit(5, 8, "package="), edit(5, 8, "parameters=")]
+    own_result = [text_edit(5, 8, "package="), text_edit(5, 8, "parameters=")]
     typed = {"isIncomplete": True, "items": [{"label": "package="}, {"label": "pacing"}]}
-    completions = complete((OWN, own), (TY, typed))
+    completions = complete((OWN, own_result), (TY, typed))
     assert [item["label"] for item in completions["items"]] == ["package=", "parameters=", "pacing"]
     assert completions["isIncomplete"]
 
 
 def test_string_completed_by_linkwright_has_no_other_completions() -> None:
-    own = {"isIncomplete": False, "items": [edit(11, 14, "turtle_bot")]}
-    assert complete((OWN, own), (TY, [{"label": "turn"}]), character=13) == own
+    own_result = {"isIncomplete": False, "items": [text_edit(11, 14, "turtle_bot")]}
+    assert complete((OWN, own_result), (TY, [{"label": "turn"}]), character=13) == own_result
 
 
 def test_list_defaults_apply_only_to_items_of_that_list() -> None:
     place = {"start": {"line": 0, "character": 5}, "end": {"line": 0, "character": 8}}
-    own = {"itemDefaults": {"editRange": place, "insertTextFormat": 2}, "items": [{"label": "package="}]}
-    completions = complete((OWN, own), (TY, [{"label": "pacing"}]))
+    own_result = {"itemDefaults": {"editRange": place, "insertTextFormat": 2}, "items": [{"label": "package="}]}
+    completions = complete((OWN, own_result), (TY, [{"label": "pacing"}]))
     assert completions["items"] == [
         {"label": "package=", "insertTextFormat": 2, "textEdit": {"range": place, "newText": "package="}},
         {"label": "pacing"},
@@ -57,13 +57,13 @@ def test_list_defaults_apply_only_to_items_of_that_list() -> None:
 
 
 def test_code_action_is_resolved_by_its_server_with_its_data() -> None:
-    own, fix = {"title": "own", "data": 1}, {"title": "fix", "data": {"id": 2}}
+    own_result, fix = {"title": "own", "data": 1}, {"title": "fix", "data": {"id": 2}}
     command = {"title": "run", "command": "ruff.applyAutofix"}
     actions = combine_responses(
-        "textDocument/codeAction", [(OWN, [own]), (TY, [{"title": "a"}]), (RUFF, [fix, command])], TEXT, {}
+        "textDocument/codeAction", [(OWN, [own_result]), (TY, [{"title": "a"}]), (RUFF, [fix, command])], TEXT, {}
     )
     assert [action["title"] for action in actions] == ["own", "a", "fix"]
-    assert actions[0] == own
+    assert actions[0] == own_result
     assert [server_of_action(action) for action in actions] == [None, (TY, {"title": "a"}), (RUFF, fix)]
 
 

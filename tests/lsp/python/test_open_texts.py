@@ -14,11 +14,11 @@ TEXTS = st.text(alphabet="ab 中😀\n", max_size=30)
 WORD = "x = 中😀\nvalue = 1\n"
 
 
-def finding(text: str, start: int, end: int) -> dict[str, Any]:
+def make_finding(text: str, start: int, end: int) -> dict[str, Any]:
     return {"range": as_range(TextPositions(text), start, end), "message": "m"}
 
 
-def place(line: int, start: int, end: int) -> dict[str, Any]:
+def make_range(line: int, start: int, end: int) -> dict[str, Any]:
     return {"start": {"line": line, "character": start}, "end": {"line": line, "character": end}}
 
 
@@ -28,25 +28,25 @@ def test_ranged_and_full_changes_give_editor_text(before: str, inserted: str, bo
     after = before[:start] + inserted + before[end:]
     ranges = OpenText("file:///a.py", before, 1, "utf-16")
     ranges.change(2, [{"range": as_range(TextPositions(before), start, end), "text": inserted}])
-    whole = OpenText("file:///a.py", before, 1, "utf-16")
-    whole.change(2, [{"text": after}])
-    assert (ranges.text, ranges.version) == (whole.text, whole.version) == (after, 2)
+    full_text = OpenText("file:///a.py", before, 1, "utf-16")
+    full_text.change(2, [{"text": after}])
+    assert (ranges.text, ranges.version) == (full_text.text, full_text.version) == (after, 2)
 
 
 def test_several_changes_apply_in_sequence() -> None:
     text = OpenText("file:///a.py", WORD, 1, "utf-16")
-    text.change(2, [{"range": place(1, 0, 5), "text": "名"}, {"range": place(0, 4, 7), "text": "😀"}])
+    text.change(2, [{"range": make_range(1, 0, 5), "text": "名"}, {"range": make_range(0, 4, 7), "text": "😀"}])
     assert text.text == "x = 😀\n名 = 1\n"
 
 
 def test_findings_move_with_text_until_next_check() -> None:
     text = OpenText("file:///a.py", WORD, 1, "utf-16")
-    text.set_findings("ty", [finding(WORD, 7, 12)])
-    text.set_findings("ruff", [finding(WORD, 0, 1)])
+    text.set_findings("ty", [make_finding(WORD, 7, 12)])
+    text.set_findings("ruff", [make_finding(WORD, 0, 1)])
     text.change(2, [{"text": "# 😀\n" + WORD}])
-    assert [finding["range"] for finding in text.findings()] == [place(2, 0, 5), place(1, 0, 1)]
-    text.change(3, [{"range": place(2, 0, 0), "text": "the_"}, {"range": place(1, 0, 0), "text": "😀\n"}])
-    assert [finding["range"] for finding in text.findings()] == [place(3, 4, 9), place(2, 0, 1)]
+    assert [finding["range"] for finding in text.findings()] == [make_range(2, 0, 5), make_range(1, 0, 1)]
+    text.change(3, [{"range": make_range(2, 0, 0), "text": "the_"}, {"range": make_range(1, 0, 0), "text": "😀\n"}])
+    assert [finding["range"] for finding in text.findings()] == [make_range(3, 4, 9), make_range(2, 0, 1)]
     text.set_findings("ty", [])
     assert text.findings() == text.findings_of("ruff")
 
@@ -55,7 +55,7 @@ def test_findings_move_with_text_until_next_check() -> None:
 def test_moved_findings_stay_inside_text(before: str, after: str, bounds: tuple[int, int]) -> None:
     start, end = sorted(min(bound, len(before)) for bound in bounds)
     text = OpenText("file:///a.py", before, 1, "utf-16")
-    text.set_findings("ty", [finding(before, start, end)])
+    text.set_findings("ty", [make_finding(before, start, end)])
     text.change(2, [{"text": after}])
     [moved] = text.findings()
     assert text.text_in(moved["range"]) in after

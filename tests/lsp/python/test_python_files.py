@@ -15,7 +15,7 @@ import pytest_asyncio
 from lsprotocol import types
 
 from linkwright.lsp.python.programs import installed_programs
-from tests.lsp.conftest import Editor, connected
+from tests.lsp.conftest import Editor, connect_editor
 from tests.waiting import eventually
 
 pytestmark = pytest.mark.skipif(len(installed_programs()) < 2, reason="ty or ruff is not installed")
@@ -58,7 +58,7 @@ CAPABILITIES = types.ClientCapabilities(
 )
 
 
-def manifest(name: str) -> str:
+def manifest_text(name: str) -> str:
     return (
         f'<package format="3"><name>{name}</name><version>0.1.0</version><description>A package.</description>'
         '<maintainer email="a@example.org">A</maintainer><license>MIT</license></package>\n'
@@ -72,7 +72,7 @@ def workspace(tmp_path: Path) -> Path:
     (package / "launch").mkdir()
     (messages / "msg").mkdir(parents=True)
     for folder in (package, messages):
-        (folder / "package.xml").write_text(manifest(folder.name))
+        (folder / "package.xml").write_text(manifest_text(folder.name))
     (messages / "msg" / "Count.msg").write_text("int32 number\n")
     (package / "setup.py").write_text("from setuptools import setup\n\nsetup(name='my_package')\n")
     (package / "my_package" / "__init__.py").write_text("")
@@ -85,18 +85,18 @@ def workspace(tmp_path: Path) -> Path:
 
 @pytest_asyncio.fixture
 async def editor(workspace: Path) -> AsyncIterator[Editor]:
-    async with connected(workspace, CAPABILITIES, None, "--stdio", "--python") as editor:
+    async with connect_editor(workspace, CAPABILITIES, None, "--stdio", "--python") as editor:
         yield editor
 
 
 TALKER = "src/my_package/my_package/talker.py"
 
 
-def place(text: str, wanted: str, more: int = 0) -> types.Position:
+def find_position(text: str, searched_text: str, offset: int = 0) -> types.Position:
     """Return the position of the first occurrence of a text, in UTF-16 code units."""
-    before, found, _ = text.partition(wanted)
+    before, found, _ = text.partition(searched_text)
     assert found
-    line = before.rpartition("\n")[2] + wanted[:more]
+    line = before.rpartition("\n")[2] + searched_text[:offset]
     return types.Position(before.count("\n"), len(line.encode("utf-16-le")) // 2)
 
 
@@ -106,14 +106,14 @@ def text_at(text: str, place: types.Range) -> str:
     return units[2 * place.start.character : 2 * place.end.character].decode("utf-16-le")
 
 
-async def hover(editor: Editor, name: str, position: types.Position) -> str:
+async def request_hover(editor: Editor, name: str, position: types.Position) -> str:
     hover = await editor.client.text_document_hover_async(types.HoverParams(editor.document(name), position))
     assert hover is not None
     assert isinstance(hover.contents, types.MarkupContent)
     return hover.contents.value
 
 
-async def labels(editor: Editor, name: str, position: types.Position) -> list[str]:
+async def completion_labels(editor: Editor, name: str, position: types.Position) -> list[str]:
     completions = await editor.client.text_document_completion_async(
         types.CompletionParams(editor.document(name), position)
     )
@@ -125,9 +125,9 @@ async def test_ros_and_workspace_modules_are_found(editor: Editor) -> None:
     editor.open(TALKER, language="python")
     findings = await editor.until(TALKER, "F401", "F401")
     assert {text_at(NODE, finding.range) for finding in findings} == {"os", "LaunchNode"}
-    assert "A node in the graph" in await hover(editor, TALKER, place(NODE, "Node)"))
-    assert "Count" in await hover(editor, TALKER, place(NODE, "Count\n"))
-    assert "create_publisher" in await hover(editor, TALKER, place(NODE, "create_publisher", more=3))
+    assert "A node in the graph" in await request_hover(editor, TALKER, find_position(NODE, "Node)"))
+    assert "Count" in await request_hover(editor, TALKER, find_position(NODE, "Count\n"))
+    assert "create_publisher" in await request_hover(editor, TALKER, find_position(NODE, "create_publisher", offset=3))
 
 
 async def test_unsaved_text_reaches_servers(editor: Editor) -> None:
@@ -137,7 +137,7 @@ async def test_unsaved_text_reaches_servers(editor: Editor) -> None:
     editor.change(TALKER, text)
     findings = await editor.until(TALKER, "F401", "missing-attribute")
     assert "has no attribute `inf`" in {finding.code: finding.message for finding in findings}["missing-attribute"]
-    assert "info" in await labels(editor, TALKER, place(text, "logger().inf", more=12))
+    assert "info" in await completion_labels(editor, TALKER, find_position(text, "logger().inf", offset=12))
     editor.change(TALKER, text.replace("().inf", "().info('说😀')"))
     await editor.until(TALKER, "F401")
 
@@ -156,7 +156,7 @@ async def test_changed_workspace_message_is_reloaded(editor: Editor, workspace: 
 
 async def test_name_is_renamed_in_all_files_and_definition_is_found(editor: Editor, workspace: Path) -> None:
     editor.open(TALKER, language="python")
-    document, position = editor.document(TALKER), place(NODE, "half(", more=1)
+    document, position = editor.document(TALKER), find_position(NODE, "half(", offset=1)
     definitions = await editor.client.text_document_definition_async(types.DefinitionParams(document, position))
     assert isinstance(definitions, list)
     assert [location.uri for location in definitions if isinstance(location, types.Location)] == [
@@ -192,12 +192,12 @@ async def test_launch_file_combines_linkwright_and_ty_completions(editor: Editor
     name = "src/my_package/launch/talker.launch.py"
     text = LAUNCH.replace("def gen", "launch = LaunchDescription([])\nlaunch.add_a\n\n\ndef gen")
     editor.open(name, text, language="python")
-    assert "my_package" in await labels(editor, name, place(text, '"my_p', more=3))
-    assert "add_action" in await labels(editor, name, place(text, "launch.add_a", more=12))
-    assert "`executable`" in await hover(editor, name, place(text, '"talker', more=3))
+    assert "my_package" in await completion_labels(editor, name, find_position(text, '"my_p', offset=3))
+    assert "add_action" in await completion_labels(editor, name, find_position(text, "launch.add_a", offset=12))
+    assert "`executable`" in await request_hover(editor, name, find_position(text, '"talker', offset=3))
 
 
-async def children_of(editor: Editor) -> dict[str, psutil.Process]:
+async def find_children(editor: Editor) -> dict[str, psutil.Process]:
     """Wait until both servers run, and return their processes by name."""
     server = psutil.Process(editor.client._server.pid)  # type: ignore[union-attr]
     await eventually(lambda: {"ty", "ruff"} <= {child.name() for child in server.children()})
@@ -209,7 +209,7 @@ async def test_killed_server_restarts_with_unsaved_text(editor: Editor) -> None:
     await editor.until(TALKER, "F401", "F401")
     editor.change(TALKER, NODE + "        self.speed = half(self.limit)\n        self.speed.real.x\n")
     await editor.until(TALKER, "F401", "F401", "missing-attribute")
-    (await children_of(editor))["ty"].kill()
+    (await find_children(editor))["ty"].kill()
     text = NODE + "        self.speed = half(self.limit)\n        self.speed.real.y\n"
     editor.change(TALKER, text)
     findings = await editor.until(TALKER, "F401", "F401", "missing-attribute")
@@ -219,10 +219,10 @@ async def test_killed_server_restarts_with_unsaved_text(editor: Editor) -> None:
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no SIGKILL")
 async def test_servers_end_with_killed_linkwright(workspace: Path) -> None:
-    opened: Any = connected(workspace, CAPABILITIES, None, "--stdio", "--python")
+    opened: Any = connect_editor(workspace, CAPABILITIES, None, "--stdio", "--python")
     editor = await opened.__aenter__()
     editor.open(TALKER, language="python")
-    children = await children_of(editor)
+    children = await find_children(editor)
     os.kill(editor.client._server.pid, signal.SIGKILL)
     await eventually(lambda: not any(child.is_running() for child in children.values()))
     await asyncio.wait_for(editor.client.stop(), 10)

@@ -17,7 +17,7 @@ from linkwright.lsp.python.programs import Program
 from linkwright.lsp.python.router import Router
 from linkwright.lsp.python.servers import Message
 from linkwright.lsp.python.workspace_stubs import WorkspaceStubs
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 SERVER = """
 import json, sys
@@ -63,10 +63,10 @@ class Peer:
     def close(self) -> None:
         self.is_closed = True
 
-    def until(self, wanted: Callable[[Message], object]) -> Message:
+    def until(self, condition: Callable[[Message], object]) -> Message:
         """Wait for a message."""
-        wait_until(lambda: any(map(wanted, list(self.messages))), what=lambda: self.messages)
-        return next(message for message in self.messages if wanted(message))
+        wait_until(lambda: any(map(condition, list(self.messages))), what=lambda: self.messages)
+        return next(message for message in self.messages if condition(message))
 
     def answer(self, identifier: int) -> Message:
         """Wait for the answer to a request."""
@@ -96,12 +96,12 @@ class Connection:
         document = {"uri": uri, "languageId": language, "version": 3, "text": "a = 1\n"}
         self.request(None, "textDocument/didOpen", {"textDocument": document})
 
-    def hover(self, identifier: int, own: Any = None, **more: Any) -> None:
+    def hover(self, identifier: int, has_own_result: Any = None, **options: Any) -> None:
         """Request a hover, which Linkwright's own server answers."""
         place = {"textDocument": {"uri": URI}, "position": {"line": 0, "character": 0}}
-        self.request(identifier, "textDocument/hover", {**place, **more})
+        self.request(identifier, "textDocument/hover", {**place, **options})
         self.own.until(lambda message: message.get("id") == identifier)
-        self.router.from_own({"id": identifier, "result": own})
+        self.router.from_own({"id": identifier, "result": has_own_result})
 
     def findings(self, count: int) -> list[str]:
         """Wait until so many findings were published, and return their messages."""
@@ -118,7 +118,7 @@ def is_shown_message(message: Message) -> bool:
     return message.get("method") == "window/showMessage" and message["params"]["message"] == text
 
 
-def program(name: str, text: str = SERVER) -> Program:
+def server_program(name: str, text: str = SERVER) -> Program:
     names = f"NAME = {name!r}\nPOINT = {{'line': 0, 'character': 0}}\n"
     return Program(name, (sys.executable, "-c", names + text))
 
@@ -137,7 +137,7 @@ def connect(tmp_path: Path) -> Iterator[Callable[..., Connection]]:
 
 
 def test_servers_start_with_first_python_file(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"), program("ruff"))
+    connection = connect(server_program("ty"), server_program("ruff"))
     capabilities = connection.editor.answer(1)["result"]["capabilities"]
     assert capabilities["completionProvider"]["triggerCharacters"] == ["<", "."]
     connection.open("file:///ws/a.xacro", "xml")
@@ -151,29 +151,29 @@ def test_servers_start_with_first_python_file(connect: Callable[..., Connection]
 
 
 def test_early_request_waits_for_servers(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     connection.hover(5)
     assert connection.editor.answer(5)["result"] == {"contents": "ty"}
 
 
 def test_linkwright_answer_is_returned_immediately(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
-    connection.hover(5, own={"contents": "own"}, hang=True)
+    connection.hover(5, has_own_result={"contents": "own"}, hang=True)
     assert connection.editor.answer(5)["result"] == {"contents": "own"}
 
 
 def test_unresponsive_server_is_skipped(connect: Callable[..., Connection], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(router_module, "_RESPONSE_TIMEOUT_S", 0.1)
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     connection.hover(5, hang=True)
     assert connection.editor.answer(5)["result"] is None
 
 
 def test_crashed_server_is_restarted_until_reported_once(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"), program("ruff"))
+    connection = connect(server_program("ty"), server_program("ruff"))
     connection.open()
     assert connection.findings(2) == ["3", "3"]
     for identifier in (5, 6, 7):
@@ -187,7 +187,7 @@ def test_crashed_server_is_restarted_until_reported_once(connect: Callable[..., 
 
 
 def test_program_that_cannot_start_is_reported_and_others_work(connect: Callable[..., Connection]) -> None:
-    connection = connect(Program("ty", ("/no/such/program",)), program("ruff"))
+    connection = connect(Program("ty", ("/no/such/program",)), server_program("ruff"))
     connection.open()
     connection.hover(5)
     assert connection.editor.answer(5)["result"] == {"contents": "ruff"}
@@ -195,19 +195,19 @@ def test_program_that_cannot_start_is_reported_and_others_work(connect: Callable
 
 
 def test_server_requests_are_declined_and_messages_shown(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     shown = connection.editor.until(lambda message: message.get("method") == "window/showMessage")
     assert shown["params"]["message"] == "not supported"
 
 
 def test_closed_file_keeps_linkwright_findings(connect: Callable[..., Connection]) -> None:
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
     connection.findings(1)
     connection.request(None, "textDocument/didClose", {"textDocument": {"uri": URI}})
     assert connection.findings(0) == []
-    connection.hover(5, own={"contents": "own"})
+    connection.hover(5, has_own_result={"contents": "own"})
     assert connection.editor.answer(5)["result"] == {"contents": "own"}
 
 
@@ -228,9 +228,9 @@ def test_close_during_the_search_removes_the_stubs(
 
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     monkeypatch.setattr(WorkspaceStubs, "update", update_slowly)
-    connection = connect(program("ty"))
+    connection = connect(server_program("ty"))
     connection.open()
-    assert started.wait(SECONDS)
+    assert started.wait(TIMEOUT_S)
     assert list(tmp_path.glob("linkwright_stubs_*"))
     connection.router.close()
     assert not list(tmp_path.glob("linkwright_stubs_*"))

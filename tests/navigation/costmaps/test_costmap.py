@@ -65,9 +65,9 @@ def test_footprint_padding_moves_corners_outward():
 
 def test_inscribed_and_circumscribed_radius_of_footprint():
     assert radii(SQUARE) == pytest.approx((0.2, 0.2 * sqrt(2)))
-    inner, outer = radii(circle(0.3))
-    assert outer == pytest.approx(0.3)
-    assert 0.29 < inner < 0.3
+    inscribed, circumscribed = radii(circle(0.3))
+    assert circumscribed == pytest.approx(0.3)
+    assert 0.29 < inscribed < 0.3
 
 
 @given(x=st.floats(-0.5, 0.5), y=st.floats(-0.5, 0.5))

@@ -1,4 +1,7 @@
-"""Layers of costmaps: inflation's formula, clearing and marking, maps, height levels, and denoising."""
+"""Layers of costmaps.
+
+The tests cover inflation's formula, clearing and marking, maps, height levels, and denoising.
+"""
 
 from __future__ import annotations
 
@@ -21,8 +24,8 @@ from linkwright.navigation.costmaps.static_layer import Interpretation, StaticLa
 from linkwright.navigation.costmaps.voxel_layer import VoxelLayer, Voxels
 from linkwright.navigation.grids.grid import Grid
 
-RADIUS = 0.2
-SECOND = 1_000_000_000
+ROBOT_RADIUS_M = 0.2
+SECOND_NS = 1_000_000_000
 ROBOT_POSE = (2.05, 2.05, 0.0)
 
 
@@ -31,26 +34,26 @@ def empty_grid(size: float = 4.0, resolution: float = 0.1) -> Grid:
     return Grid(cells=np.zeros((cells, cells), np.uint8), resolution=resolution)
 
 
-def costmap(*layers, size: float = 4.0, **options) -> LayeredCostmap:
-    return LayeredCostmap(empty_grid(size), layers, circle(RADIUS), **options)
+def make_costmap(*layers, size: float = 4.0, **options) -> LayeredCostmap:
+    return LayeredCostmap(empty_grid(size), layers, circle(ROBOT_RADIUS_M), **options)
 
 
-def occupancy(rows: int = 40, columns: int = 40) -> Grid:
+def make_occupancy(rows: int = 40, columns: int = 40) -> Grid:
     return Grid(cells=np.zeros((rows, columns), np.int8), resolution=0.1)
 
 
 class OverheadSensor:
     """A sensor above the center of a costmap, with the layer that it updates."""
 
-    def __init__(self, kind=ObstacleLayer, *more, layers=(), **source) -> None:
-        given = {"clearing": True, "max_obstacle_height": 2.0, **source}
-        self.buffer = ObservationBuffer(Source(**given))
-        self.layer = kind([self.buffer], HeightRange(), *more, footprint_clearing=False)
-        self.costmap = costmap(self.layer, *layers)
+    def __init__(self, kind=ObstacleLayer, *parameters, layers=(), **source) -> None:
+        source_parameters = {"clearing": True, "max_obstacle_height": 2.0, **source}
+        self.buffer = ObservationBuffer(Source(**source_parameters))
+        self.layer = kind([self.buffer], HeightRange(), *parameters, footprint_clearing=False)
+        self.costmap = make_costmap(self.layer, *layers)
         self.time_ns = 0
 
     def observe(self, *points, origin=(2.05, 2.05, 0.3)) -> np.ndarray:
-        self.time_ns += SECOND
+        self.time_ns += SECOND_NS
         points = np.array([(*point, 0.3)[:3] if len(point) == 2 else point for point in points], float).reshape(-1, 3)
         self.buffer.add(np.array(origin, float), points, self.time_ns)
         return self.update()
@@ -65,8 +68,8 @@ class OverheadSensor:
 
 def inflated_cells(*obstacles, **parameters) -> tuple[np.ndarray, float]:
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer, InflationLayer(Inflation(**parameters)))
-    grid = occupancy()
+    robot = make_costmap(layer, InflationLayer(Inflation(**parameters)))
+    grid = make_occupancy()
     for row, column in obstacles:
         grid.cells[row, column] = 100
     layer.set_map(grid)
@@ -82,12 +85,12 @@ def inflated_cells(*obstacles, **parameters) -> tuple[np.ndarray, float]:
 )
 def test_inflation_costs_follow_formula_of_nav2(obstacles, radius, factor):
     cells, inscribed = inflated_cells(*obstacles, inflation_radius=radius, cost_scaling_factor=factor)
-    reach = np.ceil(radius / 0.1) * 0.1
+    inflation_distance = np.ceil(radius / 0.1) * 0.1
     for row, column in np.ndindex(cells.shape):
         distance = 0.1 * min(hypot(row - obstacle[0], column - obstacle[1]) for obstacle in obstacles)
         if distance == 0.0:
             expected = LETHAL
-        elif distance > reach + 1e-9:
+        elif distance > inflation_distance + 1e-9:
             expected = FREE
         elif distance <= inscribed:
             expected = INSCRIBED
@@ -98,8 +101,8 @@ def test_inflation_costs_follow_formula_of_nav2(obstacles, radius, factor):
 
 def test_partial_update_matches_full_update():
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer, InflationLayer(Inflation(inflation_radius=0.5)))
-    grid = occupancy()
+    robot = make_costmap(layer, InflationLayer(Inflation(inflation_radius=0.5)))
+    grid = make_occupancy()
     grid.cells[5:9, 20] = 100
     layer.set_map(grid)
     robot.update(ROBOT_POSE, 0)
@@ -114,8 +117,8 @@ def test_inflate_unknown_extends_inflation_into_unknown_cells():
     for inflate_unknown in (False, True):
         layer = StaticLayer(Interpretation(track_unknown_space=True))
         inflation = InflationLayer(Inflation(inflate_unknown=inflate_unknown, cost_scaling_factor=3.0))
-        robot = costmap(layer, inflation, track_unknown=True)
-        grid = occupancy()
+        robot = make_costmap(layer, inflation, track_unknown=True)
+        grid = make_occupancy()
         grid.cells[:] = -1
         grid.cells[20, 20] = 100
         layer.set_map(grid)
@@ -192,13 +195,13 @@ def test_silent_sensor_makes_costmap_outdated():
     sensor = OverheadSensor(expected_update_rate=1.0)
     assert not sensor.costmap.is_current(0)
     sensor.observe((2.55, 2.05))
-    assert sensor.costmap.is_current(sensor.time_ns + SECOND)
-    assert not sensor.costmap.is_current(sensor.time_ns + 2 * SECOND)
+    assert sensor.costmap.is_current(sensor.time_ns + SECOND_NS)
+    assert not sensor.costmap.is_current(sensor.time_ns + 2 * SECOND_NS)
 
 
 def test_footprint_of_robot_is_cleared():
     buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
-    robot = costmap(ObstacleLayer([buffer], HeightRange()))
+    robot = make_costmap(ObstacleLayer([buffer], HeightRange()))
     buffer.add(np.array([2.05, 2.05, 0.3]), np.array([[2.15, 2.05, 0.3], [2.45, 2.05, 0.3]]), 0)
     robot.update(ROBOT_POSE, 0)
     assert np.argwhere(robot.costmap.grid.cells).tolist() == [[20, 24]]
@@ -224,7 +227,7 @@ def test_descending_ray_clears_voxels_it_passes():
 
 def test_voxel_columns_with_few_observations_are_unknown():
     sensor = OverheadSensor(VoxelLayer, Voxels(unknown_threshold=8))
-    sensor.costmap = costmap(sensor.layer, track_unknown=True)
+    sensor.costmap = make_costmap(sensor.layer, track_unknown=True)
     assert sensor.observe((2.55, 2.05, 0.1), origin=(2.05, 2.05, 0.1))[20, 22] == UNKNOWN
     assert sensor.observe((2.55, 2.05, 0.3), origin=(2.05, 2.05, 0.3))[20, 22] == FREE
 
@@ -243,8 +246,8 @@ def test_map_values_become_costs():
 
 def test_rotated_map_is_placed_in_costmap_frame():
     layer = StaticLayer(Interpretation(), pose=lambda: (0.0, 4.0, -np.pi / 2))
-    robot = costmap(layer)
-    grid = occupancy()
+    robot = make_costmap(layer)
+    grid = make_occupancy()
     grid.cells[0, 39] = 100  # x 3.95, y 0.05 in the map
     layer.set_map(grid)
     robot.update(ROBOT_POSE, 0)
@@ -254,8 +257,8 @@ def test_rotated_map_is_placed_in_costmap_frame():
 @given(x=st.integers(-50, 50), y=st.integers(-50, 50))
 def test_map_with_offset_is_placed_in_costmap(x, y):
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer)
-    grid = occupancy(20, 30)
+    robot = make_costmap(layer)
+    grid = make_occupancy(20, 30)
     grid.cells[:] = np.where(np.random.default_rng(0).random((20, 30)) < 0.5, 100, 0)
     grid.x, grid.y = 0.1 * x, 0.1 * y
     layer.set_map(grid)
@@ -270,9 +273,9 @@ def test_map_with_offset_is_placed_in_costmap(x, y):
 
 def test_map_update_changes_part_of_static_layer():
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer)
+    robot = make_costmap(layer)
     assert not layer.update_map(0, 0, np.array([[100]], np.int8))
-    layer.set_map(occupancy())
+    layer.set_map(make_occupancy())
     robot.update(ROBOT_POSE, 0)
     assert layer.update_map(3, 4, np.array([[100]], np.int8))
     assert not layer.update_map(39, 39, np.array([[100, 100]], np.int8))
@@ -282,10 +285,10 @@ def test_map_update_changes_part_of_static_layer():
 
 def test_costmap_without_map_is_not_current():
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer)
+    robot = make_costmap(layer)
     robot.update(ROBOT_POSE, 0)
     assert not robot.is_current(0)
-    layer.set_map(occupancy())
+    layer.set_map(make_occupancy())
     robot.update(ROBOT_POSE, 0)
     assert robot.is_current(0)
     assert not robot.update(ROBOT_POSE, 0)
@@ -299,12 +302,12 @@ class RangeSensor:
 
     def __init__(self, **settings) -> None:
         self.layer = RangeLayer(RangeSettings(**settings))
-        self.costmap = costmap(self.layer)
+        self.costmap = make_costmap(self.layer)
 
     def measure(self, distance: float, *, free: bool = False, times: int = 5) -> np.ndarray:
         for _ in range(times):
-            self.layer.add(RangeReading(1.05, 2.05, 0.0, distance, 0.5, free, SECOND))
-        self.costmap.update(ROBOT_POSE, SECOND)
+            self.layer.add(RangeReading(1.05, 2.05, 0.0, distance, 0.5, free, SECOND_NS))
+        self.costmap.update(ROBOT_POSE, SECOND_NS)
         return self.costmap.costmap.grid.cells
 
 
@@ -334,17 +337,17 @@ def test_sonar_reading_without_echo_clears_cone():
 
 def test_silent_sonar_makes_costmap_outdated():
     sonar = RangeSensor(no_readings_timeout=1.0)
-    assert not sonar.costmap.is_current(SECOND)
+    assert not sonar.costmap.is_current(SECOND_NS)
     sonar.measure(1.0)
-    assert sonar.costmap.is_current(2 * SECOND)
-    assert not sonar.costmap.is_current(3 * SECOND)
+    assert sonar.costmap.is_current(2 * SECOND_NS)
+    assert not sonar.costmap.is_current(3 * SECOND_NS)
 
 
 def test_clearing_resets_sonar_likelihoods():
     sonar = RangeSensor()
     sonar.measure(1.0)
     sonar.costmap.clear_around(ROBOT_POSE, 9.0)
-    sonar.costmap.update(ROBOT_POSE, SECOND)
+    sonar.costmap.update(ROBOT_POSE, SECOND_NS)
     assert not sonar.costmap.costmap.grid.cells.any()
     assert (sonar.layer.layer_grid.cells == 127).all()
 
@@ -355,8 +358,8 @@ def test_clearing_resets_sonar_likelihoods():
 @pytest.mark.parametrize(("connectivity", "remaining"), [(8, 5), (4, 3)])
 def test_denoise_layer_removes_small_groups(connectivity, remaining):
     layer = StaticLayer(Interpretation())
-    robot = costmap(layer, DenoiseLayer(2, connectivity))
-    grid = occupancy()
+    robot = make_costmap(layer, DenoiseLayer(2, connectivity))
+    grid = make_occupancy()
     grid.cells[10, 10] = 100
     grid.cells[[20, 21], [20, 21]] = 100
     grid.cells[30, 3:6] = 100
@@ -371,7 +374,7 @@ def test_denoise_layer_removes_small_groups(connectivity, remaining):
 def test_rolling_window_keeps_observations():
     buffer = ObservationBuffer(Source(max_obstacle_height=2.0))
     layer = ObstacleLayer([buffer], HeightRange(), footprint_clearing=False)
-    robot = costmap(layer, is_rolling=True, size=2.0)
+    robot = make_costmap(layer, is_rolling=True, size=2.0)
     robot.update((0.0, 0.0, 0.0), 0)
     buffer.add(np.array([0.0, 0.0, 0.3]), np.array([[0.55, 0.25, 0.3]]), 0)
     robot.update((0.0, 0.0, 0.0), 0)
@@ -400,8 +403,8 @@ def test_clear_around_clears_inside_or_outside_of_window():
 def test_clearing_removes_observations_and_keeps_map():
     layer = StaticLayer(Interpretation())
     sensor = OverheadSensor(layers=[])
-    robot = LayeredCostmap(empty_grid(), [layer, sensor.layer], circle(RADIUS))
-    grid = occupancy()
+    robot = LayeredCostmap(empty_grid(), [layer, sensor.layer], circle(ROBOT_RADIUS_M))
+    grid = make_occupancy()
     grid.cells[3, 3] = 100
     layer.set_map(grid)
     sensor.costmap = robot

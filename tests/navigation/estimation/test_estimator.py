@@ -1,3 +1,5 @@
+"""The estimator: the order of measurements, delays and timeouts."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -6,22 +8,22 @@ import pytest
 from linkwright.navigation.estimation.estimator import Estimator, Timing
 from linkwright.navigation.estimation.kalman import ExtendedKalmanFilter, Settings
 from linkwright.navigation.estimation.motion_model import SIZE, State
-from tests.navigation.estimation.test_kalman import SECOND, measurement_of
+from tests.navigation.estimation.test_kalman import SECOND_NS, make_measurement
 
 
 def estimator(**timing):
     kalman = ExtendedKalmanFilter(Settings(initial_covariance=np.eye(SIZE)))
-    return Estimator(kalman, Timing(**{"sensor_timeout_ns": SECOND, **timing}))
+    return Estimator(kalman, Timing(**{"sensor_timeout_ns": SECOND_NS, **timing}))
 
 
 def advance(estimator, seconds):
-    estimator.advance(round(seconds * SECOND))
+    estimator.advance(round(seconds * SECOND_NS))
     return estimator.filter
 
 
 def test_measurements_are_processed_in_order_of_stamps():
     forwards, backwards = estimator(), estimator()
-    measurements = [measurement_of(0.1 * step, x=0.3 * step**2, vyaw=0.1 * step) for step in range(10)]
+    measurements = [make_measurement(0.1 * step, x=0.3 * step**2, vyaw=0.1 * step) for step in range(10)]
     for measurement in measurements:
         forwards.add(measurement)
     for measurement in reversed(measurements):
@@ -31,20 +33,20 @@ def test_measurements_are_processed_in_order_of_stamps():
 
 def test_future_measurement_is_delayed():
     active = estimator()
-    active.add(measurement_of(0.0, x=1.0))
-    active.add(measurement_of(2.0, x=9.0))
+    active.add(make_measurement(0.0, x=1.0))
+    active.add(make_measurement(2.0, x=9.0))
     assert advance(active, 1.0).state[State.X] == 1.0
     assert advance(active, 2.0).state[State.X] > 1.0
 
 
 def test_state_is_predicted_only_after_sensor_timeout():
-    active = estimator(sensor_timeout_ns=SECOND // 2)
-    active.add(measurement_of(0.0, vx=1.0))
+    active = estimator(sensor_timeout_ns=SECOND_NS // 2)
+    active.add(make_measurement(0.0, vx=1.0))
     assert advance(active, 0.0).time_ns == 0
     assert advance(active, 0.4).time_ns == 0
     assert advance(active, 0.6).state[State.X] == pytest.approx(0.6)
     always = estimator(predict_to_now=True)
-    always.add(measurement_of(0.0, vx=1.0))
+    always.add(make_measurement(0.0, vx=1.0))
     assert advance(always, 0.1).state[State.X] == pytest.approx(0.1)
 
 
@@ -53,8 +55,8 @@ def test_no_prediction_before_first_measurement():
 
 
 def test_late_measurement_is_processed_at_its_stamp():
-    measurements = [measurement_of(0.1 * step, x=np.sin(0.1 * step), vx=np.cos(0.1 * step)) for step in range(20)]
-    in_order, out_of_order = estimator(history_ns=10 * SECOND), estimator(history_ns=10 * SECOND)
+    measurements = [make_measurement(0.1 * step, x=np.sin(0.1 * step), vx=np.cos(0.1 * step)) for step in range(20)]
+    in_order, out_of_order = estimator(history_ns=10 * SECOND_NS), estimator(history_ns=10 * SECOND_NS)
     for measurement in measurements:
         in_order.add(measurement)
         advance(in_order, 5.0)
@@ -68,18 +70,18 @@ def test_late_measurement_is_processed_at_its_stamp():
 
 
 def test_measurement_older_than_history_is_applied_at_history_start():
-    active = estimator(history_ns=SECOND)
+    active = estimator(history_ns=SECOND_NS)
     for step in range(50):
-        active.add(measurement_of(0.1 * step, x=0.0))
+        active.add(make_measurement(0.1 * step, x=0.0))
         advance(active, 0.1 * step)
-    active.add(measurement_of(1.0, x=1.0))
+    active.add(make_measurement(1.0, x=1.0))
     state = advance(active, 5.0)
-    assert state.time_ns == round(4.9 * SECOND)
+    assert state.time_ns == round(4.9 * SECOND_NS)
     assert state.state[State.X] != 0.0
 
 
 def test_clear_discards_queued_measurements():
     active = estimator()
-    active.add(measurement_of(0.0, x=1.0))
+    active.add(make_measurement(0.0, x=1.0))
     active.clear()
     assert not advance(active, 1.0).is_initialized

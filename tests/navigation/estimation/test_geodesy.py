@@ -1,3 +1,5 @@
+"""The UTM projection of latitudes and longitudes."""
+
 from __future__ import annotations
 
 from math import cos, degrees, hypot, radians, sqrt
@@ -19,7 +21,10 @@ latitudes, longitudes = st.floats(-80.0, 84.0), st.floats(-180.0, 179.999)
 
 
 def meridian_arc(latitude):
-    """Return the length of a meridian arc from the equator by Simpson's rule, independently of the projection."""
+    """Return the length of a meridian arc from the equator, by Simpson's rule.
+
+    This is independent of the projection.
+    """
     squared_eccentricity = (2.0 - 1.0 / 298.257223563) / 298.257223563
 
     def radius(phi):
@@ -29,8 +34,8 @@ def meridian_arc(latitude):
 
     steps, end = 2000, radians(latitude)
     step = end / steps
-    inner = sum((4 if index % 2 else 2) * radius(index * step) for index in range(1, steps))
-    return step / 3.0 * (radius(0.0) + inner + radius(end))
+    weighted_sum = sum((4 if index % 2 else 2) * radius(index * step) for index in range(1, steps))
+    return step / 3.0 * (radius(0.0) + weighted_sum + radius(end))
 
 
 @pytest.mark.parametrize("latitude", [10.0, 45.0, 79.0])

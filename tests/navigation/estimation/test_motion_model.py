@@ -1,3 +1,5 @@
+"""The motion model of the estimator, and its derivatives."""
+
 from __future__ import annotations
 
 from math import cos, pi, sin

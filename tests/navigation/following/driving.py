@@ -1,4 +1,7 @@
-"""A simulated robot that drives along a path in a costmap, without ROS; it has exactly the commanded velocity."""
+"""A simulated robot that drives along a path in a costmap, without ROS.
+
+It has exactly the commanded velocity.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +15,10 @@ from linkwright.navigation.following.follower import ZERO_VELOCITY, ControlInput
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.grids.grid import Grid
 
-PERIOD = 0.05
+PERIOD_S = 0.05
 
 
-def floor(size=10.0, resolution=0.05):
+def make_empty_floor(size=10.0, resolution=0.05):
     """Return an empty costmap around the origin."""
     cells = round(size / resolution)
     return Costmap(Grid(cells=np.zeros((cells, cells), np.uint8), resolution=resolution, x=-size / 2.0, y=-size / 2.0))
@@ -32,7 +35,7 @@ def put_box(costmap, x, y, width, depth, grow=0.0):
         grid.cells[row : last_row + 1, column : last_column + 1] = cost
 
 
-def line(*points, spacing=0.05):
+def path_through(*points, spacing=0.05):
     """Return a path through some points; the headings follow the path."""
     segments = []
     for (x0, y0), (x1, y1) in itertools.pairwise(points):
@@ -47,16 +50,16 @@ def control_input(path, pose=(0.0, 0.0, 0.0), velocity=ZERO_VELOCITY, costmap=No
         pose=pose,
         velocity=velocity,
         path=path,
-        costmap=costmap or floor(),
+        costmap=costmap or make_empty_floor(),
         footprint=circle(0.2) if footprint is None else footprint,
-        period=PERIOD,
+        period=PERIOD_S,
         xy_tolerance=xy_tolerance,
     )
 
 
-def drive(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles=2000, footprint=None):
+def drive_along(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles=2000, footprint=None):
     """Drive until the goal is reached, and return the poses and velocities of all cycles."""
-    costmap = costmap or floor()
+    costmap = costmap or make_empty_floor()
     followed_path = FollowedPath(path, 2.0)
     velocity = ZERO_VELOCITY
     poses, velocities = [pose], [velocity]
@@ -70,7 +73,7 @@ def drive(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, cycles
             followed_path.poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance
         )
         velocity = follower.compute_velocity(cycle_input)
-        pose = tuple(predict_poses(pose, np.array([velocity]), np.array([PERIOD]))[0, 0])
+        pose = tuple(predict_poses(pose, np.array([velocity]), np.array([PERIOD_S]))[0, 0])
         poses.append(pose)
         velocities.append(velocity)
     return np.array(poses), np.array(velocities)

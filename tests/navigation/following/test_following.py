@@ -28,9 +28,16 @@ from linkwright.navigation.following.pure_pursuit import (
 )
 from linkwright.navigation.following.rotation_shim import RotationShim
 from linkwright.navigation.following.sampling import SamplingFollower, SamplingParameters, VelocityLimits
-from tests.navigation.following.driving import PERIOD, control_input, drive, floor, line, put_box
+from tests.navigation.following.driving import (
+    PERIOD_S,
+    control_input,
+    drive_along,
+    make_empty_floor,
+    path_through,
+    put_box,
+)
 
-CORNER = line((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))
+CORNER = path_through((0.0, 0.0), (2.0, 0.0), (2.0, 2.0))
 FOLLOWERS = [
     RegulatedPurePursuit,
     SamplingFollower,
@@ -76,46 +83,50 @@ class TestPurePursuit:
         assert speed_in_curve(0.5, 0.1, 0.9) == 0.5
 
     def test_command_follows_arc_to_carrot(self):
-        path = line((0.0, 0.1), (3.0, 0.1))
+        path = path_through((0.0, 0.1), (3.0, 0.1))
         command = RegulatedPurePursuit().compute_velocity(control_input(path))
         assert command.yaw == pytest.approx(command.x * 2.0 * 0.1 / 0.6**2)
 
     def test_robot_rotates_to_heading_before_driving(self):
-        command = RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (0.0, 2.0))))
+        command = RegulatedPurePursuit().compute_velocity(control_input(path_through((0.0, 0.0), (0.0, 2.0))))
         assert command.x == 0.0
-        assert command.yaw == pytest.approx(3.2 * PERIOD)
+        assert command.yaw == pytest.approx(3.2 * PERIOD_S)
 
     def test_speed_is_reduced_near_goal_and_obstacles(self):
-        near_goal = RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (0.3, 0.0))))
+        near_goal = RegulatedPurePursuit().compute_velocity(control_input(path_through((0.0, 0.0), (0.3, 0.0))))
         assert near_goal.x == pytest.approx(0.5 * 0.3 / 0.6)
-        costly = floor()
+        costly = make_empty_floor()
         costly.grid.cells[:] = 200
         assert (
             0.25
-            <= RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (3.0, 0.0)), costmap=costly)).x
+            <= RegulatedPurePursuit()
+            .compute_velocity(control_input(path_through((0.0, 0.0), (3.0, 0.0)), costmap=costly))
+            .x
             < 0.5
         )
 
     def test_robot_reverses_if_allowed(self):
         follower = RegulatedPurePursuit(PurePursuitParameters(allow_reversing=True, use_rotate_to_heading=False))
-        command = follower.compute_velocity(control_input(line((0.0, 0.0), (-2.0, 0.0))))
+        command = follower.compute_velocity(control_input(path_through((0.0, 0.0), (-2.0, 0.0))))
         assert command.x == -0.5
 
     def test_obstacle_ahead_is_an_error(self):
-        costmap = floor()
+        costmap = make_empty_floor()
         put_box(costmap, 0.5, 0.0, 0.2, 0.2)
         with pytest.raises(FollowingError, match="obstacle"):
-            RegulatedPurePursuit().compute_velocity(control_input(line((0.0, 0.0), (3.0, 0.0)), costmap=costmap))
+            RegulatedPurePursuit().compute_velocity(
+                control_input(path_through((0.0, 0.0), (3.0, 0.0)), costmap=costmap)
+            )
 
     @given(angle=st.floats(-pi, pi), current=st.floats(-1.8, 1.8))
     def test_rotation_speed_respects_acceleration(self, angle, current):
-        speed = rotation_speed(angle, current, PERIOD, 1.8, 3.2)
-        assert abs(speed - current) <= 3.2 * PERIOD + 1e-9
+        speed = rotation_speed(angle, current, PERIOD_S, 1.8, 3.2)
+        assert abs(speed - current) <= 3.2 * PERIOD_S + 1e-9
         assert abs(speed) <= 1.8 + 1e-9
 
     def test_speed_limit_is_applied_and_removed(self):
         follower = RegulatedPurePursuit()
-        path = line((0.0, 0.0), (3.0, 0.0))
+        path = path_through((0.0, 0.0), (3.0, 0.0))
         follower.limit_speed(40.0, is_percentage=True)
         assert follower.compute_velocity(control_input(path)).x == pytest.approx(0.2)
         follower.limit_speed(0.3)
@@ -136,36 +147,36 @@ class TestSampling:
         follower = SamplingFollower()
         velocity = Velocity(x, 0.0, yaw_rate)
         command = follower.compute_velocity(
-            control_input(line((0.0, 0.0), (1.0, 0.0), (2.0, bend)), (0.0, 0.0, yaw), velocity)
+            control_input(path_through((0.0, 0.0), (1.0, 0.0), (2.0, bend)), (0.0, 0.0, yaw), velocity)
         )
         limits = follower.parameters.limits
         for old, new, lowest, highest, acceleration in zip(
             velocity, command, limits.min_velocity, limits.max_velocity, limits.acceleration, strict=True
         ):
             assert lowest - 1e-9 <= new <= highest + 1e-9
-            assert abs(new - old) <= acceleration * PERIOD + 1e-9
+            assert abs(new - old) <= acceleration * PERIOD_S + 1e-9
 
     @pytest.mark.parametrize("y", [0.0, 0.25, 0.4])
     def test_robot_avoids_box(self, y):
-        costmap = floor()
+        costmap = make_empty_floor()
         put_box(costmap, 1.5, y, 0.4, 0.3, grow=0.22)
-        poses, _ = drive(
-            SamplingFollower(), line((0.0, 0.0), (3.0, 0.0)), SimpleGoalChecker(), costmap=costmap, cycles=400
+        poses, _ = drive_along(
+            SamplingFollower(), path_through((0.0, 0.0), (3.0, 0.0)), SimpleGoalChecker(), costmap=costmap, cycles=400
         )
         assert costmap.cost_at(poses[:, :2]).max() < 253
         assert poses[-1, 0] > (2.7 if y == 0.4 else 0.9)
 
     def test_blocked_costmap_is_an_error(self):
-        costmap = floor()
+        costmap = make_empty_floor()
         costmap.grid.cells[:] = 254
         with pytest.raises(FollowingError):
-            SamplingFollower().compute_velocity(control_input(line((0.0, 0.0), (3.0, 0.0)), costmap=costmap))
+            SamplingFollower().compute_velocity(control_input(path_through((0.0, 0.0), (3.0, 0.0)), costmap=costmap))
 
 
 @pytest.mark.parametrize("make", FOLLOWERS)
 class TestWholePaths:
     def test_corner_is_followed(self, make):
-        poses, velocities = drive(make(), CORNER, StoppedGoalChecker())
+        poses, velocities = drive_along(make(), CORNER, StoppedGoalChecker())
         assert hypot(*(poses[-1, :2] - CORNER[-1, :2])) <= 0.25
         assert abs(wrap_angle(poses[-1, 2] - pi / 2)) <= 0.25
         distances = np.hypot(*(poses[:, None, :2] - CORNER[None, :, :2]).T).min(axis=0)
@@ -173,27 +184,27 @@ class TestWholePaths:
         assert hypot(*velocities[-1, :2]) <= 0.25
 
     def test_path_behind_robot_is_followed(self, make):
-        path = line((0.0, 0.0), (-2.0, 0.0))
-        poses, _ = drive(make(), path, SimpleGoalChecker())
+        path = path_through((0.0, 0.0), (-2.0, 0.0))
+        poses, _ = drive_along(make(), path, SimpleGoalChecker())
         assert hypot(*(poses[-1, :2] - (-2.0, 0.0))) <= 0.25
 
     def test_robot_rotates_to_goal_heading(self, make):
-        path = line((0.0, 0.0), (1.5, 0.0))
+        path = path_through((0.0, 0.0), (1.5, 0.0))
         path[-1, 2] = -2.5
-        poses, _ = drive(make(), path, SimpleGoalChecker(SimpleGoalParameters(yaw_goal_tolerance=0.05)))
+        poses, _ = drive_along(make(), path, SimpleGoalChecker(SimpleGoalParameters(yaw_goal_tolerance=0.05)))
         assert abs(wrap_angle(poses[-1, 2] + 2.5)) <= 0.05
 
 
 class TestPath:
     def test_self_crossing_path_is_followed_in_order(self):
-        eight = line((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (1.0, -2.0))
+        eight = path_through((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (1.0, -2.0))
         path = FollowedPath(eight, 1.0)
         path.update_progress(1.0, 0.0)
         assert path.remaining_distance(1.0, 0.0) == pytest.approx(8.0, abs=0.06)
         assert path.poses_ahead(0.5)[-1, :2] == pytest.approx([1.5, 0.0], abs=0.06)
 
     def test_poses_ahead_at_path_end_are_two(self):
-        path = FollowedPath(line((0.0, 0.0), (1.0, 0.0)), 5.0)
+        path = FollowedPath(path_through((0.0, 0.0), (1.0, 0.0)), 5.0)
         path.update_progress(1.0, 0.0)
         assert len(path.poses_ahead(1.0)) == 2
 

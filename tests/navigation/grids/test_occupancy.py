@@ -1,3 +1,5 @@
+"""Occupancy grids from messages and back."""
+
 from __future__ import annotations
 
 from math import pi

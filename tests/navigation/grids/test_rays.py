@@ -1,3 +1,5 @@
+"""Cells on lines, and rays through an occupancy grid."""
+
 from __future__ import annotations
 
 from math import pi
@@ -70,13 +72,13 @@ def test_rays_do_not_pass_through_walls(seed: int) -> None:
     points = random.uniform(0.3, 5.7, (20, 2))
     angles = random.uniform(-pi, pi, 20)
     ranges = cast_rays(field, points, angles, 20.0)
-    along = np.stack((np.cos(angles), np.sin(angles)), axis=-1)
+    directions = np.stack((np.cos(angles), np.sin(angles)), axis=-1)
     with np.errstate(divide="ignore"):
-        exact = np.where(along > 0, (5.95 - points) / along, (0.05 - points) / along).min(axis=1)
-    ends = points + ranges[:, None] * along
+        exact = np.where(directions > 0, (5.95 - points) / directions, (0.05 - points) / directions).min(axis=1)
+    ends = points + ranges[:, None] * directions
     assert (ranges < 20.0).all()
     assert ((ends >= -1e-9) & (ends <= 6.0 + 1e-9)).all()
-    assert (ranges <= exact + 0.1 / np.abs(along).max(axis=1)).all()
+    assert (ranges <= exact + 0.1 / np.abs(directions).max(axis=1)).all()
 
 
 def test_ray_counts_counts_hits_and_passes() -> None:

@@ -22,7 +22,7 @@ from linkwright.navigation.localization.sensor_models import MODELS, BeamSkippin
 _QUIET = Noise(0.0, 0.0, 0.0, 0.0, 0.0)
 
 
-def room(yaw: float = 0.0) -> MapLikelihoods:
+def make_room(yaw: float = 0.0) -> MapLikelihoods:
     """Return a room of 6 by 4 meters with walls; its corner is at (0, 0)."""
     cells = np.full((80, 120), FREE, np.int8)
     cells[[0, -1]] = cells[:, [0, -1]] = OCCUPIED
@@ -32,10 +32,10 @@ def room(yaw: float = 0.0) -> MapLikelihoods:
 def beams_in_room(x: float, y: float, yaw: float, count: int = 36) -> Beams:
     """Return the beams of a laser at the robot's center."""
     angles = np.linspace(-pi, pi, count, endpoint=False)
-    along = np.stack((np.cos(angles + yaw), np.sin(angles + yaw)), axis=-1)
-    walls = np.where(along > 0, (np.array((5.975, 3.975)) - (x, y)), (np.array((0.025, 0.025)) - (x, y)))
-    along = np.where(np.abs(along) < 1e-9, np.copysign(1e-9, walls), along)
-    ranges = (walls / along).min(axis=1)
+    directions = np.stack((np.cos(angles + yaw), np.sin(angles + yaw)), axis=-1)
+    walls = np.where(directions > 0, (np.array((5.975, 3.975)) - (x, y)), (np.array((0.025, 0.025)) - (x, y)))
+    directions = np.where(np.abs(directions) < 1e-9, np.copysign(1e-9, walls), directions)
+    ranges = (walls / directions).min(axis=1)
     ends = ranges[:, None] * np.stack((np.cos(angles), np.sin(angles)), axis=-1)
     return Beams((0.0, 0.0), ends, ranges, 12.0)
 
@@ -44,14 +44,14 @@ def beams_in_room(x: float, y: float, yaw: float, count: int = 36) -> Beams:
 def test_true_pose_is_likeliest(model: str) -> None:
     offsets = np.array([(x, y, yaw) for x in (-0.4, 0, 0.4) for y in (-0.4, 0, 0.4) for yaw in (-0.3, 0, 0.3)])
     poses = np.array((2.0, 1.5, 0.4)) + offsets
-    likelihoods = room().likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4))
+    likelihoods = make_room().likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4))
     assert likelihoods.argmax() == 13
     assert (likelihoods > 0.0).all()
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_true_pose_is_likeliest_on_rotated_map(model: str) -> None:
-    rotated_room = room(yaw=pi / 2)
+    rotated_room = make_room(yaw=pi / 2)
     poses = np.array([(-1.5, 2.0, 0.4 + pi / 2), (-1.5, 2.0, 0.4), (-2.5, 2.0, 0.4 + pi / 2)])
     assert rotated_room.likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4)).argmax() == 0
 
@@ -62,31 +62,31 @@ def test_likelihood_matches_likelihood_field_formula() -> None:
     cells[:, 30] = OCCUPIED
     likelihoods = MapLikelihoods(Grid(cells=cells, resolution=0.1), settings)
     beams = Beams((0.0, 0.0), np.array([[1.0, 0.0]]), np.array([1.0]), 8.0)
-    computed = likelihoods.likelihoods("likelihood_field", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
-    chances = 0.6 * np.exp(-0.5 * (np.array([0.0, 0.2]) / 0.1) ** 2) + 0.4 / 8.0
-    assert computed == pytest.approx(1.0 + chances**3, abs=1e-6)
+    likelihood = likelihoods.likelihoods("likelihood_field", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
+    probabilities = 0.6 * np.exp(-0.5 * (np.array([0.0, 0.2]) / 0.1) ** 2) + 0.4 / 8.0
+    assert likelihood == pytest.approx(1.0 + probabilities**3, abs=1e-6)
     product = likelihoods.likelihoods("likelihood_field_prob", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
-    assert product[1] / product[0] == pytest.approx(chances[1] / chances[0], rel=1e-5)
+    assert product[1] / product[0] == pytest.approx(probabilities[1] / probabilities[0], rel=1e-5)
 
 
 def test_beams_without_hit_are_neutral_and_beams_off_map_do_not_match() -> None:
     beams = Beams((0.0, 0.0), np.array([[12.0, 0.0]]), np.array([12.0]), 12.0)
-    assert room().likelihoods("likelihood_field", np.array([[2.0, 2.0, 0.0]]), beams).tolist() == [1.0]
-    assert room().matching_share((2.0, 2.0, 0.0), beams) is None
-    assert room().matching_share((500.0, -300.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 0.0
-    assert room().matching_share((2.0, 2.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 1.0
+    assert make_room().likelihoods("likelihood_field", np.array([[2.0, 2.0, 0.0]]), beams).tolist() == [1.0]
+    assert make_room().matching_share((2.0, 2.0, 0.0), beams) is None
+    assert make_room().matching_share((500.0, -300.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 0.0
+    assert make_room().matching_share((2.0, 2.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 1.0
 
 
 def test_beams_that_few_particles_explain_are_skipped() -> None:
     beams = beams_in_room(2.0, 1.5, 0.0)
     beams.end_points[:6] *= 0.4  # a person stands in these beams
     poses = np.array([(2.0, 1.5, 0.0), (2.1, 1.5, 0.0), (1.4, 1.5, 0.0)])
-    likelihoods = room()
-    plain = likelihoods.likelihoods("likelihood_field_prob", poses, beams)
+    likelihoods = make_room()
+    without_skipping = likelihoods.likelihoods("likelihood_field_prob", poses, beams)
     skipped = likelihoods.likelihoods("likelihood_field_prob", poses, beams, BeamSkipping())
     remaining_beams = Beams((0.0, 0.0), beams.end_points[6:], beams.ranges[6:], 12.0)
     assert skipped == pytest.approx(likelihoods.likelihoods("likelihood_field_prob", poses, remaining_beams), rel=1e-5)
-    assert plain[2] > 1.5 * skipped[2]
+    assert without_skipping[2] > 1.5 * skipped[2]
 
 
 def test_random_poses_are_in_free_cells() -> None:

@@ -21,7 +21,7 @@ from linkwright.navigation.maps.pixels import cells_of_image, pixels_of_cells
 _CELLS = arrays(np.int8, st.tuples(st.integers(1, 6), st.integers(1, 6)), elements=st.integers(-1, 100))
 
 
-def _map_yaml(mode: MapMode, *, negate: bool = False, occupied: float = 0.65, free: float = 0.196) -> MapYaml:
+def _make_map_yaml(mode: MapMode, *, negate: bool = False, occupied: float = 0.65, free: float = 0.196) -> MapYaml:
     return MapYaml(
         image=Path("x"),
         resolution=0.05,
@@ -33,7 +33,7 @@ def _map_yaml(mode: MapMode, *, negate: bool = False, occupied: float = 0.65, fr
     )
 
 
-def _row(*values: float) -> MapImage:
+def _make_row(*values: float) -> MapImage:
     return MapImage(np.array([values]) / 255.0)
 
 
@@ -50,19 +50,19 @@ def _row(*values: float) -> MapImage:
 def test_pixel_values_match_nav2_in_each_mode(
     mode: MapMode, negate: bool, pixels: tuple[float, ...], cells: tuple[int, ...]
 ) -> None:
-    assert cells_of_image(_row(*pixels), _map_yaml(mode, negate=negate)).tolist() == [list(cells)]
+    assert cells_of_image(_make_row(*pixels), _make_map_yaml(mode, negate=negate)).tolist() == [list(cells)]
 
 
 def test_alpha_is_averaged_in_trinary_and_unknown_in_scale_mode() -> None:
     image = MapImage(np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]))
     # The mean of the channels is (0 + 0 + 0 + 1) / 4, so the darkness is 0.75.
-    assert cells_of_image(image, _map_yaml(MapMode.TRINARY)).tolist() == [[100, 100, -1]]
-    assert cells_of_image(image, _map_yaml(MapMode.TRINARY, occupied=0.8)).tolist() == [[-1, 100, -1]]
-    assert cells_of_image(image, _map_yaml(MapMode.SCALE)).tolist() == [[100, -1, -1]]
+    assert cells_of_image(image, _make_map_yaml(MapMode.TRINARY)).tolist() == [[100, 100, -1]]
+    assert cells_of_image(image, _make_map_yaml(MapMode.TRINARY, occupied=0.8)).tolist() == [[-1, 100, -1]]
+    assert cells_of_image(image, _make_map_yaml(MapMode.SCALE)).tolist() == [[100, -1, -1]]
 
 
 def test_equal_thresholds_give_no_intermediate_values() -> None:
-    text = _map_yaml(MapMode.SCALE, occupied=0.5, free=0.5)
+    text = _make_map_yaml(MapMode.SCALE, occupied=0.5, free=0.5)
     assert cells_of_image(MapImage(np.array([[0.0, 0.5, 1.0]])), text).tolist() == [[100, 0, 0]]
 
 

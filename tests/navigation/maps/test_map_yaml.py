@@ -1,4 +1,7 @@
-"""The YAML files of maps: all of nav2's keys are read, and mistakes are reported with their position."""
+"""The YAML files of maps.
+
+All of nav2's keys are read, and mistakes are reported with their position.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.navigation.maps.map_yaml import MapMode, read_map_yaml
 
-_GOOD = """image: house.pgm
+_VALID_YAML = """image: house.pgm
 mode: trinary
 resolution: 0.05
 origin: [-1.5, 2, 0]
@@ -19,14 +22,14 @@ free_thresh: 0.196
 """
 
 
-def _file(folder: Path, text: str) -> Path:
+def _write_map_yaml(folder: Path, text: str) -> Path:
     path = folder / "house.yaml"
     path.write_text(text)
     return path
 
 
 def test_map_yaml_is_read(tmp_path: Path) -> None:
-    result = read_map_yaml(_file(tmp_path, _GOOD))
+    result = read_map_yaml(_write_map_yaml(tmp_path, _VALID_YAML))
     assert result.image == tmp_path / "house.pgm"
     assert (result.resolution, result.origin, result.negate) == (0.05, (-1.5, 2.0, 0.0), False)
     assert (result.occupied_thresh, result.free_thresh, result.mode) == (0.65, 0.196, MapMode.TRINARY)
@@ -34,12 +37,12 @@ def test_map_yaml_is_read(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("text", "value"), [("1", True), ("true", True), ("false", False), ("No", False), ("2", True)])
 def test_negate_accepts_numbers_and_booleans(tmp_path: Path, text: str, value: bool) -> None:
-    assert read_map_yaml(_file(tmp_path, _GOOD.replace("negate: 0", f"negate: {text}"))).negate is value
+    assert read_map_yaml(_write_map_yaml(tmp_path, _VALID_YAML.replace("negate: 0", f"negate: {text}"))).negate is value
 
 
 def test_mode_defaults_to_trinary_and_other_keys_are_ignored(tmp_path: Path) -> None:
-    text = _GOOD.replace("mode: trinary", "comment: {who: me}").replace("house.pgm", "/maps/house.png")
-    settings = read_map_yaml(_file(tmp_path, text))
+    text = _VALID_YAML.replace("mode: trinary", "comment: {who: me}").replace("house.pgm", "/maps/house.png")
+    settings = read_map_yaml(_write_map_yaml(tmp_path, text))
     assert settings.mode is MapMode.TRINARY
     assert settings.image == Path("/maps/house.png")
 
@@ -64,7 +67,7 @@ def test_mistakes_are_reported_with_location(
     tmp_path: Path, old: str, new: str, line: int, column: int, message: str
 ) -> None:
     with pytest.raises(LinkwrightError) as error:
-        read_map_yaml(_file(tmp_path, _GOOD.replace(old, new)))
+        read_map_yaml(_write_map_yaml(tmp_path, _VALID_YAML.replace(old, new)))
     finding = error.value.diagnostics[0]
     assert finding.code == "NAV202"
     assert str(finding.message).startswith(message)
@@ -74,19 +77,19 @@ def test_mistakes_are_reported_with_location(
 
 def test_malformed_yaml_is_reported_with_location(tmp_path: Path) -> None:
     with pytest.raises(LinkwrightError, match="not valid YAML") as error:
-        read_map_yaml(_file(tmp_path, _GOOD.replace("trinary", "[")))
+        read_map_yaml(_write_map_yaml(tmp_path, _VALID_YAML.replace("trinary", "[")))
     assert error.value.diagnostics[0].span is not None
 
 
 @pytest.mark.parametrize("text", ["", "- a\n- b\n", "just words", "[" * 200])
 def test_yaml_that_is_not_a_map_is_rejected(tmp_path: Path, text: str) -> None:
     with pytest.raises(LinkwrightError) as error:
-        read_map_yaml(_file(tmp_path, text))
+        read_map_yaml(_write_map_yaml(tmp_path, text))
     assert error.value.diagnostics[0].code == "NAV202"
 
 
 def test_missing_file_error_suggests_files_in_folder(tmp_path: Path) -> None:
-    _file(tmp_path, _GOOD)
+    _write_map_yaml(tmp_path, _VALID_YAML)
     with pytest.raises(LinkwrightError) as error:
         read_map_yaml(tmp_path / "hose.yaml")
     finding = error.value.diagnostics[0]

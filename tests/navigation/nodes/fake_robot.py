@@ -1,4 +1,7 @@
-"""A fake robot with a map and a laser for the nodes of navigation, on a graph with a stepped clock."""
+"""A fake robot with a map and a laser for navigation nodes.
+
+Its graph has a stepped clock.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +15,10 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import occupancy_message
 
 SCAN = get_message("sensor_msgs/msg/LaserScan")
-RAYS = 360
+RAY_COUNT = 360
 
 
-def walls(rows: int = 60, columns: int = 80) -> Grid:
+def make_room_cells(rows: int = 60, columns: int = 80) -> Grid:
     """Return a room of 4 by 3 m with walls around it, in cells of 5 cm."""
     cells = np.zeros((rows, columns), np.int8)
     cells[[0, -1]] = 100
@@ -66,9 +69,9 @@ class FakeRobot:
         scan = SCAN()
         scan.header.frame_id, scan.header.stamp = "base_link", self.stamp()
         scan.angle_min, scan.angle_increment = 0.0, float(np.radians(1.0))
-        scan.angle_max = float(np.radians(RAYS - 1))
+        scan.angle_max = float(np.radians(RAY_COUNT - 1))
         scan.range_min, scan.range_max = 0.1, 6.0
-        values = np.full(RAYS, 5.0)
+        values = np.full(RAY_COUNT, 5.0)
         for degrees, range_m in ranges:
             values[degrees] = range_m
         scan.ranges = values.astype(np.float32)

@@ -1,4 +1,7 @@
-"""mbot with its laser in the house, a path through all rooms, and the distances between a map and the house."""
+"""mbot with its laser in the house, and a path through all rooms.
+
+Functions compute the distances between a map and the house.
+"""
 
 from __future__ import annotations
 
@@ -19,8 +22,8 @@ from tests.places import GAZEBO_PACKAGE, PACKAGE
 
 HOUSE = GAZEBO_PACKAGE / "worlds" / "house.world"
 MBOT = PACKAGE / "urdf" / "mbot_gazebo.xacro"
-START = (0.0, 0.0, 0.0)
-TOUR = [
+START_POSE = (0.0, 0.0, 0.0)
+TOUR_POINTS = [
     (-2.0, 0.0), (-2.0, 1.9), (-2.8, 1.7), (-2.0, 1.7), (-2.0, -0.2), (-3.6, -0.1), (-2.2, -0.8), (-2.2, -2.9),
     (-0.2, -2.6), (0.6, -1.7), (2.3, -1.7), (3.4, -0.6), (3.6, -1.6), (2.2, -1.7), (0.6, -1.7), (0.0, 0.2), (0.0, 2.5),
     (2.4, 2.4), (1.8, 2.5), (0.0, 2.5), (0.0, -0.1), (-1.5, -0.2),
@@ -28,19 +31,19 @@ TOUR = [
 """A path through living room, bedroom, living room, kitchen, hall and bath, and back, in the frame of the house."""
 
 
-def simulation(**options: Any) -> SteppedSimulation:
-    """Return a simulation of the house with mbot at `START`."""
+def make_house_simulation(**options: Any) -> SteppedSimulation:
+    """Return a simulation of the house with mbot at `START_POSE`."""
     return SteppedSimulation(
         HOUSE,
         MBOT,
         arguments={"laser": "true"},
-        pose=(*START[:2], 0, 0, 0, START[2]),
+        pose=(*START_POSE[:2], 0, 0, 0, START_POSE[2]),
         robot_state_publisher=True,
         **options,
     )
 
 
-def drive(test: SteppedSimulation, corners: list[tuple[float, float]], speed: float = 0.7) -> None:
+def drive_through(test: SteppedSimulation, corners: list[tuple[float, float]], speed: float = 0.7) -> None:
     """Drive from corner to corner by the robot's true pose."""
     for x, y in corners:
         while True:
@@ -49,15 +52,17 @@ def drive(test: SteppedSimulation, corners: list[tuple[float, float]], speed: fl
             if distance < 0.12:
                 break
             bearing = (atan2(y - pose[1], x - pose[0]) - rpy_from_quaternion(pose[3:])[2] + pi) % (2 * pi) - pi
-            ahead = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
-            test.drive(ahead if abs(bearing) < 1.0 else 0.0, max(-1.5, min(1.5, 2.5 * bearing)))
+            forward_speed = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
+            test.drive(forward_speed if abs(bearing) < 1.0 else 0.0, max(-1.5, min(1.5, 2.5 * bearing)))
             test.advance(0.1)
     test.drive(0.0)
     test.advance(0.5)
 
 
 class Drift:
-    """Republish the robot's pose in odom from ``/tf`` on ``/drifting_tf``, with the errors of bad odometry.
+    """Republish the robot's pose in odom with the errors of bad odometry.
+
+    The poses of ``/tf`` are published on ``/drifting_tf``.
 
     Args:
         test: the simulation.
@@ -102,7 +107,7 @@ class Drift:
         self._last_pose = pose
 
 
-def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarray:
+def upright_faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarray:
     """Return the upright faces of some models' boxes at a height, shape (n, 2, 2).
 
     Each face goes from right to left, as seen from outside.
@@ -115,35 +120,43 @@ def faces(models: tuple[str, ...] = ("walls",), height: float = 0.2) -> np.ndarr
                 (x, y, z), yaw = collision.pose.pose.xyz, collision.pose.pose.rpy[2]
                 if len(size) != 3 or abs(z - height) > size[2] / 2:
                     continue
-                half = np.array(size[:2]) / 2
-                corners = [(-half[0], -half[1]), (half[0], -half[1]), (half[0], half[1]), (-half[0], half[1])]
+                half_size = np.array(size[:2]) / 2
+                corners = [
+                    (-half_size[0], -half_size[1]),
+                    (half_size[0], -half_size[1]),
+                    (half_size[0], half_size[1]),
+                    (-half_size[0], half_size[1]),
+                ]
                 corners = [(x + a * cos(yaw) - b * sin(yaw), y + a * sin(yaw) + b * cos(yaw)) for a, b in corners]
                 segments += list(pairwise([*corners, corners[0]]))
     return np.array(segments)
 
 
-def distances(faces: np.ndarray, points: np.ndarray) -> np.ndarray:
+def distances_to_faces(faces: np.ndarray, points: np.ndarray) -> np.ndarray:
     """Return the distance of points (n, 2) from the nearest face in meters, shape (n,)."""
-    start, along = faces[:, 0], faces[:, 1] - faces[:, 0]
+    start, directions = faces[:, 0], faces[:, 1] - faces[:, 0]
     offsets = points[:, None] - start
-    share = np.clip((offsets * along).sum(axis=2) / (along**2).sum(axis=1), 0, 1)
-    nearest: np.ndarray = np.linalg.norm(offsets - share[..., None] * along, axis=2).min(axis=1)
+    share = np.clip((offsets * directions).sum(axis=2) / (directions**2).sum(axis=1), 0, 1)
+    nearest: np.ndarray = np.linalg.norm(offsets - share[..., None] * directions, axis=2).min(axis=1)
     return nearest
 
 
 def visible_points(faces: np.ndarray, grid: Grid) -> np.ndarray:
-    """Return points on faces, every 5 cm, if the map is free for 20 cm in front of them, shape (n, 2)."""
+    """Return points on faces, every 5 cm; shape (n, 2).
+
+    In front of each point, the map is free for 20 cm.
+    """
     points = []
     for start, end in faces:
         length = float(np.hypot(*(end - start)))
-        along = (end - start) / length
-        row = start + np.linspace(0.02, length - 0.02, max(2, round(length / 0.05)))[:, None] * along
-        free = np.ones(len(row), dtype=bool)
+        direction = (end - start) / length
+        points_along_face = start + np.linspace(0.02, length - 0.02, max(2, round(length / 0.05)))[:, None] * direction
+        is_free = np.ones(len(points_along_face), dtype=bool)
         for distance in (0.1, 0.2):
-            cells = grid.cells_of(row + distance * np.array((along[1], -along[0])))
-            free &= grid.contains(cells)
-            free[free] = grid.cells[tuple(cells[free].T)] == FREE
-        points.append(row[free])
+            cells = grid.cells_of(points_along_face + distance * np.array((direction[1], -direction[0])))
+            is_free &= grid.contains(cells)
+            is_free[is_free] = grid.cells[tuple(cells[is_free].T)] == FREE
+        points.append(points_along_face[is_free])
     return np.concatenate(points)
 
 
@@ -152,7 +165,10 @@ def occupied_centers(grid: Grid) -> np.ndarray:
     return grid.centers_of(np.argwhere(grid.cells == OCCUPIED))
 
 
-def gaps(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Return the distance of each point (n, 2) from the nearest occupied cell in meters, shape (n,)."""
+def distances_to_occupied_cells(grid: Grid, points: np.ndarray) -> np.ndarray:
+    """Return the distance of each point (n, 2) from the nearest occupied cell.
+
+    The distances are in meters, shape (n,).
+    """
     occupied = occupied_centers(grid)
     return np.array([np.hypot(*(occupied - point).T).min() for point in points])

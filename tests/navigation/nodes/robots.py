@@ -1,4 +1,7 @@
-"""A robot in a room with walls that moves by ``/cmd_vel``, and publishes its pose and scans."""
+"""A robot in a room with walls that follows ``/cmd_vel``.
+
+It publishes its pose and scans.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ from linkwright.messages import get_action, get_message
 from linkwright.navigation.following.follower import ZERO_VELOCITY, Velocity, predict_poses
 from tests.navigation.nodes.fake_robot import FakeRobot
 
-PERIOD = 0.02
+PERIOD_S = 0.02
 
 
 class DrivingRobot(FakeRobot):
@@ -35,7 +38,7 @@ class DrivingRobot(FakeRobot):
         self.publishes_scans = True
         self._odometry = self.node.create_publisher("nav_msgs/msg/Odometry", "/odom", 10)
         self.node.create_subscription("geometry_msgs/msg/Twist", "/cmd_vel", self._on_velocity, 10)
-        self.node.create_timer(PERIOD, self._move)
+        self.node.create_timer(PERIOD_S, self._move)
         self.node.create_timer(0.2, lambda: self.publish_scan(*self.obstacles) if self.publishes_scans else None)
         self.publish_pose()
 
@@ -45,7 +48,7 @@ class DrivingRobot(FakeRobot):
 
     def _move(self) -> None:
         velocity = ZERO_VELOCITY if self.is_blocked else self.velocity
-        self.pose = tuple(map(float, predict_poses(self.pose, np.array([velocity]), np.array([PERIOD]))[0, 0]))
+        self.pose = tuple(map(float, predict_poses(self.pose, np.array([velocity]), np.array([PERIOD_S]))[0, 0]))
         if self.publishes_pose:
             self.publish_pose()
         message = self._odometry.msg_type()

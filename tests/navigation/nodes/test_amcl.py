@@ -25,7 +25,7 @@ HOUSE = GAZEBO_PACKAGE / "worlds" / "house.world"
 MAP = GAZEBO_PACKAGE / "maps" / "house.yaml"
 MBOT = PACKAGE / "urdf" / "mbot_gazebo.xacro"
 POSE = "geometry_msgs/msg/PoseWithCovarianceStamped"
-TOUR = [
+TOUR_POINTS = [
     (-2.0, 0.0),
     (-2.2, -2.4),
     (-0.2, -2.4),
@@ -73,10 +73,12 @@ class House:
 
     def error(self) -> tuple[float, float]:
         """Return the error of amcl's pose, in meters and radians."""
-        true = self.test.robot_pose()
+        true_pose = self.test.robot_pose()
         transform, _ = self.buffer.lookup("map", "base_footprint", 0)
-        yaw_error = rpy_from_quaternion(transform[3:])[2] - rpy_from_quaternion(true[3:])[2]
-        return hypot(transform[0] - true[0], transform[1] - true[1]), abs(atan2(sin(yaw_error), cos(yaw_error)))
+        yaw_error = rpy_from_quaternion(transform[3:])[2] - rpy_from_quaternion(true_pose[3:])[2]
+        return hypot(transform[0] - true_pose[0], transform[1] - true_pose[1]), abs(
+            atan2(sin(yaw_error), cos(yaw_error))
+        )
 
     def drive(self, corners: list[tuple[float, float]], speed: float = 0.5) -> None:
         """Drive from corner to corner by the robot's true pose."""
@@ -88,8 +90,8 @@ class House:
                 if distance < 0.12:
                     break
                 bearing = (atan2(y - pose[1], x - pose[0]) - rpy_from_quaternion(pose[3:])[2] + pi) % (2 * pi) - pi
-                ahead = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
-                test.drive(ahead if abs(bearing) < 1.0 else 0.0, max(-1.0, min(1.0, 2.0 * bearing)))
+                forward_speed = min(speed, 1.5 * distance) * max(0.0, cos(bearing)) ** 3
+                test.drive(forward_speed if abs(bearing) < 1.0 else 0.0, max(-1.0, min(1.0, 2.0 * bearing)))
                 test.advance(0.1)
                 try:
                     self.errors.append(self.error()[0])
@@ -104,11 +106,11 @@ class House:
         return [record.text for record in self.test.log if record.level is level and record.node.endswith("amcl")]
 
 
-Begin = Callable[..., House]
+StartHouse = Callable[..., House]
 
 
 @pytest.fixture
-def begin() -> Iterator[Begin]:
+def start_house() -> Iterator[StartHouse]:
     running_nodes: list[Any] = []
 
     def start(pose: tuple[float, float, float] = (0.0, 0.0, 0.0), **parameters: object) -> House:
@@ -135,17 +137,17 @@ def test_map_matches_house() -> None:
     assert 100 in (grid.cells[tuple(cells[1])], grid.cells[tuple(cells[2])])
 
 
-def test_amcl_tracks_drive_through_house(begin: Begin) -> None:
-    house = begin(set_initial_pose=True)
-    house.drive(TOUR)
+def test_amcl_tracks_drive_through_house(start_house: StartHouse) -> None:
+    house = start_house(set_initial_pose=True)
+    house.drive(TOUR_POINTS)
     assert max(house.errors) < 0.2
     assert sum(house.errors) / len(house.errors) < 0.08
     assert house.error()[1] < 0.05
     assert house.logged(LogLevel.WARN) == house.logged(LogLevel.ERROR) == []
 
 
-def test_wrong_pose_estimate_is_corrected_while_driving(begin: Begin) -> None:
-    house = begin((-2.0, 0.0, 0.5))
+def test_wrong_pose_estimate_is_corrected_while_driving(start_house: StartHouse) -> None:
+    house = start_house((-2.0, 0.0, 0.5))
     house.test.advance(1.0)
     with pytest.raises(TransformException):
         house.error()
@@ -160,21 +162,21 @@ def test_wrong_pose_estimate_is_corrected_while_driving(begin: Begin) -> None:
     assert 0.0 < covariance[0, 0] < 0.2
 
 
-def _call(house: House, service: str, kind: str = "std_srvs/srv/Empty", **fields: object) -> Any:
+def _call_service(house: House, service: str, kind: str = "std_srvs/srv/Empty", **fields: object) -> Any:
     return house.test.call(service, get_service(kind).Request(**fields))
 
 
-def test_global_localization_finds_robot(begin: Begin) -> None:
-    house = begin((-2.0, 0.0, 0.5), max_particles=5000)
-    _call(house, "/reinitialize_global_localization")
+def test_global_localization_finds_robot(start_house: StartHouse) -> None:
+    house = start_house((-2.0, 0.0, 0.5), max_particles=5000)
+    _call_service(house, "/reinitialize_global_localization")
     house.drive([(-2.2, -2.4), (-0.2, -2.4), (0.4, -1.7), (2.4, -1.7), (3.2, -0.6), (2.2, -1.7)])
     distance, angle = house.error()
     assert distance < 0.15
     assert angle < 0.1
 
 
-def test_kidnapped_robot_is_relocalized(begin: Begin) -> None:
-    house = begin(
+def test_kidnapped_robot_is_relocalized(start_house: StartHouse) -> None:
+    house = start_house(
         set_initial_pose=True,
         recovery_alpha_slow=0.001,
         recovery_alpha_fast=0.1,
@@ -199,8 +201,8 @@ def test_kidnapped_robot_is_relocalized(begin: Begin) -> None:
     assert house.error()[0] < 0.15
 
 
-def test_scans_that_do_not_match_map_are_reported(begin: Begin) -> None:
-    house = begin((-2.0, 0.0, 0.0))
+def test_scans_that_do_not_match_map_are_reported(start_house: StartHouse) -> None:
+    house = start_house((-2.0, 0.0, 0.0))
     house.send_pose_estimate(3.0, 2.0, 2.0)
     house.test.advance(0.5)
     house.drive([(-2.2, -0.4), (-2.2, -2.0), (-0.2, -2.4), (0.0, 0.0)])
@@ -208,26 +210,26 @@ def test_scans_that_do_not_match_map_are_reported(begin: Begin) -> None:
     assert any("of the beams end near an obstacle of the map" in text for text in house.logged(LogLevel.WARN))
 
 
-def test_wait_for_map_is_reported(begin: Begin) -> None:
-    house = begin(map_topic="nowhere", set_initial_pose=True)
+def test_wait_for_map_is_reported(start_house: StartHouse) -> None:
+    house = start_house(map_topic="nowhere", set_initial_pose=True)
     assert house.logged(LogLevel.WARN) == ["Waiting for map.... No node publishes on '/nowhere'."]
     assert len(house.poses) == 0
 
 
-def test_missing_transform_is_reported(begin: Begin) -> None:
-    house = begin(odom_frame_id="odometry", set_initial_pose=True)
+def test_missing_transform_is_reported(start_house: StartHouse) -> None:
+    house = start_house(odom_frame_id="odometry", set_initial_pose=True)
     house.test.advance(3.0)
     assert "Couldn't determine robot's pose associated with laser scan" in house.logged(LogLevel.ERROR)[0]
     assert "odometry" in house.logged(LogLevel.ERROR)[0]
 
 
-def test_poses_particles_and_transforms_match_nav2(begin: Begin) -> None:
-    house = begin(set_initial_pose=True, transform_tolerance=0.5)
+def test_poses_particles_and_transforms_match_nav2(start_house: StartHouse) -> None:
+    house = start_house(set_initial_pose=True, transform_tolerance=0.5)
     clouds = house.test.record("/particle_cloud", get_message("nav2_msgs/msg/ParticleCloud"))
     count = len(house.poses)
     house.test.advance(1.0)
     assert len(house.poses) == count  # the robot does not move
-    _call(house, "/request_nomotion_update")
+    _call_service(house, "/request_nomotion_update")
     house.test.advance(0.5)
     assert len(house.poses) == count + 1
     assert house.poses.last.header.frame_id == "map"
@@ -239,8 +241,8 @@ def test_poses_particles_and_transforms_match_nav2(begin: Begin) -> None:
     assert 0.2e9 < stamp_ns - now_ns <= 0.5e9
 
 
-def test_pose_estimates_in_wrong_frame_or_not_finite_are_rejected(begin: Begin) -> None:
-    house = begin()
+def test_pose_estimates_in_wrong_frame_or_not_finite_are_rejected(start_house: StartHouse) -> None:
+    house = start_house()
     request = get_service("nav2_msgs/srv/SetInitialPose").Request()
     for frame, x in (("", 1.0), ("odom", 1.0), ("map", float("nan")), ("map", 1.5)):
         request.pose.header.frame_id = frame
@@ -258,8 +260,8 @@ def test_pose_estimates_in_wrong_frame_or_not_finite_are_rejected(begin: Begin) 
     ("name", "value"),
     [("laser_model_type", "likelihod_field"), ("max_beams", 0), ("min_particles", 9000), ("alpha1", -1.0)],
 )
-def test_invalid_parameters_are_rejected(begin: Begin, name: str, value: object) -> None:
-    house = begin(**{name: value})
+def test_invalid_parameters_are_rejected(start_house: StartHouse, name: str, value: object) -> None:
+    house = start_house(**{name: value})
     assert any(f"parameter '{name}' of 'amcl' cannot be" in text for text in house.logged(LogLevel.ERROR))
     node: Any = house.amcl.node
     assert not node.is_active

@@ -1,4 +1,7 @@
-"""bt_navigator and waypoint_follower: navigation to and through poses, recoveries, feedback and rejections."""
+"""bt_navigator and waypoint_follower.
+
+The tests cover navigation to and through poses, recoveries, feedback and rejections.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ from linkwright.navigation.nodes.controller_server import ControllerServer
 from linkwright.navigation.nodes.costmap_messages import raw_message
 from linkwright.navigation.nodes.waypoint_follower import WaypointFollower
 from linkwright.nodes import NodeOptions
-from tests.navigation.following.driving import line
+from tests.navigation.following.driving import path_through
 from tests.navigation.nodes.robots import DrivingRobot, GoalSender, path_message, pose_stamped
 from tests.navigation.nodes.test_controller_server import LOCAL, PURE_PURSUIT
 
@@ -42,7 +45,7 @@ class Planner:
             return result
         goal = handle.request
         poses = [pose.pose.position for pose in (goal.goals if hasattr(goal, "goals") else [goal.goal])]
-        result.path = path_message(line(self.scene.pose[:2], *[(pose.x, pose.y) for pose in poses]))
+        result.path = path_message(path_through(self.scene.pose[:2], *[(pose.x, pose.y) for pose in poses]))
         handle.succeed()
         return result
 
@@ -54,8 +57,12 @@ async def robot(graph, clock):
     options = NodeOptions(parameters={"FollowPath.plugin": PURE_PURSUIT, "autostart_node": True})
     for name, value in LOCAL.items():
         options.parameters_of_others.set("/local_costmap/local_costmap", name, value)
-    own = NodeOptions(parameters={"autostart_node": True})
-    nodes = [ControllerServer(graph, options), BehaviorServer(graph, own), BtNavigator(graph, own)]
+    navigator_options = NodeOptions(parameters={"autostart_node": True})
+    nodes = [
+        ControllerServer(graph, options),
+        BehaviorServer(graph, navigator_options),
+        BtNavigator(graph, navigator_options),
+    ]
     follower = {"autostart_node": True, "stop_on_failure": False}
     nodes.append(WaypointFollower(graph, NodeOptions(parameters=follower)))
     robot.planner = planner

@@ -11,7 +11,7 @@ from linkwright.messages import get_message
 from linkwright.navigation.following.follower import ZERO_VELOCITY
 from linkwright.navigation.nodes.controller_server import ControllerServer
 from linkwright.nodes import NodeOptions
-from tests.navigation.following.driving import line
+from tests.navigation.following.driving import path_through
 from tests.navigation.nodes.robots import DrivingRobot, GoalSender, path_message
 
 LOCAL = {
@@ -42,12 +42,15 @@ DWB = {
     "FollowPath.decel_lim_theta": -3.2,
     "FollowPath.critics": ["Oscillation"],
 }
-PATH = line((1.0, 1.0), (2.5, 1.0), (2.5, 2.0))
+PATH = path_through((1.0, 1.0), (2.5, 1.0), (2.5, 2.0))
 
 
 @pytest.fixture
 async def start(graph, clock):
-    """Return a function that starts the server with parameters, and returns robot and action client."""
+    """Return a function that starts the server with parameters.
+
+    It returns the robot and the action client.
+    """
     servers = []
 
     async def start(**parameters):
@@ -92,7 +95,7 @@ async def test_new_path_preempts_running_path(start, log):
     await goal.send(path=path_message(PATH))
     await robot.run(2.0)
     second = GoalSender(robot, "FollowPath", "follow_path")
-    await second.send(path=path_message(line((1.5, 1.0), (3.0, 1.0))))
+    await second.send(path=path_message(path_through((1.5, 1.0), (3.0, 1.0))))
     assert ZERO_VELOCITY not in robot.speeds[5:]
     assert await goal.status_after(1.0) == GoalStatus.ABORTED
     assert await second.status_after(30.0) == GoalStatus.SUCCEEDED
@@ -103,7 +106,7 @@ async def test_new_path_preempts_running_path(start, log):
 
 async def test_obstacle_on_path_stops_robot(start, log):
     robot, goal, _ = await start()
-    await goal.send(path=path_message(line((1.0, 1.0), (4.5, 1.0))))
+    await goal.send(path=path_message(path_through((1.0, 1.0), (4.5, 1.0))))
     robot.obstacles = tuple((degree % 360, 0.8) for degree in range(-20, 21))
     assert await goal.status_after(30.0) == GoalStatus.ABORTED
     assert robot.velocity == ZERO_VELOCITY
@@ -137,7 +140,7 @@ async def test_lost_transforms_stop_robot(start, log):
 
 async def test_silent_laser_stops_robot(start, log):
     robot, goal, _ = await start()
-    await goal.send(path=path_message(line((1.0, 1.0), (4.5, 1.0))))
+    await goal.send(path=path_message(path_through((1.0, 1.0), (4.5, 1.0))))
     await robot.run(0.5)
     assert robot.velocity.x > 0.0
     robot.publishes_scans = False

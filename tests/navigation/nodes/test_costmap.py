@@ -1,4 +1,7 @@
-"""Costmaps of nav2's servers on the graph: maps, scans, rolling windows, services, parameters."""
+"""Costmaps of nav2's servers on the graph.
+
+The tests cover maps, scans, rolling windows, services, parameters.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from linkwright.messages import get_message, get_service
 from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL
 from linkwright.navigation.nodes.costmap import make_costmap
 from linkwright.nodes import NodeOptions
-from tests.navigation.nodes.fake_robot import FakeRobot, walls
+from tests.navigation.nodes.fake_robot import FakeRobot, make_room_cells
 
 GLOBAL = {
     "global_frame": "map",
@@ -51,9 +54,9 @@ def robot(graph, clock) -> FakeRobot:
 def start(graph, robot):
     nodes = []
 
-    def start(name="global_costmap", parameters=GLOBAL, **more):
+    def start(name="global_costmap", parameters=GLOBAL, **server_parameters):
         options = NodeOptions()
-        for key, value in {**parameters, **more}.items():
+        for key, value in {**parameters, **server_parameters}.items():
             options.parameters_of_others.set(f"/{name}/{name}", key, value)
         node = make_costmap(robot.node, graph, options, name)
         nodes.append(node)
@@ -67,7 +70,7 @@ def start(graph, robot):
         node.destroy_node()
 
 
-async def call(robot, service, service_type, **fields):
+async def call_service(robot, service, service_type, **fields):
     service_type = get_service(f"nav2_msgs/srv/{service_type}")
     client = robot.node.create_client(service_type, service)
     future = client.call_async(service_type.Request(**fields))
@@ -79,7 +82,7 @@ async def call(robot, service, service_type, **fields):
 async def test_global_costmap_has_size_of_map(robot, start):
     node = start()
     assert node.get_fully_qualified_name() == "/global_costmap/global_costmap"
-    robot.publish_map(walls())
+    robot.publish_map(make_room_cells())
     robot.publish_pose()
     await robot.run(0.5)
     costs = node.costmap.grid.cells
@@ -91,7 +94,10 @@ async def test_global_costmap_has_size_of_map(robot, start):
 
 
 async def test_costmap_inherits_tf_remappings_of_server(graph, robot):
-    """nav2's launch files use relative names for the topics of transforms, for robots in namespaces."""
+    """The costmap inherits the remappings of transforms from its server.
+
+    nav2's launch files use relative names for these topics, for robots in namespaces.
+    """
     options = NodeOptions(remappings=[("/tf", "tf"), ("/tf_static", "tf_static")])
     node = make_costmap(robot.node, graph, options, "global_costmap")
     topics = {subscription.topic_name for subscription in node.subscriptions}
@@ -107,14 +113,14 @@ async def test_costmap_waits_for_transform_and_map(robot, start):
     robot.publish_pose()
     await robot.run(0.5)
     assert not node.is_current
-    robot.publish_map(walls())
+    robot.publish_map(make_room_cells())
     await robot.run(0.5)
     assert node.is_current
 
 
 async def test_laser_obstacles_are_marked_and_cleared(robot, start):
     node = start()
-    robot.publish_map(walls())
+    robot.publish_map(make_room_cells())
     robot.publish_pose()
     robot.publish_scan((0, 1.0))
     await robot.run(0.3)
@@ -127,7 +133,7 @@ async def test_laser_obstacles_are_marked_and_cleared(robot, start):
 
 async def test_scan_waits_for_its_transform(robot, start):
     node = start()
-    robot.publish_map(walls())
+    robot.publish_map(make_room_cells())
     robot.publish_pose(x=0.5)
     await robot.run(0.3)
     robot.publish_scan((0, 1.0))
@@ -184,7 +190,7 @@ async def test_costmap_topics_are_published(robot, start):
     polygon = get_message("geometry_msgs/msg/PolygonStamped")
     robot.node.create_subscription(polygon, "/global_costmap/published_footprint", outlines.append, 10)
     node = start()
-    robot.publish_map(walls(columns=300))
+    robot.publish_map(make_room_cells(columns=300))
     robot.publish_pose()
     await robot.run(0.5)
     result = np.array(maps[-1].data, np.int8).reshape(60, 300)
@@ -204,24 +210,28 @@ async def test_costmap_topics_are_published(robot, start):
 
 async def test_clear_services_clear_costmap(robot, start):
     node = start()
-    robot.publish_map(walls())
+    robot.publish_map(make_room_cells())
     robot.publish_pose()
     robot.publish_scan((0, 1.0), (180, 0.5))
     await robot.run(0.3)
     layer = node.layered.layers[1]
     layer.buffers[0].add(np.zeros(3), np.zeros((0, 3)), 0)  # the obstacle is no longer observed
     near_point, far_point = np.array([0.5, 1.0]), np.array([2.0, 1.0])
-    await call(robot, "/global_costmap/clear_around_global_costmap", "ClearCostmapAroundRobot", reset_distance=1.2)
+    await call_service(
+        robot, "/global_costmap/clear_around_global_costmap", "ClearCostmapAroundRobot", reset_distance=1.2
+    )
     assert node.costmap.cost_at(near_point) < INSCRIBED
     assert node.costmap.cost_at(far_point) == LETHAL
-    await call(robot, "/global_costmap/clear_except_global_costmap", "ClearCostmapExceptRegion", reset_distance=1.2)
+    await call_service(
+        robot, "/global_costmap/clear_except_global_costmap", "ClearCostmapExceptRegion", reset_distance=1.2
+    )
     assert node.costmap.cost_at(far_point) == FREE
     layer.layer_grid.cells[20, 40] = LETHAL
-    await call(robot, "/global_costmap/clear_entirely_global_costmap", "ClearEntireCostmap")
+    await call_service(robot, "/global_costmap/clear_entirely_global_costmap", "ClearEntireCostmap")
     assert node.costmap.cost_at(far_point) == FREE
     assert node.costmap.grid.cells[30, 0] == LETHAL
-    answer = await call(robot, "/global_costmap/get_costmap", "GetCostmap")
-    assert answer.map.metadata.size_x == 80
+    response = await call_service(robot, "/global_costmap/get_costmap", "GetCostmap")
+    assert response.map.metadata.size_x == 80
 
 
 async def test_footprint_parameter_replaces_radius(robot, start):
@@ -232,7 +242,7 @@ async def test_footprint_parameter_replaces_radius(robot, start):
 
 async def test_changed_parameters_take_effect(robot, start):
     node = start()
-    robot.publish_map(walls())
+    robot.publish_map(make_room_cells())
     robot.publish_pose()
     await robot.run(0.3)
     point = np.array([0.5, 1.5])

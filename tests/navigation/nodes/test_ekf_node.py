@@ -1,3 +1,5 @@
+"""`ekf_node`: odometry and IMU in, filtered odometry and transforms out."""
+
 from __future__ import annotations
 
 from math import cos, pi, sin
@@ -14,20 +16,20 @@ from linkwright.nodes import NodeOptions
 from linkwright.testing.stepped import AsyncSteppedGraph
 
 X, Y, YAW, VX, VY, VYAW, AX = 0, 1, 5, 6, 7, 11, 12
-START = 100.0
+START_S = 100.0
 
 
-def config(*used):
-    return [index in used for index in range(15)]
+def sensor_config(*measured_indices):
+    return [index in measured_indices for index in range(15)]
 
 
 @pytest.fixture
 async def test():
-    async with AsyncSteppedGraph(start=START) as graph:
+    async with AsyncSteppedGraph(start=START_S) as graph:
         yield graph
 
 
-def start(test, node_type=EkfNode, **parameters):
+def start_node(test, node_type=EkfNode, **parameters):
     return node_type(test.graph, NodeOptions(parameters={"frequency": 10.0, "two_d_mode": True, **parameters}))
 
 
@@ -35,18 +37,18 @@ def log_texts(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
-def with_header(message, seconds, frame):
+def set_header(message, seconds, frame):
     message.header.stamp = Time.from_nanoseconds(round(seconds * 1e9))
     message.header.frame_id = frame
     return message
 
 
-def now(test):
+def now_s(test):
     return test.clock.now_ns() / 1e9
 
 
-def odometry(test, x=0.0, y=0.0, yaw=0.0, vx=0.0, vyaw=0.0, variance=0.01, at=None, frame="odom"):
-    message = with_header(get_message("nav_msgs/msg/Odometry")(), now(test) if at is None else at, frame)
+def make_odometry(test, x=0.0, y=0.0, yaw=0.0, vx=0.0, vyaw=0.0, variance=0.01, stamp=None, frame="odom"):
+    message = set_header(get_message("nav_msgs/msg/Odometry")(), now_s(test) if stamp is None else stamp, frame)
     message.child_frame_id = "base_link"
     message.pose.pose.position.x, message.pose.pose.position.y = x, y
     orientation = message.pose.pose.orientation
@@ -56,8 +58,8 @@ def odometry(test, x=0.0, y=0.0, yaw=0.0, vx=0.0, vyaw=0.0, variance=0.01, at=No
     return message
 
 
-def imu(test, yaw=0.0, vyaw=0.0, acceleration=(0.0, 0.0, 0.0), frame="base_link", variance=0.001):
-    message = with_header(get_message("sensor_msgs/msg/Imu")(), now(test), frame)
+def make_imu(test, yaw=0.0, vyaw=0.0, acceleration=(0.0, 0.0, 0.0), frame="base_link", variance=0.001):
+    message = set_header(get_message("sensor_msgs/msg/Imu")(), now_s(test), frame)
     orientation, acc = message.orientation, message.linear_acceleration
     orientation.x, orientation.y, orientation.z, orientation.w = quaternion_from_rpy((0.0, 0.0, yaw))
     message.angular_velocity.z = vyaw
@@ -73,7 +75,7 @@ def publish_transform(test, parent, child, x=0.0, y=0.0, yaw=0.0, static=False):
     test.publish("/tf_static" if static else "/tf", message, STATIC_TF_PUBLISHER_QOS if static else TF_QOS)
 
 
-def planar(message):
+def planar_pose(message):
     """Return x, y and yaw of an Odometry message."""
     turn = message.pose.pose.orientation
     _, _, yaw = rpy_from_quaternion((turn.x, turn.y, turn.z, turn.w))
@@ -81,14 +83,21 @@ def planar(message):
 
 
 async def test_odometry_and_gyroscope_are_fused(test):
-    start(test, odom0="wheels", odom0_config=config(VX, VY), imu0="imu", imu0_config=config(VYAW), frequency=30.0)
+    start_node(
+        test,
+        odom0="wheels",
+        odom0_config=sensor_config(VX, VY),
+        imu0="imu",
+        imu0_config=sensor_config(VYAW),
+        frequency=30.0,
+    )
     filtered, tf = test.record("/odometry/filtered"), test.record("/tf")
     for _ in range(200):
-        test.publish("/wheels", odometry(test, vx=1.0, vyaw=9.0, variance=1e-4))
-        test.publish("/imu", imu(test, yaw=2.0, vyaw=0.5, variance=1e-6))
+        test.publish("/wheels", make_odometry(test, vx=1.0, vyaw=9.0, variance=1e-4))
+        test.publish("/imu", make_imu(test, yaw=2.0, vyaw=0.5, variance=1e-6))
         await test.advance(0.01)
-    turned = 0.5 * (filtered.last.header.stamp.nanoseconds / 1e9 - START)
-    x, y, yaw = planar(filtered.last)
+    turned = 0.5 * (filtered.last.header.stamp.nanoseconds / 1e9 - START_S)
+    x, y, yaw = planar_pose(filtered.last)
     assert yaw == pytest.approx(turned, abs=1e-2)
     assert (x, y) == pytest.approx((2.0 * sin(turned), 2.0 * (1.0 - cos(turned))), abs=2e-2)
     assert filtered.last.header.frame_id == "odom"
@@ -102,55 +111,55 @@ async def test_odometry_and_gyroscope_are_fused(test):
 
 
 async def test_publishing_starts_with_first_measurement_and_continues(test):
-    start(test, odom0="wheels", odom0_config=config(VX))
+    start_node(test, odom0="wheels", odom0_config=sensor_config(VX))
     filtered = test.record("/odometry/filtered")
     await test.advance(1.0)
     assert len(filtered) == 0
-    test.publish("/wheels", odometry(test, vx=1.0))
+    test.publish("/wheels", make_odometry(test, vx=1.0))
     await test.advance(1.0)
-    assert planar(filtered.last)[0] == pytest.approx(1.0, abs=1e-6)
+    assert planar_pose(filtered.last)[0] == pytest.approx(1.0, abs=1e-6)
     assert filtered.last.pose.covariance[0] > filtered[0].pose.covariance[0]
 
 
 async def test_outlier_is_rejected(test):
-    parameters = {"odom0": "wheels", "odom0_config": config(X, Y, YAW), "odom0_pose_rejection_threshold": 4.0}
-    start(test, **parameters)
+    parameters = {"odom0": "wheels", "odom0_config": sensor_config(X, Y, YAW), "odom0_pose_rejection_threshold": 4.0}
+    start_node(test, **parameters)
     filtered = test.record("/odometry/filtered")
     for step in range(50):
-        test.publish("/wheels", odometry(test, x=100.0 if step == 40 else 0.0))
+        test.publish("/wheels", make_odometry(test, x=100.0 if step == 40 else 0.0))
         await test.advance(0.1)
-    assert max(abs(planar(message)[0]) for message in filtered) < 1e-6
+    assert max(abs(planar_pose(message)[0]) for message in filtered) < 1e-6
 
 
 async def test_imu_with_rotation_and_offset_is_transformed(test):
-    start(test, imu0="imu", imu0_config=config(YAW, VYAW, AX), publish_acceleration=True)
+    start_node(test, imu0="imu", imu0_config=sensor_config(YAW, VYAW, AX), publish_acceleration=True)
     filtered, acceleration = test.record("/odometry/filtered"), test.record("/accel/filtered")
     publish_transform(test, "base_link", "imu_link", x=0.3, yaw=pi / 2, static=True)
     await test.settle()
     for _ in range(30):
-        test.publish("/imu", imu(test, yaw=0.4 + pi / 2, acceleration=(0.7, 0.0, 0.0), frame="imu_link"))
+        test.publish("/imu", make_imu(test, yaw=0.4 + pi / 2, acceleration=(0.7, 0.0, 0.0), frame="imu_link"))
         await test.advance(0.1)
-    assert planar(filtered.last)[2] == pytest.approx(0.4, abs=1e-3)
+    assert planar_pose(filtered.last)[2] == pytest.approx(0.4, abs=1e-3)
     assert acceleration.last.accel.accel.linear.y == pytest.approx(0.7, abs=1e-3)
     assert acceleration.last.header.frame_id == "base_link"
 
 
 async def test_gravity_is_removed_if_configured(test):
-    flags = {"imu0": "imu", "imu0_config": config(AX, 14), "two_d_mode": False, "publish_acceleration": True}
-    start(test, **flags, imu0_remove_gravitational_acceleration=True)
+    flags = {"imu0": "imu", "imu0_config": sensor_config(AX, 14), "two_d_mode": False, "publish_acceleration": True}
+    start_node(test, **flags, imu0_remove_gravitational_acceleration=True)
     acceleration = test.record("/accel/filtered")
     for _ in range(5):
-        test.publish("/imu", imu(test, acceleration=(0.2, 0.0, 9.80665)))
+        test.publish("/imu", make_imu(test, acceleration=(0.2, 0.0, 9.80665)))
         await test.advance(0.1)
     linear = acceleration.last.accel.accel.linear
     assert (linear.x, linear.z) == pytest.approx((0.2, 0.0), abs=1e-6)
 
 
 async def test_missing_frame_is_reported(test):
-    start(test, imu0="imu", imu0_config=config(VYAW))
+    start_node(test, imu0="imu", imu0_config=sensor_config(VYAW))
     filtered = test.record("/odometry/filtered")
     for _ in range(3):
-        test.publish("/imu", imu(test, frame="nowhere"))
+        test.publish("/imu", make_imu(test, frame="nowhere"))
         await test.advance(0.1)
     assert len(filtered) == 0
     (text,) = log_texts(test, "WARN")
@@ -158,67 +167,67 @@ async def test_missing_frame_is_reported(test):
 
 
 async def test_map_world_frame_publishes_odom_transform(test):
-    start(test, pose0="fix", pose0_config=config(X, Y, YAW), world_frame="map", transform_time_offset=0.5)
+    start_node(test, pose0="fix", pose0_config=sensor_config(X, Y, YAW), world_frame="map", transform_time_offset=0.5)
     tf = test.record("/tf", TFMessage)
     publish_transform(test, "odom", "base_link", x=2.0)
-    pose = with_header(get_message("geometry_msgs/msg/PoseWithCovarianceStamped")(), now(test), "map")
+    pose = set_header(get_message("geometry_msgs/msg/PoseWithCovarianceStamped")(), now_s(test), "map")
     pose.pose.pose.position.x, pose.pose.pose.orientation.w = 5.0, 1.0
     test.publish("/fix", pose)
     await test.advance(0.1)
     (transform,) = tf.last.transforms
     assert (transform.header.frame_id, transform.child_frame_id) == ("map", "odom")
     assert transform.transform.translation.x == pytest.approx(3.0)
-    assert transform.header.stamp.nanoseconds == round((START + 0.5) * 1e9)
+    assert transform.header.stamp.nanoseconds == round((START_S + 0.5) * 1e9)
 
 
 async def test_differential_and_relative_poses_are_fused(test):
-    start(test, odom0="wheels", odom0_config=config(X, Y, YAW), odom0_differential=True)
-    start(test, odom0="wheels", odom0_config=config(X, Y, YAW), odom0_relative=True, publish_tf=False)
+    start_node(test, odom0="wheels", odom0_config=sensor_config(X, Y, YAW), odom0_differential=True)
+    start_node(test, odom0="wheels", odom0_config=sensor_config(X, Y, YAW), odom0_relative=True, publish_tf=False)
     filtered = test.record("/odometry/filtered")
     for step in range(30):
-        test.publish("/wheels", odometry(test, x=7.0, y=0.05 * step, yaw=pi / 2, variance=1e-6))
+        test.publish("/wheels", make_odometry(test, x=7.0, y=0.05 * step, yaw=pi / 2, variance=1e-6))
         await test.advance(0.1)
     # The differential filter starts at the second pose, which gives the first velocity. The relative one starts at the
     # first pose.
-    assert planar(filtered[-2]) == pytest.approx((1.40, 0.0, 0.0), abs=0.01)
-    assert planar(filtered[-1]) == pytest.approx((1.45, 0.0, 0.0), abs=0.01)
+    assert planar_pose(filtered[-2]) == pytest.approx((1.40, 0.0, 0.0), abs=0.01)
+    assert planar_pose(filtered[-1]) == pytest.approx((1.45, 0.0, 0.0), abs=0.01)
 
 
 async def test_pose_is_set_by_topic_and_service(test):
-    start(test, odom0="wheels", odom0_config=config(VX))
+    start_node(test, odom0="wheels", odom0_config=sensor_config(VX))
     filtered = test.record("/odometry/filtered")
-    test.publish("/wheels", odometry(test))
+    test.publish("/wheels", make_odometry(test))
     await test.advance(0.2)
     message_type = get_message("geometry_msgs/msg/PoseWithCovarianceStamped")
-    pose = with_header(message_type(), now(test), "odom")
+    pose = set_header(message_type(), now_s(test), "odom")
     pose.pose.pose.position.x, pose.pose.pose.orientation.w = 4.0, 1.0
     test.publish("/set_pose", pose)
     await test.advance(0.2)
-    assert planar(filtered.last)[0] == pytest.approx(4.0)
-    pose = with_header(message_type(), now(test), "odom")
+    assert planar_pose(filtered.last)[0] == pytest.approx(4.0)
+    pose = set_header(message_type(), now_s(test), "odom")
     pose.pose.pose.position.x, pose.pose.pose.orientation.w = 5.0, 1.0
     await test.call("/set_pose", get_service("robot_localization/srv/SetPose").Request(pose=pose))
-    test.publish("/wheels", odometry(test, vx=3.0, at=now(test) - 0.1))
+    test.publish("/wheels", make_odometry(test, vx=3.0, stamp=now_s(test) - 0.1))
     await test.advance(0.2)
-    assert planar(filtered.last)[0] == pytest.approx(5.0)
+    assert planar_pose(filtered.last)[0] == pytest.approx(5.0)
 
 
 async def test_toggle_and_enable_services_control_filter(test):
-    start(test, odom0="wheels", odom0_config=config(X), disabled_at_startup=True)
+    start_node(test, odom0="wheels", odom0_config=sensor_config(X), disabled_at_startup=True)
     filtered = test.record("/odometry/filtered")
-    test.publish("/wheels", odometry(test, x=1.0))
+    test.publish("/wheels", make_odometry(test, x=1.0))
     await test.advance(0.5)
     assert len(filtered) == 0
     assert log_texts(test, "INFO") == ["Filter is disabled. To enable it call the /enable service"]
     await test.call("/enable", get_service("std_srvs/srv/Empty").Request())
     await test.advance(0.2)
-    assert planar(filtered.last)[0] == pytest.approx(1.0)
+    assert planar_pose(filtered.last)[0] == pytest.approx(1.0)
     toggle = get_service("robot_localization/srv/ToggleFilterProcessing").Request
     assert (await test.call("/toggle", toggle(on=False))).status
     assert not (await test.call("/toggle", toggle(on=False))).status
-    test.publish("/wheels", odometry(test, x=9.0))
+    test.publish("/wheels", make_odometry(test, x=9.0))
     await test.advance(0.5)
-    assert planar(filtered.last)[0] == pytest.approx(1.0)
+    assert planar_pose(filtered.last)[0] == pytest.approx(1.0)
 
 
 async def test_filter_resets_when_simulated_time_jumps_back(test):
@@ -228,44 +237,44 @@ async def test_filter_resets_when_simulated_time_jumps_back(test):
         for tenth in range(first, last):
             test.publish("/clock", clock(clock=Time.from_nanoseconds(tenth * 100_000_000)))
             await test.settle()
-            test.publish("/wheels", odometry(test, x=x, at=tenth / 10.0))
+            test.publish("/wheels", make_odometry(test, x=x, stamp=tenth / 10.0))
             await test.settle()
 
-    start(test, odom0="wheels", odom0_config=config(X), use_sim_time=True)
+    start_node(test, odom0="wheels", odom0_config=sensor_config(X), use_sim_time=True)
     filtered = test.record("/odometry/filtered")
     await run(300, 320, 5.0)
-    assert planar(filtered.last)[0] == pytest.approx(5.0)
+    assert planar_pose(filtered.last)[0] == pytest.approx(5.0)
     await run(1, 20, 0.0)
-    assert planar(filtered.last)[0] == pytest.approx(0.0)
+    assert planar_pose(filtered.last)[0] == pytest.approx(0.0)
     assert filtered.last.header.stamp.nanoseconds < 2e9
     assert log_texts(test, "WARN") == ["Time has jumped: the filter restarts."]
 
 
 async def test_old_message_is_ignored(test):
-    start(test, odom0="wheels", odom0_config=config(X))
+    start_node(test, odom0="wheels", odom0_config=sensor_config(X))
     filtered = test.record("/odometry/filtered")
-    test.publish("/wheels", odometry(test, x=1.0))
+    test.publish("/wheels", make_odometry(test, x=1.0))
     await test.advance(0.2)
-    test.publish("/wheels", odometry(test, x=9.0, at=START - 5.0))
+    test.publish("/wheels", make_odometry(test, x=9.0, stamp=START_S - 5.0))
     await test.advance(0.2)
-    assert planar(filtered.last)[0] == pytest.approx(1.0)
+    assert planar_pose(filtered.last)[0] == pytest.approx(1.0)
     assert len(log_texts(test, "WARN")) == 1
 
 
 async def test_velocity_commands_move_estimate(test):
     flags = [True, False, False, False, False, True]
     limits = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
-    start(
+    start_node(
         test,
         odom0="wheels",
-        odom0_config=config(VX),
+        odom0_config=sensor_config(VX),
         use_control=True,
         control_config=flags,
         acceleration_limits=limits,
         control_timeout=10.0,
     )
     filtered = test.record("/odometry/filtered")
-    test.publish("/wheels", odometry(test))
+    test.publish("/wheels", make_odometry(test))
     twist = get_message("geometry_msgs/msg/Twist")()
     twist.linear.x = 2.0
     test.publish("/cmd_vel", twist)
@@ -274,13 +283,13 @@ async def test_velocity_commands_move_estimate(test):
 
 
 async def test_ukf_node_publishes_estimate(test):
-    node = start(test, UkfNode, odom0="wheels", odom0_config=config(X, VX))
+    node = start_node(test, UkfNode, odom0="wheels", odom0_config=sensor_config(X, VX))
     filtered = test.record("/odometry/filtered")
     for step in range(50):
-        test.publish("/wheels", odometry(test, x=0.1 * step, vx=1.0))
+        test.publish("/wheels", make_odometry(test, x=0.1 * step, vx=1.0))
         await test.advance(0.1)
     assert node.node.get_name() == "ukf_filter_node"
-    assert planar(filtered.last)[0] == pytest.approx(4.9, abs=0.1)
+    assert planar_pose(filtered.last)[0] == pytest.approx(4.9, abs=0.1)
 
 
 @pytest.mark.parametrize(
@@ -301,12 +310,14 @@ async def test_ukf_node_publishes_estimate(test):
 )
 async def test_invalid_parameters_are_rejected(test, parameters, text):
     with pytest.raises(LinkwrightError) as error:
-        start(test, **parameters)
+        start_node(test, **parameters)
     assert text in str(error.value)
 
 
 async def test_unknown_sensor_parameters_are_reported(test):
-    start(test, odom0="wheels", odom0_config=config(X), odom0_diferential=True, odom2_config=config(X))
+    start_node(
+        test, odom0="wheels", odom0_config=sensor_config(X), odom0_diferential=True, odom2_config=sensor_config(X)
+    )
     (misspelled,) = log_texts(test, "WARN")
     assert misspelled.startswith(
         "'odom0_diferential' is not a parameter of this node; did you mean 'odom0_differential'"
@@ -315,7 +326,7 @@ async def test_unknown_sensor_parameters_are_reported(test):
 
 
 async def test_sensor_without_enabled_values_is_reported(test):
-    start(test, odom0="wheels")
+    start_node(test, odom0="wheels")
     assert log_texts(test, "WARN") == [
         "wheels is listed as an input topic (odom0), but odom0_config enables none of its values"
     ]

@@ -55,11 +55,11 @@ class Stack:
         for name in names:
             self.servers[name] = _Server(self.graph, NodeOptions(name=name))
 
-    async def manage(self, *names: str, until: str, **parameters: object) -> None:
+    async def manage(self, *names: str, condition: str, **parameters: object) -> None:
         """Start the manager, and wait for a line in its log."""
         facts = {"node_names": list(names), "autostart": True, **parameters}
         self.manager = LifecycleManager(self.graph, NodeOptions(parameters=facts))
-        await self.until(until)
+        await self.until(condition)
 
     async def until(self, line: str) -> None:
         def is_logged() -> bool:
@@ -129,7 +129,7 @@ async def stack(graph: Graph, clock: JumpClock, log: list[LogRecord]) -> AsyncIt
 
 async def test_nodes_are_configured_and_activated_in_order(stack: Stack) -> None:
     stack.add("b", "a")
-    await stack.manage("a", "b", until="Managed nodes are active")
+    await stack.manage("a", "b", condition="Managed nodes are active")
     assert stack.did == ["configure a", "configure b", "activate a", "activate b"]
     assert await stack.is_active()
     assert stack.errors() == []
@@ -151,7 +151,7 @@ async def test_nodes_are_configured_and_activated_in_order(stack: Stack) -> None
 async def test_diagnostics_report_state_of_managed_nodes(stack: Stack) -> None:
     name = "lifecycle_manager: Nav2 Health"
     stack.add("a")
-    await stack.manage("a", until="Creating and initializing", autostart=False)
+    await stack.manage("a", condition="Creating and initializing", autostart=False)
     assert await stack.health() == (name, 0, "Managed nodes are unconfigured")
     assert await stack.command(STARTUP)
     assert await stack.health() == (name, 0, "Managed nodes are active")
@@ -163,12 +163,12 @@ async def test_diagnostics_report_state_of_managed_nodes(stack: Stack) -> None:
 
 async def test_diagnostics_report_transition_error(stack: Stack) -> None:
     stack.add("broken")
-    await stack.manage("broken", until="Aborting bringup")
+    await stack.manage("broken", condition="Aborting bringup")
     assert (await stack.health())[1:] == (2, "An error has occurred during a node state transition")
 
 
 async def test_manager_waits_for_late_nodes(stack: Stack) -> None:
-    await stack.manage("a", until="Waiting for service /a/change_state...")
+    await stack.manage("a", condition="Waiting for service /a/change_state...")
     assert not await stack.is_active()
     stack.add("a")
     await stack.until("Managed nodes are active")
@@ -176,7 +176,7 @@ async def test_manager_waits_for_late_nodes(stack: Stack) -> None:
 
 async def test_commands_transition_up_in_order_and_down_in_reverse(stack: Stack) -> None:
     stack.add("a", "b")
-    await stack.manage("a", "b", until="initializing", autostart=False)
+    await stack.manage("a", "b", condition="initializing", autostart=False)
     for number, state in (
         (CONFIGURE, "inactive"),
         (CLEANUP, "unconfigured"),
@@ -199,7 +199,7 @@ async def test_commands_transition_up_in_order_and_down_in_reverse(stack: Stack)
 
 async def test_failed_configuration_aborts_bringup(stack: Stack) -> None:
     stack.add("a", "broken")
-    await stack.manage("a", "broken", until="Aborting bringup")
+    await stack.manage("a", "broken", condition="Aborting bringup")
     assert stack.states() == {"a": "inactive", "broken": "unconfigured"}
     assert stack.errors() == [
         "error[NODE433]: it cannot be",
@@ -211,7 +211,7 @@ async def test_failed_configuration_aborts_bringup(stack: Stack) -> None:
 
 async def test_crash_resets_other_nodes_and_respawn_restores_all(stack: Stack) -> None:
     stack.add("a", "b", "c")
-    await stack.manage("a", "b", "c", until="Managed nodes are active")
+    await stack.manage("a", "b", "c", condition="Managed nodes are active")
     stack.kill("b")
     await stack.clock.advance(3.0)
     assert stack.states() == {"a": "active", "c": "active"}
@@ -229,7 +229,7 @@ async def test_crash_resets_other_nodes_and_respawn_restores_all(stack: Stack) -
 
 async def test_clean_exit_of_node_is_noticed_at_once(stack: Stack) -> None:
     stack.add("a", "b")
-    await stack.manage("a", "b", until="Managed nodes are active", attempt_respawn_reconnection=False)
+    await stack.manage("a", "b", condition="Managed nodes are active", attempt_respawn_reconnection=False)
     stack.servers.pop("a").close()
     await stack.graph.settle()
     await stack.until("Managed nodes have been reset")
@@ -238,7 +238,7 @@ async def test_clean_exit_of_node_is_noticed_at_once(stack: Stack) -> None:
 
 async def test_manager_gives_up_on_crashed_node_after_timeout(stack: Stack) -> None:
     stack.add("a", "b")
-    await stack.manage("a", "b", until="Managed nodes are active")
+    await stack.manage("a", "b", condition="Managed nodes are active")
     stack.kill("a")
     await stack.until("Failed to re-establish connection from a server crash after maximum timeout.")
     assert stack.states() == {"b": "unconfigured"}
@@ -246,7 +246,7 @@ async def test_manager_gives_up_on_crashed_node_after_timeout(stack: Stack) -> N
 
 async def test_crash_is_not_noticed_without_bonds(stack: Stack) -> None:
     stack.add("a")
-    await stack.manage("a", until="Managed nodes are active", bond_timeout=0.0)
+    await stack.manage("a", condition="Managed nodes are active", bond_timeout=0.0)
     stack.kill("a")
     await stack.clock.advance(20.0)
     assert await stack.is_active()
@@ -255,7 +255,7 @@ async def test_crash_is_not_noticed_without_bonds(stack: Stack) -> None:
 
 async def test_node_without_bond_aborts_bringup(stack: Stack) -> None:
     stack.servers["a"] = _Server(stack.graph, NodeOptions(name="a", parameters={"bond_heartbeat_period": 0.0}))
-    await stack.manage("a", until="Aborting bringup")
+    await stack.manage("a", condition="Aborting bringup")
     assert "Server a was unable to be reached after 4.00s by bond" in stack.errors()[0]
 
 

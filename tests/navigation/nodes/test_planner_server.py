@@ -1,4 +1,7 @@
-"""planner_server and smoother_server on the graph: goals and errors, cancellation, preemption, services."""
+"""planner_server and smoother_server on the graph.
+
+The tests cover goals and errors, cancellation, preemption, services.
+"""
 
 from __future__ import annotations
 
@@ -19,9 +22,9 @@ from linkwright.navigation.nodes.planner_server import PlannerServer
 from linkwright.navigation.nodes.smoother_server import SmootherServer
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.component_container import ComponentContainer, load_request
-from tests.navigation.nodes.fake_robot import FakeRobot, walls
+from tests.navigation.nodes.fake_robot import FakeRobot, make_room_cells
 
-SHARE = Path(linkwright.navigation.substitutes.__file__).parent / "share"
+SHARE_FOLDER = Path(linkwright.navigation.substitutes.__file__).parent / "share"
 COSTMAP = {
     "robot_radius": 0.2,
     "resolution": 0.05,
@@ -37,7 +40,7 @@ def robot(graph, clock) -> FakeRobot:
     return FakeRobot(graph, clock)
 
 
-def pose(x, y, yaw=0.0, frame="map"):
+def make_pose(x, y, yaw=0.0, frame="map"):
     return path_message(np.array([[x, y, yaw]]), frame, get_message("builtin_interfaces/msg/Time")()).poses[0]
 
 
@@ -60,8 +63,8 @@ class SentGoal:
         await self.wait_accepted()
         await self.scene.run(seconds)
         assert self.answer.done()
-        answer = self.answer.result()
-        return answer.status, answer.result
+        response = self.answer.result()
+        return response.status, response.result
 
 
 @pytest.fixture
@@ -74,7 +77,7 @@ async def server(graph, robot):
             rules.set("/global_costmap/global_costmap", key, value)
         node = kind(graph, NodeOptions(parameters={"autostart_node": True, **parameters}, parameters_of_others=rules))
         nodes.append(node)
-        robot.publish_map(walls() if grid is None else grid)
+        robot.publish_map(make_room_cells() if grid is None else grid)
         robot.publish_pose()
         await robot.run(0.5)
         return node
@@ -93,7 +96,7 @@ def jazzy(monkeypatch):
     monkeypatch.setattr(classes, "LIBRARY", Library())
 
 
-def to_pose(robot, goal, **fields):
+def plan_to_pose(robot, goal, **fields):
     return SentGoal(robot, "ComputePathToPose", "compute_path_to_pose", {"goal": goal, **fields})
 
 
@@ -101,7 +104,7 @@ async def test_compute_path_to_pose_returns_and_publishes_path(robot, server):
     await server()
     plans = []
     robot.node.create_subscription(get_message("nav_msgs/msg/Path"), "/plan", plans.append, 1)
-    status, result = await to_pose(robot, pose(3.0, 2.0, 1.0)).wait_ended()
+    status, result = await plan_to_pose(robot, make_pose(3.0, 2.0, 1.0)).wait_ended()
     assert status == SUCCEEDED
     path_poses = poses_from_messages(result.path.poses)
     assert path_poses[0, :2] == pytest.approx(robot.pose[:2])
@@ -114,15 +117,17 @@ async def test_compute_path_to_pose_returns_and_publishes_path(robot, server):
 
 async def test_goal_without_frame_is_aborted(robot, server, log):
     await server()
-    status, result = await to_pose(robot, pose(3.0, 2.0, frame="")).wait_ended()
+    status, result = await plan_to_pose(robot, make_pose(3.0, 2.0, frame="")).wait_ended()
     assert (status, len(result.path.poses)) == (ABORTED, 0)
     assert any("Failed to transform from  to map" in record.text for record in log)
 
 
 async def test_start_pose_and_goal_frame_are_respected(robot, server):
     await server()
-    start = pose(0.5, 2.5)
-    status, result = await to_pose(robot, pose(1.5, 0.0, frame="base_link"), start=start, use_start=True).wait_ended()
+    start = make_pose(0.5, 2.5)
+    status, result = await plan_to_pose(
+        robot, make_pose(1.5, 0.0, frame="base_link"), start=start, use_start=True
+    ).wait_ended()
     path_poses = poses_from_messages(result.path.poses)
     assert status == SUCCEEDED
     assert path_poses[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
@@ -130,7 +135,7 @@ async def test_start_pose_and_goal_frame_are_respected(robot, server):
 
 async def test_compute_path_through_poses_visits_all_poses(robot, server):
     await server()
-    goals = [pose(1.0, 2.0), pose(3.0, 2.0), pose(3.0, 1.0, 2.0)]
+    goals = [make_pose(1.0, 2.0), make_pose(3.0, 2.0), make_pose(3.0, 1.0, 2.0)]
     goal = SentGoal(robot, "ComputePathThroughPoses", "compute_path_through_poses", {"goals": goals})
     status, result = await goal.wait_ended()
     path_poses = poses_from_messages(result.path.poses)
@@ -142,7 +147,7 @@ async def test_compute_path_through_poses_visits_all_poses(robot, server):
 
 
 def divided_room():
-    grid = walls()
+    grid = make_room_cells()
     grid.cells[:, 40:44] = 100
     return grid
 
@@ -150,15 +155,15 @@ def divided_room():
 @pytest.mark.parametrize(
     ("goal", "code", "reason"),
     [
-        (pose(2.1, 1.5), "GOAL_OCCUPIED", "Goal Coordinates of(2.100000, 1.500000) was in lethal cost"),
-        (pose(3.0, 1.5), "NO_VALID_PATH", "Failed to create plan with tolerance of: 0.500000"),
-        (pose(9.0, 1.5), "GOAL_OUTSIDE_MAP", "Goal Coordinates of(9.000000, 1.500000) was outside bounds"),
-        (pose(0.0, 0.0, frame="moon"), "TF_ERROR", "Unable to transform poses to global frame"),
+        (make_pose(2.1, 1.5), "GOAL_OCCUPIED", "Goal Coordinates of(2.100000, 1.500000) was in lethal cost"),
+        (make_pose(3.0, 1.5), "NO_VALID_PATH", "Failed to create plan with tolerance of: 0.500000"),
+        (make_pose(9.0, 1.5), "GOAL_OUTSIDE_MAP", "Goal Coordinates of(9.000000, 1.500000) was outside bounds"),
+        (make_pose(0.0, 0.0, frame="moon"), "TF_ERROR", "Unable to transform poses to global frame"),
     ],
 )
 async def test_planning_failure_has_error_code_and_message(jazzy, robot, server, goal, code, reason):
     await server(grid=divided_room())
-    status, result = await to_pose(robot, goal).wait_ended()
+    status, result = await plan_to_pose(robot, goal).wait_ended()
     assert status == ABORTED
     assert result.error_code == getattr(result, code)
     assert result.error_msg == reason
@@ -167,7 +172,7 @@ async def test_planning_failure_has_error_code_and_message(jazzy, robot, server,
 
 async def test_planning_failure_is_logged(robot, server, logged):
     await server(grid=divided_room())
-    status, _ = await to_pose(robot, pose(2.1, 1.5)).wait_ended()
+    status, _ = await plan_to_pose(robot, make_pose(2.1, 1.5)).wait_ended()
     assert status == ABORTED
     assert logged("WARN")[-1] == (
         "GridBased plugin failed to plan from (1.00, 1.00) to (2.10, 1.50): "
@@ -179,7 +184,7 @@ async def test_planning_without_map_fails(jazzy, robot, graph):
     node = PlannerServer(graph, NodeOptions(parameters={"autostart_node": True}))
     robot.publish_pose()
     await robot.run(0.5)
-    goal = await to_pose(robot, pose(2.0, 1.0)).wait_accepted()
+    goal = await plan_to_pose(robot, make_pose(2.0, 1.0)).wait_accepted()
     await robot.run(0.9)
     assert not goal.answer.done()
     await robot.run(0.5)
@@ -192,7 +197,7 @@ async def test_planning_waits_for_costmap_and_can_be_canceled(robot, graph):
     node = PlannerServer(graph, NodeOptions(parameters={"autostart_node": True, "costmap_update_timeout": 60.0}))
     robot.publish_pose()
     await robot.run(0.5)
-    goal = await to_pose(robot, pose(2.0, 1.0)).wait_accepted()
+    goal = await plan_to_pose(robot, make_pose(2.0, 1.0)).wait_accepted()
     await robot.run(5.0)
     assert not goal.answer.done()
     goal.handle.cancel_goal_async()
@@ -205,10 +210,10 @@ async def test_new_goal_preempts_running_goal(robot, graph):
     node = PlannerServer(graph, NodeOptions(parameters={"autostart_node": True, "costmap_update_timeout": 60.0}))
     robot.publish_pose()
     await robot.run(0.5)
-    first = await to_pose(robot, pose(2.0, 1.0)).wait_accepted()
+    first = await plan_to_pose(robot, make_pose(2.0, 1.0)).wait_accepted()
     await robot.run(1.0)
-    second = await to_pose(robot, pose(3.0, 1.0)).wait_accepted()
-    robot.publish_map(walls())
+    second = await plan_to_pose(robot, make_pose(3.0, 1.0)).wait_accepted()
+    robot.publish_map(make_room_cells())
     robot.publish_pose()
     await robot.run(1.0)
     assert first.answer.result().status == ABORTED
@@ -227,25 +232,25 @@ async def test_planners_are_chosen_by_name(jazzy, robot, server, log):
         if text.startswith("nav2_smac_planner/SmacPlannerHybrid is not supported: plans of 'Smac'")
     ]
     assert not [text for text in texts if "Near" in text and "is not supported" in text]
-    near_wall = pose(0.15, 1.5)
-    assert (await to_pose(robot, near_wall, planner_id="Smac").wait_ended())[0] == SUCCEEDED
-    status, result = await to_pose(robot, near_wall, planner_id="Near").wait_ended()
+    near_wall = make_pose(0.15, 1.5)
+    assert (await plan_to_pose(robot, near_wall, planner_id="Smac").wait_ended())[0] == SUCCEEDED
+    status, result = await plan_to_pose(robot, near_wall, planner_id="Near").wait_ended()
     assert (status, result.error_code) == (ABORTED, result.GOAL_OCCUPIED)
-    status, result = await to_pose(robot, near_wall, planner_id="Far").wait_ended()
+    status, result = await plan_to_pose(robot, near_wall, planner_id="Far").wait_ended()
     assert (result.error_code, result.error_msg) == (result.INVALID_PLANNER, "Planner id Far is invalid")
 
 
 async def test_inactive_server_rejects_goals(robot, graph):
     node = PlannerServer(graph, NodeOptions())
     node.node.trigger_configure()
-    goal = await to_pose(robot, pose(2.0, 1.0)).wait_accepted()
+    goal = await plan_to_pose(robot, make_pose(2.0, 1.0)).wait_accepted()
     assert not goal.handle.accepted
     node.close()
 
 
 @pytest.mark.parametrize("kind", [PlannerServer, SmootherServer])
 async def test_nav2_bringup_parameters_load_without_warning(graph, log, kind):
-    file = SHARE / "nav2_bringup" / "params" / "nav2_params.yaml"
+    file = SHARE_FOLDER / "nav2_bringup" / "params" / "nav2_params.yaml"
     options = NodeOptions(arguments=["--ros-args", "--params-file", str(file)], parameters={"autostart_node": True})
     node = kind(graph, options)
     assert node.node.is_active
@@ -291,7 +296,7 @@ async def test_is_path_valid_checks_costmap(robot, server):
 # --- smoothing --------------------------------------------------------------------------------------------------------
 
 
-def smooth(robot, poses, **fields):
+def smooth_path(robot, poses, **fields):
     stamp = get_message("builtin_interfaces/msg/Time")()
     path = path_message(np.array(poses, float).reshape(-1, 3), "map", stamp)
     return SentGoal(robot, "SmoothPath", "smooth_path", {"path": path, **fields})
@@ -304,7 +309,7 @@ async def test_path_is_smoothed(robot, server):
     await server(SmootherServer)
     await server()
     await robot.run(0.5)
-    status, result = await smooth(robot, CORNER, check_for_collisions=True).wait_ended()
+    status, result = await smooth_path(robot, CORNER, check_for_collisions=True).wait_ended()
     assert status == SUCCEEDED
     assert result.was_completed
     path_poses = poses_from_messages(result.path.poses)
@@ -315,14 +320,14 @@ async def test_path_is_smoothed(robot, server):
 
 async def test_smoothing_failures_have_error_code_and_message(jazzy, robot, server):
     await server(SmootherServer)
-    _, result = await smooth(robot, CORNER).wait_ended()
+    _, result = await smooth_path(robot, CORNER).wait_ended()
     assert (result.error_code, result.error_msg) == (result.FAILED_TO_SMOOTH_PATH, "Costmap is not available")
     await server()
     await robot.run(0.5)
-    _, result = await smooth(robot, []).wait_ended()
+    _, result = await smooth_path(robot, []).wait_ended()
     assert result.error_code == result.INVALID_PATH
-    _, result = await smooth(robot, CORNER, smoother_id="mine").wait_ended()
+    _, result = await smooth_path(robot, CORNER, smoother_id="mine").wait_ended()
     assert (result.error_code, result.error_msg) == (result.INVALID_SMOOTHER, "Invalid Smoother: mine")
     through_wall = [(1.0 - 0.1 * step, 1.0, 3.0) for step in range(12)]
-    _, result = await smooth(robot, through_wall, check_for_collisions=True).wait_ended()
+    _, result = await smooth_path(robot, through_wall, check_for_collisions=True).wait_ended()
     assert result.error_code == result.SMOOTHED_PATH_IN_COLLISION

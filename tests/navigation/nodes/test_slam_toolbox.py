@@ -25,10 +25,10 @@ from linkwright.navigation.nodes.slam_toolbox.nodes import (
 from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.nodes import NodeOptions
 from linkwright.testing import SteppedGraph
-from tests.navigation.slam.scenes import along, drifting, house, ranges_at
+from tests.navigation.slam.scenes import add_drift, flat_walls, measure_ranges, path_along
 
-WALLS = house()
-PATH = along([(-4, -3), (-1, -3), (3, -3)], step=0.25, turn=0.25)
+FLAT_WALLS = flat_walls()
+PATH = path_along([(-4, -3), (-1, -3), (3, -3)], step=0.25, turn=0.25)
 
 
 class Robot:
@@ -56,7 +56,7 @@ class Robot:
 
     def scan(self, pose: np.ndarray) -> Any:
         x, y, _, roll, _, yaw = self.mounting
-        ranges, angles = ranges_at(WALLS, compose(pose, np.array((x, y, yaw))), 180)
+        ranges, angles = measure_ranges(FLAT_WALLS, compose(pose, np.array((x, y, yaw))), 180)
         if roll:
             ranges = np.roll(ranges[::-1], 1)
         message = get_message("sensor_msgs/msg/LaserScan")()
@@ -87,7 +87,7 @@ def humble(monkeypatch):
     monkeypatch.delenv("ROS_DISTRO", raising=False)
 
 
-def start(test: SteppedGraph, node_type: Any = AsyncSlamToolbox, **parameters: Any) -> Any:
+def start_node(test: SteppedGraph, node_type: Any = AsyncSlamToolbox, **parameters: Any) -> Any:
     return node_type(test.graph, NodeOptions(parameters={"map_update_interval": 2.0, **parameters}))
 
 
@@ -95,11 +95,11 @@ def logged(test: SteppedGraph, level: str) -> list[str]:
     return [record.text for record in test.log if record.level.name == level]
 
 
-def call(test: SteppedGraph, service: str, service_type: str, **fields: Any) -> Any:
+def call_service(test: SteppedGraph, service: str, service_type: str, **fields: Any) -> Any:
     return test.call(f"/slam_toolbox/{service}", get_service(service_type).Request(**fields))
 
 
-def planar(transform: Any) -> np.ndarray:
+def planar_pose(transform: Any) -> np.ndarray:
     translation, rotation = transform.translation, transform.rotation
     return np.array(
         (translation.x, translation.y, rpy_from_quaternion((rotation.x, rotation.y, rotation.z, rotation.w))[2])
@@ -113,24 +113,24 @@ def map_to_odom(tf: Any) -> Any:
     return transforms[-1]
 
 
-def is_a_map(message: Any) -> bool:
+def is_map_of_walls(message: Any) -> bool:
     grid = grid_from_message(message)
     return bool((grid.cells == FREE).sum() > 2000 and (grid.cells == OCCUPIED).sum() > 100)
 
 
 @pytest.mark.parametrize("kind", [AsyncSlamToolbox, SyncSlamToolbox])
 def test_map_pose_and_transform_are_published_and_accurate(test, kind):
-    start(test, kind)
+    start_node(test, kind)
     maps, sizes, poses, tf = (test.record(topic) for topic in ("/map", "/map_metadata", "/pose", "/tf"))
-    robot, odometry = Robot(test), drifting(relative_pose(PATH[0], PATH), 1.04, 0.05)
+    robot, odometry = Robot(test), add_drift(relative_pose(PATH[0], PATH), 1.04, 0.05)
     robot.go(PATH, odometry)
-    assert is_a_map(maps.last)
+    assert is_map_of_walls(maps.last)
     assert maps.last.header.frame_id == "map"
     assert maps.last.info.resolution == pytest.approx(0.05)
     assert sizes.last == maps.last.info
     true = relative_pose(PATH[0], PATH[-1])  # the origin of the map is at the first scan
     correction = map_to_odom(tf)
-    assert compose(planar(correction.transform), odometry[-1]) == pytest.approx(true, abs=0.03)
+    assert compose(planar_pose(correction.transform), odometry[-1]) == pytest.approx(true, abs=0.03)
     # The stamp is ahead by the timeout.
     assert correction.header.stamp.nanoseconds == test.clock.now_ns() - 500_000_000 + 500_000_000
     publish_at = poses.last.pose.pose.position
@@ -141,19 +141,19 @@ def test_map_pose_and_transform_are_published_and_accurate(test, kind):
 
 
 def test_laser_may_be_mounted_backward_and_upside_down(test):
-    start(test)
+    start_node(test)
     maps, tf = test.record("/map"), test.record("/tf")
     robot = Robot(test, (0.15, 0.0, 0.3, pi, 0.0, 2.0))
-    odometry = drifting(relative_pose(PATH[0], PATH), 1.04, 0.05)
+    odometry = add_drift(relative_pose(PATH[0], PATH), 1.04, 0.05)
     robot.go(PATH, odometry)
-    assert compose(planar(map_to_odom(tf).transform), odometry[-1]) == pytest.approx(
+    assert compose(planar_pose(map_to_odom(tf).transform), odometry[-1]) == pytest.approx(
         relative_pose(PATH[0], PATH[-1]), abs=0.04
     )
-    assert is_a_map(maps.last)
+    assert is_map_of_walls(maps.last)
 
 
 def test_scans_without_valid_ranges_give_no_map(test):
-    start(test)
+    start_node(test)
     maps, tf, robot = test.record("/map"), test.record("/tf"), Robot(test)
     for number, value in enumerate((inf, nan, 0.0, inf, -1.0)):
         robot.publish_odometry(np.array((0.6 * number, 0.0, 0.0)))
@@ -162,13 +162,13 @@ def test_scans_without_valid_ranges_give_no_map(test):
         robot.scans.publish(message)
         test.advance(1.0)
     assert len(maps) == 0
-    assert planar(map_to_odom(tf).transform) == pytest.approx([0, 0, 0], abs=1e-9)
-    response = call(test, "save_map", "slam_toolbox/srv/SaveMap")
+    assert planar_pose(map_to_odom(tf).transform) == pytest.approx([0, 0, 0], abs=1e-9)
+    response = call_service(test, "save_map", "slam_toolbox/srv/SaveMap")
     assert response.result == response.RESULT_NO_MAP_RECEIEVD
 
 
 def test_scans_without_transforms_are_dropped_with_warning(test):
-    node = start(test)
+    node = start_node(test)
     robot, maps = Robot(test), test.record("/map")
     for _ in range(8):
         robot.scans.publish(robot.scan(PATH[0]))
@@ -181,7 +181,7 @@ def test_scans_without_transforms_are_dropped_with_warning(test):
 
 
 def test_scan_waits_for_its_transform(test):
-    start(test)
+    start_node(test)
     robot, poses = Robot(test), test.record("/pose")
     robot.publish_odometry(np.zeros(3))
     test.advance(0.1)
@@ -194,7 +194,7 @@ def test_scan_waits_for_its_transform(test):
 
 
 def test_scans_are_dropped_unless_robot_moved(test):
-    node = start(test)
+    node = start_node(test)
     robot, poses = Robot(test), test.record("/pose")
     for number in range(200):
         robot.publish_odometry(np.array((0.005 * number, 0.0, 0.0)))
@@ -205,69 +205,69 @@ def test_scans_are_dropped_unless_robot_moved(test):
 
 
 def test_throttled_scans_are_skipped(test):
-    start(test, throttle_scans=3, minimum_travel_distance=0.1)
+    start_node(test, throttle_scans=3, minimum_travel_distance=0.1)
     robot, poses = Robot(test), test.record("/pose")
     robot.go(PATH[:9], relative_pose(PATH[0], PATH[:9]))
     assert len(poses) == 3
 
 
 def test_measuring_can_be_paused(test):
-    start(test)
+    start_node(test)
     robot, poses = Robot(test), test.record("/pose")
     robot.go(PATH[:5], relative_pose(PATH[0], PATH[:5]))
     count = len(poses)
-    assert call(test, "pause_new_measurements", "slam_toolbox/srv/Pause").status
+    assert call_service(test, "pause_new_measurements", "slam_toolbox/srv/Pause").status
     robot.go(PATH[5:12], relative_pose(PATH[0], PATH[5:12]))
     assert len(poses) == count
-    assert call(test, "pause_new_measurements", "slam_toolbox/srv/Pause").status
+    assert call_service(test, "pause_new_measurements", "slam_toolbox/srv/Pause").status
     robot.go(PATH[12:16], relative_pose(PATH[0], PATH[12:16]))
     assert len(poses) > count
 
 
 def test_map_is_saved_and_returned_by_services(test, tmp_path):
-    start(test)
+    start_node(test)
     robot, maps = Robot(test), test.record("/map")
     robot.go(PATH[:6], relative_pose(PATH[0], PATH[:6]))
     name = get_message("std_msgs/msg/String")(data=str(tmp_path / "flat"))
-    response = call(test, "save_map", "slam_toolbox/srv/SaveMap", name=name)
+    response = call_service(test, "save_map", "slam_toolbox/srv/SaveMap", name=name)
     assert response.result == response.RESULT_SUCCESS
-    answer = call(test, "dynamic_map", "nav_msgs/srv/GetMap").map
+    dynamic_map = call_service(test, "dynamic_map", "nav_msgs/srv/GetMap").map
     test.advance(2.5)
-    assert answer.info.width == maps.last.info.width
+    assert dynamic_map.info.width == maps.last.info.width
     saved_map = load_map(tmp_path / "flat.yaml")
-    assert ((saved_map.cells == OCCUPIED) == (grid_from_message(answer).cells == OCCUPIED)).all()
+    assert ((saved_map.cells == OCCUPIED) == (grid_from_message(dynamic_map).cells == OCCUPIED)).all()
 
 
 def test_reset_service_starts_new_map(test):
-    start(test)
+    start_node(test)
     robot, tf = Robot(test), test.record("/tf")
-    odometry = drifting(relative_pose(PATH[0], PATH), 1.04, 0.05)
+    odometry = add_drift(relative_pose(PATH[0], PATH), 1.04, 0.05)
     robot.go(PATH[:16], odometry[:16])
-    response = call(test, "reset", "slam_toolbox/srv/Reset", pause_new_measurements=True)
+    response = call_service(test, "reset", "slam_toolbox/srv/Reset", pause_new_measurements=True)
     assert response.result == response.RESULT_SUCCESS
     test.advance(0.2)
-    assert planar(map_to_odom(tf).transform) == pytest.approx([0, 0, 0], abs=1e-9)
-    assert call(test, "dynamic_map", "nav_msgs/srv/GetMap").map.info.width == 0
+    assert planar_pose(map_to_odom(tf).transform) == pytest.approx([0, 0, 0], abs=1e-9)
+    assert call_service(test, "dynamic_map", "nav_msgs/srv/GetMap").map.info.width == 0
 
 
 def serialize_map(test: SteppedGraph, path: Path, node: Any) -> str:
     robot = Robot(test)
     robot.go(PATH, relative_pose(PATH[0], PATH))
     name = str(path / "flat")
-    response = call(test, "serialize_map", "slam_toolbox/srv/SerializePoseGraph", filename=name)
+    response = call_service(test, "serialize_map", "slam_toolbox/srv/SerializePoseGraph", filename=name)
     assert response.result == response.RESULT_SUCCESS
     node.close()
     return name
 
 
 def test_robot_is_localized_in_saved_map(test, tmp_path):
-    name = serialize_map(test, tmp_path, start(test))
-    start(test, LocalizationSlamToolbox, map_file_name=name, map_start_pose=[1.9, 0.2, 0.1])
+    name = serialize_map(test, tmp_path, start_node(test))
+    start_node(test, LocalizationSlamToolbox, map_file_name=name, map_start_pose=[1.9, 0.2, 0.1])
     maps, poses = test.record("/map"), test.record("/pose")
     test.advance(3.0)
-    assert is_a_map(maps.last)
-    robot, return_path = Robot(test), along([(-2, -3), (0, -3), (2, -2.8)], step=0.25)
-    robot.go(return_path, drifting(relative_pose(return_path[0], return_path), 1.05, 0.03))
+    assert is_map_of_walls(maps.last)
+    robot, return_path = Robot(test), path_along([(-2, -3), (0, -3), (2, -2.8)], step=0.25)
+    robot.go(return_path, add_drift(relative_pose(return_path[0], return_path), 1.05, 0.03))
     expected_poses = [relative_pose(PATH[0], pose) for pose in return_path]
     publish_at = poses.last.pose.pose.position
     assert min(np.hypot(publish_at.x - pose[0], publish_at.y - pose[1]) for pose in expected_poses[-3:]) < 0.05
@@ -284,11 +284,11 @@ def test_robot_is_localized_in_saved_map(test, tmp_path):
 
 
 def test_mapping_continues_in_saved_map(test, tmp_path):
-    name = serialize_map(test, tmp_path, start(test))
-    node = start(test, MapAndLocalizationSlamToolbox)
+    name = serialize_map(test, tmp_path, start_node(test))
+    node = start_node(test, MapAndLocalizationSlamToolbox)
     request = get_service("slam_toolbox/srv/DeserializePoseGraph").Request
     pose = get_message("geometry_msgs/msg/Pose2D")(x=6.6, y=0.5, theta=0.2)
-    assert call(
+    assert call_service(
         test,
         "deserialize_map",
         "slam_toolbox/srv/DeserializePoseGraph",
@@ -298,12 +298,12 @@ def test_mapping_continues_in_saved_map(test, tmp_path):
     )
     robot, poses = Robot(test), test.record("/pose")
     scan_count = len(node._work[0].mapper.scans)
-    new_path = along([(3, -3), (4, -3), (4, 2)], step=0.25, turn=0.25)
-    robot.go(new_path, drifting(relative_pose(new_path[0], new_path), 1.02, 0.02))
+    new_path = path_along([(3, -3), (4, -3), (4, 2)], step=0.25, turn=0.25)
+    robot.go(new_path, add_drift(relative_pose(new_path[0], new_path), 1.02, 0.02))
     assert len(node._work[0].mapper.scans) > scan_count
     publish_at = poses.last.pose.pose.position
     assert [publish_at.x, publish_at.y] == pytest.approx(relative_pose(PATH[0], new_path[-1])[:2], abs=0.3)
-    assert call(test, "set_localization_mode", "std_srvs/srv/SetBool", data=True).success
+    assert call_service(test, "set_localization_mode", "std_srvs/srv/SetBool", data=True).success
     count = len(node._work[0].mapper.scans)
     robot.go(new_path[::-1], relative_pose(new_path[0], new_path[::-1]))
     assert len(node._work[0].mapper.scans) == count
@@ -318,14 +318,14 @@ def test_invalid_pose_graph_file_is_rejected_with_reason(test, tmp_path):
         ("none", "does not exist"),
     ):
         with pytest.raises(LinkwrightError) as error:
-            start(test, LocalizationSlamToolbox, map_file_name=str(tmp_path / name), map_start_at_dock=True)
+            start_node(test, LocalizationSlamToolbox, map_file_name=str(tmp_path / name), map_start_at_dock=True)
         assert error.value.diagnostics[0].code == "NAV501"
         assert reason in str(error.value)
-    start(test)
+    start_node(test)
     service_type = "slam_toolbox/srv/DeserializePoseGraph"
-    call(test, "deserialize_map", service_type, filename=str(tmp_path / "none"), match_type=1)
-    call(test, "deserialize_map", service_type, filename="x", match_type=3)
-    call(test, "deserialize_map", service_type, filename="x")
+    call_service(test, "deserialize_map", service_type, filename=str(tmp_path / "none"), match_type=1)
+    call_service(test, "deserialize_map", service_type, filename="x", match_type=3)
+    call_service(test, "deserialize_map", service_type, filename="x")
     errors = logged(test, "ERROR")
     assert "does not exist" in errors[-3]
     assert "non-localization" in errors[-2]
@@ -333,14 +333,14 @@ def test_invalid_pose_graph_file_is_rejected_with_reason(test, tmp_path):
 
 
 def test_localization_without_map_is_reported(test):
-    start(test, LocalizationSlamToolbox)
+    start_node(test, LocalizationSlamToolbox)
     Robot(test).go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert any("map_file_name" in line for line in logged(test, "ERROR"))
 
 
 def test_node_is_managed_in_jazzy(test, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
-    running = start(test)
+    running = start_node(test)
     robot, maps = Robot(test), test.record("/map")
     robot.go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert len(maps) == 0
@@ -361,7 +361,9 @@ def test_node_is_managed_in_jazzy(test, monkeypatch):
 
 
 def test_parameters_without_effect_and_misspelled_ones_are_reported(test):
-    start(test, solver_plugin="solver_plugins::SpaSolver", ceres_loss_function="None", resolutoin=0.1, resolution=-1.0)
+    start_node(
+        test, solver_plugin="solver_plugins::SpaSolver", ceres_loss_function="None", resolutoin=0.1, resolution=-1.0
+    )
     assert any("solver_plugins::SpaSolver" in line for line in logged(test, "INFO"))
     warnings = logged(test, "WARN")
     assert any("resolutoin" in line for line in warnings)
@@ -370,7 +372,7 @@ def test_parameters_without_effect_and_misspelled_ones_are_reported(test):
 
 
 def test_pose_graph_markers_are_published(test):
-    start(test)
+    start_node(test)
     markers = test.record("/slam_toolbox/graph_visualization")
     Robot(test).go(PATH[:12], relative_pose(PATH[0], PATH[:12]))
     nodes, edges, removed = markers.last.markers
@@ -380,7 +382,7 @@ def test_pose_graph_markers_are_published(test):
 
 def test_map_restarts_when_time_jumps_back(test):
     clock = test.create_node("clock").create_publisher(get_message("rosgraph_msgs/msg/Clock"), "/clock", 10)
-    node = start(test, use_sim_time=True)
+    node = start_node(test, use_sim_time=True)
     robot, poses = Robot(test), test.record("/pose")
 
     def publish_at(seconds: float, pose: np.ndarray) -> None:
@@ -407,17 +409,17 @@ def test_map_restarts_when_time_jumps_back(test):
 
 
 def test_clear_queue_service_empties_scan_queue(test):
-    node = start(test, SyncSlamToolbox)
+    node = start_node(test, SyncSlamToolbox)
     robot = Robot(test)
     robot.go(PATH[:4], relative_pose(PATH[0], PATH[:4]))
     node._work[0].queue.append((None, np.zeros(3)))
-    assert call(test, "clear_queue", "slam_toolbox/srv/ClearQueue").status
+    assert call_service(test, "clear_queue", "slam_toolbox/srv/ClearQueue").status
     assert not node._work[0].queue
 
 
 def test_autostart_node_parameter_activates_node_in_jazzy(test, monkeypatch):
     monkeypatch.setenv("ROS_DISTRO", "jazzy")
-    start(test, autostart_node=True)
+    start_node(test, autostart_node=True)
     maps = test.record("/map")
     Robot(test).go(PATH[:3], relative_pose(PATH[0], PATH[:3]))
     assert len(maps) > 0

@@ -39,7 +39,9 @@ class Nav2:
             manager = f"/lifecycle_manager_{name}"
             node.create_service(get_service("std_srvs/srv/Trigger"), f"{manager}/is_active", self._is_active)
             manage = get_service("nav2_msgs/srv/ManageLifecycleNodes")
-            node.create_service(manage, f"{manager}/manage_nodes", lambda *both, name=name: self._manage(name, *both))
+            node.create_service(
+                manage, f"{manager}/manage_nodes", lambda *messages, name=name: self._manage(name, *messages)
+            )
         node.create_service(
             get_service("action_msgs/srv/CancelGoal"), "/navigate_to_pose/_action/cancel_goal", self._cancel
         )

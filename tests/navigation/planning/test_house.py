@@ -1,4 +1,7 @@
-"""The map of the house: plans that may cross unknown cells stay within its walls, and avoid its furniture."""
+"""The map of the house.
+
+Plans that may cross unknown cells stay within its walls, and avoid its furniture.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +17,8 @@ from linkwright.navigation.planning.planner import run_to_end
 from linkwright.navigation.planning.potential import compute_potential, crossing_prices
 from tests.places import GAZEBO_PACKAGE
 
-ROBOT = 0.22
-WALLS = np.array((4.9, 3.9))
+ROBOT_RADIUS_M = 0.22
+OUTER_WALLS = np.array((4.9, 3.9))
 """The distances in meters from the origin to the inner sides of the outer walls, along x and y."""
 ROOM_POINTS = {
     "living room": (0.0, 0.0),
@@ -28,14 +31,14 @@ DOORS = [(-1.5, 1.05), (0.9, 2.5), (1.55, -1.6)]
 """The doors of bedroom, bath and kitchen."""
 
 
-def house() -> Grid:
+def load_house() -> Grid:
     return load_map(GAZEBO_PACKAGE / "maps" / "house.yaml")
 
 
 def reachable_cells(grid: Grid) -> np.ndarray:
     """Return the cells that a planner reaches from the living room; unknown cells are allowed."""
     distances = distance_field(grid.cells == OCCUPIED, grid.resolution)
-    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, ROBOT)
+    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, ROBOT_RADIUS_M)
     costs = np.where(distances > 0.6, 0, costs).astype(np.uint8)
     costs[(grid.cells == UNSEEN) & (costs < INSCRIBED)] = UNKNOWN
     row, column = grid.cells_of(np.array(ROOM_POINTS["living room"]))
@@ -45,18 +48,18 @@ def reachable_cells(grid: Grid) -> np.ndarray:
 def free_or_outside(grid: Grid) -> np.ndarray:
     """Return the cells that are free or outside the house."""
     centers = grid.centers_of(np.moveaxis(np.indices(grid.cells.shape), 0, -1))
-    return (grid.cells == FREE) | (np.abs(centers) > WALLS).any(axis=-1)
+    return (grid.cells == FREE) | (np.abs(centers) > OUTER_WALLS).any(axis=-1)
 
 
 def test_planner_reaches_all_rooms_and_no_unseen_cells():
-    grid = house()
+    grid = load_house()
     reachable = reachable_cells(grid)
     assert all(reachable[tuple(grid.cells_of(np.array(point)))] for point in ROOM_POINTS.values())
     assert free_or_outside(grid)[reachable].all()
 
 
 def test_closed_doors_separate_rooms():
-    grid = house()
+    grid = load_house()
     for door in DOORS:
         row, column = grid.cells_of(np.array(door))
         grid.cells[row - 8 : row + 9, column - 8 : column + 9] = OCCUPIED

@@ -1,3 +1,5 @@
+"""The codec of page messages: round trips and rejected input."""
+
 from __future__ import annotations
 
 import json
@@ -142,8 +144,8 @@ def test_phrases_are_translated_to_page_language():
     in_chinese = frame.translated(wording("zh"))
     message.status = [StatusRow("Fixed Frame", "error", in_chinese)]
     assert (text("en"), text(None)) == ("Frame [base] does not exist", "坐标系 [base] 不存在")
-    odd = DisplayStatus("global", "warn", [StatusRow("caf\udce9", "warn", frame)])
-    assert json.loads(encode(odd, "zh"))["status"] == [{"name": "caf?", "level": "warn", "text": in_chinese}]
+    malformed = DisplayStatus("global", "warn", [StatusRow("caf\udce9", "warn", frame)])
+    assert json.loads(encode(malformed, "zh"))["status"] == [{"name": "caf?", "level": "warn", "text": in_chinese}]
 
 
 def test_server_messages_are_plain_json():

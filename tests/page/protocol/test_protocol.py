@@ -1,3 +1,5 @@
+"""The protocol between page and server: generated types, and binary layouts."""
+
 from __future__ import annotations
 
 import struct

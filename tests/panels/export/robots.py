@@ -37,7 +37,7 @@ GRIPPER = """\
 """
 
 
-def snapshot(text: str, packages: dict[str, Path] | None = None):
+def make_snapshot(text: str, packages: dict[str, Path] | None = None):
     library = DescriptionLibrary()
     robot = library.read(text).robot
     finder = PackageFinder(start=Path("/nonexistent"), environment={}, extra=packages or {})
@@ -45,7 +45,7 @@ def snapshot(text: str, packages: dict[str, Path] | None = None):
 
 
 @dataclass
-class Drawn:
+class DrawnPrimitive:
     """A primitive of a glTF in the robot's frame, z up."""
 
     link: str
@@ -55,7 +55,7 @@ class Drawn:
     textured: bool
 
 
-class Glb:
+class GlbContents:
     """The contents of a .glb file."""
 
     def __init__(self, data: bytes) -> None:
@@ -64,7 +64,7 @@ class Glb:
         self.document: dict[str, Any] = json.loads(data[20 : 20 + size])
         self.binary = data[20 + size + 8 :]
         self.nodes = self.document["nodes"]
-        self.drawn: list[Drawn] = []
+        self.drawn: list[DrawnPrimitive] = []
         self.links: dict[str, np.ndarray] = {}
         (self.root,) = self.document["scenes"][0]["nodes"]
         upright = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
@@ -95,12 +95,12 @@ class Glb:
         surface = self.document["materials"][primitive["material"]]["pbrMetallicRoughness"]
         factor = np.array(surface["baseColorFactor"])
         linear = factor[:3]
-        seen = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
+        encoded = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
         self.drawn.append(
-            Drawn(
+            DrawnPrimitive(
                 link,
                 (placed.min(0).tolist(), placed.max(0).tolist()),
-                "#" + "".join(f"{round(part * 255):02x}" for part in seen),
+                "#" + "".join(f"{round(part * 255):02x}" for part in encoded),
                 float(factor[3]),
                 "baseColorTexture" in surface,
             )

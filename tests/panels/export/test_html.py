@@ -16,9 +16,9 @@ from linkwright.panels.export import html
 from linkwright.panels.export.feature import export_snapshot, format_of
 from linkwright.panels.export.snapshot import snapshot_of
 from linkwright.rviz import RvizConfig
-from tests.browser.golden import link, mesh, robot_of
-from tests.browser.mesh_writers import dae, glb, obj, png, stl_binary
-from tests.panels.export.robots import GRIPPER, snapshot
+from tests.browser.golden import link_element, mesh_visual, robot_of
+from tests.browser.mesh_writers import make_png, write_dae, write_glb, write_obj, write_stl_binary
+from tests.panels.export.robots import GRIPPER, make_snapshot
 from tests.viewer.scene import ARM, open_world
 
 
@@ -32,30 +32,32 @@ def built(tmp_path, monkeypatch):
     monkeypatch.setattr(html, "PAGE_FOLDER", tmp_path / "page")
 
 
-def recorded(text: str) -> dict:
+def read_recording(text: str) -> dict:
     (recording_text,) = re.findall(r'<script type="application/json" id="recorded">(.*?)</script>', text, re.DOTALL)
     return json.loads(recording_text)
 
 
-def page(text: str) -> str:
-    return export_snapshot(snapshot(text), "html").decode()
+def export_page(text: str) -> str:
+    return export_snapshot(make_snapshot(text), "html").decode()
 
 
 def test_same_files_give_the_same_bytes(tmp_path):
     for name in ("a.stl", "b.stl"):
-        (tmp_path / name).write_bytes(stl_binary())
-    text = robot_of(link("a", mesh(tmp_path / "a.stl", "")) + link("b", mesh(tmp_path / "b.stl", "")))
-    first = page(text)
+        (tmp_path / name).write_bytes(write_stl_binary())
+    text = robot_of(
+        link_element("a", mesh_visual(tmp_path / "a.stl", "")) + link_element("b", mesh_visual(tmp_path / "b.stl", ""))
+    )
+    first = export_page(text)
     os.utime(tmp_path / "a.stl", (1_000_000, 1_000_000))
-    assert page(text) == first
+    assert export_page(text) == first
     assert str(tmp_path) not in first
 
 
 def test_html_contains_all_server_messages():
-    logged = recorded(page(GRIPPER))
+    logged = read_recording(export_page(GRIPPER))
     types = [message["type"] for message in logged["messages"]]
-    for needed in ("hello", "tree", "robot_scene", "view_classes", "view_state", "joints", "joint_positions"):
-        assert needed in types
+    for message_type in ("hello", "tree", "robot_scene", "view_classes", "view_state", "joints", "joint_positions"):
+        assert message_type in types
     assert types[-1] == "frame_table"
     controls = next(message for message in logged["messages"] if message["type"] == "joints")["controls"]
     assert [(control["name"], control["mimic"]) for control in controls] == [
@@ -71,7 +73,7 @@ def test_html_contains_all_server_messages():
 
 
 def test_content_security_policy_allows_only_own_script():
-    text = page(GRIPPER)
+    text = export_page(GRIPPER)
     (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', text)
     script = text.rpartition("<script>")[2].partition("</script>")[0]
     digest = base64.b64encode(hashlib.sha256(script.encode()).digest()).decode()
@@ -86,46 +88,48 @@ def test_compressed_export_script_is_supported(tmp_path):
     script = tmp_path / "page" / "export" / "export.js"
     script.with_name("export.js.gz").write_bytes(gzip.compress(b'console.log("packed")'))
     script.unlink()
-    assert '<script>console.log("packed")</script>' in page(GRIPPER)
+    assert '<script>console.log("packed")</script>' in export_page(GRIPPER)
 
 
 def test_robot_names_are_escaped():
     name = "</script><script>alert(1)</script>"
-    text = page(f'<robot name="{name.replace("<", "&lt;")}"><link name="&lt;!--"/></robot>')
+    text = export_page(f'<robot name="{name.replace("<", "&lt;")}"><link name="&lt;!--"/></robot>')
     assert "<script>alert" not in text
-    scene = next(message for message in recorded(text)["messages"] if message["type"] == "robot_scene")
+    scene = next(message for message in read_recording(text)["messages"] if message["type"] == "robot_scene")
     assert (scene["name"], scene["links"][0]["name"]) == (name, "<!--")
 
 
 def test_meshes_and_referenced_files_are_embedded(tmp_path):
-    (tmp_path / "a.dae").write_bytes(dae())
-    (tmp_path / "b.obj").write_bytes(obj("b.mtl", "paint"))
+    (tmp_path / "a.dae").write_bytes(write_dae())
+    (tmp_path / "b.obj").write_bytes(write_obj("b.mtl", "paint"))
     (tmp_path / "b.mtl").write_text("newmtl paint\nKd 1 0 0\nmap_Kd -s 1 1 wood.png\n")
-    (tmp_path / "wood.png").write_bytes(png(1, 2, 3))
-    (tmp_path / "c.glb").write_bytes(glb())
-    (tmp_path / "d.stl").write_bytes(stl_binary())
-    (tmp_path / "secret.png").write_bytes(png(9, 9, 9))
+    (tmp_path / "wood.png").write_bytes(make_png(1, 2, 3))
+    (tmp_path / "c.glb").write_bytes(write_glb())
+    (tmp_path / "d.stl").write_bytes(write_stl_binary())
+    (tmp_path / "secret.png").write_bytes(make_png(9, 9, 9))
     names = ("a.dae", "b.obj", "c.glb", "d.stl")
-    logged = recorded(page(robot_of("".join(link(name[0], mesh(tmp_path / name, "")) for name in names))))
+    logged = read_recording(
+        export_page(robot_of("".join(link_element(name[0], mesh_visual(tmp_path / name, "")) for name in names)))
+    )
     files = {path.rpartition("/")[2]: base64.b64decode(data) for path, data in logged["files"].items()}
     assert set(files) == {*names, "b.mtl", "wood.png"}
-    assert files["d.stl"] == stl_binary()
+    assert files["d.stl"] == write_stl_binary()
 
 
 def test_meshes_cannot_embed_files_from_other_folders(tmp_path):
-    (tmp_path / "secret.png").write_bytes(png(9, 9, 9))
+    (tmp_path / "secret.png").write_bytes(make_png(9, 9, 9))
     folder = tmp_path / "meshes"
     folder.mkdir()
-    (folder / "b.obj").write_bytes(obj("b.mtl", "paint"))
+    (folder / "b.obj").write_bytes(write_obj("b.mtl", "paint"))
     (folder / "b.mtl").write_text("newmtl paint\nmap_Kd ../secret.png\nmap_Ks /etc/passwd\n")
     (folder / "link.mtl").symlink_to(tmp_path / "secret.png")
-    logged = recorded(page(robot_of(link("b", mesh(folder / "b.obj", "")))))
+    logged = read_recording(export_page(robot_of(link_element("b", mesh_visual(folder / "b.obj", "")))))
     assert {path.rpartition("/")[2] for path in logged["files"]} == {"b.obj", "b.mtl"}
 
 
 def test_html_contains_no_local_paths(tmp_path):
-    (tmp_path / "d.stl").write_bytes(stl_binary())
-    text = page(robot_of(link("d", mesh(tmp_path / "d.stl", ""))))
+    (tmp_path / "d.stl").write_bytes(write_stl_binary())
+    text = export_page(robot_of(link_element("d", mesh_visual(tmp_path / "d.stl", ""))))
     assert str(tmp_path) not in text
     # The secret in the URLs of the program's files is not exported either.
     assert re.search(r"/mesh/[^/~]+/d\.stl", text)
@@ -133,9 +137,11 @@ def test_html_contains_no_local_paths(tmp_path):
     assert '"place":{' not in text
 
 
-@pytest.mark.parametrize(("name", "known"), [("a.html", True), ("b.GLB", True), ("c.gltf", False), ("html", False)])
-def test_export_format_is_recognized_by_suffix(name, known):
-    assert (format_of(name) is not None) is known
+@pytest.mark.parametrize(
+    ("name", "has_known_suffix"), [("a.html", True), ("b.GLB", True), ("c.gltf", False), ("html", False)]
+)
+def test_export_format_is_recognized_by_suffix(name, has_known_suffix):
+    assert (format_of(name) is not None) is has_known_suffix
 
 
 async def test_html_contains_markers():
@@ -152,7 +158,7 @@ async def test_html_contains_markers():
         await world.settle()
         world.viewer.manager.fit_to_robot(2.0, 0.0)
         snapshot = snapshot_of(world.viewer, world.viewer.manager)
-    logged = recorded(export_snapshot(snapshot, "html").decode())
+    logged = read_recording(export_snapshot(snapshot, "html").decode())
     assert logged["awaits_size"] is False  # a page has already measured the robot
     assert logged["spacing"] is None
     frames = [base64.b64decode(frame) for frame in logged["frames"]]

@@ -1,3 +1,5 @@
+"""Paths to numeric fields of messages."""
+
 from __future__ import annotations
 
 import pytest
@@ -11,7 +13,7 @@ TF = get_message("tf2_msgs/msg/TFMessage")
 DIAGNOSTICS = get_message("diagnostic_msgs/msg/DiagnosticArray")
 
 
-def joint_state():
+def make_joint_state():
     message = JOINT_STATE(name=["elbow", "wrist"], position=[0.5, -1.5], velocity=[2.0])
     message.header.stamp.sec, message.header.stamp.nanosec = 12, 500_000_000
     return message
@@ -32,7 +34,7 @@ def joint_state():
 def test_field_path_returns_number_or_none(path, value):
     field_path = FieldPath(path)
     field_path.check(JOINT_STATE)
-    assert field_path.value(joint_state()) == value
+    assert field_path.value(make_joint_state()) == value
 
 
 def test_field_path_reads_nested_messages():
@@ -105,12 +107,12 @@ def test_plot_fields_of_type_include_first_array_elements():
 
 
 def test_plot_fields_of_message_include_named_elements():
-    fields = plot_fields(JOINT_STATE, joint_state())
+    fields = plot_fields(JOINT_STATE, make_joint_state())
     assert [field.path for field in fields] == ["header.stamp", "position[elbow]", "position[wrist]", "velocity[0]"]
     assert [field.kind for field in fields] == ["seconds", "double", "double", "double"]
     for field in fields:
         FieldPath(field.path).check(JOINT_STATE)
-        assert FieldPath(field.path).value(joint_state()) is not None
+        assert FieldPath(field.path).value(make_joint_state()) is not None
 
 
 def test_duplicate_names_are_not_used_in_plot_fields():

@@ -1,3 +1,5 @@
+"""The live panels: topics, messages, plots, parameters and the log."""
+
 from __future__ import annotations
 
 import asyncio
@@ -24,45 +26,45 @@ TWIST_STAMPED = get_message("geometry_msgs/msg/TwistStamped")
 
 
 @asynccontextmanager
-async def opened() -> AsyncIterator[tuple[World, Client]]:
+async def open_client() -> AsyncIterator[tuple[World, Client]]:
     async with open_world() as world, page(world.viewer) as client:
         await client.opened()
         yield world, client
 
 
-def subscriptions(world: World, topic: str) -> int:
+def subscription_count(world: World, topic: str) -> int:
     return world.graph.count_subscribers(topic)
 
 
-async def talk(publisher, period: float) -> None:
+async def publish_periodically(publisher, period: float) -> None:
     for number in range(1000):
         publisher.publish(FLOAT(data=float(number)))
         await asyncio.sleep(period)
 
 
-def frame_of(data: bytes) -> dict[int, np.ndarray]:
+def decode_sample_frame(data: bytes) -> dict[int, np.ndarray]:
     kind, count, *_ = struct.unpack_from("<IIII", data)
     assert kind == 3
-    at, samples_by_series = 16, {}
+    offset, samples_by_series = 16, {}
     for _ in range(count):
-        identity, length = struct.unpack_from("<II", data, at)
-        samples_by_series[identity] = np.frombuffer(data, "<f8", 3 * length, at + 8).reshape(3, length)
-        at += 8 + 24 * length
+        identity, length = struct.unpack_from("<II", data, offset)
+        samples_by_series[identity] = np.frombuffer(data, "<f8", 3 * length, offset + 8).reshape(3, length)
+        offset += 8 + 24 * length
     return samples_by_series
 
 
-async def samples(client: Client) -> dict[int, np.ndarray]:
+async def wait_for_samples(client: Client) -> dict[int, np.ndarray]:
     while True:
         message = await client.receive()
         if isinstance(message, bytes) and message[0] == 3:
-            return frame_of(message)
+            return decode_sample_frame(message)
 
 
 # --- topics --------------------------------------------------------------------------------------------------------
 
 
 async def test_topic_list_follows_graph():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         await client.send("watch_topics", wants_list=True, measured_topics=[], opened_topics=[])
         await client.until("topic_list")
         node = world.graph.create_node("talker")
@@ -78,19 +80,19 @@ async def test_topic_list_follows_graph():
 
 
 async def test_topic_list_is_sent_immediately():
-    async with opened() as (_, client):
+    async with open_client() as (_, client):
         await client.send("watch_topics", wants_list=True, measured_topics=[], opened_topics=[])
         listed = await client.until("topic_list")
         assert "/tf" in [topic["name"] for topic in listed["topics"]]
 
 
 async def test_topic_is_subscribed_only_while_page_watches():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
-        assert subscriptions(world, "/speed") == 0
+        assert subscription_count(world, "/speed") == 0
         await client.send("watch_topics", wants_list=False, measured_topics=["/speed"], opened_topics=["/speed"])
-        await eventually(lambda: subscriptions(world, "/speed") == 1)
-        talking = asyncio.create_task(talk(publisher, 0.02))
+        await eventually(lambda: subscription_count(world, "/speed") == 1)
+        talking = asyncio.create_task(publish_periodically(publisher, 0.02))
         message = await client.until("topic_message")
         assert message["topic"] == "/speed"
         assert [(field["name"], field["kind"]) for field in message["fields"]] == [("data", "double")]
@@ -104,13 +106,13 @@ async def test_topic_is_subscribed_only_while_page_watches():
         assert traffic["rate"] <= 60
         talking.cancel()
         await client.send("watch_topics", wants_list=False, measured_topics=[], opened_topics=[])
-        await eventually(lambda: subscriptions(world, "/speed") == 0)
+        await eventually(lambda: subscription_count(world, "/speed") == 0)
 
 
 async def test_closed_page_leaves_no_subscriptions():
     async with open_world() as world:
         world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
-        before = {name: subscriptions(world, name) for name in ("/rosout", "/parameter_events", "/speed")}
+        before = {name: subscription_count(world, name) for name in ("/rosout", "/parameter_events", "/speed")}
         async with page(world.viewer) as client:
             await client.opened()
             await client.send("watch_topics", wants_list=True, measured_topics=["/speed"], opened_topics=["/speed"])
@@ -121,47 +123,49 @@ async def test_closed_page_leaves_no_subscriptions():
             await client.send("watch_log", watched=True)
             target = {"topic": "/cmd_vel", "kind": "auto", "frame_id": ""}
             await client.send("aim_teleop", target=target)
-            await eventually(lambda: subscriptions(world, "/speed") == 3)
+            await eventually(lambda: subscription_count(world, "/speed") == 3)
             await eventually(lambda: world.graph.count_publishers("/cmd_vel") == 1)
-            assert subscriptions(world, "/rosout") == before["/rosout"] + 1
-            assert subscriptions(world, "/parameter_events") == before["/parameter_events"] + 1
+            assert subscription_count(world, "/rosout") == before["/rosout"] + 1
+            assert subscription_count(world, "/parameter_events") == before["/parameter_events"] + 1
             assert world.graph._watchers
-        await eventually(lambda: subscriptions(world, "/speed") == 0)
-        assert {name: subscriptions(world, name) for name in before} == before
+        await eventually(lambda: subscription_count(world, "/speed") == 0)
+        assert {name: subscription_count(world, name) for name in before} == before
         assert world.graph.count_publishers("/cmd_vel") == 0
         assert world.graph.count_clients("/talker/get_parameters") == 0
         assert not world.graph._watchers
 
 
 async def test_two_pages_share_subscription():
-    async with opened() as (world, first), page(world.viewer) as second:
+    async with open_client() as (world, first), page(world.viewer) as second:
         world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10).publish(FLOAT())
         for client in (first, second):
             await client.send("watch_topics", wants_list=False, measured_topics=["/speed"], opened_topics=[])
-        await eventually(lambda: subscriptions(world, "/speed") == 1)
+        await eventually(lambda: subscription_count(world, "/speed") == 1)
         await first.send("watch_topics", wants_list=False, measured_topics=[], opened_topics=[])
         await second.send("watch_topics", wants_list=True, measured_topics=["/speed"], opened_topics=[])
         await first.send("watch_topics", wants_list=True, measured_topics=[], opened_topics=[])
         for client in (first, second):
             await client.until("topic_list")  # earlier requests are done
-        assert subscriptions(world, "/speed") == 1
+        assert subscription_count(world, "/speed") == 1
 
 
 async def test_latched_message_is_shown():
-    async with opened() as (world, client):
-        lasting = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        world.graph.create_node("talker").create_publisher(FLOAT, "/map_scale", lasting).publish(FLOAT(data=0.05))
+    async with open_client() as (world, client):
+        transient_local = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        world.graph.create_node("talker").create_publisher(FLOAT, "/map_scale", transient_local).publish(
+            FLOAT(data=0.05)
+        )
         await client.send("watch_topics", wants_list=False, measured_topics=[], opened_topics=["/map_scale"])
         message = await client.until("topic_message")
         assert message["fields"][0]["value"] == "0.05"
 
 
 async def test_best_effort_publisher_is_received():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         node = world.graph.create_node("talker")
         node.create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_topics", wants_list=False, measured_topics=[], opened_topics=["/speed"])
-        await eventually(lambda: subscriptions(world, "/speed") == 1)
+        await eventually(lambda: subscription_count(world, "/speed") == 1)
         weak = node.create_publisher(FLOAT, "/speed", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
         await eventually(lambda: weak.get_subscription_count() == 1)
         weak.publish(FLOAT(data=7.0))
@@ -169,15 +173,15 @@ async def test_best_effort_publisher_is_received():
 
 
 async def test_unknown_and_mixed_topic_types_are_reported():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         node = world.graph.create_node("talker")
         node.create_publisher(FLOAT, "/mixed", 10)
         node.create_publisher(TWIST, "/mixed", 10)
         node.create_publisher("no_such_msgs/msg/Thing", "/strange", 10)
         await client.send("watch_topics", wants_list=False, measured_topics=["/mixed", "/strange"], opened_topics=[])
-        mixed, strange = (await client.until("topic_figures"))["traffic"]
+        mixed, unknown_type = (await client.until("topic_figures"))["traffic"]
         assert "more than one type: geometry_msgs/msg/Twist, std_msgs/msg/Float64" in mixed["error"]
-        assert "no_such_msgs" in strange["error"]
+        assert "no_such_msgs" in unknown_type["error"]
         await client.send("request_fields", topic="/strange")
         assert "no_such_msgs" in (await client.until("topic_fields"))["error"]
 
@@ -186,18 +190,18 @@ async def test_unknown_and_mixed_topic_types_are_reported():
 
 
 async def test_samples_contain_both_times_and_all_values():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         publisher = world.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
         series = [
             {"id": 1, "topic": "/joint_states", "path": "position[b]"},
             {"id": 2, "topic": "/joint_states", "path": "velocity[0]"},
         ]
         await client.send("watch_series", series=series)
-        await eventually(lambda: subscriptions(world, "/joint_states") == 1)
+        await eventually(lambda: subscription_count(world, "/joint_states") == 1)
         message = JOINT_STATE(name=["a", "b"], position=[1.0, 2.5], velocity=[-1.0, 0.0])
         message.header.stamp.sec = 100
         publisher.publish(message)
-        sample_arrays = await samples(client)
+        sample_arrays = await wait_for_samples(client)
         assert sample_arrays[1][1:].tolist() == [[100.0], [2.5]]
         assert sample_arrays[2][2].tolist() == [-1.0]
         assert abs(sample_arrays[1][0, 0] - time.time()) < 5
@@ -205,10 +209,10 @@ async def test_samples_contain_both_times_and_all_values():
 
 @skipping
 async def test_fast_topic_is_sent_completely_in_few_frames():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/fast", 1000)
         await client.send("watch_series", series=[{"id": 5, "topic": "/fast", "path": "data"}])
-        await eventually(lambda: subscriptions(world, "/fast") == 1)
+        await eventually(lambda: subscription_count(world, "/fast") == 1)
         now = asyncio.get_running_loop().time
         started, sent = now(), 1000
         for number in range(sent):
@@ -218,13 +222,13 @@ async def test_fast_topic_is_sent_completely_in_few_frames():
         elapsed = now() - started
         frames = []
         while sum(frame.shape[1] for frame in frames) < sent:
-            frames.append((await samples(client))[5])
+            frames.append((await wait_for_samples(client))[5])
         assert len(frames) <= 31 * elapsed + 2
         assert np.concatenate(frames, axis=1)[2].tolist() == [float(number) for number in range(sent)]
 
 
 async def test_invalid_field_paths_are_reported():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         series = [{"id": 1, "topic": "/speed", "path": "dat"}, {"id": 2, "topic": "/speed", "path": "..."}]
         await client.send("watch_series", series=series)
@@ -234,18 +238,18 @@ async def test_invalid_field_paths_are_reported():
 
 
 async def test_topic_appearing_later_is_plotted():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         series = [{"id": 1, "topic": "/later", "path": "data"}, {"id": 2, "topic": "/later", "path": "wrong"}]
         await client.send("watch_series", series=series)
         assert [state["error"] for state in (await client.until("series_states"))["states"]] == [None, None]
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/later", 10)
         assert (await client.until("series_states"))["states"][1]["error"]
         publisher.publish(FLOAT(data=3.0))
-        assert (await samples(client))[1][2].tolist() == [3.0]
+        assert (await wait_for_samples(client))[1][2].tolist() == [3.0]
 
 
 async def test_topic_fields_are_sent_again_with_element_names():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         publisher = world.graph.create_node("talker").create_publisher(JOINT_STATE, "/joint_states", 10)
         await client.send("request_fields", topic="/joint_states")
         first = await client.until("topic_fields")
@@ -254,14 +258,14 @@ async def test_topic_fields_are_sent_again_with_element_names():
         publisher.publish(JOINT_STATE(name=["elbow"], position=[1.0]))
         second = await client.until("topic_fields")
         assert {"path": "position[elbow]", "kind": "double"} in second["fields"]
-        assert subscriptions(world, "/joint_states") == 0
+        assert subscription_count(world, "/joint_states") == 0
 
 
 # --- the node graph ------------------------------------------------------------------------------------------------
 
 
 async def test_node_graph_follows_changes():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         await client.send("watch_node_graph", watched=True)
         first = await client.until("node_graph")
         assert "/rviz2" in first["nodes"]
@@ -281,7 +285,7 @@ async def test_node_graph_follows_changes():
 # --- parameters ----------------------------------------------------------------------------------------------------
 
 
-def tuned(world: World):
+def create_tuned_node(world: World):
     node = world.graph.create_node("tuned")
     limits = ParameterDescriptor(description="how fast", floating_point_range=[Range(0.0, 2.0, 0.5)])
     node.declare_parameter("speed.most", 1.5, limits)
@@ -292,8 +296,8 @@ def tuned(world: World):
 
 
 async def test_parameters_are_shown_with_descriptors():
-    async with opened() as (world, client):
-        tuned(world)
+    async with open_client() as (world, client):
+        create_tuned_node(world)
         await client.send("watch_parameters", wants_list=True, node="/tuned")
         assert "/tuned" in (await client.until("parameter_nodes"))["nodes"]
         shown = await client.until("node_parameters")
@@ -317,12 +321,12 @@ async def test_parameters_are_shown_with_descriptors():
 
 
 async def test_invalid_node_name_has_no_parameters():
-    async with opened() as (world, client):
-        tuned(world)
+    async with open_client() as (world, client):
+        create_tuned_node(world)
         await client.send("watch_parameters", wants_list=True, node="no name")
-        answer = await client.until("node_parameters", node="no name")
-        assert answer["parameters"] == []
-        assert "is not a valid service name" in answer["error"]
+        response = await client.until("node_parameters", node="no name")
+        assert response["parameters"] == []
+        assert "is not a valid service name" in response["error"]
         await client.socket.send_json(
             {"type": "set_parameter", "node": "no name", "name": "a", "kind": "bool", "values": ["true"]}
         )
@@ -332,14 +336,14 @@ async def test_invalid_node_name_has_no_parameters():
 
 
 async def test_parameters_are_set_or_rejected_with_reason():
-    async with opened() as (world, client):
-        node = tuned(world)
+    async with open_client() as (world, client):
+        node = create_tuned_node(world)
         await client.send("watch_parameters", wants_list=False, node="/tuned")
         await client.until("node_parameters")
 
         async def put(name, kind, *values):
-            wanted = {"node": "/tuned", "name": name, "kind": kind, "values": list(values)}
-            await client.socket.send_json({"type": "set_parameter", **wanted})
+            expected = {"node": "/tuned", "name": name, "kind": kind, "values": list(values)}
+            await client.socket.send_json({"type": "set_parameter", **expected})
             return await client.until("parameter_result")
 
         assert (await put("speed.most", "double", "0.5"))["successful"]
@@ -350,14 +354,14 @@ async def test_parameters_are_set_or_rejected_with_reason():
         assert not high["successful"]
         assert high["reason"]
         assert not (await put("fixed", "integer", "8"))["successful"]
-        wrong = await put("big", "integer", "lots")
-        assert (wrong["successful"], wrong["reason"]) == (False, "'lots' is not an integer")
+        rejection = await put("big", "integer", "lots")
+        assert (rejection["successful"], rejection["reason"]) == (False, "'lots' is not an integer")
         assert "64 bits" in (await put("big", "integer", str(2**64)))["reason"]
 
 
 async def test_parameter_changes_by_other_nodes_are_shown():
-    async with opened() as (world, client):
-        node = tuned(world)
+    async with open_client() as (world, client):
+        node = create_tuned_node(world)
         await client.send("watch_parameters", wants_list=False, node="/tuned")
         await client.until("node_parameters")
         node.set_parameters([Parameter("speed.most", value=2.0)])
@@ -372,8 +376,8 @@ async def test_parameter_changes_by_other_nodes_are_shown():
 
 
 async def test_parameters_are_dumped_as_yaml():
-    async with opened() as (world, client):
-        tuned(world)
+    async with open_client() as (world, client):
+        create_tuned_node(world)
         await client.send("watch_parameters", wants_list=False, node="/tuned")
         await client.send("dump_parameters", node="/tuned")
         dump = await client.until("parameter_dump")
@@ -386,7 +390,7 @@ async def test_parameters_are_dumped_as_yaml():
 
 
 async def test_log_begins_with_past_messages():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         node = world.graph.create_node("talker")
         node.get_logger().warning("before")
         await client.send("watch_log", watched=True)
@@ -401,7 +405,7 @@ async def test_log_begins_with_past_messages():
 
 
 async def test_log_contains_messages_logged_while_hidden():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         log = world.graph.create_node("talker").get_logger()
         node = world.viewer.context.node
         await eventually(lambda: node.count_subscribers("/rosout") > 0)  # before any page shows a log
@@ -418,7 +422,7 @@ async def test_log_contains_messages_logged_while_hidden():
 
 @skipping
 async def test_log_flood_is_truncated_and_counted():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         world.graph.create_node("first").get_logger().info("of the past")
         await client.send("watch_log", watched=True)
         await client.until("log_lines")
@@ -437,13 +441,13 @@ async def test_log_flood_is_truncated_and_counted():
 # --- the teleop pad ------------------------------------------------------------------------------------------------
 
 
-async def drive(client: Client, x: float, turn: float = 0.0) -> None:
+async def send_drive(client: Client, x: float, turn: float = 0.0) -> None:
     await client.send("drive", linear=[x, 0, 0], angular=[0, 0, turn])
 
 
 @pytest.mark.parametrize("kind", [TWIST, TWIST_STAMPED])
 async def test_teleop_pad_publishes_type_of_subscription(kind):
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         messages = []
         world.graph.create_node("base").create_subscription(kind, "/cmd_vel", messages.append, 10)
         target = {"topic": "cmd_vel", "kind": "auto", "frame_id": "base_link"}
@@ -451,7 +455,7 @@ async def test_teleop_pad_publishes_type_of_subscription(kind):
         state = await client.until("teleop_state")
         name = kind.TYPE_NAME.rpartition("/")[2]
         assert (state["topic"], state["kind"], state["subscribers"]) == ("/cmd_vel", name, 1)
-        await drive(client, 0.5, -1.0)
+        await send_drive(client, 0.5, -1.0)
         await eventually(lambda: messages)
         twist = messages[0] if kind is TWIST else messages[0].twist
         assert (twist.linear.x, twist.angular.z) == (0.5, -1.0)
@@ -469,11 +473,11 @@ async def test_teleop_stops_robot_when_page_is_silent_or_closed():
         async with page(world.viewer) as client:
             await client.opened()
             await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
-            await drive(client, 0.5)
+            await send_drive(client, 0.5)
             await eventually(lambda: speeds == [0.5, 0.0])
             await asyncio.sleep(0.5)
             assert speeds == [0.5, 0.0], "zero is published only once"
-            await drive(client, 0.25)
+            await send_drive(client, 0.25)
             await eventually(lambda: len(speeds) == 3)
             left = asyncio.get_running_loop().time()
         await eventually(lambda: speeds == [0.5, 0.0, 0.25, 0.0])
@@ -482,21 +486,21 @@ async def test_teleop_stops_robot_when_page_is_silent_or_closed():
 
 @skipping
 async def test_teleop_keeps_robot_moving_and_ends_with_zero():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         speeds = []
         node = world.graph.create_node("base")
         node.create_subscription(TWIST, "/cmd_vel", lambda message: speeds.append(message.linear.x), 10)
         await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "Twist", "frame_id": ""})
         for _ in range(12):
-            await drive(client, 1.0)
+            await send_drive(client, 1.0)
             await asyncio.sleep(0.05)
-        await drive(client, 0.0)
+        await send_drive(client, 0.0)
         await eventually(lambda: len(speeds) == 13)
         assert speeds == [1.0] * 12 + [0.0]
 
 
 async def test_teleop_ignores_topics_of_other_types():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         world.graph.create_node("base").create_publisher(FLOAT, "/cmd_vel", 10)
         await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
         assert (await client.until("teleop_state"))["error"] == "the topic carries std_msgs/msg/Float64"
@@ -506,7 +510,7 @@ async def test_teleop_ignores_topics_of_other_types():
 
 
 async def test_teleop_type_follows_later_subscription():
-    async with opened() as (world, client):
+    async with open_client() as (world, client):
         await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
         assert (await client.until("teleop_state"))["kind"] == "Twist"
         world.graph.create_node("base").create_subscription(TWIST_STAMPED, "/cmd_vel", lambda _: None, 10)

@@ -1,3 +1,5 @@
+"""The tree of a message's fields, and its limits."""
+
 from __future__ import annotations
 
 from linkwright.messages import get_message
@@ -5,9 +7,9 @@ from linkwright.page.protocol.monitor import MessageField
 from linkwright.panels.monitor.topics import message_tree
 
 
-def row(rows: list[MessageField], *path: str) -> MessageField:
+def row_at_path(rows: list[MessageField], *path: str) -> MessageField:
     row_of_path = next(row for row in rows if row.name == path[0])
-    return row(row_of_path.children, *path[1:]) if path[1:] else row_of_path
+    return row_at_path(row_of_path.children, *path[1:]) if path[1:] else row_of_path
 
 
 def test_message_tree_has_types_and_values():
@@ -15,15 +17,15 @@ def test_message_tree_has_types_and_values():
     message.header.frame_id = "base"
     tree = message_tree(message)
     assert [field.name for field in tree] == ["header", "name", "position", "velocity", "effort"]
-    assert row(tree, "header").kind == "std_msgs/Header"
-    assert row(tree, "header", "frame_id").value == "base"
-    assert (row(tree, "position").kind, row(tree, "position").value) == ("sequence<double>", "[0.5]")
-    assert row(tree, "position", "[0]") == MessageField("[0]", "double", "0.5")
+    assert row_at_path(tree, "header").kind == "std_msgs/Header"
+    assert row_at_path(tree, "header", "frame_id").value == "base"
+    assert (row_at_path(tree, "position").kind, row_at_path(tree, "position").value) == ("sequence<double>", "[0.5]")
+    assert row_at_path(tree, "position", "[0]") == MessageField("[0]", "double", "0.5")
 
 
 def test_long_arrays_are_truncated():
     image = get_message("sensor_msgs/msg/Image")(data=bytes(range(200)))
-    data = row(message_tree(image), "data")
+    data = row_at_path(message_tree(image), "data")
     assert data.value == "[0, 1, 2, 3, 4, 5, 6, 7, ...]"
     assert (len(data.children), data.omitted) == (64, 136)
 
@@ -49,6 +51,6 @@ def test_tree_of_large_message_is_limited():
 
 def test_all_value_types_are_formatted():
     status = get_message("diagnostic_msgs/msg/DiagnosticStatus")(level=b"\x02")
-    assert row(message_tree(status), "level").value == "0x02"
+    assert row_at_path(message_tree(status), "level").value == "0x02"
     assert message_tree(get_message("std_msgs/msg/Bool")(data=True))[0].value == "true"
     assert message_tree(get_message("std_msgs/msg/Float32")(data=0.1))[0].value == "0.1"

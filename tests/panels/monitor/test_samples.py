@@ -1,3 +1,5 @@
+"""Samples of plots: queues, thinning and frames."""
+
 from __future__ import annotations
 
 import math
@@ -36,10 +38,10 @@ def test_unread_sample_queue_is_limited_and_keeps_extremes():
 
 
 @given(st.lists(st.floats(allow_infinity=False, width=32), min_size=1, max_size=400), st.sampled_from([2, 4, 10, 64]))
-def test_thinning_keeps_minimum_and_maximum(values, most):
+def test_thinning_keeps_minimum_and_maximum(values, max_count):
     samples = np.array([np.arange(len(values)), np.arange(len(values)), values], dtype=np.float64)
-    thinned = thin_out(samples, most)
-    assert thinned.shape[1] <= max(most, min(len(values), most))
+    thinned = thin_out(samples, max_count)
+    assert thinned.shape[1] <= max(max_count, min(len(values), max_count))
     assert (np.diff(thinned[0]) > 0).all()
     if not np.isnan(values).all():
         assert np.nanmin(thinned[2]) == np.nanmin(samples[2])

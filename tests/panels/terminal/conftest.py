@@ -1,3 +1,5 @@
+"""Fixtures of the terminal tests."""
+
 from __future__ import annotations
 
-from tests.viewer.conftest import _state_of_the_user  # noqa: F401  # a fixture
+from tests.viewer.conftest import _isolated_user_state  # noqa: F401  # a fixture

@@ -21,7 +21,7 @@ from linkwright.panels.terminal.feature import MAX_TERMINALS, TerminalFeature
 from linkwright.panels.terminal.process_session import session_processes
 from linkwright.panels.terminal.terminal import MAX_UNACKNOWLEDGED
 from tests.viewer.scene import World, open_world, page
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
@@ -45,7 +45,7 @@ class Reader:
 
     async def until(self, part: str) -> None:
         try:
-            await asyncio.wait_for(self._until(part), SECONDS)
+            await asyncio.wait_for(self._until(part), TIMEOUT_S)
         except asyncio.TimeoutError:
             pytest.fail(f"the terminal does not show {part!r}, but {self.text!r}")
 
@@ -65,7 +65,7 @@ class Reader:
 
 
 @asynccontextmanager
-async def enabled(folder: Path, command: tuple[str, ...] = SHELL) -> AsyncIterator[World]:
+async def open_world_with_terminals(folder: Path, command: tuple[str, ...] = SHELL) -> AsyncIterator[World]:
     async with open_world() as world:
         world.viewer.add_feature(TerminalFeature).enable(folder, command)
         yield world
@@ -77,22 +77,22 @@ async def open_terminal(client: Any) -> Reader:
     return Reader(client)
 
 
-async def state(client: Any, *, of: int = 1, **fields: Any) -> dict[str, Any]:
+async def wait_for_state(client: Any, *, terminal: int = 1, **fields: Any) -> dict[str, Any]:
     """Wait until a terminal has these fields."""
     while True:
         message = await client.until("terminals")
         for item in message["terminals"]:
-            if item["id"] == of and all(item[name] == value for name, value in fields.items()):
+            if item["id"] == terminal and all(item[name] == value for name, value in fields.items()):
                 return item  # type: ignore[no-any-return]
 
 
-def leader_of(world: World, number: int = 1) -> int:
+def leader_pid(world: World, number: int = 1) -> int:
     terminal = world.viewer.add_feature(TerminalFeature)._terminals[number]
     return terminal._pty._process.pid  # type: ignore[attr-defined,no-any-return]
 
 
 async def test_terminal_runs_commands_in_folder(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
         assert (await client.until("terminals"))["folder"] == str(tmp_path)
         reader = await open_terminal(client)
         await reader.type("pwd -P; echo 'Wort 小车'; echo $TERM $COLORTERM\r")
@@ -118,7 +118,7 @@ async def test_page_without_permission_receives_no_terminal_messages() -> None:
 
 async def test_pages_on_other_machines_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "is_local_connection", lambda _: False)
-    async with enabled(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "on the machine of the program" in (await client.until("terminals"))["refusal_reason"]
@@ -127,7 +127,7 @@ async def test_pages_on_other_machines_are_rejected(tmp_path: Path, monkeypatch:
 
 async def test_pages_of_other_users_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "may_be_own_user", lambda _: False)
-    async with enabled(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "the user who started the program" in (await client.until("terminals"))["refusal_reason"]
@@ -138,15 +138,15 @@ async def test_pages_of_other_users_are_rejected(tmp_path: Path, monkeypatch: py
 
 @pytest.mark.parametrize("query", ["", "?token=wrong"])
 async def test_websocket_requires_token(tmp_path: Path, query: str) -> None:
-    async with enabled(tmp_path) as world, aiohttp.ClientSession() as browser:
-        plain = world.viewer.url.partition("?")[0]
+    async with open_world_with_terminals(tmp_path) as world, aiohttp.ClientSession() as browser:
+        url_without_token = world.viewer.url.partition("?")[0]
         with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
-            await browser.ws_connect(f"{plain}ws{query}")
+            await browser.ws_connect(f"{url_without_token}ws{query}")
         assert refused.value.status == 401
 
 
 async def test_websocket_rejects_other_origins(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as world, aiohttp.ClientSession() as browser:
+    async with open_world_with_terminals(tmp_path) as world, aiohttp.ClientSession() as browser:
         address = world.viewer.url.replace("/?", "/ws?")
         with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
             await browser.ws_connect(address, origin="http://evil.example")
@@ -172,18 +172,18 @@ async def test_terminal_requires_loopback_address(host: str) -> None:
 
 
 async def test_exited_shell_is_shown_and_restarted(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("echo first; exit 4\r")
-        await state(client, status=4)
+        await wait_for_state(client, status=4)
         await client.send("restart_terminal", terminal=1, columns=100, rows=30)
-        await state(client, status=None)
+        await wait_for_state(client, status=None)
         await reader.type("stty size\r")
         await reader.until("30 100")
 
 
 async def test_another_page_attaches_with_last_output(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as world, page(world.viewer) as first:
+    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as first:
         reader = await open_terminal(first)
         await reader.type("echo remem'ber'\r")
         await reader.until("remember\r\n")
@@ -193,9 +193,9 @@ async def test_another_page_attaches_with_last_output(tmp_path: Path) -> None:
             other = Reader(second)
             assert (await other.next())["is_replay"]
             assert "remember\r\n" in other.text
-            await state(first, shown="elsewhere")
+            await wait_for_state(first, shown="elsewhere")
             await first.send("write_terminal", terminal=1, text="echo not'hing'\r", is_binary=False)
-            await state(first, shown="elsewhere")
+            await wait_for_state(first, shown="elsewhere")
             await other.type("stty size; echo do'ne'\r")
             await other.until("done\r\n")
             assert "20 90" in other.text
@@ -203,13 +203,13 @@ async def test_another_page_attaches_with_last_output(tmp_path: Path) -> None:
 
 
 async def test_reloaded_page_shows_terminal_again(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as world:
+    async with open_world_with_terminals(tmp_path) as world:
         async with page(world.viewer) as client:
             reader = await open_terminal(client)
             await reader.type("x=4''2\r")
             await reader.until("x=4")
         async with page(world.viewer) as client:
-            await state(client, shown="nowhere")
+            await wait_for_state(client, shown="nowhere")
             await client.send("show_terminal", terminal=1, **SIZE)
             reader = Reader(client)
             await reader.type("echo <$x>\r".replace("<$x>", '"<$x>"'))
@@ -217,7 +217,7 @@ async def test_reloaded_page_shows_terminal_again(tmp_path: Path) -> None:
 
 
 async def test_endless_output_waits_for_acknowledgment(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         reader.acknowledges = False
         await reader.type("yes\r")
@@ -236,11 +236,11 @@ async def test_endless_output_waits_for_acknowledgment(tmp_path: Path) -> None:
 
 
 async def test_programs_continue_without_page(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as world:
+    async with open_world_with_terminals(tmp_path) as world:
         async with page(world.viewer) as client:
             reader = await open_terminal(client)
             await reader.type("seq 300000; touch finished\r")
-        await asyncio.to_thread(wait_until, (tmp_path / "finished").exists, SECONDS)
+        await asyncio.to_thread(wait_until, (tmp_path / "finished").exists, TIMEOUT_S)
         async with page(world.viewer) as client:
             await client.send("show_terminal", terminal=1, **SIZE)
             reader = Reader(client)
@@ -249,29 +249,29 @@ async def test_programs_continue_without_page(tmp_path: Path) -> None:
 
 
 async def test_closing_terminal_ends_its_programs(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("sleep 1000 & sleep 1000 & echo do'ne'\r")
         await reader.until("done\r\n")
-        leader = leader_of(world)
+        leader = leader_pid(world)
         await client.send("close_terminal", terminal=1)
         while (await client.until("terminals"))["terminals"]:
             pass
-        await asyncio.to_thread(wait_until, lambda: not list(session_processes(leader)), SECONDS)
+        await asyncio.to_thread(wait_until, lambda: not list(session_processes(leader)), TIMEOUT_S)
 
 
 async def test_closing_server_ends_all_programs(tmp_path: Path) -> None:
-    async with enabled(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("trap '' HUP; (trap '' HUP; sleep 1000) & echo do'ne'\r")
         await reader.until("done\r\n")
-        leader = leader_of(world)
+        leader = leader_pid(world)
         assert list(session_processes(leader))
     assert list(session_processes(leader)) == []
 
 
 async def test_number_of_terminals_is_limited(tmp_path: Path) -> None:
-    async with enabled(tmp_path, ("/bin/sleep", "1000")) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path, ("/bin/sleep", "1000")) as world, page(world.viewer) as client:
         for _ in range(MAX_TERMINALS + 1):
             await client.send("open_terminal", **SIZE)
         refused = await client.until(
@@ -281,7 +281,7 @@ async def test_number_of_terminals_is_limited(tmp_path: Path) -> None:
 
 
 async def test_shell_start_failure_is_reported(tmp_path: Path) -> None:
-    async with enabled(tmp_path / "gone") as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path / "gone") as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "No such file" in (await client.until("terminals"))["refusal_reason"]
@@ -292,7 +292,7 @@ async def test_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.Monk
         raise ModuleNotFoundError("no winpty", name="winpty")
 
     monkeypatch.setattr(terminals, "open_pty", fail)
-    async with enabled(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "[learn]" in (await client.until("terminals"))["refusal_reason"]
@@ -300,7 +300,7 @@ async def test_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.Monk
 
 async def test_unread_input_is_limited(tmp_path: Path) -> None:
     script = "stty raw -echo; echo ready; exec sleep 1000"
-    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.until("ready")
         for _ in range(5):
@@ -311,7 +311,7 @@ async def test_unread_input_is_limited(tmp_path: Path) -> None:
 
 async def test_binary_input_reaches_program_as_bytes(tmp_path: Path) -> None:
     script = "stty raw -echo; echo ready; head -c 2 | od -An -tu1"
-    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.until("ready")
         await client.send("write_terminal", terminal=1, text="\xff\x80", is_binary=True)
@@ -320,7 +320,7 @@ async def test_binary_input_reaches_program_as_bytes(tmp_path: Path) -> None:
 
 async def test_split_utf8_character_arrives_complete(tmp_path: Path) -> None:
     script = r"stty raw -echo; printf 'ready\346'; read -r a; printf '\234\272<'"  # an echo would separate the bytes
-    async with enabled(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.until("ready")
         await reader.type("\n")

@@ -1,4 +1,7 @@
-"""A program in a pseudoterminal: output, input, size, and the end of the program and its children."""
+"""A program in a pseudoterminal.
+
+The tests cover output, input, size, and the end of the program and its children.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +18,7 @@ import pytest
 from linkwright.panels.terminal.opening import open_pty
 from linkwright.panels.terminal.process_session import session_processes
 from linkwright.panels.terminal.pty import Pty, TerminalProgram, TerminalSize
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
 
@@ -25,7 +28,7 @@ def real_path(path: Path) -> str:
     return os.path.realpath(path)
 
 
-class Running:
+class RunningProgram:
     """A program in a terminal with which a test communicates."""
 
     def __init__(self, script: str, folder: Path, *, reads: bool = True) -> None:
@@ -53,7 +56,7 @@ class Running:
         self._changed.set()
 
     async def until(self, holds: Callable[[], object]) -> None:
-        async with asyncio.timeout(SECONDS) if sys.version_info >= (3, 11) else _no_limit():
+        async with asyncio.timeout(TIMEOUT_S) if sys.version_info >= (3, 11) else _no_limit():
             while not holds():
                 self._changed.clear()
                 await self._changed.wait()
@@ -73,8 +76,8 @@ async def _no_limit() -> AsyncIterator[None]:
 
 
 @asynccontextmanager
-async def running(script: str, folder: Path, **options: bool) -> AsyncIterator[Running]:
-    program = Running(script, folder, **options)
+async def run_program(script: str, folder: Path, **options: bool) -> AsyncIterator[RunningProgram]:
+    program = RunningProgram(script, folder, **options)
     try:
         yield program
     finally:
@@ -83,7 +86,7 @@ async def running(script: str, folder: Path, **options: bool) -> AsyncIterator[R
 
 
 async def test_program_runs_in_folder_with_own_terminal(tmp_path: Path) -> None:
-    async with running("pwd -P; test -t 0 && tty </dev/tty; stty size; exit 3", tmp_path) as program:
+    async with run_program("pwd -P; test -t 0 && tty </dev/tty; stty size; exit 3", tmp_path) as program:
         assert await program.end() == 3
         folder, tty, size = program.output.decode().split("\r\n")[:3]
         assert folder == real_path(tmp_path)
@@ -92,13 +95,13 @@ async def test_program_runs_in_folder_with_own_terminal(tmp_path: Path) -> None:
 
 
 async def test_all_output_arrives_before_end(tmp_path: Path) -> None:
-    async with running("seq 100000; exit 7", tmp_path) as program:
+    async with run_program("seq 100000; exit 7", tmp_path) as program:
         assert await program.end() == 7
         assert program.output == b"".join(b"%d\r\n" % number for number in range(1, 100001))
 
 
 async def test_binary_data_passes_in_both_directions(tmp_path: Path) -> None:
-    async with running("stty raw -echo; echo ready; head -c 256 | od -An -v -tu1", tmp_path) as program:
+    async with run_program("stty raw -echo; echo ready; head -c 256 | od -An -v -tu1", tmp_path) as program:
         await program.prints("ready")
         program.pty.write(bytes(range(256)))
         await program.end()
@@ -107,14 +110,16 @@ async def test_binary_data_passes_in_both_directions(tmp_path: Path) -> None:
 
 
 async def test_backspace_erases_chinese_character(tmp_path: Path) -> None:
-    async with running("echo ready; cat", tmp_path) as program:
+    async with run_program("echo ready; cat", tmp_path) as program:
         await program.prints("ready")
         program.pty.write("机器人\x7f车\r".encode())
         await program.prints("\r\n机器车\r\n")
 
 
 async def test_program_receives_new_size(tmp_path: Path) -> None:
-    async with running("trap 'stty size; exit' WINCH; echo ready; while :; do sleep 0.05; done", tmp_path) as program:
+    async with run_program(
+        "trap 'stty size; exit' WINCH; echo ready; while :; do sleep 0.05; done", tmp_path
+    ) as program:
         await program.prints("ready")
         program.pty.resize(TerminalSize(132, 43))
         await program.prints("43 132")
@@ -124,7 +129,7 @@ async def test_program_receives_new_size(tmp_path: Path) -> None:
 async def test_control_keys_send_signals_ignored_by_server(tmp_path: Path, key: bytes, number: int) -> None:
     previous = signal.signal(number, signal.SIG_IGN)
     try:
-        async with running("ulimit -c 0; echo ready; exec sleep 100", tmp_path) as program:
+        async with run_program("ulimit -c 0; echo ready; exec sleep 100", tmp_path) as program:
             await program.prints("ready")
             program.pty.write(key)
             assert await program.end() == -number
@@ -133,7 +138,7 @@ async def test_control_keys_send_signals_ignored_by_server(tmp_path: Path, key: 
 
 
 async def test_output_is_read_only_on_request(tmp_path: Path) -> None:
-    async with running("yes; echo never", tmp_path, reads=False) as program:
+    async with run_program("yes; echo never", tmp_path, reads=False) as program:
         for count in range(1, 4):
             before = len(program.output)
             program.pty.request_output()
@@ -145,7 +150,9 @@ async def test_output_is_read_only_on_request(tmp_path: Path) -> None:
 
 
 async def test_input_is_buffered_until_program_reads(tmp_path: Path) -> None:
-    async with running("stty raw -echo; echo ready; read -r go </dev/null; kill -STOP $$; wc -c", tmp_path) as program:
+    async with run_program(
+        "stty raw -echo; echo ready; read -r go </dev/null; kill -STOP $$; wc -c", tmp_path
+    ) as program:
         await program.prints("ready")
         program.pty.write(b"x" * 500_000)
         assert program.pty.unwritten_size > 0
@@ -154,17 +161,17 @@ async def test_input_is_buffered_until_program_reads(tmp_path: Path) -> None:
 
 async def test_background_processes_end_with_shell(tmp_path: Path) -> None:
     script = "(trap '' HUP; sleep 1000) & sleep 1000 & echo ready; exit 5"
-    async with running(script, tmp_path) as program:
+    async with run_program(script, tmp_path) as program:
         assert await program.end() == 5
         assert list(session_processes(program.leader)) == []
 
 
 async def test_hang_up_ends_processes_that_ignore_sighup(tmp_path: Path) -> None:
     script = "trap '' HUP TERM INT; (trap '' HUP; sleep 1000) & sleep 1000 & echo ready; while :; do sleep 1; done"
-    async with running(script, tmp_path) as program:
+    async with run_program(script, tmp_path) as program:
         await program.prints("ready")
         leader = program.leader
-        wait_until(lambda: len(list(session_processes(leader))) >= 3, SECONDS)
+        wait_until(lambda: len(list(session_processes(leader))) >= 3, TIMEOUT_S)
         program.pty.hang_up()
         await asyncio.to_thread(program.pty.wait_until_ended, 0.1)
         assert list(session_processes(leader)) == []
@@ -172,11 +179,11 @@ async def test_hang_up_ends_processes_that_ignore_sighup(tmp_path: Path) -> None
 
 
 async def test_hang_up_ends_stopped_program(tmp_path: Path) -> None:
-    async with running("echo ready; kill -STOP $$", tmp_path) as program:
+    async with run_program("echo ready; kill -STOP $$", tmp_path) as program:
         await program.prints("ready")
         leader = program.leader
         program.pty.hang_up()
-        await asyncio.to_thread(program.pty.wait_until_ended, SECONDS)
+        await asyncio.to_thread(program.pty.wait_until_ended, TIMEOUT_S)
         assert list(session_processes(leader)) == []
 
 

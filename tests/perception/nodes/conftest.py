@@ -1,3 +1,5 @@
+"""Fixtures of the tests of perception nodes."""
+
 from __future__ import annotations
 
-from tests.nodes.conftest import clock, graph, log, logged, stage  # noqa: F401  # fixtures
+from tests.nodes.conftest import clock, graph, harness, log, logged  # noqa: F401  # fixtures

@@ -1,3 +1,5 @@
+"""The image republisher: raw, compressed and depth transports."""
+
 from __future__ import annotations
 
 import numpy as np
@@ -47,14 +49,14 @@ async def send(test, topic, message):
 async def test_raw_image_survives_compressed_round_trip(test):
     start(test, "raw", "compressed", remappings=[("in", "/camera/image_raw"), ("out", "/small")])
     start(test, "compressed", "raw", remappings=[("in/compressed", "/small/compressed"), ("out", "/back")])
-    back, small = test.record("/back"), test.record("/small/compressed")
+    round_trip, compressed = test.record("/back"), test.record("/small/compressed")
     await test.settle()
     await send(test, "/camera/image_raw", image(colored(), "bgr8"))
-    assert small.last.format == "bgr8; jpeg compressed bgr8"
-    assert (back.last.encoding, back.last.width, back.last.step) == ("bgr8", 16, 48)
-    pixels = np.frombuffer(bytes(back.last.data), np.uint8).reshape(16, 16, 3)
+    assert compressed.last.format == "bgr8; jpeg compressed bgr8"
+    assert (round_trip.last.encoding, round_trip.last.width, round_trip.last.step) == ("bgr8", 16, 48)
+    pixels = np.frombuffer(bytes(round_trip.last.data), np.uint8).reshape(16, 16, 3)
     assert np.abs(pixels.astype(int) - colored()).max() <= 4
-    assert back.last.header.frame_id == "camera"
+    assert round_trip.last.header.frame_id == "camera"
 
 
 async def test_depths_in_meters_survive_compressed_depth(test):

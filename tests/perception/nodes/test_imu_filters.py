@@ -1,3 +1,5 @@
+"""The IMU filter nodes: orientation, transforms and parameters."""
+
 from __future__ import annotations
 
 from math import pi
@@ -35,8 +37,10 @@ async def measure(test, rpy=(0.0, 0.0, 0.0), rates=(0.0, 0.0, 0.0), magnetic=Fal
         await test.settle()
     message = get_message("sensor_msgs/msg/Imu")()
     message.header.stamp, message.header.frame_id = Time.from_nanoseconds(test.clock.now_ns()), "imu_link"
-    felt, turn = message.linear_acceleration, message.angular_velocity
-    felt.x, felt.y, felt.z = acceleration or rotate(back, (0.0, 0.0, GRAVITY))
+    measured_acceleration, turn = message.linear_acceleration, message.angular_velocity
+    measured_acceleration.x, measured_acceleration.y, measured_acceleration.z = acceleration or rotate(
+        back, (0.0, 0.0, GRAVITY)
+    )
     turn.x, turn.y, turn.z = rates
     test.publish("/imu/data_raw", message)
     await test.advance(0.01)
@@ -68,8 +72,10 @@ async def test_madgwick_applies_offset_gravity_removal_and_reverse_tf(test):
     for _ in range(3):
         await measure(test, (0.2, 0.1, 0.0))
     assert angles(data.last)[2] == pytest.approx(pi / 2 - 0.1)
-    felt = data.last.linear_acceleration
-    assert (felt.x, felt.y, felt.z) == pytest.approx((0.0, 0.0, 0.0), abs=1e-3)
+    measured_acceleration = data.last.linear_acceleration
+    assert (measured_acceleration.x, measured_acceleration.y, measured_acceleration.z) == pytest.approx(
+        (0.0, 0.0, 0.0), abs=1e-3
+    )
     (transform,) = tf.last.transforms
     assert (transform.header.frame_id, transform.child_frame_id) == ("imu_link", "odom")
     assert rpy.last.vector.z == pytest.approx(pi / 2 - 0.1)

@@ -1,3 +1,5 @@
+"""The laser filter node: chains of filters, and their parameters."""
+
 from __future__ import annotations
 
 from math import nan, pi
@@ -56,15 +58,15 @@ def scan(test, *ranges, frame="laser"):
 async def test_filter_chain_applies_in_order_and_keeps_input(test):
     start(test, filter1=RANGE, filter2=BOUNDS)
     filtered = test.record("/scan_filtered")
-    given = scan(test, 1.0, 2.0, 9.0, 3.0, 4.0)
+    input_scan = scan(test, 1.0, 2.0, 9.0, 3.0, 4.0)
     for _ in range(2):
-        test.publish("/scan", given)
+        test.publish("/scan", input_scan)
         await test.settle()
     assert list(filtered.last.ranges) == pytest.approx([2.0, nan, 3.0], nan_ok=True)
     assert filtered.last.angle_min == pytest.approx(-0.1)
     assert filtered.last.scan_time == pytest.approx(0.2)
-    assert filtered.last.header == given.header
-    assert list(given.ranges) == [1.0, 2.0, 9.0, 3.0, 4.0]
+    assert filtered.last.header == input_scan.header
+    assert list(input_scan.ranges) == [1.0, 2.0, 9.0, 3.0, 4.0]
 
 
 async def test_empty_chain_passes_scan(test):

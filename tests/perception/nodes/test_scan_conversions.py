@@ -1,3 +1,5 @@
+"""Nodes that convert depth images and clouds to scans."""
+
 from __future__ import annotations
 
 from math import hypot, inf, pi
@@ -81,9 +83,9 @@ async def test_depth_image_becomes_scan(test):
     assert scan.last.ranges[2] == pytest.approx(1.5)
     count = len(scan)
     await test.advance(10.0)
-    odd = depth_image(test, np.full((3, 5), 2.0))
-    odd.encoding = "rgb8"
-    await send(test, "/depth", odd)
+    image_of_odd_size = depth_image(test, np.full((3, 5), 2.0))
+    image_of_odd_size.encoding = "rgb8"
+    await send(test, "/depth", image_of_odd_size)
     assert len(scan) == count
     assert logged(test, "ERROR")[-1].endswith("Depth image has unsupported encoding: rgb8")
 

@@ -1,3 +1,5 @@
+"""Scans from depth images and point clouds."""
+
 from __future__ import annotations
 
 from math import atan, hypot, inf, nan, pi
@@ -63,8 +65,8 @@ def test_point_at_maximum_angle_is_ignored():
 
 
 def test_scan_to_points_round_trip():
-    given = scan(1.0, 2.0, nan, 20.0, 3.0, angle_min=-0.2)
-    points, places = points_from_scan(given)
+    input_scan = scan(1.0, 2.0, nan, 20.0, 3.0, angle_min=-0.2)
+    points, places = points_from_scan(input_scan)
     assert places.tolist() == [0, 1, 4]
     assert np.linalg.norm(points, axis=1) == pytest.approx([1.0, 2.0, 3.0])
     rays = Rays(-0.25, 0.25, 0.1, 0.1, 10.0)

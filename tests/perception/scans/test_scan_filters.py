@@ -1,3 +1,5 @@
+"""The filters of laser scans."""
+
 from __future__ import annotations
 
 from math import inf, nan, pi
@@ -98,8 +100,8 @@ def test_array_filter_applies_median_and_mean_of_last_scans():
 
 
 def test_angular_bounds_filter_crops_scan():
-    given = scan(0.0, 1.0, 2.0, 3.0, 4.0, intensities=range(5), time_increment=0.5)
-    result = AngularBoundsFilter(0.05, 0.35).apply(given, no_transform)
+    input_scan = scan(0.0, 1.0, 2.0, 3.0, 4.0, intensities=range(5), time_increment=0.5)
+    result = AngularBoundsFilter(0.05, 0.35).apply(input_scan, no_transform)
     assert list(result.ranges) == ranges([1.0, 2.0, 3.0])
     assert list(result.intensities) == ranges([1.0, 2.0, 3.0])
     assert (result.angle_min, result.angle_max, result.stamp_ns) == (
@@ -111,23 +113,26 @@ def test_angular_bounds_filter_crops_scan():
 
 
 def test_angular_bounds_in_place_filter_removes_rays():
-    given = scan(1.0, 2.0, 3.0, intensities=(7.0, 8.0, 9.0))
-    result = AngularBoundsInPlaceFilter(0.05, 0.15).apply(given, no_transform)
+    input_scan = scan(1.0, 2.0, 3.0, intensities=(7.0, 8.0, 9.0))
+    result = AngularBoundsInPlaceFilter(0.05, 0.15).apply(input_scan, no_transform)
     assert list(result.ranges) == ranges([1.0, 11.0, 3.0])
     assert list(result.intensities) == ranges([7.0, 0.0, 9.0])
 
 
 def test_sector_filter_may_cross_pi():
-    behind = SectorFilter(angle_min=2.5, angle_max=-2.5, range_min=0.2, range_max=2.0)
-    given = scan(1.0, 1.0, 3.0, 1.0, angle_min=-3.0, increment=1.9)  # -3.0, -1.1, 0.8, 2.7
-    assert filtered_ranges(behind, given) == ranges([11.0, 1.0, 3.0, 11.0])
-    given = scan(1.0, 1.0, 3.0, 1.0, angle_min=-3.0, increment=1.9)
-    behind.invert = True
-    assert filtered_ranges(behind, given) == ranges([1.0, 11.0, 11.0, 1.0])
+    rear_sector = SectorFilter(angle_min=2.5, angle_max=-2.5, range_min=0.2, range_max=2.0)
+    input_scan = scan(1.0, 1.0, 3.0, 1.0, angle_min=-3.0, increment=1.9)  # -3.0, -1.1, 0.8, 2.7
+    assert filtered_ranges(rear_sector, input_scan) == ranges([11.0, 1.0, 3.0, 11.0])
+    input_scan = scan(1.0, 1.0, 3.0, 1.0, angle_min=-3.0, increment=1.9)
+    rear_sector.invert = True
+    assert filtered_ranges(rear_sector, input_scan) == ranges([1.0, 11.0, 11.0, 1.0])
 
 
 def laser_turned_left(target, source, time_ns):
-    """Return the transform of a laser that looks left, half a meter in front of the body's center."""
+    """Return the transform of a laser that looks left.
+
+    The laser is half a meter in front of the body's center.
+    """
     assert (target, source, time_ns) == ("base_link", "laser", 5_000_000_000)
     return (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
 
@@ -155,13 +160,15 @@ def test_footprint_and_polygon_filters_remove_inner_points():
 
 def test_shadows_filter_removes_points_between_edge_and_wall():
     scan_filter = ScanShadowsFilter(min_angle=10.0, max_angle=170.0, window=1, neighbors=1)
-    near, wall = [1.0] * 5, [3.0] * 5
-    distances = filtered_ranges(scan_filter, scan(*near, 2.0, *wall, increment=0.01))
+    near_ranges, wall = [1.0] * 5, [3.0] * 5
+    distances = filtered_ranges(scan_filter, scan(*near_ranges, 2.0, *wall, increment=0.01))
     assert distances == ranges([1.0] * 5 + [nan, nan] + [3.0] * 4)
-    flat = scan(*(1.0 / np.cos(np.arange(-5, 6) * 0.01)), angle_min=-0.05, increment=0.01)
-    assert not np.isnan(filtered_ranges(scan_filter, flat)).any()
+    wall_scan = scan(*(1.0 / np.cos(np.arange(-5, 6) * 0.01)), angle_min=-0.05, increment=0.01)
+    assert not np.isnan(filtered_ranges(scan_filter, wall_scan)).any()
     starts = ScanShadowsFilter(10.0, 170.0, 1, 0, remove_shadow_start_point=True)
-    assert np.flatnonzero(np.isnan(filtered_ranges(starts, scan(*near, 2.0, *wall, increment=0.01)))).tolist() == [
+    assert np.flatnonzero(
+        np.isnan(filtered_ranges(starts, scan(*near_ranges, 2.0, *wall, increment=0.01)))
+    ).tolist() == [
         4,
         5,
         6,
@@ -171,8 +178,8 @@ def test_shadows_filter_removes_points_between_edge_and_wall():
 
 
 def test_speckle_filter_removes_points_without_near_ranges():
-    given = scan(1.0, 1.02, 1.5, 1.9, 1.05, 1.06, 5.0, 1.0)
-    assert filtered_ranges(SpeckleFilter(), given) == ranges([1.0, 1.02, nan, nan, 1.05, 1.06, 5.0, nan])
+    input_scan = scan(1.0, 1.02, 1.5, 1.9, 1.05, 1.06, 5.0, 1.0)
+    assert filtered_ranges(SpeckleFilter(), input_scan) == ranges([1.0, 1.02, nan, nan, 1.05, 1.06, 5.0, nan])
     assert SpeckleFilter().apply(scan(1.0, 1.0, 1.0), no_transform) is None
     with pytest.raises(LinkwrightError, match=r"filter_type \(3\) must be 0 or 1, and filter_window \(2\)"):
         SpeckleFilter(filter_type=3)
@@ -180,8 +187,8 @@ def test_speckle_filter_removes_points_without_near_ranges():
 
 def test_speckle_filter_by_radius_counts_near_points():
     scan_filter = SpeckleFilter(filter_type=1, max_range_difference=0.2, filter_window=2)
-    given = scan(1.0, 1.0, 1.0, 1.9, 1.0, nan, nan, 1.5, nan, nan, increment=0.05)
-    distances = filtered_ranges(scan_filter, given)
+    input_scan = scan(1.0, 1.0, 1.0, 1.9, 1.0, nan, nan, 1.5, nan, nan, increment=0.05)
+    distances = filtered_ranges(scan_filter, input_scan)
     assert np.isnan(distances[7])
     assert distances[1] == 1.0
 

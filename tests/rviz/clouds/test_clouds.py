@@ -33,7 +33,7 @@ DATATYPES = {"i1": 1, "u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8"
 RED, MAGENTA, GREEN, BLUE = (255, 0, 0, 255), (255, 0, 255, 255), (0, 255, 0, 255), (0, 0, 255, 255)
 
 
-def cloud(array: np.ndarray, frame: str = "base"):
+def make_cloud(array: np.ndarray, frame: str = "base"):
     """Return a message with the fields of a structured array."""
     message = PointCloud2()
     message.header.frame_id = frame
@@ -48,14 +48,14 @@ def cloud(array: np.ndarray, frame: str = "base"):
     return message
 
 
-def xyz(points, *extra: tuple[str, str]) -> np.ndarray:
+def xyz_array(points, *extra: tuple[str, str]) -> np.ndarray:
     array = np.zeros(len(points), np.dtype([("x", "f4"), ("y", "f4"), ("z", "f4"), *extra]))
     for axis, name in enumerate("xyz"):
         array[name] = [point[axis] for point in points]
     return array
 
 
-def colors(points: Points, pose=None, **settings) -> list[tuple[int, ...]]:
+def point_colors(points: Points, pose=None, **settings) -> list[tuple[int, ...]]:
     color_values, _ = colored(points, ColorSettings(**settings), pose)
     return [tuple(int(part) for part in row) for row in color_values]
 
@@ -64,9 +64,9 @@ def colors(points: Points, pose=None, **settings) -> list[tuple[int, ...]]:
 
 
 def test_coordinates_and_channels_are_read():
-    array = xyz([(1, 2, 3), (4, 5, 6)], ("intensity", "f8"), ("ring", "u2"))
+    array = xyz_array([(1, 2, 3), (4, 5, 6)], ("intensity", "f8"), ("ring", "u2"))
     array["intensity"], array["ring"] = [0.25, 0.75], [7, 8]
-    points = points_of_cloud(cloud(array))
+    points = points_of_cloud(make_cloud(array))
     assert points.positions.tolist() == [[1, 2, 3], [4, 5, 6]]
     assert {name: values.tolist() for name, values in points.channels.items()} == {
         "intensity": [0.25, 0.75],
@@ -77,32 +77,32 @@ def test_coordinates_and_channels_are_read():
 def test_coordinate_fields_may_have_any_offset():
     array = np.zeros(2, np.dtype([("z", "f4"), ("pad", "u1"), ("x", "f4"), ("y", "f4")]))
     array["x"], array["y"], array["z"] = [1, 2], [3, 4], [5, 6]
-    assert points_of_cloud(cloud(array)).positions.tolist() == [[1, 3, 5], [2, 4, 6]]
+    assert points_of_cloud(make_cloud(array)).positions.tolist() == [[1, 3, 5], [2, 4, 6]]
 
 
 def test_big_endian_clouds_are_read():
     array = np.zeros(1, np.dtype([("x", ">f4"), ("y", ">f4"), ("z", ">f4"), ("intensity", ">u2")]))
     array[0] = (1, 2, 3, 513)
-    points = points_of_cloud(cloud(array))
+    points = points_of_cloud(make_cloud(array))
     assert points.positions.tolist() == [[1, 2, 3]]
     assert points.channels["intensity"].tolist() == [513]
 
 
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
-def test_points_without_finite_coordinates_are_left_out(bad):
-    array = xyz([(1, 2, 3), (4, bad, 6), (7, 8, 9)], ("intensity", "f4"))
+@pytest.mark.parametrize("invalid_value", [math.nan, math.inf, -math.inf])
+def test_points_without_finite_coordinates_are_left_out(invalid_value):
+    array = xyz_array([(1, 2, 3), (4, invalid_value, 6), (7, 8, 9)], ("intensity", "f4"))
     array["intensity"] = [1, 2, 3]
-    points = points_of_cloud(cloud(array))
+    points = points_of_cloud(make_cloud(array))
     assert points.positions.tolist() == [[1, 2, 3], [7, 8, 9]]
     assert points.channels["intensity"].tolist() == [1, 3]
 
 
 def test_empty_cloud_is_accepted():
-    assert len(points_of_cloud(cloud(xyz([])))) == 0
+    assert len(points_of_cloud(make_cloud(xyz_array([])))) == 0
 
 
 def test_size_mismatch_is_rejected_with_message_of_rviz():
-    message = cloud(xyz([(1, 2, 3)]))
+    message = make_cloud(xyz_array([(1, 2, 3)]))
     message.width = 2
     with pytest.raises(BadCloudError) as refused:
         points_of_cloud(message)
@@ -112,7 +112,7 @@ def test_size_mismatch_is_rejected_with_message_of_rviz():
 
 
 def test_field_outside_of_point_is_rejected():
-    message = cloud(xyz([(1, 2, 3)]))
+    message = make_cloud(xyz_array([(1, 2, 3)]))
     message.fields[2].offset = 9
     with pytest.raises(BadCloudError, match="Field 'z' ends at byte 13, but a point has only 12 bytes"):
         points_of_cloud(message)
@@ -120,7 +120,7 @@ def test_field_outside_of_point_is_rejected():
 
 @pytest.mark.parametrize("change", ["no z", "z is a double", "z has a type that is none"])
 def test_position_transformer_requires_float32_coordinates(change):
-    message = cloud(xyz([(1, 2, 3)], ("w", "f4")))
+    message = make_cloud(xyz_array([(1, 2, 3)], ("w", "f4")))
     if change == "no z":
         message.fields = message.fields[:2]
     else:
@@ -133,34 +133,34 @@ def test_position_transformer_requires_float32_coordinates(change):
 
 
 def test_rainbow_goes_from_red_to_magenta():
-    array = xyz([(0, 0, 0)] * 6, ("intensity", "f4"))
+    array = xyz_array([(0, 0, 0)] * 6, ("intensity", "f4"))
     array["intensity"] = [0, 1, 2, 3, 4, 5]
-    points = points_of_cloud(cloud(array))
+    points = points_of_cloud(make_cloud(array))
     yellow, cyan = (255, 255, 0, 255), (0, 255, 255, 255)
-    assert colors(points) == [RED, yellow, GREEN, cyan, BLUE, MAGENTA]
-    assert colors(points, inverted=True) == [MAGENTA, BLUE, cyan, GREEN, yellow, RED]
+    assert point_colors(points) == [RED, yellow, GREEN, cyan, BLUE, MAGENTA]
+    assert point_colors(points, inverted=True) == [MAGENTA, BLUE, cyan, GREEN, yellow, RED]
 
 
 def test_intensity_bounds_are_computed_or_given():
     points = Points(np.zeros((3, 3), np.float32), {"intensity": np.array([10.0, 20.0, 30.0])})
     _, bounds = colored(points, ColorSettings())
     assert bounds == (10.0, 30.0)
-    assert colors(points, intensities=(20.0, 40.0))[:2] == [RED, RED]
+    assert point_colors(points, intensities=(20.0, 40.0))[:2] == [RED, RED]
     assert colored(points, ColorSettings(intensities=(0.0, 1.0)))[1] is None
 
 
 def test_intensity_interpolates_between_two_colors():
     points = Points(np.zeros((3, 3), np.float32), {"intensity": np.array([0.0, 1.0, 2.0])})
-    mixed = colors(points, rainbow=False, darkest=(0, 0, 100), brightest=(200, 0, 100))
+    mixed = point_colors(points, rainbow=False, darkest=(0, 0, 100), brightest=(200, 0, 100))
     assert mixed == [(0, 0, 100, 255), (100, 0, 100, 255), (200, 0, 100, 255)]
 
 
 def test_equal_and_missing_intensities_give_one_color():
     points = Points(np.zeros((2, 3), np.float32), {"intensity": np.array([5.0, 5.0])})
-    assert colors(points) == [RED, RED]
-    assert colors(points, channel="other") == [(255, 255, 255, 255)] * 2
+    assert point_colors(points) == [RED, RED]
+    assert point_colors(points, channel="other") == [(255, 255, 255, 255)] * 2
     other = Points(points.positions, {"intensities": np.array([0.0, 1.0])})
-    assert colors(other) == [RED, MAGENTA]
+    assert point_colors(other) == [RED, MAGENTA]
 
 
 def test_nonfinite_intensities_are_ignored():
@@ -177,43 +177,43 @@ def test_axis_color_uses_fixed_frame_or_cloud_frame():
     color_values, bounds = colored(points, ColorSettings("AxisColor"), upright)
     np.testing.assert_allclose(bounds, (10.0, 11.0), atol=1e-5)
     assert [tuple(row) for row in color_values.tolist()] == [RED, MAGENTA]
-    assert colors(points, upright, transformer="AxisColor", in_fixed_frame=False) == [RED, RED]
-    assert colors(points, upright, transformer="AxisColor", in_fixed_frame=False, axis=0) == [RED, MAGENTA]
+    assert point_colors(points, upright, transformer="AxisColor", in_fixed_frame=False) == [RED, RED]
+    assert point_colors(points, upright, transformer="AxisColor", in_fixed_frame=False, axis=0) == [RED, MAGENTA]
 
 
 def test_packed_rgb_is_unpacked():
-    array = xyz([(0, 0, 0)], ("rgb", "f4"))
+    array = xyz_array([(0, 0, 0)], ("rgb", "f4"))
     array["rgb"] = np.array([0x40102030], "<u4").view("<f4")
-    points = points_of_cloud(cloud(array))
+    points = points_of_cloud(make_cloud(array))
     assert supported_transformers(points)[0] == "RGB8"
-    assert colors(points, transformer="RGB8") == [(0x10, 0x20, 0x30, 255)]
-    with_alpha = xyz([(0, 0, 0)], ("rgba", "u4"))
+    assert point_colors(points, transformer="RGB8") == [(0x10, 0x20, 0x30, 255)]
+    with_alpha = xyz_array([(0, 0, 0)], ("rgba", "u4"))
     with_alpha["rgba"] = 0x40102030
-    assert colors(points_of_cloud(cloud(with_alpha)), transformer="RGB8") == [(0x10, 0x20, 0x30, 0x40)]
+    assert point_colors(points_of_cloud(make_cloud(with_alpha)), transformer="RGB8") == [(0x10, 0x20, 0x30, 0x40)]
 
 
 def test_float_colors_are_converted():
-    array = xyz([(0, 0, 0)], ("r", "f4"), ("g", "f4"), ("b", "f4"))
+    array = xyz_array([(0, 0, 0)], ("r", "f4"), ("g", "f4"), ("b", "f4"))
     array["r"], array["g"], array["b"] = 1.0, 0.5, 7.0
-    points = points_of_cloud(cloud(array))
+    points = points_of_cloud(make_cloud(array))
     assert "RGBF32" in supported_transformers(points)
-    assert colors(points, transformer="RGBF32") == [(255, 127, 255, 255)]
+    assert point_colors(points, transformer="RGBF32") == [(255, 127, 255, 255)]
 
 
 def test_transformers_without_fields_are_not_offered():
-    points = points_of_cloud(cloud(xyz([(0, 0, 0)])))
+    points = points_of_cloud(make_cloud(xyz_array([(0, 0, 0)])))
     assert supported_transformers(points) == ("Intensity", "AxisColor", "FlatColor")
-    assert colors(points, transformer="FlatColor") == []
+    assert point_colors(points, transformer="FlatColor") == []
 
 
 def test_coloring_effort_is_independent_of_cloud_size():
     rng = np.random.default_rng(1)
 
     def work(count):
-        array = np.zeros(count, xyz(np.zeros((0, 3)), ("intensity", "f4")).dtype)
+        array = np.zeros(count, xyz_array(np.zeros((0, 3)), ("intensity", "f4")).dtype)
         for name in array.dtype.names:
             array[name] = rng.random(array.size)
-        message = cloud(array)
+        message = make_cloud(array)
         return lines_run(lambda: colored(points_of_cloud(message), ColorSettings()))
 
     work(10)  # fills caches
@@ -223,7 +223,7 @@ def test_coloring_effort_is_independent_of_cloud_size():
 # --- LaserScan -------------------------------------------------------------------------------------------------------
 
 
-def scan(ranges, intensities=(), **fields):
+def make_scan(ranges, intensities=(), **fields):
     message = LaserScan(
         angle_min=0.0,
         angle_increment=math.pi / 2,
@@ -238,44 +238,46 @@ def scan(ranges, intensities=(), **fields):
 
 
 def test_scan_ranges_become_points():
-    points = ScanProjector().points(scan([1.0, 2.0, 3.0], [5.0, 6.0, 7.0]))
+    points = ScanProjector().points(make_scan([1.0, 2.0, 3.0], [5.0, 6.0, 7.0]))
     np.testing.assert_allclose(points.positions, [[1, 0, 0], [0, 2, 0], [-3, 0, 0]], atol=1e-6)
     assert points.channels["intensity"].tolist() == [5, 6, 7]
     assert points.channels["index"].tolist() == [0, 1, 2]
 
 
 def test_invalid_scan_ranges_are_omitted():
-    points = ScanProjector().points(scan([1.0, math.inf, math.nan, 0.05, 10.0, 9.9], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]))
+    points = ScanProjector().points(
+        make_scan([1.0, math.inf, math.nan, 0.05, 10.0, 9.9], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+    )
     assert points.channels["index"].tolist() == [0, 5]
     assert points.channels["intensity"].tolist() == [1, 6]
 
 
 def test_intensities_of_wrong_length_are_ignored():
-    assert "intensity" not in ScanProjector().points(scan([1.0, 2.0], [1.0])).channels
+    assert "intensity" not in ScanProjector().points(make_scan([1.0, 2.0], [1.0])).channels
 
 
 def test_nan_scan_angles_give_no_points():
-    assert len(ScanProjector().points(scan([1.0, 2.0], angle_min=math.nan))) == 0
+    assert len(ScanProjector().points(make_scan([1.0, 2.0], angle_min=math.nan))) == 0
 
 
 def test_scan_projector_follows_changed_angles():
     projector = ScanProjector()
-    projector.points(scan([1.0, 1.0]))
-    points = projector.points(scan([1.0, 1.0], angle_min=math.pi))
+    projector.points(make_scan([1.0, 1.0]))
+    points = projector.points(make_scan([1.0, 1.0], angle_min=math.pi))
     np.testing.assert_allclose(points.positions, [[-1, 0, 0], [0, -1, 0]], atol=1e-6)
 
 
 # --- depth images ----------------------------------------------------------------------------------------------------
 
 
-def depth_image(values, encoding: str = "32FC1"):
+def make_depth_image(values, encoding: str = "32FC1"):
     array = np.array(values, "<f4" if encoding == "32FC1" else "<u2")
     return Image(
         height=array.shape[0], width=array.shape[1], step=array.strides[0], encoding=encoding, data=array.tobytes()
     )
 
 
-def camera(width: int = 2, height: int = 1, focal: float = 2.0) -> DepthCamera:
+def make_camera_info(width: int = 2, height: int = 1, focal: float = 2.0) -> DepthCamera:
     info = CameraInfo(width=width, height=height)
     info.k = np.array([focal, 0, 0, 0, focal, 0, 0, 0, 1])
     info.p = np.array([focal, 0, 0, 0, 0, focal, 0, 0, 0, 0, 1, 0])
@@ -283,34 +285,34 @@ def camera(width: int = 2, height: int = 1, focal: float = 2.0) -> DepthCamera:
 
 
 def test_depths_become_points_along_camera_rays():
-    points = DepthCloudBuilder().points(depth_image([[2.0, 4.0]]), camera(), None)
+    points = DepthCloudBuilder().points(make_depth_image([[2.0, 4.0]]), make_camera_info(), None)
     assert points.positions.tolist() == [[0, 0, 2], [2, 0, 4]]
     assert points.channels["rgb"].tolist() == [0xFFFFFF, 0xFFFFFF]
-    assert camera().pixel == 0.5
+    assert make_camera_info().pixel == 0.5
 
 
 def test_millimeters_become_meters_and_zero_depth_is_omitted():
-    points = DepthCloudBuilder().points(depth_image([[0, 1500]], "16UC1"), camera(), None)
+    points = DepthCloudBuilder().points(make_depth_image([[0, 1500]], "16UC1"), make_camera_info(), None)
     np.testing.assert_allclose(points.positions, [[0.75, 0, 1.5]])
-    assert len(DepthCloudBuilder().points(depth_image([[math.nan, math.inf]]), camera(), None)) == 0
+    assert len(DepthCloudBuilder().points(make_depth_image([[math.nan, math.inf]]), make_camera_info(), None)) == 0
 
 
 def test_depth_points_have_colors_of_image():
     color = DecodedImage(np.array([[[1, 2, 3], [4, 5, 6]]], np.uint8))
-    points = DepthCloudBuilder().points(depth_image([[math.nan, 1.0]]), camera(), color)
+    points = DepthCloudBuilder().points(make_depth_image([[math.nan, 1.0]]), make_camera_info(), color)
     assert points.channels["rgb"].tolist() == [0x040506]
 
 
 def test_mismatched_images_are_rejected():
     builder = DepthCloudBuilder()
     with pytest.raises(BadCloudError, match=r"\(2x1\) does not match color image resolution \(1x1\)"):
-        builder.points(depth_image([[1.0, 1.0]]), camera(), DecodedImage(np.zeros((1, 1), np.uint8)))
+        builder.points(make_depth_image([[1.0, 1.0]]), make_camera_info(), DecodedImage(np.zeros((1, 1), np.uint8)))
     with pytest.raises(BadCloudError, match="only 16 bit and float are supported"):
-        builder.points(Image(width=1, height=1, step=1, encoding="mono8", data=b"1"), camera(1), None)
-    short = depth_image([[1.0, 1.0]])
+        builder.points(Image(width=1, height=1, step=1, encoding="mono8", data=b"1"), make_camera_info(1), None)
+    short = make_depth_image([[1.0, 1.0]])
     short.data = b"1234"
     with pytest.raises(BadCloudError, match="too few for 2 x 1"):
-        builder.points(short, camera(), None)
+        builder.points(short, make_camera_info(), None)
     with pytest.raises(BadCloudError, match="don't match: 3 x 1 vs 2 x 1"):
         DepthCamera.of(CameraInfo(width=2, height=1), 3, 1)
     with pytest.raises(BadCloudError, match="no focal length"):
@@ -320,16 +322,16 @@ def test_mismatched_images_are_rejected():
 def test_occluded_points_remain_for_a_while_at_half_color():
     builder = DepthCloudBuilder()
     color = DecodedImage(np.full((1, 1, 3), 200, np.uint8))
-    view = camera(1)
+    view = make_camera_info(1)
 
     def depths(depth: float, now: float) -> list[float]:
-        points = builder.points(depth_image([[depth]]), view, color, keep_covered=10.0, now=now)
+        points = builder.points(make_depth_image([[depth]]), view, color, keep_covered=10.0, now=now)
         return points.positions[:, 2].tolist()
 
     assert depths(4.0, 0.0) == [4.0]
     assert depths(2.0, 1.0) == [2.0, 4.0]
     assert depths(math.nan, 2.0) == [4.0]
-    shown = builder.points(depth_image([[2.0]]), view, color, keep_covered=10.0, now=3.0)
+    shown = builder.points(make_depth_image([[2.0]]), view, color, keep_covered=10.0, now=3.0)
     assert shown.channels["rgb"].tolist() == [0xC8C8C8, 0x646464]
     assert depths(2.0, 20.0) == [2.0]
 
@@ -344,6 +346,6 @@ def test_deskew_places_rays_at_their_emission_pose():
 
 def test_deskew_interpolates_along_shorter_rotation():
     points = Points(np.array([[1, 0, 0]], np.float32))
-    same = np.array([0.0, 0, 0, 0, 0, 0, 1])
-    moved = deskew(points, np.array([0.5]), same, -same).positions
+    identity = np.array([0.0, 0, 0, 0, 0, 0, 1])
+    moved = deskew(points, np.array([0.5]), identity, -identity).positions
     np.testing.assert_allclose(moved, [[1, 0, 0]], atol=1e-6)

@@ -1,3 +1,5 @@
+"""Classes and keys of RViz 1, read and written."""
+
 from __future__ import annotations
 
 import pytest
@@ -26,13 +28,13 @@ def test_rviz_1_classes_have_modern_names(written, modern):
     assert modern_class(written) == modern
 
 
-def store(cls: str, text: str, *specs: PropertySpec) -> tuple[PropertyStore, yaml_tree.Section]:
+def make_store(cls: str, text: str, *specs: PropertySpec) -> tuple[PropertyStore, yaml_tree.Section]:
     section = yaml_tree.parse(text, "x")
     return PropertyStore("d", section, lambda: specs, lambda _: None, former=former_keys(cls)), section
 
 
 def test_rviz_1_topic_reads_qos_from_sibling_keys():
-    properties, section = store("rviz/LaserScan", "Queue Size: 7\nTopic: /scan\nUnreliable: true\n", topic_spec())
+    properties, section = make_store("rviz/LaserScan", "Queue Size: 7\nTopic: /scan\nUnreliable: true\n", topic_spec())
     assert properties.text("Topic") == "/scan"
     assert properties.number("Topic", "Depth") == 7
     assert properties.text("Topic", "Reliability Policy") == "Best Effort"
@@ -43,7 +45,7 @@ def test_rviz_1_topic_reads_qos_from_sibling_keys():
 
 
 def test_properties_unknown_to_rviz_1_are_written_in_modern_form():
-    properties, section = store("rviz/LaserScan", "Topic: /scan\n", topic_spec())
+    properties, section = make_store("rviz/LaserScan", "Topic: /scan\n", topic_spec())
     properties.set(("Topic", "Durability Policy"), "Transient Local")
     assert yaml.safe_load(yaml_tree.write(section)) == {
         "Topic": {"Value": "/scan", "Durability Policy": "Transient Local"}
@@ -66,7 +68,7 @@ def test_properties_unknown_to_rviz_1_are_written_in_modern_form():
     ],
 )
 def test_rviz_1_keys_are_read_and_written(cls, text, spec, value):
-    properties, section = store(cls, text, spec)
+    properties, section = make_store(cls, text, spec)
     assert properties.text(spec.name) == value
     key = text.partition(":")[0]
     before = section.scalar(key).text
@@ -77,13 +79,13 @@ def test_rviz_1_keys_are_read_and_written(cls, text, spec, value):
 
 
 def test_rviz_1_keys_are_ignored_in_modern_file():
-    properties, _ = store("rviz_default_plugins/LaserScan", "Queue Size: 7\nTopic: /scan\n", topic_spec())
+    properties, _ = make_store("rviz_default_plugins/LaserScan", "Queue Size: 7\nTopic: /scan\n", topic_spec())
     assert properties.number("Topic", "Depth") == 5
 
 
 def test_standard_deviations_are_converted_to_covariances():
     spec = PropertySpec("Covariance x", "float", 0.25)
-    properties, section = store("rviz/SetInitialPose", "X std deviation: 0.3\n", spec)
+    properties, section = make_store("rviz/SetInitialPose", "X std deviation: 0.3\n", spec)
     assert properties.number("Covariance x") == pytest.approx(0.09)
     properties.set(("Covariance x",), 0.16)
     assert float(section.scalar("X std deviation").text) == pytest.approx(0.4)
@@ -91,7 +93,7 @@ def test_standard_deviations_are_converted_to_covariances():
 
 def test_undo_restores_rviz_1_keys():
     text = "Queue Size: 7\nTopic: /scan\n"
-    properties, section = store("rviz/LaserScan", text, topic_spec())
+    properties, section = make_store("rviz/LaserScan", text, topic_spec())
     for path, value, keys in (
         (("Topic", "Depth"), 9, ["Queue Size"]),
         (("Topic",), "/b", ["Topic"]),

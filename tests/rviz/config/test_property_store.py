@@ -1,3 +1,5 @@
+"""The property store: values, defaults, identifiers and changes."""
+
 from __future__ import annotations
 
 import pytest
@@ -32,13 +34,15 @@ def section():
 
 
 @pytest.fixture
-def reported():
+def reported_diagnostics():
     return []
 
 
 @pytest.fixture
-def store(section, reported):
-    return PropertyStore("display-1", section, lambda: SCHEMA, reported.append, frames=lambda: ["map", "odom"])
+def store(section, reported_diagnostics):
+    return PropertyStore(
+        "display-1", section, lambda: SCHEMA, reported_diagnostics.append, frames=lambda: ["map", "odom"]
+    )
 
 
 def test_values_come_from_file_or_defaults(store):
@@ -90,10 +94,10 @@ def test_frame_property_offers_frames(store):
     assert (change.id, change.value, change.options) == ("display-1/Reference Frame", "map", ["map", "odom"])
 
 
-def test_invalid_value_is_reported_once(reported):
-    store = PropertyStore("x", yaml_tree.parse("Alpha: lots\n", "f.rviz"), lambda: SCHEMA, reported.append)
+def test_invalid_value_is_reported_once(reported_diagnostics):
+    store = PropertyStore("x", yaml_tree.parse("Alpha: lots\n", "f.rviz"), lambda: SCHEMA, reported_diagnostics.append)
     assert store.get("Alpha") == store.get("Alpha") == 0.5
-    (diagnostic,) = reported
+    (diagnostic,) = reported_diagnostics
     assert (diagnostic.code, str(diagnostic.span)) == ("RVIZ201", "f.rviz:1:8")
 
 
@@ -135,13 +139,16 @@ def test_created_base_section_is_removed_by_undo(text):
 @pytest.mark.parametrize(
     ("text", "value", "message"), [("off", True, 1), ("NO", True, 1), ("0", False, 0), ("yes", True, 0)]
 )
-def test_bool_property_parses_values_like_rviz(reported, text, value, message):
+def test_bool_property_parses_values_like_rviz(reported_diagnostics, text, value, message):
     spec = PropertySpec("Selectable", "bool", default=False)
     section = yaml_tree.parse(f"Selectable: {text}\n", "f.rviz")
-    assert PropertyStore("x", section, lambda: (spec,), reported.append).get("Selectable") is value
-    assert len(reported) == message
+    assert PropertyStore("x", section, lambda: (spec,), reported_diagnostics.append).get("Selectable") is value
+    assert len(reported_diagnostics) == message
     if message:
-        assert reported[0].message == f"'Selectable': true or false is expected, not '{text}'; True is used instead"
+        assert (
+            reported_diagnostics[0].message
+            == f"'Selectable': true or false is expected, not '{text}'; True is used instead"
+        )
 
 
 def test_reading_link_properties_is_linear_in_links():

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.rviz import RvizConfig, find_unsaved
 from linkwright.rviz.config.locations import RecentFiles, recovery_file, recovery_folder
-from tests.rviz.visualization.test_managers import own_page
+from tests.rviz.visualization.test_managers import open_own_page
 from tests.viewer.configured import edit, opened
 
 
@@ -17,7 +17,7 @@ def recovery_files() -> list[Path]:
     return sorted(folder.iterdir()) if folder.exists() else []
 
 
-async def change(client, alpha: float = 0.25) -> None:
+async def change_alpha(client, alpha: float = 0.25) -> None:
     await client.set("display-1/Alpha", alpha)
     await client.until("configuration", unsaved=True)
 
@@ -26,7 +26,7 @@ async def test_unsaved_changes_are_recovered_on_next_start(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (world, client):
         text = path.read_text()
-        await change(client)
+        await change_alpha(client)
         (notice,) = world.viewer.keep_unsaved()
         edited = world.viewer.config.text()
     (recovered,) = recovery_files()
@@ -44,7 +44,7 @@ async def test_unsaved_changes_are_recovered_on_next_start(tmp_path):
 async def test_saving_removes_recovery_file(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (world, client):
-        await change(client)
+        await change_alpha(client)
         world.viewer.keep_unsaved()
         assert len(recovery_files()) == 1
         await client.send("save_configuration", path=None, replace=False)
@@ -57,7 +57,7 @@ async def test_saving_removes_recovery_file(tmp_path):
 async def test_saving_recovered_file_elsewhere_removes_recovery_file(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (world, client):
-        await change(client)
+        await change_alpha(client)
         world.viewer.keep_unsaved()
         (recovered,) = recovery_files()
         await client.send("open_configuration", path=str(recovered), discard=True)
@@ -78,7 +78,7 @@ async def test_no_recovery_file_without_edits(tmp_path):
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (world, client):
         assert world.viewer.keep_unsaved() == []
-        await change(client)
+        await change_alpha(client)
         await edit(client, "undo")
         assert world.viewer.keep_unsaved() == []
         # The user reverts the edit by hand.
@@ -93,26 +93,26 @@ async def test_no_recovery_file_without_edits(tmp_path):
 
 async def test_untitled_displays_are_kept_for_recovery(tmp_path):
     async with opened() as (world, client):
-        await change(client)
+        await change_alpha(client)
         (notice,) = world.viewer.keep_unsaved()
     assert [path.name for path in recovery_files()] == ["untitled.rviz"]
     assert notice.message.startswith("unsaved displays are stored in")
 
 
 async def test_displays_of_own_page_have_separate_recovery_file(tmp_path):
-    async with opened(path=tmp_path / "a.rviz") as (world, client), own_page(world) as own:
-        first = await own.opened()
-        await change(client)
-        await own.set(f"{first['tree']['displays'][0]['id']}/Alpha", 0.125)
-        await own.until("configuration", unsaved=True)
+    async with opened(path=tmp_path / "a.rviz") as (world, client), open_own_page(world) as own_client:
+        first = await own_client.opened()
+        await change_alpha(client)
+        await own_client.set(f"{first['tree']['displays'][0]['id']}/Alpha", 0.125)
+        await own_client.until("configuration", unsaved=True)
         assert [diagnostic.code for diagnostic in world.viewer.keep_unsaved()] == ["RVIZ301", "RVIZ301"]
-    shared, single = (
+    shared, own_file = (
         recovery_files()
         if len(recovery_files()[0].stem) < len(recovery_files()[1].stem)
         else reversed(recovery_files())
     )
     assert "Alpha: 0.25" in shared.read_text()
-    assert "Alpha: 0.125" in single.read_text()
+    assert "Alpha: 0.125" in own_file.read_text()
 
 
 def test_configurations_have_separate_recovery_files(tmp_path, monkeypatch):
@@ -134,7 +134,7 @@ async def test_unwritable_recovery_folder_is_reported(tmp_path, monkeypatch):
     blocked.write_text("no folder")
     path = tmp_path / "a.rviz"
     async with opened(path=path) as (world, client):
-        await change(client)
+        await change_alpha(client)
         monkeypatch.setenv("XDG_STATE_HOME", str(blocked))
         (notice,) = world.viewer.keep_unsaved()
     assert notice.code == "RVIZ104"

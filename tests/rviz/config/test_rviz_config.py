@@ -1,3 +1,5 @@
+"""Configurations: defaults, sizes that fit a model, and files."""
+
 from __future__ import annotations
 
 import difflib
@@ -55,9 +57,9 @@ def test_configuration_for_model_has_grid_robot_model_and_tf():
     config = RvizConfig.for_model("base_link")
     assert [display.name for display in config.displays] == ["Grid", "RobotModel", "TF"]
     assert all(display.enabled for display in config.displays)
-    again = RvizConfig.parse(config.text())
-    assert [display.cls for display in again.displays] == [display.cls for display in config.displays]
-    assert (again.options.text("Fixed Frame"), again.views.current.values["Distance"]) == ("base_link", 3.0)
+    reread = RvizConfig.parse(config.text())
+    assert [display.cls for display in reread.displays] == [display.cls for display in config.displays]
+    assert (reread.options.text("Fixed Frame"), reread.views.current.values["Distance"]) == ("base_link", 3.0)
 
 
 @pytest.mark.parametrize(
@@ -71,51 +73,51 @@ def test_configuration_for_model_has_grid_robot_model_and_tf():
 )
 def test_grid_and_axes_scale_with_model_size(size, cell, marker_scale, distance):
     config = RvizConfig.for_model("base_link", size=size)
-    again = RvizConfig.parse(config.text())
-    grid, _, tf = again.displays
+    reread = RvizConfig.parse(config.text())
+    grid, _, tf = reread.displays
     assert grid.section.scalar("Cell Size").text == f"{cell:g}"
     assert tf.section.scalar("Marker Scale").text == f"{marker_scale:g}"
-    assert again.views.current.values["Distance"] == distance
-    assert again.views.current.values["Focal Shape Size"] <= min(0.05, size.diagonal / 10)
+    assert reread.views.current.values["Distance"] == distance
+    assert reread.views.current.values["Focal Shape Size"] <= min(0.05, size.diagonal / 10)
 
 
-def sized(config, diagonal, ground=0.0):
+def resize_config(config, diagonal, ground=0.0):
     return {(display.name, *path): value for display, path, value in config.take_sizes(diagonal, ground)}
 
 
 def test_grid_and_axes_are_resized_for_mesh_size():
     size = ModelSize(0.5, 0.2)
     sizes = {("Grid", "Cell Size"): 100.0, ("TF", "Marker Scale"): 12.0}
-    assert sized(RvizConfig.for_model("base_link", size=size), 100.0) == sizes
+    assert resize_config(RvizConfig.for_model("base_link", size=size), 100.0) == sizes
     # Without `size`, a model that is one link with a mesh has no size.
-    assert sized(RvizConfig.for_model("base_link"), 100.0) == {**sizes, ("TF", "Marker Scale"): 50.0}
+    assert resize_config(RvizConfig.for_model("base_link"), 100.0) == {**sizes, ("TF", "Marker Scale"): 50.0}
     config = RvizConfig.for_model("base_link", size=size)
-    assert sized(config.copy(), 100.0) == sizes
-    assert sized(config, 100.0) == sizes
-    assert sized(config, 200.0) == {}  # only once, because the user may have changed the view
+    assert resize_config(config.copy(), 100.0) == sizes
+    assert resize_config(config, 100.0) == sizes
+    assert resize_config(config, 200.0) == {}  # only once, because the user may have changed the view
 
 
 @pytest.mark.parametrize("diagonal", [0.0, -1.0, float("nan"), float("inf")])
 def test_model_without_size_resizes_nothing(diagonal):
-    assert sized(RvizConfig.for_model("base_link"), diagonal) == {}
+    assert resize_config(RvizConfig.for_model("base_link"), diagonal) == {}
 
 
 def test_grid_is_at_lowest_point_of_robot():
-    sized_config = sized(RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2)), 1.0, -0.12345)
+    sized_config = resize_config(RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2)), 1.0, -0.12345)
     assert sized_config == {("Grid", "Cell Size"): 1.0, ("TF", "Marker Scale"): 0.5, ("Grid", "Offset", "Z"): -0.1235}
     config = RvizConfig.for_model("base_link")
     config.displays[0].section.put(("Offset", "Z"), "1", nested=True)
-    assert ("Grid", "Offset", "Z") not in sized(config, 1.0, -0.5)
-    assert sized(RvizConfig.for_model("base_link"), 1.0, float("nan")) == {}
-    assert sized(RvizConfig.default(), 1.0, -0.5) == {}
+    assert ("Grid", "Offset", "Z") not in resize_config(config, 1.0, -0.5)
+    assert resize_config(RvizConfig.for_model("base_link"), 1.0, float("nan")) == {}
+    assert resize_config(RvizConfig.default(), 1.0, -0.5) == {}
 
 
 def test_changed_values_are_not_resized():
     config = RvizConfig.for_model("base_link", size=ModelSize(0.5, 0.2))
     config.displays[0].section.put(("Cell Size",), "3")
-    assert set(sized(config, 100.0)) == {("TF", "Marker Scale")}
-    assert sized(RvizConfig.default(), 100.0) == {}
-    assert sized(RvizConfig.parse(RvizConfig.for_model("base_link").text()), 100.0) == {}
+    assert set(resize_config(config, 100.0)) == {("TF", "Marker Scale")}
+    assert resize_config(RvizConfig.default(), 100.0) == {}
+    assert resize_config(RvizConfig.parse(RvizConfig.for_model("base_link").text()), 100.0) == {}
 
 
 def test_tf_display_is_disabled_if_frames_would_hide_model():
@@ -251,8 +253,8 @@ def test_displays_are_added_removed_and_moved():
     (laser,) = sensors.displays
     config.remove(grid)
     config.insert(grid, sensors, 0)
-    twin = config.duplicate(laser)
-    config.insert(twin, None, 0)
+    duplicate = config.duplicate(laser)
+    config.insert(duplicate, None, 0)
     group = config.make_group("New")
     config.insert(group, sensors)
     assert [display.name for display in config.walk()] == ["Laser", "Sensors", "Grid", "Laser", "New"]
@@ -294,7 +296,7 @@ def test_undo_of_first_display_restores_file(text):
 
 
 @pytest.mark.parametrize(
-    ("lines", "on"),
+    ("lines", "is_enabled"),
     [
         ("Enabled: true", True),
         ("Enabled: TRUE", True),
@@ -311,9 +313,9 @@ def test_undo_of_first_display_restores_file(text):
         ("Name: x", False),
     ],
 )
-def test_enabled_values_are_parsed_like_rviz(lines, on):
+def test_enabled_values_are_parsed_like_rviz(lines, is_enabled):
     config = RvizConfig.parse(f"Visualization Manager:\n  Displays:\n    - {{Class: rviz/Grid, {lines}}}\n")
-    assert config.displays[0].checked is on
+    assert config.displays[0].checked is is_enabled
 
 
 def test_entry_that_is_not_a_display_keeps_its_position():

@@ -1,3 +1,5 @@
+"""The types of properties: valid values, and their spellings in files."""
+
 from __future__ import annotations
 
 import math
@@ -101,7 +103,7 @@ def test_spellings_in_files_are_parsed(spec, text, value):
     assert from_text(spec, text) == value
 
 
-SPELLINGS_OF_NOTHING = [
+INVALID_SPELLINGS = [
     (ALPHA, "much"),
     (ALPHA, "1,5"),
     (COUNT, "1_000"),
@@ -116,7 +118,7 @@ SPELLINGS_OF_NOTHING = [
 ]
 
 
-@pytest.mark.parametrize(("spec", "text"), SPELLINGS_OF_NOTHING)
+@pytest.mark.parametrize(("spec", "text"), INVALID_SPELLINGS)
 def test_invalid_spellings_are_rejected(spec, text):
     with pytest.raises(ValueError, match="expected"):
         from_text(spec, text)

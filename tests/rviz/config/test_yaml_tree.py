@@ -1,3 +1,5 @@
+"""YAML documents that keep their layout when they are edited."""
+
 from __future__ import annotations
 
 import pytest

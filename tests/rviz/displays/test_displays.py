@@ -1,3 +1,5 @@
+"""Displays: classes, statuses, the grid and TF."""
+
 from __future__ import annotations
 
 import subprocess
@@ -10,7 +12,7 @@ from linkwright.rviz.displays.catalog import display_classes, has_display
 from tests.viewer.scene import ARM, IDENTITY, open_world, page, rows_by_id
 
 
-def config(displays: str, fixed_frame: str = "base") -> RvizConfig:
+def make_config(displays: str, fixed_frame: str = "base") -> RvizConfig:
     return RvizConfig.parse(
         f"Visualization Manager:\n  Global Options: {{Fixed Frame: {fixed_frame}}}\n  Displays:\n{displays}"
     )
@@ -19,13 +21,16 @@ def config(displays: str, fixed_frame: str = "base") -> RvizConfig:
 GRID = "    - {Class: rviz_default_plugins/Grid, Enabled: true}\n"
 
 
-async def opened(world):
+async def open_client(world):
     async with page(world.viewer) as client:
         return await client.opened()
 
 
-async def rows_with(client, identity: str) -> dict[str, dict]:
-    """Return the rows of a display when it has one with this ID: frames are discovered one by one."""
+async def wait_for_rows(client, identity: str) -> dict[str, dict]:
+    """Return the rows of a display when it has one with this ID.
+
+    Frames are discovered one by one.
+    """
     while True:
         rows = rows_by_id((await client.until("display_properties"))["properties"])
         if identity in rows:
@@ -54,8 +59,8 @@ def test_data_displays_are_imported_lazily():
 
 
 async def test_grid_properties_and_defaults_match_rviz():
-    async with open_world(config(GRID)) as world:
-        (grid,) = (await opened(world))["tree"]["displays"]
+    async with open_world(make_config(GRID)) as world:
+        (grid,) = (await open_client(world))["tree"]["displays"]
     assert (grid["id"], grid["name"], grid["enabled"], grid["supported"]) == ("display-1", "Grid", True, True)
     values = {row["name"]: row["value"] for row in grid["properties"]}
     assert values == {
@@ -75,7 +80,7 @@ async def test_grid_properties_and_defaults_match_rviz():
 
 
 async def test_line_width_is_shown_only_for_billboards():
-    async with open_world(config(GRID)) as world, page(world.viewer) as client:
+    async with open_world(make_config(GRID)) as world, page(world.viewer) as client:
         opening = await client.opened()
         assert "display-1/Line Style/Line Width" not in rows_by_id(opening["tree"]["displays"][0]["properties"])
         await client.set("display-1/Line Style", "Billboards")
@@ -84,7 +89,7 @@ async def test_line_width_is_shown_only_for_billboards():
 
 
 async def test_grid_in_unknown_frame_is_reported():
-    async with open_world(config(GRID)) as world, page(world.viewer) as client:
+    async with open_world(make_config(GRID)) as world, page(world.viewer) as client:
         await client.opened()
         await client.set("display-1/Reference Frame", "/tip")
         status = await client.until("display_status", display="display-1")
@@ -97,17 +102,17 @@ async def test_grid_in_unknown_frame_is_reported():
 # --- TF ------------------------------------------------------------------------------------------------------------
 
 
-def tf(more: str = "") -> str:
-    return f"    - {{Class: rviz_default_plugins/TF, Enabled: true{more}}}\n"
+def tf_display(properties: str = "") -> str:
+    return f"    - {{Class: rviz_default_plugins/TF, Enabled: true{properties}}}\n"
 
 
 async def test_tf_display_lists_frames():
     async with open_world(
-        config(tf(", Frames: {All Enabled: false, tip: {Value: false}, gone: {Value: false}}"))
+        make_config(tf_display(", Frames: {All Enabled: false, tip: {Value: false}, gone: {Value: false}}"))
     ) as world:
         world.move_arm()
         await world.settle()
-        display = (await opened(world))["tree"]["displays"][0]
+        display = (await open_client(world))["tree"]["displays"][0]
     rows = {row["name"]: row for row in display["properties"]}
     assert rows["Frame Timeout"]["value"] == 15.0
     frames = {row["name"]: row["value"] for row in rows["Frames"]["children"]}
@@ -122,9 +127,9 @@ async def test_tf_display_lists_frames():
 
 
 async def test_tf_frame_checkboxes_are_saved():
-    async with open_world(config(tf())) as world, page(world.viewer) as client:
+    async with open_world(make_config(tf_display())) as world, page(world.viewer) as client:
         world.move_arm()
-        await rows_with(client, "display-1/Frames/mark")
+        await wait_for_rows(client, "display-1/Frames/mark")
         await client.set("display-1/Frames/tip", False)
         assert (await client.until("property_changed", id="display-1/Frames/tip"))["value"] is False
         await client.set("display-1/Frames/All Enabled", False)
@@ -136,7 +141,7 @@ async def test_tf_frame_checkboxes_are_saved():
 
 
 async def test_disabled_frame_unchecks_all_enabled():
-    async with open_world(config(tf())) as world, page(world.viewer) as client:
+    async with open_world(make_config(tf_display())) as world, page(world.viewer) as client:
         world.move_arm()
         properties = (await client.until("display_properties", display="display-1"))["properties"]
         rows = rows_by_id(properties)
@@ -149,10 +154,10 @@ async def test_disabled_frame_unchecks_all_enabled():
 
 
 async def test_tf_frames_without_transform_are_reported():
-    async with open_world(config(tf(), fixed_frame="map")) as world:
+    async with open_world(make_config(tf_display(), fixed_frame="map")) as world:
         world.move_arm()
         await world.settle()
-        display = (await opened(world))["tree"]["displays"][0]
+        display = (await open_client(world))["tree"]["displays"][0]
     assert display["level"] == "warn"
     assert {row["text"] for row in display["status"]} == {
         f"No transform from [{name}] to [map]" for name in ("base", "mark", "tip")
@@ -160,9 +165,9 @@ async def test_tf_frames_without_transform_are_reported():
 
 
 async def test_tf_filters_choose_frames():
-    async with open_world(config(tf())) as world, page(world.viewer) as client:
+    async with open_world(make_config(tf_display())) as world, page(world.viewer) as client:
         world.move_arm()
-        await rows_with(client, "display-1/Frames/mark")
+        await wait_for_rows(client, "display-1/Frames/mark")
 
         async def frames_with(name: str, text: str) -> list[str]:
             await client.set(f"display-1/{name}", text)
@@ -182,10 +187,10 @@ async def test_tf_filters_choose_frames():
 
 async def test_slow_tf_filter_is_disabled_and_reported():
     long = "a" * 200 + "!"
-    async with open_world(config(tf(", Filter (whitelist): (a|aa)+$"))) as world:
+    async with open_world(make_config(tf_display(", Filter (whitelist): (a|aa)+$"))) as world:
         world.move({("base", long): IDENTITY})
         await world.settle()
-        (display,) = (await opened(world))["tree"]["displays"]
+        (display,) = (await open_client(world))["tree"]["displays"]
         text = "This expression is not used: matching it with the frame names takes too long"
         assert display["status"][0] == {"name": "Filter (whitelist)", "level": "error", "text": text}
         assert {row["name"] for row in display["status"][1:]} == {"base", long}
@@ -195,10 +200,10 @@ async def test_slow_tf_filter_is_disabled_and_reported():
 
 async def test_long_frame_chain_is_shown():
     poses = {(f"f{number}", f"f{number + 1}"): IDENTITY for number in range(400)}
-    async with open_world(config(tf(), fixed_frame="f0")) as world:
+    async with open_world(make_config(tf_display(), fixed_frame="f0")) as world:
         world.move(poses)
         await world.settle()
-        display = (await opened(world))["tree"]["displays"][0]
+        display = (await open_client(world))["tree"]["displays"][0]
     assert len(display["status"]) == 401
     tree = display["properties"][-1]
     depth = 0
@@ -213,8 +218,8 @@ async def test_long_frame_chain_is_shown():
 
 async def test_unsupported_displays_are_listed_and_kept():
     text = "    - {Class: my_plugins/Radar, Enabled: true, Name: Radar, Size (m): 0.05}\n"
-    async with open_world(config(text)) as world:
-        (radar,) = (await opened(world))["tree"]["displays"]
+    async with open_world(make_config(text)) as world:
+        (radar,) = (await open_client(world))["tree"]["displays"]
         assert (radar["supported"], radar["level"], radar["properties"]) == (False, "warn", [])
         assert "my_plugins/Radar" in radar["status"][0]["text"]
         assert "Size (m): 0.05" in world.viewer.config.text()
@@ -222,7 +227,7 @@ async def test_unsupported_displays_are_listed_and_kept():
 
 @pytest.mark.parametrize("cls", ["Grid", "TF", "RobotModel", "LaserScan"])
 async def test_disabled_display_has_no_status_until_enabled(cls):
-    async with open_world(config(f"    - {{Class: rviz_default_plugins/{cls}, Value: true}}\n")) as world:
+    async with open_world(make_config(f"    - {{Class: rviz_default_plugins/{cls}, Value: true}}\n")) as world:
         world.describe(ARM)
         world.move_arm()
         await world.settle()

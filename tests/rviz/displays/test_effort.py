@@ -26,18 +26,18 @@ CRANE = """\
 """
 
 
-def config(extra: str = "") -> RvizConfig:
+def make_config(extra: str = "") -> RvizConfig:
     return RvizConfig.parse(
         "Visualization Manager:\n  Global Options: {Fixed Frame: base}\n  Displays:\n"
         f"    - {{Class: rviz_default_plugins/Effort, Enabled: true, Topic: {{Value: /joint_states}}{extra}}}\n"
     )
 
 
-def state(**efforts: float):
+def make_joint_state(**efforts: float):
     return JointState(name=list(efforts), position=[0.0] * len(efforts), effort=list(efforts.values()))
 
 
-async def described(world):
+async def describe_crane(world):
     world.describe(CRANE)
     world.move({("base", "arm"): (0, 0, 1, 0, 0, 0, 1), ("arm", "hook"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
     await world.settle()
@@ -45,8 +45,8 @@ async def described(world):
 
 
 async def test_effort_properties_match_rviz():
-    async with open_world(config()) as world:
-        await described(world)
+    async with open_world(make_config()) as world:
+        await describe_crane(world)
         rows = {row.name: row for row in world.display("Effort").row().properties}
         assert {name: row.value for name, row in rows.items()} == {
             "Topic": "/joint_states",
@@ -64,9 +64,9 @@ async def test_effort_properties_match_rviz():
 
 
 async def test_effort_ring_is_perpendicular_to_joint_axis():
-    async with open_world(config()) as world:
-        out = await described(world)
-        out.publish(state(lift=-5.0, spin=1.0, slide=2.0))
+    async with open_world(make_config()) as world:
+        out = await describe_crane(world)
+        out.publish(make_joint_state(lift=-5.0, spin=1.0, slide=2.0))
         await world.settle()
         (content,) = contents(world.display("Effort"))
         assert (content.frame, content.pose) == ("", None)
@@ -83,12 +83,12 @@ async def test_effort_ring_is_perpendicular_to_joint_axis():
     ("message", "row", "text"),
     [
         (JointState(name=["lift"]), "Message", "different joint names and efforts size"),
-        (state(lift=math.nan), "lift", "Invalid effort: nan"),
+        (make_joint_state(lift=math.nan), "lift", "Invalid effort: nan"),
     ],
 )
 async def test_invalid_joint_states_are_reported(message, row, text):
-    async with open_world(config()) as world:
-        out = await described(world)
+    async with open_world(make_config()) as world:
+        out = await describe_crane(world)
         out.publish(message)
         await world.settle()
         level, status = world.status("Effort")[row]
@@ -96,9 +96,9 @@ async def test_invalid_joint_states_are_reported(message, row, text):
 
 
 async def test_no_rings_without_robot_description():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         out = world.graph.create_node("talker").create_publisher(JointState, "/joint_states", 10)
-        out.publish(state(lift=1.0))
+        out.publish(make_joint_state(lift=1.0))
         await world.settle()
         assert world.status("Effort")["Message"] == ("error", "Robot model might not be loaded yet")
         world.describe("<robot name='broken'/>")
@@ -107,14 +107,14 @@ async def test_no_rings_without_robot_description():
 
 
 async def test_message_waits_for_transform_of_frame():
-    async with open_world(config(", TF Prefix: one")) as world:
-        out = await described(world)
-        out.publish(state(lift=1.0))
+    async with open_world(make_config(", TF Prefix: one")) as world:
+        out = await describe_crane(world)
+        out.publish(make_joint_state(lift=1.0))
         await world.settle()
         assert contents(world.display("Effort")) == []
         level, text = world.status("Effort")["Transform"]
         assert (level, "[one/arm]" in text) == ("error", True)
         world.display("Effort").set_property(("TF Prefix",), "")
-        out.publish(state(lift=1.0))
+        out.publish(make_joint_state(lift=1.0))
         await world.settle()
         assert len(contents(world.display("Effort"))) == 1

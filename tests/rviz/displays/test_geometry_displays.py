@@ -1,4 +1,7 @@
-"""Pose, PoseArray, PoseWithCovariance, Odometry, Path, Polygon, Range, TwistStamped, AccelStamped and Wrench."""
+"""Displays of geometry messages.
+
+The tests cover poses, Odometry, Path, Polygon, Range, TwistStamped, AccelStamped and Wrench.
+"""
 
 from __future__ import annotations
 
@@ -12,40 +15,40 @@ from linkwright.rviz import RvizConfig
 from tests.viewer.contents import contents
 from tests.viewer.scene import open_world
 
-INVALID = ("error", "Message contained invalid floating point values (nans or infs)")
+INVALID_STATUS = ("error", "Message contained invalid floating point values (nans or infs)")
 
 
-def config(cls: str, extra: str = "") -> RvizConfig:
+def make_config(cls: str, extra: str = "") -> RvizConfig:
     return RvizConfig.parse(
         "Visualization Manager:\n  Global Options: {Fixed Frame: base}\n  Displays:\n"
         f"    - {{Class: rviz_default_plugins/{cls}, Enabled: true, Topic: {{Value: /topic}}{extra}}}\n"
     )
 
 
-def publisher(world, cls: str):
+def create_publisher(world, cls: str):
     return world.graph.create_node("talker").create_publisher(get_message(world.display(cls).MESSAGE), "/topic", 10)
 
 
-def message(cls: str, frame: str = "tip", **fields):
+def make_message(cls: str, frame: str = "tip", **fields):
     instance = get_message(cls)(**fields)
     instance.header.frame_id = frame
     return instance
 
 
-def pose(x: float, y: float = 0.0, w: float = 1.0):
+def make_pose(x: float, y: float = 0.0, w: float = 1.0):
     instance = get_message("geometry_msgs/msg/Pose")()
     instance.position.x, instance.position.y, instance.orientation.w = float(x), float(y), float(w)
     return instance
 
 
-def odometry(x: float, w: float = 1.0):
-    instance = message("nav_msgs/msg/Odometry")
-    instance.pose.pose = pose(x, w=w)
+def make_odometry(x: float, w: float = 1.0):
+    instance = make_message("nav_msgs/msg/Odometry")
+    instance.pose.pose = make_pose(x, w=w)
     instance.pose.covariance = np.eye(6).ravel() * 0.25
     return instance
 
 
-def rows(world, cls: str) -> dict[str, object]:
+def status_rows(world, cls: str) -> dict[str, object]:
     return {row.name: row.value for row in world.display(cls).row().properties}
 
 
@@ -101,30 +104,35 @@ DEFAULTS = {
 
 @pytest.mark.parametrize("cls", DEFAULTS)
 async def test_properties_and_defaults_match_rviz(cls):
-    async with open_world(config(cls)) as world:
-        assert rows(world, cls) == {"Topic": "/topic", **DEFAULTS[cls]}
+    async with open_world(make_config(cls)) as world:
+        assert status_rows(world, cls) == {"Topic": "/topic", **DEFAULTS[cls]}
         (topic,) = (row for row in world.display(cls).row().properties if row.name == "Topic")
         names = ["Depth", "History Policy", "Reliability Policy", "Durability Policy", "Filter size"]
         assert [row.name for row in topic.children] == names
 
 
 async def test_only_properties_of_selected_shape_are_shown():
-    async with open_world(config("Pose", ", Shape: Axes")) as world:
-        assert rows(world, "Pose") == {"Topic": "/topic", "Shape": "Axes", "Axes Length": 1.0, "Axes Radius": 0.1}
-    async with open_world(config("Odometry")) as world:
+    async with open_world(make_config("Pose", ", Shape: Axes")) as world:
+        assert status_rows(world, "Pose") == {
+            "Topic": "/topic",
+            "Shape": "Axes",
+            "Axes Length": 1.0,
+            "Axes Radius": 0.1,
+        }
+    async with open_world(make_config("Odometry")) as world:
         (shape,) = (row for row in world.display("Odometry").row().properties if row.name == "Shape")
         assert {row.name: row.value for row in shape.children} == {"Color": "#ff1900", "Alpha": 1.0, **SIZES}
-    async with open_world(config("PoseArray", ", Shape: Arrow (3D)")) as world:
+    async with open_world(make_config("PoseArray", ", Shape: Arrow (3D)")) as world:
         values = {"Head Radius": 0.03, "Head Length": 0.07, "Shaft Radius": 0.01, "Shaft Length": 0.23}
-        assert values.items() <= rows(world, "PoseArray").items()
-    async with open_world(config("Path", ", Pose Style: Arrows, Line Style: Billboards")) as world:
+        assert values.items() <= status_rows(world, "PoseArray").items()
+    async with open_world(make_config("Path", ", Pose Style: Arrows, Line Style: Billboards")) as world:
         values = {"Line Width": 0.03, "Shaft Length": 0.1, "Head Length": 0.2, "Shaft Diameter": 0.1}
-        assert {**values, "Head Diameter": 0.3, "Pose Color": "#ff55ff"}.items() <= rows(world, "Path").items()
-        assert "Radius" not in rows(world, "Path")
+        assert {**values, "Head Diameter": 0.3, "Pose Color": "#ff55ff"}.items() <= status_rows(world, "Path").items()
+        assert "Radius" not in status_rows(world, "Path")
 
 
 async def test_covariance_properties_match_rviz():
-    async with open_world(config("PoseWithCovariance")) as world:
+    async with open_world(make_config("PoseWithCovariance")) as world:
         (covariance,) = (
             row for row in world.display("PoseWithCovariance").row().properties if row.name == "Covariance"
         )
@@ -141,9 +149,9 @@ async def test_covariance_properties_match_rviz():
 
 
 async def test_pose_is_sent_with_pose_of_its_frame():
-    async with open_world(config("Pose")) as world:
+    async with open_world(make_config("Pose")) as world:
         world.move({("base", "tip"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
-        publisher(world, "Pose").publish(message("geometry_msgs/msg/PoseStamped", pose=pose(4)))
+        create_publisher(world, "Pose").publish(make_message("geometry_msgs/msg/PoseStamped", pose=make_pose(4)))
         await world.settle()
         (content,) = contents(world.display("Pose"))
         assert (content.frame, content.pose) == ("tip", [1, 2, 3, 0, 0, 0, 1])
@@ -153,30 +161,34 @@ async def test_pose_is_sent_with_pose_of_its_frame():
 
 
 async def test_pose_with_covariance_sends_covariance():
-    async with open_world(config("PoseWithCovariance")) as world:
+    async with open_world(make_config("PoseWithCovariance")) as world:
         world.move_arm()
-        estimate = message("geometry_msgs/msg/PoseWithCovarianceStamped")
-        estimate.pose.pose = pose(1)
+        estimate = make_message("geometry_msgs/msg/PoseWithCovarianceStamped")
+        estimate.pose.pose = make_pose(1)
         estimate.pose.covariance = np.arange(36.0)
-        publisher(world, "PoseWithCovariance").publish(estimate)
+        create_publisher(world, "PoseWithCovariance").publish(estimate)
         await world.settle()
         (content,) = contents(world.display("PoseWithCovariance"))
         assert content.fields["covariances"].tolist() == list(range(36))
 
 
 async def test_all_poses_of_array_are_sent():
-    async with open_world(config("PoseArray")) as world:
+    async with open_world(make_config("PoseArray")) as world:
         world.move_arm()
-        publisher(world, "PoseArray").publish(message("geometry_msgs/msg/PoseArray", poses=[pose(1), pose(2)]))
+        create_publisher(world, "PoseArray").publish(
+            make_message("geometry_msgs/msg/PoseArray", poses=[make_pose(1), make_pose(2)])
+        )
         await world.settle()
         (content,) = contents(world.display("PoseArray"))
         assert content.fields["poses"].reshape(-1, 7)[:, 0].tolist() == [1, 2]
 
 
 async def test_nav2_particle_cloud_sends_weights():
-    parsed = config("PoseArray").text().replace("rviz_default_plugins/PoseArray", "nav2_rviz_plugins/ParticleCloud")
+    parsed = (
+        make_config("PoseArray").text().replace("rviz_default_plugins/PoseArray", "nav2_rviz_plugins/ParticleCloud")
+    )
     async with open_world(RvizConfig.parse(parsed)) as world:
-        assert rows(world, "ParticleCloud") == {
+        assert status_rows(world, "ParticleCloud") == {
             "Topic": "/topic",
             "Shape": "Arrow (Flat)",
             "Color": "#ff1900",
@@ -187,26 +199,26 @@ async def test_nav2_particle_cloud_sends_weights():
         }
         world.move_arm()
         particle = get_message("nav2_msgs/msg/Particle")
-        particles = [particle(pose=pose(1), weight=0.25), particle(pose=pose(2), weight=0.75)]
-        out = publisher(world, "ParticleCloud")
-        out.publish(message("nav2_msgs/msg/ParticleCloud", particles=particles))
+        particles = [particle(pose=make_pose(1), weight=0.25), particle(pose=make_pose(2), weight=0.75)]
+        out = create_publisher(world, "ParticleCloud")
+        out.publish(make_message("nav2_msgs/msg/ParticleCloud", particles=particles))
         await world.settle()
         (content,) = contents(world.display("ParticleCloud"))
         assert content.fields["poses"].reshape(-1, 7)[:, 0].tolist() == [1, 2]
         assert content.fields["weights"].tolist() == [0.25, 0.75]
-        out.publish(message("nav2_msgs/msg/ParticleCloud", particles=[particle(weight=math.nan)]))
+        out.publish(make_message("nav2_msgs/msg/ParticleCloud", particles=[particle(weight=math.nan)]))
         await world.settle()
-        assert world.status("ParticleCloud")["Message"] == INVALID
+        assert world.status("ParticleCloud")["Message"] == INVALID_STATUS
 
 
 async def test_odometry_adds_arrow_after_distance_or_rotation():
-    async with open_world(config("Odometry")) as world:
+    async with open_world(make_config("Odometry")) as world:
         world.move_arm()
-        out = publisher(world, "Odometry")
+        out = create_publisher(world, "Odometry")
         for x in (0.0, 0.05, 0.12, 0.15, 0.3):
-            out.publish(odometry(x))
+            out.publish(make_odometry(x))
         await world.settle()
-        turned = odometry(0.3)
+        turned = make_odometry(0.3)
         turned.pose.pose.orientation.z, turned.pose.pose.orientation.w = math.sin(0.1), math.cos(0.1)
         out.publish(turned)
         await world.settle()
@@ -215,17 +227,17 @@ async def test_odometry_adds_arrow_after_distance_or_rotation():
 
 
 async def test_odometry_keep_limits_number_of_arrows():
-    async with open_world(config("Odometry", ", Keep: 2")) as world:
+    async with open_world(make_config("Odometry", ", Keep: 2")) as world:
         world.move_arm()
-        out = publisher(world, "Odometry")
+        out = create_publisher(world, "Odometry")
         for x in range(5):
-            out.publish(odometry(x))
+            out.publish(make_odometry(x))
         await world.settle()
         display = world.display("Odometry")
         assert sorted(content.fields["poses"][0] for content in contents(display)) == [3, 4]
         display.set_property(("Keep",), 0)
         for x in range(5, 9):
-            out.publish(odometry(x))
+            out.publish(make_odometry(x))
         await world.settle()
         assert [content.fields["poses"][0] for content in contents(display)] == [3, 4, 5, 6, 7, 8]
         display.set_property(("Keep",), 3)
@@ -233,45 +245,45 @@ async def test_odometry_keep_limits_number_of_arrows():
 
 
 async def test_odometry_rejects_invalid_quaternion():
-    async with open_world(config("Odometry")) as world:
+    async with open_world(make_config("Odometry")) as world:
         world.move_arm()
-        out = publisher(world, "Odometry")
-        out.publish(odometry(0, w=0.5))
+        out = create_publisher(world, "Odometry")
+        out.publish(make_odometry(0, w=0.5))
         await world.settle()
         level, text = world.status("Odometry")["Message"]
         assert (level, text.startswith("Message contained unnormalized quaternion")) == ("error", True)
         assert contents(world.display("Odometry")) == []
-        out.publish(odometry(0))
+        out.publish(make_odometry(0))
         await world.settle()
         assert "Message" not in world.status("Odometry")
 
 
 async def test_path_buffer_length_keeps_last_paths():
-    async with open_world(config("Path", ", Buffer Length: 2")) as world:
+    async with open_world(make_config("Path", ", Buffer Length: 2")) as world:
         world.move_arm()
-        out = publisher(world, "Path")
+        out = create_publisher(world, "Path")
         for count in (2, 3, 4):
-            stamped = [message("geometry_msgs/msg/PoseStamped", pose=pose(x)) for x in range(count)]
-            out.publish(message("nav_msgs/msg/Path", poses=stamped))
+            stamped = [make_message("geometry_msgs/msg/PoseStamped", pose=make_pose(x)) for x in range(count)]
+            out.publish(make_message("nav_msgs/msg/Path", poses=stamped))
         await world.settle()
         paths = [content.fields["poses"].reshape(-1, 7) for content in contents(world.display("Path"))]
         assert sorted(map(len, paths)) == [3, 4]
 
 
 async def test_polygon_is_sent_as_corners():
-    async with open_world(config("Polygon")) as world:
+    async with open_world(make_config("Polygon")) as world:
         world.move_arm()
-        polygon = message("geometry_msgs/msg/PolygonStamped")
+        polygon = make_message("geometry_msgs/msg/PolygonStamped")
         corner = get_message("geometry_msgs/msg/Point32")
         polygon.polygon.points = [corner(x=0.0, y=0.0, z=0.0), corner(x=1.0, y=0.0, z=0.0), corner(x=0.0, y=1.0, z=0.0)]
-        publisher(world, "Polygon").publish(polygon)
+        create_publisher(world, "Polygon").publish(polygon)
         await world.settle()
         (content,) = contents(world.display("Polygon"))
         assert content.fields["points"].tolist() == [0, 0, 0, 1, 0, 0, 0, 1, 0]
 
 
 @pytest.mark.parametrize(
-    ("measured", "least", "most", "shown"),
+    ("measured", "min_range", "max_range", "shown"),
     [
         (0.5, 0.1, 2.0, 0.5),
         (0.05, 0.1, 2.0, 0.0),
@@ -281,11 +293,13 @@ async def test_polygon_is_sent_as_corners():
         (math.nan, 0.3, 0.3, 0.0),
     ],
 )
-async def test_range_length_is_zero_if_invalid(measured, least, most, shown):
-    async with open_world(config("Range")) as world:
+async def test_range_length_is_zero_if_invalid(measured, min_range, max_range, shown):
+    async with open_world(make_config("Range")) as world:
         world.move_arm()
-        reading = message("sensor_msgs/msg/Range", range=measured, min_range=least, max_range=most, field_of_view=0.2)
-        publisher(world, "Range").publish(reading)
+        reading = make_message(
+            "sensor_msgs/msg/Range", range=measured, min_range=min_range, max_range=max_range, field_of_view=0.2
+        )
+        create_publisher(world, "Range").publish(reading)
         await world.settle()
         (content,) = contents(world.display("Range"))
         assert content.fields["range"] == pytest.approx(shown)
@@ -301,12 +315,12 @@ async def test_range_length_is_zero_if_invalid(measured, least, most, shown):
     ],
 )
 async def test_linear_and_angular_vectors_are_sent(cls, part, linear, angular):
-    async with open_world(config(cls)) as world:
+    async with open_world(make_config(cls)) as world:
         world.move_arm()
-        vectors = message(world.display(cls).MESSAGE)
+        vectors = make_message(world.display(cls).MESSAGE)
         getattr(getattr(vectors, part), linear).x = 1.5
         getattr(getattr(vectors, part), angular).z = -2.0
-        out = publisher(world, cls)
+        out = create_publisher(world, cls)
         out.publish(vectors)
         await world.settle()
         (content,) = contents(world.display(cls))
@@ -314,7 +328,7 @@ async def test_linear_and_angular_vectors_are_sent(cls, part, linear, angular):
         getattr(getattr(vectors, part), linear).y = math.nan
         out.publish(vectors)
         await world.settle()
-        assert world.status(cls)["Message"] == INVALID
+        assert world.status(cls)["Message"] == INVALID_STATUS
         if cls != "Wrench":
             return
         world.display(cls).set_property(("Accept NaN Values",), True)
@@ -325,21 +339,21 @@ async def test_linear_and_angular_vectors_are_sent(cls, part, linear, angular):
 
 @pytest.mark.parametrize("cls", ["Pose", "PoseArray", "PoseWithCovariance", "Odometry", "Path", "Polygon"])
 async def test_nonfinite_values_are_rejected(cls):
-    async with open_world(config(cls)) as world:
+    async with open_world(make_config(cls)) as world:
         world.move_arm()
-        instance = message(world.display(cls).MESSAGE)
-        bad = pose(math.nan)
+        instance = make_message(world.display(cls).MESSAGE)
+        invalid_pose = make_pose(math.nan)
         if cls == "Pose":
-            instance.pose = bad
+            instance.pose = invalid_pose
         elif cls == "PoseArray":
-            instance.poses = [bad]
+            instance.poses = [invalid_pose]
         elif cls == "Path":
-            instance.poses = [message("geometry_msgs/msg/PoseStamped", pose=bad)]
+            instance.poses = [make_message("geometry_msgs/msg/PoseStamped", pose=invalid_pose)]
         elif cls == "Polygon":
             instance.polygon.points = [get_message("geometry_msgs/msg/Point32")(x=math.inf)]
         else:
-            instance.pose.pose = bad
-        publisher(world, cls).publish(instance)
+            instance.pose.pose = invalid_pose
+        create_publisher(world, cls).publish(instance)
         await world.settle()
-        assert world.status(cls)["Message"] == INVALID
+        assert world.status(cls)["Message"] == INVALID_STATUS
         assert contents(world.display(cls)) == []

@@ -19,14 +19,14 @@ Dimension = get_message("std_msgs/msg/MultiArrayDimension")
 NAN = float("nan")
 
 
-def config(extra: str = "") -> RvizConfig:
+def make_config(extra: str = "") -> RvizConfig:
     return RvizConfig.parse(
         "Visualization Manager:\n  Global Options: {Fixed Frame: base}\n  Displays:\n"
         f"    - {{Class: grid_map_rviz_plugin/GridMap, Enabled: true, Topic: /grid_map, Name: Map{extra}}}\n"
     )
 
 
-def grid(resolution: float = 1.0, **layers: list[list[float]]) -> Any:
+def make_grid_map(resolution: float = 1.0, **layers: list[list[float]]) -> Any:
     """Return a map of layers; rows go along -x, columns along -y, as in grid_map."""
     (rows, columns) = np.shape(next(iter(layers.values())))
     grid_map = GridMap(layers=list(layers))
@@ -44,7 +44,7 @@ def grid(resolution: float = 1.0, **layers: list[list[float]]) -> Any:
 @asynccontextmanager
 async def open_display(extra: str = ""):
     """Return a display, and a function that publishes a map and returns the sent content."""
-    async with open_world(config(extra)) as world:
+    async with open_world(make_config(extra)) as world:
         world.move_arm()
         publisher = world.graph.create_node("mapper").create_publisher(GridMap, "/grid_map", 10)
         await world.settle()
@@ -80,7 +80,7 @@ async def test_grid_map_properties_match_rviz():
 
 async def test_first_cell_has_largest_x_and_y():
     async with open_display() as (world, publish_and_settle):
-        grid_map = grid(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
+        grid_map = make_grid_map(0.5, elevation=[[1, 2, 3], [4, 5, 6]])
         grid_map.info.pose.position.x = 10.0
         content = await publish_and_settle(grid_map)
         assert (content["rows"], content["columns"]) == (2, 3)
@@ -92,7 +92,7 @@ async def test_first_cell_has_largest_x_and_y():
 
 async def test_circular_buffer_start_index_is_applied():
     async with open_display() as (_, publish_and_settle):
-        grid_map = grid(elevation=[[4, 3], [2, 1]])
+        grid_map = make_grid_map(elevation=[[4, 3], [2, 1]])
         grid_map.outer_start_index = grid_map.inner_start_index = 1
         content = await publish_and_settle(grid_map)
         assert content["points"].reshape(-1, 3)[:, 2].tolist() == [1, 2, 3, 4]
@@ -100,7 +100,7 @@ async def test_circular_buffer_start_index_is_applied():
 
 async def test_nan_cells_are_not_drawn():
     async with open_display() as (_, publish_and_settle):
-        grid_map = grid(elevation=[[1, NAN], [2, 3]], certain=[[1, 1], [1, NAN]])
+        grid_map = make_grid_map(elevation=[[1, NAN], [2, 3]], certain=[[1, 1], [1, NAN]])
         content = await publish_and_settle(grid_map)
         assert content["colors"].reshape(-1, 4)[:, 3].tolist() == [255, 0, 255, 255]
         assert np.isfinite(content["points"]).all()
@@ -111,7 +111,7 @@ async def test_nan_cells_are_not_drawn():
 
 async def test_rainbow_two_color_and_flat_color_modes():
     async with open_display() as (world, publish_and_settle):
-        content = await publish_and_settle(grid(elevation=[[0, 10]], other=[[5, 0]]))
+        content = await publish_and_settle(make_grid_map(elevation=[[0, 10]], other=[[5, 0]]))
         first, last = content["colors"].reshape(-1, 4)[:, :3].tolist()
         assert (first, last) == ([204, 0, 255], [255, 0, 0])
         display = world.display("GridMap")
@@ -138,13 +138,13 @@ async def test_rainbow_two_color_and_flat_color_modes():
 async def test_color_layer_is_unpacked():
     packed = np.array([0x00FF8000, 0x000000FF], dtype=np.uint32).view(np.float32).tolist()
     async with open_display(", Color Transformer: ColorLayer, Color Layer: color") as (_, publish_and_settle):
-        content = await publish_and_settle(grid(elevation=[[0, 0]], color=[packed]))
+        content = await publish_and_settle(make_grid_map(elevation=[[0, 0]], color=[packed]))
         assert content["colors"].reshape(-1, 4)[:, :3].tolist() == [[255, 128, 0], [0, 0, 255]]
 
 
 async def test_large_map_is_subsampled_with_warning():
     async with open_display() as (world, publish_and_settle):
-        content = await publish_and_settle(grid(elevation=np.zeros((900, 900)).tolist()))
+        content = await publish_and_settle(make_grid_map(elevation=np.zeros((900, 900)).tolist()))
         assert (content["rows"], content["columns"]) == (450, 450)
         assert world.status("GridMap")["Size"] == ("warn", "The map is large: 1 in 2 rows and columns is drawn")
 
@@ -162,17 +162,17 @@ async def test_large_map_is_subsampled_with_warning():
 )
 async def test_invalid_grid_map_is_reported(broken, text):
     async with open_display() as (world, publish_and_settle):
-        grid_map = grid(elevation=[[1, 2], [3, 4]])
+        grid_map = make_grid_map(elevation=[[1, 2], [3, 4]])
         for name, value in broken.items():
             setattr(grid_map if name == "layers" else grid_map.info, name, value)
         assert await publish_and_settle(grid_map) is None
         assert world.status("GridMap")["Message"] == ("error", text)
-        assert await publish_and_settle(grid(elevation=[[1, 2], [3, 4]])) is not None
+        assert await publish_and_settle(make_grid_map(elevation=[[1, 2], [3, 4]])) is not None
         assert "Message" not in world.status("GridMap")
 
 
 async def test_grid_map_demo_file_is_saved_unchanged():
-    text = config(", Unreliable: false, Use Rainbow: true, Min Intensity: 0, Color: 200; 200; 200").text()
+    text = make_config(", Unreliable: false, Use Rainbow: true, Min Intensity: 0, Color: 200; 200; 200").text()
     async with open_world(RvizConfig.parse(text)) as world:
         assert world.viewer.displays[0].row().supported
         assert world.viewer.config.text() == text

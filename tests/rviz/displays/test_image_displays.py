@@ -40,24 +40,24 @@ Visualization Manager:
 """
 
 
-def config(cls: str, topic: str = "/camera/image") -> RvizConfig:
+def make_config(cls: str, topic: str = "/camera/image") -> RvizConfig:
     return RvizConfig.parse(FILE.replace("CLS", cls).replace("TOPIC", topic))
 
 
-def small_image(*values: int, frame: str = "base"):
+def make_small_image(*values: int, frame: str = "base"):
     message = image("mono8", len(values), 1, bytes(values))
     message.header.frame_id = frame
     return message
 
 
-def names(display) -> set[str]:
+def row_names(display) -> set[str]:
     return {row.name for row in display.properties.rows()}
 
 
 async def test_image_is_sent():
-    async with open_world(config("Image")) as world:
+    async with open_world(make_config("Image")) as world:
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
-        publisher.publish(small_image(1, 2, 3))
+        publisher.publish(make_small_image(1, 2, 3))
         await world.settle()
         (content,) = contents(world.display("Image"))
         fields = content.fields
@@ -68,7 +68,7 @@ async def test_image_is_sent():
 
 
 async def test_image_is_reduced_to_panel_size():
-    async with open_world(config("Image")) as world:
+    async with open_world(make_config("Image")) as world:
         display = world.display("Image")
 
         async def sizes() -> list[tuple[int, int]]:
@@ -86,11 +86,11 @@ async def test_image_is_reduced_to_panel_size():
 
 
 async def test_nothing_is_sent_while_panel_is_hidden():
-    async with open_world(config("Image")) as world:
+    async with open_world(make_config("Image")) as world:
         display = world.display("Image")
         display.receive(ImageSize(display.id, 0, 0))
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
-        publisher.publish(small_image(1, 2, 3))
+        publisher.publish(make_small_image(1, 2, 3))
         await world.settle()
         assert contents(display) == []
         display.receive(ImageSize(display.id, 3, 1))
@@ -99,18 +99,18 @@ async def test_nothing_is_sent_while_panel_is_hidden():
 
 
 async def test_hidden_panel_unsubscribes_after_one_image():
-    async with open_world(config("Image")) as world:
+    async with open_world(make_config("Image")) as world:
         display = world.display("Image")
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         assert publisher.get_subscription_count() == 1
         display.receive(ImageSize(display.id, 0, 0))
-        publisher.publish(small_image(1, 2, 3))
+        publisher.publish(make_small_image(1, 2, 3))
         await world.settle()
         assert publisher.get_subscription_count() == 0
         display.receive(ImageSize(display.id, 3, 1))
         assert publisher.get_subscription_count() == 1
         assert world.status("Image")["Topic"] == ("ok", "1 messages received"), "earlier messages are still counted"
-        publisher.publish(small_image(4, 5, 6))
+        publisher.publish(make_small_image(4, 5, 6))
         await world.settle()
         (content,) = contents(display)
         assert content.fields["data"].tolist() == [4, 5, 6]
@@ -123,18 +123,18 @@ async def test_hidden_panel_unsubscribes_after_one_image():
 
 
 async def test_panel_of_closed_page_is_ignored():
-    async with open_world(config("Image")) as world:
+    async with open_world(make_config("Image")) as world:
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
-        publisher.publish(small_image(1, 2, 3))
-        async with page(world.viewer) as only:
-            await only.send("image_size", display=world.display("Image").id, width=30, height=18)
+        publisher.publish(make_small_image(1, 2, 3))
+        async with page(world.viewer) as only_client:
+            await only_client.send("image_size", display=world.display("Image").id, width=30, height=18)
             await eventually(lambda: world.display("Image")._panel)
             assert publisher.get_subscription_count() == 1
         await eventually(lambda: publisher.get_subscription_count() == 0)
 
 
 async def test_largest_panel_determines_image_size(monkeypatch):
-    async with open_world(config("Image")) as world, page(world.viewer) as first:
+    async with open_world(make_config("Image")) as world, page(world.viewer) as first:
         display = world.display("Image")
         messages: list[ImageSize] = []
         monkeypatch.setattr(display, "receive", messages.append)
@@ -151,33 +151,33 @@ async def test_largest_panel_determines_image_size(monkeypatch):
 
 
 async def test_unsupported_encoding_is_reported():
-    async with open_world(config("Image")) as world:
+    async with open_world(make_config("Image")) as world:
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(image("64FC1", 1, 1, bytes(8)))
         await world.settle()
         assert world.status("Image")["Image"] == ("error", "Unsupported image encoding [64FC1]")
-        publisher.publish(small_image(1))
+        publisher.publish(make_small_image(1))
         await world.settle()
         assert "Image" not in world.status("Image")
 
 
 async def test_range_properties_are_shown_for_16_bit_images():
-    async with open_world(config("Image")) as world:
+    async with open_world(make_config("Image")) as world:
         display = world.display("Image")
-        assert names(display) == {"Topic"}
+        assert row_names(display) == {"Topic"}
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(image("16UC1", 2, 1, np.array([0, 1000], "<u2").tobytes()))
         await world.settle()
-        assert names(display) == {"Topic", "Normalize Range", "Median window"}
+        assert row_names(display) == {"Topic", "Normalize Range", "Median window"}
         assert contents(display)[0].fields["data"].tolist() == [0, 255]
         display.set_property(("Normalize Range",), False)
-        assert names(display) == {"Topic", "Normalize Range", "Min Value", "Max Value"}
+        assert row_names(display) == {"Topic", "Normalize Range", "Min Value", "Max Value"}
         display.set_property(("Max Value",), 2000.0)
         assert contents(display)[0].fields["data"].tolist() == [0, 127]
 
 
 async def test_compressed_image_is_sent_unchanged():
-    async with open_world(config("Image", "/camera/image/compressed")) as world:
+    async with open_world(make_config("Image", "/camera/image/compressed")) as world:
         publisher = world.graph.create_node("camera").create_publisher(CompressedImage, "/camera/image/compressed", 5)
         data = b"\xff\xd8\xff\xe0" + bytes(30)
         publisher.publish(CompressedImage(format="jpeg", data=data))
@@ -198,7 +198,7 @@ async def test_compressed_image_is_sent_unchanged():
 @pytest.mark.parametrize("comes_first", ["publisher", "display"])
 async def test_compressed_images_are_accepted_on_any_topic(comes_first):
     data = b"\xff\xd8\xff\xe0\xff\xd9"
-    async with open_world(config("Image", "" if comes_first == "publisher" else "/front/jpeg")) as world:
+    async with open_world(make_config("Image", "" if comes_first == "publisher" else "/front/jpeg")) as world:
         publisher = world.graph.create_node("camera").create_publisher(CompressedImage, "/front/jpeg", 5)
         display = world.display("Image")
         if comes_first == "publisher":
@@ -211,7 +211,7 @@ async def test_compressed_images_are_accepted_on_any_topic(comes_first):
 
 
 async def test_compressed_depths_are_accepted_on_any_topic():
-    async with open_world(config("Image", "/front/depths")) as world:
+    async with open_world(make_config("Image", "/front/depths")) as world:
         publisher = world.graph.create_node("camera").create_publisher(CompressedImage, "/front/depths", 5)
         await eventually(lambda: publisher.get_subscription_count() == 1)
         file = BytesIO()
@@ -221,7 +221,7 @@ async def test_compressed_depths_are_accepted_on_any_topic():
         assert contents(world.display("Image"))[0].fields["data"].tolist() == [0, 255]
 
 
-def info(width: int = 4, height: int = 2, **fields):
+def make_camera_info(width: int = 4, height: int = 2, **fields):
     message = CameraInfo(width=width, height=height)
     message.p = np.array([100.0, 0, 2, -10, 0, 50, 1, 0, 0, 0, 1, 0])
     for name, value in fields.items():
@@ -230,16 +230,16 @@ def info(width: int = 4, height: int = 2, **fields):
 
 
 async def test_camera_display_waits_for_camera_info():
-    async with open_world(config("Camera")) as world:
+    async with open_world(make_config("Camera")) as world:
         node = world.graph.create_node("camera")
         images = node.create_publisher(Image, "/camera/image", 5)
         infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
-        world.move({("base", "eye"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
-        images.publish(small_image(1, 2, frame="eye"))
+        world.move({("base", "camera"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
+        images.publish(make_small_image(1, 2, frame="camera"))
         await world.settle()
         text = "No CameraInfo received on [/camera/camera_info]. Topic may not exist."
         assert world.status("Camera")["Camera Info"] == ("warn", text)
-        infos.publish(info())
+        infos.publish(make_camera_info())
         await world.settle()
         (content,) = contents(world.display("Camera"))
         assert content.pose == [1, 2, 3, 0, 0, 0, 1]
@@ -257,33 +257,33 @@ async def test_camera_display_waits_for_camera_info():
 
 
 async def test_malformed_camera_info_is_reported():
-    async with open_world(config("Camera")) as world:
+    async with open_world(make_config("Camera")) as world:
         node = world.graph.create_node("camera")
         images = node.create_publisher(Image, "/camera/image", 5)
         infos = node.create_publisher(CameraInfo, "/camera/camera_info", 5)
 
         async def status(message) -> tuple[str, str]:
             infos.publish(message)
-            images.publish(small_image(1, 2))
+            images.publish(make_small_image(1, 2))
             await world.settle()
             assert contents(world.display("Camera"))[0].fields["camera"] is None
             return world.status("Camera")["Camera Info"]
 
-        bad = info()
-        bad.p[0] = math.nan
-        assert await status(bad) == ("error", "Contains invalid floating point values (nans or infs)")
-        bad = info()
-        bad.p[0] = 0.0
-        assert (await status(bad))[0] == "error"
-        empty = info(0, 0)
+        invalid_info = make_camera_info()
+        invalid_info.p[0] = math.nan
+        assert await status(invalid_info) == ("error", "Contains invalid floating point values (nans or infs)")
+        invalid_info = make_camera_info()
+        invalid_info.p[0] = 0.0
+        assert (await status(invalid_info))[0] == "error"
+        empty = make_camera_info(0, 0)
         infos.publish(empty)
-        images.publish(small_image())
+        images.publish(make_small_image())
         await world.settle()
         assert world.status("Camera")["Camera Info"][1].startswith("Could not determine width/height of image")
 
 
 async def test_other_displays_can_be_hidden_from_camera():
-    async with open_world(config("Camera")) as world, page(world.viewer) as client:
+    async with open_world(make_config("Camera")) as world, page(world.viewer) as client:
         await client.opened()
         display = world.display("Camera")
 

@@ -39,14 +39,14 @@ Visualization Manager:
 """
 
 
-def marker(name: str, *controls: Control, x: float = 0.0, frame: str = "base") -> InteractiveMarker:
+def make_marker(name: str, *controls: Control, x: float = 0.0, frame: str = "base") -> InteractiveMarker:
     message = InteractiveMarker(name=name, description=f"the {name}", scale=2.0, controls=list(controls))
     message.header.frame_id = frame
     message.pose.position.x = float(x)
     return message
 
 
-class Server:
+class MarkerServer:
     """A fake of interactive_markers' InteractiveMarkerServer with its topics."""
 
     def __init__(self, graph, *markers: InteractiveMarker) -> None:
@@ -78,25 +78,26 @@ def contents_by_name(world) -> dict[str, dict]:
     return {f"{content.fields['kind']} {content.fields['name']}": content.fields for content in contents(display)}
 
 
-def status(world) -> dict[str, tuple[str, str]]:
+def display_status(world) -> dict[str, tuple[str, str]]:
     (display,) = world.viewer.displays
     return {row.name: (row.level, row.text) for row in display.status}
 
 
-async def connected(world) -> None:
+async def wait_until_connected(world) -> None:
     initialized = ("ok", "Initialized interactive marker client")
     await eventually(
-        lambda: status(world).get("Interactive Marker Client") == initialized, what=lambda: str(status(world))
+        lambda: display_status(world).get("Interactive Marker Client") == initialized,
+        what=lambda: str(display_status(world)),
     )
     await world.settle()
 
 
 async def test_interactive_markers_are_added_moved_and_removed():
     async with open_world(RvizConfig.parse(FILE)) as world:
-        server = Server(world.graph, marker("one", x=1))
-        await connected(world)
+        server = MarkerServer(world.graph, make_marker("one", x=1))
+        await wait_until_connected(world)
         assert contents_by_name(world)["interactive_marker one"]["pose"] == [1, 0, 0, 0, 0, 0, 1]
-        server.update(markers=[marker("two", x=2)])
+        server.update(markers=[make_marker("two", x=2)])
         await world.settle()
         assert sorted(contents_by_name(world)) == ["interactive_marker one", "interactive_marker two"]
         moved = Pose(name="two")
@@ -111,10 +112,10 @@ async def test_interactive_markers_are_added_moved_and_removed():
 
 async def test_updates_wait_while_time_is_paused():
     async with open_world(RvizConfig.parse(FILE)) as world:
-        server = Server(world.graph, marker("one"))
-        await connected(world)
+        server = MarkerServer(world.graph, make_marker("one"))
+        await wait_until_connected(world)
         world.viewer.manager.set_time(paused=True, mode="Off", source="")
-        server.update(markers=[marker("two")])
+        server.update(markers=[make_marker("two")])
         server.update(erases=["one"])
         await world.settle()
         assert sorted(contents_by_name(world)) == ["interactive_marker one"]
@@ -124,21 +125,21 @@ async def test_updates_wait_while_time_is_paused():
 
 async def test_lost_update_requests_markers_again():
     async with open_world(RvizConfig.parse(FILE)) as world:
-        server = Server(world.graph, marker("one"))
-        await connected(world)
-        server.markers = {"three": marker("three")}
+        server = MarkerServer(world.graph, make_marker("one"))
+        await wait_until_connected(world)
+        server.markers = {"three": make_marker("three")}
         server.sequence = 7
         server.keep_alive()
         await world.settle()
         assert contents_by_name(world) == {}
-        await connected(world)
+        await wait_until_connected(world)
         assert sorted(contents_by_name(world)) == ["interactive_marker three"]
 
 
 async def test_feedback_of_user_is_published_to_server():
     async with open_world(RvizConfig.parse(FILE)) as world:
-        server = Server(world.graph, marker("one", frame="base"))
-        await connected(world)
+        server = MarkerServer(world.graph, make_marker("one", frame="base"))
+        await wait_until_connected(world)
         (display,) = world.viewer.displays
         pose = [1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]
         display.receive(MarkerFeedback(display.id, "one", "grip", "pose_update", pose, 0, [0.5, 0.0, 0.0]))
@@ -158,32 +159,32 @@ async def test_feedback_of_user_is_published_to_server():
 async def test_display_waits_for_missing_server_with_warning():
     async with open_world(RvizConfig.parse(FILE)) as world:
         missing = ("warn", "Service is not available: /handles/get_interactive_markers")
-        await eventually(lambda: status(world).get("Interactive Marker Client") == missing)
-        Server(world.graph, marker("one"))
-        await connected(world)
+        await eventually(lambda: display_status(world).get("Interactive Marker Client") == missing)
+        MarkerServer(world.graph, make_marker("one"))
+        await wait_until_connected(world)
 
 
 async def test_empty_namespace_is_reported():
     async with open_world(RvizConfig.parse(FILE.replace("/handles", '""'))) as world:
-        assert status(world)["Interactive Marker Client"] == ("error", "Error connecting: empty namespace")
+        assert display_status(world)["Interactive Marker Client"] == ("error", "Error connecting: empty namespace")
 
 
 async def test_marker_appears_once_its_frame_is_known():
     async with open_world(RvizConfig.parse(FILE)) as world:
-        Server(world.graph, marker("one", frame="tip"))
-        await connected(world)
+        MarkerServer(world.graph, make_marker("one", frame="tip"))
+        await wait_until_connected(world)
         assert contents_by_name(world) == {}
-        assert status(world)["one"][0] == "error"
+        assert display_status(world)["one"][0] == "error"
         world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         await world.settle()
         assert sorted(contents_by_name(world)) == ["interactive_marker one"]
-        assert "one" not in status(world)
+        assert "one" not in display_status(world)
 
 
 async def test_disabled_display_unsubscribes_from_server():
     async with open_world(RvizConfig.parse(FILE)) as world:
-        server = Server(world.graph, marker("one"))
-        await connected(world)
+        server = MarkerServer(world.graph, make_marker("one"))
+        await wait_until_connected(world)
         (display,) = world.viewer.displays
         display.set_checked(False)
         display.on_enabled_changed()
@@ -191,7 +192,7 @@ async def test_disabled_display_unsubscribes_from_server():
         assert server._updates.get_subscription_count() == 0
 
 
-def read(message: InteractiveMarker, transparent: bool = True):
+def read_transparency(message: InteractiveMarker, transparent: bool = True):
     index = MeshIndex(PackageFinder(start=Path("/nonexistent"), environment={}))
     return read_interactive_marker(
         message, index, lambda reference, frame: (10, 0, 0, 0, 0, 0, 1), transparent=transparent
@@ -200,7 +201,7 @@ def read(message: InteractiveMarker, transparent: bool = True):
 
 def test_move_axis_control_has_two_arrows_in_color_of_axis():
     control = Control(name="x", interaction_mode=Control.MOVE_AXIS)
-    (control,) = read(marker("one", control)).controls
+    (control,) = read_transparency(make_marker("one", control)).controls
     first, second = control.markers
     assert (first.shape, first.color) == ("arrow", [1, 0, 0, 0.5])
     np.testing.assert_allclose(first.points, [[1, 0, 0], [1.8, 0, 0]])
@@ -215,7 +216,7 @@ def test_move_axis_control_has_two_arrows_in_color_of_axis():
 def test_rotation_control_has_ring(mode, shades):
     control = Control(name="z", interaction_mode=mode)
     control.orientation.w = control.orientation.y = 2**-0.5
-    (control,) = read(marker("one", control), transparent=False).controls
+    (control,) = read_transparency(make_marker("one", control), transparent=False).controls
     (ring,) = control.markers
     assert ring.shape == "triangle_list"
     assert ring.color[3] == 1.0
@@ -228,16 +229,19 @@ def test_rotation_control_has_ring(mode, shades):
 
 def test_menu_control_without_markers_is_view_facing_text():
     control = Control(name="m", interaction_mode=Control.MENU, description="Options")
-    message = marker("one", control)
+    message = make_marker("one", control)
     message.menu_entries = [MenuEntry(id=1, title="Go"), MenuEntry(id=2, parent_id=1, title="Home")]
-    shape = read(message)
+    shape = read_transparency(message)
     (control,) = shape.controls
     assert (control.orientation_mode, control.markers[0].text) == ("view_facing", "Options")
     assert [(entry.id, entry.parent, entry.title) for entry in shape.menu] == [(1, 0, "Go"), (2, 1, "Home")]
 
 
 def test_controls_with_same_name_get_unique_names():
-    names = [control.name for control in read(marker("one", *(Control(name="a") for _ in range(3)))).controls]
+    names = [
+        control.name
+        for control in read_transparency(make_marker("one", *(Control(name="a") for _ in range(3)))).controls
+    ]
     assert names == ["a", "a_u0", "a_u1"]
 
 
@@ -245,11 +249,11 @@ def test_marker_of_control_is_transformed_to_control_frame():
     box = Marker(type=Marker.CUBE)
     box.header.frame_id = "tip"
     box.color.a = 1.0
-    (control,) = read(marker("one", Control(name="c", markers=[box]), x=4)).controls
+    (control,) = read_transparency(make_marker("one", Control(name="c", markers=[box]), x=4)).controls
     assert control.markers[0].pose[:3] == [6, 0, 0]
     assert control.markers[0].scale == [1, 1, 1]
 
 
 def test_nonfinite_values_are_rejected():
     with pytest.raises(BadMarkerError, match="invalid floats"):
-        read(marker("one", x=float("nan")))
+        read_transparency(make_marker("one", x=float("nan")))

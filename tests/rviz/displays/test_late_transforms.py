@@ -1,4 +1,7 @@
-"""Displays of healthy sensors whose transforms arrive after their messages: the changes of their status."""
+"""Displays of healthy sensors whose transforms arrive after their messages.
+
+The tests check the changes of their status.
+"""
 
 from __future__ import annotations
 
@@ -12,12 +15,12 @@ import pytest
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays.base.display import ViewerDisplay
-from tests.rviz.clouds.test_clouds import cloud, scan, xyz
+from tests.rviz.clouds.test_clouds import make_cloud, make_scan, xyz_array
 from tests.skipping import skipping
 from tests.viewer.scene import World, open_world
 
-SECONDS = 10.0
-TF_PERIOD = 1 / 20
+DURATION_S = 10.0
+TF_PERIOD_S = 1 / 20
 
 SENSORS = {"LaserScan": 1 / 10, "PointCloud2": 1 / 15, "Odometry": 1 / 50}
 """Displays with the period of their messages, in seconds."""
@@ -35,12 +38,12 @@ Visualization Manager:
 """
 
 
-def message(cls: str, stamp_ns: int) -> Any:
+def make_message(cls: str, stamp_ns: int) -> Any:
     """Return a driver's message: stamped with the current time, in a moving frame."""
     if cls == "LaserScan":
-        instance = scan([1.0, 2.0, 3.0])
+        instance = make_scan([1.0, 2.0, 3.0])
     elif cls == "PointCloud2":
-        instance = cloud(xyz([(1, 0, 0), (0, 1, 0)]))
+        instance = make_cloud(xyz_array([(1, 0, 0), (0, 1, 0)]))
     else:
         instance = get_message("nav_msgs/msg/Odometry")()
         instance.pose.pose.orientation.w = 1.0
@@ -49,7 +52,7 @@ def message(cls: str, stamp_ns: int) -> Any:
     return instance
 
 
-def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
+def record_levels(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[str, list[str]]:
     """Return the successive levels of each row."""
     facts: dict[str, list[str]] = {}
     set_status = display.set_status
@@ -66,35 +69,35 @@ def levels_of(display: ViewerDisplay, monkeypatch: pytest.MonkeyPatch) -> dict[s
 
 
 async def call_periodically(period: float, call: Callable[[], object]) -> None:
-    for _ in range(round(SECONDS / period)):
+    for _ in range(round(DURATION_S / period)):
         call()
         await asyncio.sleep(period)
 
 
-async def drive(world: World, tf_delay: float) -> None:
+async def publish_robot(world: World, tf_delay: float) -> None:
     """Publish a robot's transforms at 20 Hz, later than the messages of its sensors."""
     driver, now_ns = world.graph.create_node("driver"), world.graph.timebase.now_ns
-    publishers = {cls: driver.create_publisher(type(message(cls, 0)), f"/{cls}", 10) for cls in SENSORS}
-    here = {("odom", "base"): (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)}
-    world.move(here)
+    publishers = {cls: driver.create_publisher(type(make_message(cls, 0)), f"/{cls}", 10) for cls in SENSORS}
+    poses = {("odom", "base"): (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)}
+    world.move(poses)
     await world.settle()
 
     def publish_sensor_message(cls: str) -> None:
-        publishers[cls].publish(message(cls, now_ns()))
+        publishers[cls].publish(make_message(cls, now_ns()))
 
     def move_later() -> None:
-        asyncio.get_running_loop().call_later(tf_delay, world.move, here)
+        asyncio.get_running_loop().call_later(tf_delay, world.move, poses)
 
     sensing = (call_periodically(period, partial(publish_sensor_message, cls)) for cls, period in SENSORS.items())
-    await asyncio.gather(*sensing, call_periodically(TF_PERIOD, move_later))
+    await asyncio.gather(*sensing, call_periodically(TF_PERIOD_S, move_later))
 
 
 @skipping
 @pytest.mark.parametrize("tf_delay", [0.03, 0.2])
 async def test_displays_with_late_transforms_have_ok_status(tf_delay, monkeypatch):
     async with open_world(RvizConfig.parse(FILE)) as world:
-        facts = {cls: levels_of(world.display(cls), monkeypatch) for cls in SENSORS}
-        await drive(world, tf_delay)
+        facts = {cls: record_levels(world.display(cls), monkeypatch) for cls in SENSORS}
+        await publish_robot(world, tf_delay)
         await world.settle()
         for cls, rows in facts.items():
             assert {"Topic", "Transform"} <= rows.keys(), cls

@@ -36,7 +36,7 @@ Visualization Manager:
 """
 
 
-def marker(number: int = 0, *, ns: str = "a", kind: int = Marker.CUBE, frame: str = "base", **fields) -> Marker:
+def make_marker(number: int = 0, *, ns: str = "a", kind: int = Marker.CUBE, frame: str = "base", **fields) -> Marker:
     message = Marker(ns=ns, id=number, type=kind)
     message.header.frame_id = frame
     message.scale.x = message.scale.y = message.scale.z = 1.0
@@ -76,7 +76,7 @@ def publisher_and_watcher(world, message_type=Marker):
     return publisher, Watcher(store), display
 
 
-def status(display) -> dict[str, tuple[str, str]]:
+def status_rows(display) -> dict[str, tuple[str, str]]:
     return {row.name: (row.level, row.text) for row in display.status}
 
 
@@ -84,7 +84,7 @@ async def test_marker_stays_where_its_frame_was():
     async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
         publisher, page, _ = publisher_and_watcher(world)
         world.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
-        publisher.publish(marker(7, frame="tip", x=1))
+        publisher.publish(make_marker(7, frame="tip", x=1))
         await world.settle()
         page.look()
         (shown,) = page.markers.values()
@@ -96,7 +96,7 @@ async def test_frame_locked_marker_follows_its_frame():
     async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
         publisher, page, _ = publisher_and_watcher(world)
         world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-        publisher.publish(marker(frame="tip", x=1, frame_locked=True))
+        publisher.publish(make_marker(frame="tip", x=1, frame_locked=True))
         await world.settle()
         page.look()
         assert page.markers["a/0"]["frame"] == "tip"
@@ -106,30 +106,30 @@ async def test_frame_locked_marker_follows_its_frame():
 async def test_marker_appears_once_its_frame_is_known():
     async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
         publisher, page, display = publisher_and_watcher(world)
-        publisher.publish(marker(frame="tip"))
+        publisher.publish(make_marker(frame="tip"))
         await world.settle()
         page.look()
         assert page.markers == {}
-        level, text = status(display)["a/0"]
+        level, text = status_rows(display)["a/0"]
         assert level == "error"
         assert text.startswith("For frame [tip]: No transform to fixed frame [base].  TF error: [")
         world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         await world.settle()
         page.look()
         assert list(page.markers) == ["a/0"]
-        assert "a/0" not in status(display)
+        assert "a/0" not in status_rows(display)
 
 
 async def test_filter_size_limits_markers_waiting_for_frames():
     async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
         publisher, page, display = publisher_and_watcher(world)
         display.set_property(("Topic", "Filter size"), 2)
-        publisher.publish(marker(0))
+        publisher.publish(make_marker(0))
         for number in (1, 2, 3, 1, 4):
-            publisher.publish(marker(number, frame="later"))
+            publisher.publish(make_marker(number, frame="later"))
             await world.settle()
-        assert set(status(display)) >= {"a/1", "a/4"}
-        assert not {"a/2", "a/3"} & set(status(display))
+        assert set(status_rows(display)) >= {"a/1", "a/4"}
+        assert not {"a/2", "a/3"} & set(status_rows(display))
         world.move({("base", "later"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         await world.settle()
         page.look()
@@ -139,19 +139,19 @@ async def test_filter_size_limits_markers_waiting_for_frames():
 async def test_markers_are_deleted_individually_and_all():
     async with open_world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as world:
         publisher, page, _ = publisher_and_watcher(world, MarkerArray)
-        publisher.publish(MarkerArray(markers=[marker(n, ns=ns) for ns in "ab" for n in range(3)]))
+        publisher.publish(MarkerArray(markers=[make_marker(n, ns=ns) for ns in "ab" for n in range(3)]))
         await world.settle()
         assert page.look()["everything"] is True
         assert len(page.markers) == 6
-        publisher.publish(MarkerArray(markers=[marker(1, action=Marker.DELETE)]))
+        publisher.publish(MarkerArray(markers=[make_marker(1, action=Marker.DELETE)]))
         await world.settle()
         change = page.look()
         assert (change["everything"], change["removed_ids"], change["markers"]) == (False, ["a/1"], [])
-        publisher.publish(MarkerArray(markers=[marker(0, ns="b", action=Marker.DELETEALL)]))
+        publisher.publish(MarkerArray(markers=[make_marker(0, ns="b", action=Marker.DELETEALL)]))
         await world.settle()
         page.look()
         assert sorted(page.markers) == ["a/0", "a/2"]
-        publisher.publish(MarkerArray(markers=[marker(0, ns="", action=Marker.DELETEALL), marker(9)]))
+        publisher.publish(MarkerArray(markers=[make_marker(0, ns="", action=Marker.DELETEALL), make_marker(9)]))
         await world.settle()
         page.look()
         assert list(page.markers) == ["a/9"]
@@ -160,10 +160,10 @@ async def test_markers_are_deleted_individually_and_all():
 async def test_marker_disappears_after_lifetime():
     async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
         publisher, page, _ = publisher_and_watcher(world)
-        mortal = marker(1)
-        mortal.lifetime.nanosec = 1_000_000
-        publisher.publish(mortal)
-        publisher.publish(marker(2))
+        short_lived = make_marker(1)
+        short_lived.lifetime.nanosec = 1_000_000
+        publisher.publish(short_lived)
+        publisher.publish(make_marker(2))
         await world.settle()
         page.look()
         assert sorted(page.markers) == ["a/1", "a/2"]
@@ -178,8 +178,8 @@ async def test_marker_disappears_after_lifetime():
 async def test_namespace_checkboxes_follow_file():
     async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
         publisher, _, display = publisher_and_watcher(world)
-        publisher.publish(marker(ns="seen"))
-        publisher.publish(marker(ns="hidden"))
+        publisher.publish(make_marker(ns="seen"))
+        publisher.publish(make_marker(ns="hidden"))
         await world.settle()
         (row,) = [row for row in display.properties.rows() if row.name == "Namespaces"]
         assert {child.name: child.value for child in row.children} == {"seen": True, "hidden": False}
@@ -191,9 +191,9 @@ async def test_namespace_checkboxes_follow_file():
 async def test_duplicate_markers_in_message_are_reported():
     async with open_world(RvizConfig.parse(FILE.format(cls="MarkerArray"))) as world:
         publisher, page, display = publisher_and_watcher(world, MarkerArray)
-        publisher.publish(MarkerArray(markers=[marker(1, x=1), marker(1, x=2)]))
+        publisher.publish(MarkerArray(markers=[make_marker(1, x=1), make_marker(1, x=2)]))
         await world.settle()
-        assert status(display)["Duplicate Marker Check"] == (
+        assert status_rows(display)["Duplicate Marker Check"] == (
             "error",
             "Multiple Markers in the same MarkerArray message had the same ns and id: (a, 1)",
         )
@@ -205,20 +205,20 @@ async def test_late_page_receives_all_markers():
     async with open_world(RvizConfig.parse(FILE.format(cls="Marker"))) as world:
         publisher, page, display = publisher_and_watcher(world)
         for number in range(3):
-            publisher.publish(marker(number))
+            publisher.publish(make_marker(number))
             await world.settle()
             page.look()
-        late = Watcher(display.data()[0])
-        late.look()
-        assert sorted(late.markers) == sorted(page.markers) == ["a/0", "a/1", "a/2"]
-        assert late.look() is None
+        late_watcher = Watcher(display.data()[0])
+        late_watcher.look()
+        assert sorted(late_watcher.markers) == sorted(page.markers) == ["a/0", "a/1", "a/2"]
+        assert late_watcher.look() is None
 
 
 def test_page_receives_all_markers_after_missing_too_many_changes(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.markers.shapes._MAX_REMOVED_IDS", 2)
     store = MarkerStore("d")
     page = Watcher(store)
-    shapes = [read_marker(marker(number), index()).shape for number in range(5)]
+    shapes = [read_marker(make_marker(number), index()).shape for number in range(5)]
     for shape in shapes:
         store.put(shape)
     page.look()
@@ -240,18 +240,18 @@ SQUARE = [(0, 0, 0), (1, 0, 0), (1, 1, 0)]
 @pytest.mark.parametrize(
     ("message", "text"),
     [
-        (marker(kind=Marker.ARROW, points=SQUARE[:1]), "only specified one point of a point to point arrow."),
-        (marker(kind=Marker.LINE_LIST, points=SQUARE), "Line list marker [a/0] has an odd number of points."),
-        (marker(kind=Marker.TRIANGLE_LIST), "TriMesh marker [a/0] has no points."),
-        (marker(kind=Marker.TRIANGLE_LIST, points=SQUARE[:2]), "not divisible by 3 [2]"),
-        (marker(kind=99), "Unknown marker type: 99"),
-        (marker(x=math.nan), "Contains invalid floating point values (nans or infs)"),
+        (make_marker(kind=Marker.ARROW, points=SQUARE[:1]), "only specified one point of a point to point arrow."),
+        (make_marker(kind=Marker.LINE_LIST, points=SQUARE), "Line list marker [a/0] has an odd number of points."),
+        (make_marker(kind=Marker.TRIANGLE_LIST), "TriMesh marker [a/0] has no points."),
+        (make_marker(kind=Marker.TRIANGLE_LIST, points=SQUARE[:2]), "not divisible by 3 [2]"),
+        (make_marker(kind=99), "Unknown marker type: 99"),
+        (make_marker(x=math.nan), "Contains invalid floating point values (nans or infs)"),
         (
-            marker(kind=Marker.POINTS, points=[(math.inf, 0, 0)]),
+            make_marker(kind=Marker.POINTS, points=[(math.inf, 0, 0)]),
             "Contains invalid floating point values (nans or infs)",
         ),
         (
-            marker(kind=Marker.MESH_RESOURCE, mesh_resource="package://none/a.stl"),
+            make_marker(kind=Marker.MESH_RESOURCE, mesh_resource="package://none/a.stl"),
             "could not load [package://none/a.stl]",
         ),
     ],
@@ -265,10 +265,13 @@ def test_invalid_marker_is_rejected_with_message_of_rviz(message, text):
 @pytest.mark.parametrize(
     ("message", "warning"),
     [
-        (marker(), None),
-        (marker(scale=get_message("geometry_msgs/msg/Vector3")(x=1.0, y=0.0, z=1.0)), "Scale of 0 in one of x/y/z"),
+        (make_marker(), None),
         (
-            marker(kind=Marker.POINTS, points=SQUARE, colors=[ColorRGBA(r=1.0)] * 3),
+            make_marker(scale=get_message("geometry_msgs/msg/Vector3")(x=1.0, y=0.0, z=1.0)),
+            "Scale of 0 in one of x/y/z",
+        ),
+        (
+            make_marker(kind=Marker.POINTS, points=SQUARE, colors=[ColorRGBA(r=1.0)] * 3),
             "All points have a zero alpha value.",
         ),
     ],
@@ -278,7 +281,7 @@ def test_suspicious_marker_has_warning(message, warning):
 
 
 def test_zero_quaternion_is_identity():
-    message = marker()
+    message = make_marker()
     message.pose.orientation.w = 0.0
     assert read_marker(message, index()).shape.pose == [0, 0, 0, 0, 0, 0, 1]
 
@@ -288,12 +291,12 @@ def test_all_marker_types_have_shapes():
     for kind in range(13):
         points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 0, 0), (1, 0, 0), (1, 1, 0)] if kind > 3 else []
         if kind != Marker.MESH_RESOURCE:
-            kinds.append(read_marker(marker(kind=kind, points=points), index()).shape.shape)
+            kinds.append(read_marker(make_marker(kind=kind, points=points), index()).shape.shape)
     assert len(set(kinds)) == 12
 
 
 def test_mesh_may_be_embedded_in_message():
-    message = marker(kind=Marker.MESH_RESOURCE, mesh_use_embedded_materials=True)
+    message = make_marker(kind=Marker.MESH_RESOURCE, mesh_use_embedded_materials=True)
     message.mesh_file.filename = "part.STL"
     message.mesh_file.data = b"solid"
     mesh = read_marker(message, index()).shape.mesh

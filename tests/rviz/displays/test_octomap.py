@@ -7,7 +7,7 @@ from typing import Any
 
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
-from tests.rviz.displays.moveit.arm import signed
+from tests.rviz.displays.moveit.arm import as_signed_bytes
 from tests.viewer.contents import shown_markers
 from tests.viewer.scene import open_world
 
@@ -33,11 +33,14 @@ Visualization Manager:
 OCCUPIED, FREE, INNER = 2, 1, 3
 
 
-def octomap(last: list[int], frame: str = "base") -> Any:
-    """Return a map of half a meter with the eight smallest cells at the center's corner, in the first octant."""
-    inner = [struct.pack("<H", INNER << 14), *[struct.pack("<H", INNER)] * 14]
+def make_octomap(last: list[int], frame: str = "base") -> Any:
+    """Return a map of half a meter with eight occupied cells.
+
+    They are the smallest cells at the center's corner, in the first octant.
+    """
+    nodes = [struct.pack("<H", INNER << 14), *[struct.pack("<H", INNER)] * 14]
     leaves = struct.pack("<H", sum(state << 2 * child for child, state in enumerate(last)))
-    message = Octomap(binary=True, id="OcTree", resolution=0.5, data=signed(b"".join([*inner, leaves])))
+    message = Octomap(binary=True, id="OcTree", resolution=0.5, data=as_signed_bytes(b"".join([*nodes, leaves])))
     message.header.frame_id = frame
     return message
 
@@ -47,7 +50,7 @@ async def test_octomap_cells_follow_properties():
         world.move_arm()
         publisher = world.graph.create_node("mapper").create_publisher(Octomap, "/octomap", 10)
         await world.settle()
-        publisher.publish(octomap([OCCUPIED, FREE, 0, 0, OCCUPIED, 0, 0, 0]))
+        publisher.publish(make_octomap([OCCUPIED, FREE, 0, 0, OCCUPIED, 0, 0, 0]))
         await world.settle()
         (display,) = world.viewer.displays
         (marker,) = shown_markers(display).values()
@@ -76,7 +79,7 @@ async def test_invalid_octomaps_and_frames_are_reported():
         await world.settle()
         status = world.status("OccupancyGrid")
         assert status["Octomap"] == ("error", "The data of the octomap ends too early, after 1 bytes")
-        publisher.publish(octomap([OCCUPIED] * 8, frame="nowhere"))
+        publisher.publish(make_octomap([OCCUPIED] * 8, frame="nowhere"))
         await world.settle()
         status = world.status("OccupancyGrid")
         assert "Octomap" not in status

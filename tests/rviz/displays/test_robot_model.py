@@ -1,3 +1,5 @@
+"""The RobotModel display: descriptions, links, joints and statuses."""
+
 from __future__ import annotations
 
 from pathlib import Path
@@ -7,13 +9,13 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from linkwright.rviz import RvizConfig
-from tests.page.test_files import package, write
+from tests.page.test_files import write_file, write_package
 from tests.viewer.scene import ARM, World, open_world, page, rows_by_id
 
-MESHED = ARM.replace('<box size="1 2 3"/>', '<mesh filename="package://robot/meshes/arm.stl"/>')
+ARM_WITH_MESH = ARM.replace('<box size="1 2 3"/>', '<mesh filename="package://robot/meshes/arm.stl"/>')
 
 
-def config(extra: str = "") -> RvizConfig:
+def make_config(extra: str = "") -> RvizConfig:
     return RvizConfig.parse(
         "Visualization Manager:\n"
         "  Global Options: {Fixed Frame: base}\n"
@@ -22,23 +24,23 @@ def config(extra: str = "") -> RvizConfig:
     )
 
 
-async def opened(world):
+async def open_client(world):
     async with page(world.viewer) as client:
         return await client.opened()
 
 
 async def test_robot_model_waits_for_description():
-    async with open_world(config()) as world:
-        opening = await opened(world)
+    async with open_world(make_config()) as world:
+        opening = await open_client(world)
     assert opening["robot_scene"]["links"] == []
     assert world.status("RobotModel") == {"Topic": ("warn", "No messages received")}
 
 
 async def test_description_becomes_scene_with_rows_and_status():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         world.describe(ARM)
         await world.settle()
-        opening = await opened(world)
+        opening = await open_client(world)
         scene = opening["robot_scene"]
         assert (scene["display"], scene["name"], scene["revision"]) == ("display-1", "arm", 1)
         assert [link["name"] for link in scene["links"]] == ["base", "tip", "mark"]
@@ -51,15 +53,15 @@ async def test_description_becomes_scene_with_rows_and_status():
         }
         world.move_arm()
         await world.settle()
-        await opened(world)
+        await open_client(world)
         assert {text for _, text in world.status("RobotModel").values()} == {"OK", "URDF parsed OK", "Transform OK"}
 
 
 async def test_robot_model_properties_match_rviz():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         world.describe(ARM)
         await world.settle()
-        properties = (await opened(world))["tree"]["displays"][0]["properties"]
+        properties = (await open_client(world))["tree"]["displays"][0]["properties"]
     values = {row["name"]: row["value"] for row in properties}
     assert values == {
         "Visual Enabled": True,
@@ -96,10 +98,10 @@ async def test_robot_model_properties_match_rviz():
 
 
 async def test_link_properties_are_read_from_file():
-    async with open_world(config(", Alpha: 0.8, Links: {tip: {Alpha: 0.25, Value: false}}")) as world:
+    async with open_world(make_config(", Alpha: 0.8, Links: {tip: {Alpha: 0.25, Value: false}}")) as world:
         world.describe(ARM)
         await world.settle()
-        rows = rows_by_id((await opened(world))["tree"]["displays"][0]["properties"])
+        rows = rows_by_id((await open_client(world))["tree"]["displays"][0]["properties"])
     assert rows["display-1/Alpha"]["value"] == 0.8
     assert rows["display-1/Links/tip"]["value"] is False
     assert rows["display-1/Links/tip/Alpha"]["value"] == 0.25
@@ -107,7 +109,7 @@ async def test_link_properties_are_read_from_file():
 
 
 async def test_all_links_enabled_sets_all_links():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         world.describe(ARM)
         await world.settle()
         async with page(world.viewer) as client:
@@ -119,7 +121,7 @@ async def test_all_links_enabled_sets_all_links():
 
 
 async def test_joint_checkbox_sets_links_below_and_follows_them():
-    async with open_world(config(", Links: {Link Tree Style: Tree of links and joints}")) as world:
+    async with open_world(make_config(", Links: {Link Tree Style: Tree of links and joints}")) as world:
         world.describe(
             ARM.replace(
                 '<link name="mark"/>',
@@ -134,22 +136,22 @@ async def test_joint_checkbox_sets_links_below_and_follows_them():
             property_values = {path[1]: display.properties.get(*path) for path in paths}
             return {**property_values, "all": display.properties.get("Links", "All Links Enabled")}
 
-        on = dict.fromkeys(boxes(), True)
-        assert boxes() == on
+        all_enabled = dict.fromkeys(boxes(), True)
+        assert boxes() == all_enabled
         display.set_property(("Joints", "turn"), False)
-        assert boxes() == {**dict.fromkeys(on, False), "base": True}
+        assert boxes() == {**dict.fromkeys(all_enabled, False), "base": True}
         display.set_property(("Links", "mark"), True)
-        assert boxes() == {**on, "tip": False, "turn": False, "all": False}
+        assert boxes() == {**all_enabled, "tip": False, "turn": False, "all": False}
         display.set_property(("Links", "tip"), True)
-        assert boxes() == on
+        assert boxes() == all_enabled
         display.set_property(("Links", "Link Tree Style"), "Joints in Alphabetic Order")
         display.set_property(("Joints", "turn"), False)
-        assert boxes() == {**on, "tip": False, "turn": False, "all": False}
+        assert boxes() == {**all_enabled, "tip": False, "turn": False, "all": False}
 
 
 @pytest.mark.parametrize("box", ["Joints/turn", "Links/All Links Enabled", "Links/base"])
 async def test_undo_reverts_all_links_set_by_checkbox(box):
-    async with open_world(config(", Links: {tip: {Value: false}}")) as world:
+    async with open_world(make_config(", Links: {tip: {Value: false}}")) as world:
         world.describe(ARM)
         await world.settle()
         display = world.display("RobotModel")
@@ -174,7 +176,7 @@ async def test_undo_reverts_all_links_set_by_checkbox(box):
 
 async def test_link_checkboxes_do_not_change_file_on_load():
     text = ", Links: {All Links Enabled: true, tip: {Value: false}}"
-    async with open_world(config(text)) as world:
+    async with open_world(make_config(text)) as world:
         before = world.viewer.config.text()
         world.describe(ARM)
         await world.settle()
@@ -185,13 +187,13 @@ async def test_link_checkboxes_do_not_change_file_on_load():
 
 
 async def test_joint_and_mass_properties_come_from_description():
-    heavy = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
+    inertial_text = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
     limited = '<axis xyz="0 0 1"/><origin xyz="0 0 1"/><limit lower="-1" upper="2" effort="1" velocity="1"/>'
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         text = ARM.replace('type="continuous"', 'type="revolute"').replace('<axis xyz="0 0 1"/>', limited)
-        world.describe(text.replace('<link name="mark"/>', f'<link name="mark">{heavy}</link>'))
+        world.describe(text.replace('<link name="mark"/>', f'<link name="mark">{inertial_text}</link>'))
         await world.settle()
-        scene = (await opened(world))["robot_scene"]
+        scene = (await open_client(world))["robot_scene"]
     turn, fix = scene["joints"]
     assert turn == {
         "name": "turn",
@@ -212,7 +214,7 @@ async def test_joint_and_mass_properties_come_from_description():
 
 
 async def test_new_description_replaces_robot_and_frames():
-    async with open_world(config()) as world, page(world.viewer) as client:
+    async with open_world(make_config()) as world, page(world.viewer) as client:
         world.describe(ARM)
         world.move_arm()
         await client.until("robot_scene", revision=1)
@@ -227,7 +229,7 @@ async def test_new_description_replaces_robot_and_frames():
 
 
 async def test_new_description_waits_while_time_is_paused():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         world.describe(ARM)
         await world.settle()
         world.viewer.manager.set_time(paused=True, mode="Off", source="")
@@ -239,7 +241,7 @@ async def test_new_description_waits_while_time_is_paused():
 
 
 async def test_repeated_description_changes_nothing():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         world.describe(ARM)
         await world.settle()
         async with page(world.viewer) as client:
@@ -257,7 +259,7 @@ async def test_repeated_description_changes_nothing():
     ],
 )
 async def test_invalid_description_keeps_last_robot(text, rows):
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         world.describe(ARM)
         await world.settle()
         world.describe(text)
@@ -265,14 +267,14 @@ async def test_invalid_description_keeps_last_robot(text, rows):
         status = world.status("RobotModel")
         assert rows.items() <= status.items()
         assert "base" in status
-        assert len((await opened(world))["robot_scene"]["links"]) == 3
+        assert len((await open_client(world))["robot_scene"]["links"]) == 3
         world.describe(ARM)
         await world.settle()
         assert world.status("RobotModel")["URDF"] == ("ok", "URDF parsed OK")
 
 
 async def test_tf_prefix_is_prepended_to_frames():
-    async with open_world(config(", TF Prefix: one")) as world:
+    async with open_world(make_config(", TF Prefix: one")) as world:
         world.describe(ARM)
         await world.settle()
         assert world.status("RobotModel")["tip"][1] == "No transform from [one/tip] to [base]"
@@ -287,7 +289,7 @@ async def test_tf_prefix_is_prepended_to_frames():
     "topic", ["Value: /robot_description, Durability Policy: Volatile", "Value: robot_description"]
 )
 async def test_latched_description_is_received_with_any_topic_settings(topic):
-    world = World(config(f", Description Topic: {{{topic}}}"))
+    world = World(make_config(f", Description Topic: {{{topic}}}"))
     world.describe(ARM)
     await world.settle()
     await world.viewer.start()
@@ -298,7 +300,7 @@ async def test_latched_description_is_received_with_any_topic_settings(topic):
 
 
 async def test_changed_description_topic_is_subscribed():
-    async with open_world(config()) as world, page(world.viewer) as client:
+    async with open_world(make_config()) as world, page(world.viewer) as client:
         await client.opened()
         await client.set("display-1/Description Topic", "/other")
         await client.until("property_changed", id="display-1/Description Topic")
@@ -313,12 +315,12 @@ async def test_changed_description_topic_is_subscribed():
 
 
 async def test_description_may_come_from_xacro_file(tmp_path):
-    path = write(
+    path = write_file(
         tmp_path / "r.xacro",
         '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n  <link name="${\'ba\' + \'se\'}"/>\n</robot>\n',
     )
     async with (
-        open_world(config(f", Description Source: File, Description File: {path}")) as world,
+        open_world(make_config(f", Description Source: File, Description File: {path}")) as world,
         page(world.viewer) as client,
     ):
         scene = await client.until("robot_scene", revision=1)
@@ -339,28 +341,28 @@ async def test_description_may_come_from_xacro_file(tmp_path):
 
 
 async def test_missing_mesh_is_reported_in_status_and_once_in_log(tmp_path: Path):
-    share = package(tmp_path / "robot", "robot")
-    async with open_world(config(), packages={"robot": share}) as world:
-        world.describe(MESHED)
+    share = write_package(tmp_path / "robot", "robot")
+    async with open_world(make_config(), packages={"robot": share}) as world:
+        world.describe(ARM_WITH_MESH)
         await world.settle()
-        world.describe(MESHED + "<!-- saved again -->")
+        world.describe(ARM_WITH_MESH + "<!-- saved again -->")
         await world.settle()
         level, text = world.status("RobotModel")["base"]
         assert level == "error"
         assert "'package://robot/meshes/arm.stl'" in text
         assert str(share / "meshes" / "arm.stl") in text
         assert world.logged().count(str(share / "meshes" / "arm.stl")) == 1
-        write(share / "meshes" / "arm.stl")
-        world.describe(MESHED)
+        write_file(share / "meshes" / "arm.stl")
+        world.describe(ARM_WITH_MESH)
         await world.settle()
         assert world.status("RobotModel")["base"] == ("ok", "Transform OK")
 
 
 async def test_mesh_errors_of_pages_are_shown_in_status(tmp_path):
-    share = package(tmp_path / "robot", "robot")
-    write(share / "meshes" / "arm.stl")
-    async with open_world(config(), packages={"robot": share}) as world:
-        world.describe(MESHED)
+    share = write_package(tmp_path / "robot", "robot")
+    write_file(share / "meshes" / "arm.stl")
+    async with open_world(make_config(), packages={"robot": share}) as world:
+        world.describe(ARM_WITH_MESH)
         await world.settle()
         async with page(world.viewer) as client:
             url = (await client.opened())["robot_scene"]["links"][0]["visuals"][0]["url"]
@@ -382,7 +384,7 @@ async def test_mesh_errors_of_pages_are_shown_in_status(tmp_path):
             assert "stale" not in world.logged()
 
 
-def published(world: World, node: str, text: str):
+def publish_description(world: World, node: str, text: str):
     """Return a node that publishes a description."""
     publisher = world.graph.create_node(node)
     publisher.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data=text))
@@ -391,16 +393,16 @@ def published(world: World, node: str, text: str):
 
 async def test_status_names_publisher_of_shown_description():
     other = ARM.replace('name="arm"', 'name="other"')
-    async with open_world(config()) as world:
-        first = published(world, "first", ARM)
+    async with open_world(make_config()) as world:
+        first = publish_description(world, "first", ARM)
         await world.settle()
         assert world.status("RobotModel")["Topic"] == ("ok", "OK")
-        second = published(world, "second", ARM)
+        second = publish_description(world, "second", ARM)
         await world.settle()
         level, text = world.status("RobotModel")["Topic"]
         assert (level, "of /second is shown; /first" in text) == ("ok", True)
         assert "replaces that of" not in world.logged()
-        published(world, "third", other)
+        publish_description(world, "third", other)
         await world.settle()
         level, text = world.status("RobotModel")["Topic"]
         assert (level, "of /third is shown; /first, /second also publish" in text) == ("warn", True)
@@ -411,13 +413,13 @@ async def test_status_names_publisher_of_shown_description():
 
 async def test_description_publisher_change_is_reported_after_gid_change():
     """After the change, publishers have other GIDs than their first messages had."""
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         first = world.graph.create_node("first")
         publisher = first.create_publisher(String, "robot_description", DESCRIPTION_QOS)
         publisher.publish(String(data=ARM))
         await world.settle()
         publisher.gid = bytes(range(16))
-        second = published(world, "second", ARM.replace('name="arm"', 'name="other"'))
+        second = publish_description(world, "second", ARM.replace('name="arm"', 'name="other"'))
         await world.settle()
         level, text = world.status("RobotModel")["Topic"]
         assert (level, "of /second is shown; /first also publish" in text) == ("warn", True)
@@ -428,10 +430,10 @@ async def test_description_publisher_change_is_reported_after_gid_change():
 
 
 async def test_description_from_vanished_node_is_reported():
-    async with open_world(config()) as world:
-        published(world, "first", ARM)
+    async with open_world(make_config()) as world:
+        publish_description(world, "first", ARM)
         await world.settle()
-        second = published(world, "second", ARM.replace('name="arm"', 'name="other"'))
+        second = publish_description(world, "second", ARM.replace('name="arm"', 'name="other"'))
         second.destroy_node()
         await world.settle()
         assert world.display("RobotModel").robot.name == "other"
@@ -440,11 +442,11 @@ async def test_description_from_vanished_node_is_reported():
 
 
 async def test_description_from_restarted_node_replaces_without_warning():
-    async with open_world(config()) as world:
-        first = published(world, "first", ARM)
+    async with open_world(make_config()) as world:
+        first = publish_description(world, "first", ARM)
         await world.settle()
         first.destroy_node()
-        published(world, "first", ARM.replace('name="arm"', 'name="other"'))
+        publish_description(world, "first", ARM.replace('name="arm"', 'name="other"'))
         await world.settle()
         assert world.display("RobotModel").robot.name == "other"
         assert "replaces that of" not in world.logged()

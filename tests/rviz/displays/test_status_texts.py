@@ -7,7 +7,7 @@ from pathlib import Path
 
 import linkwright.rviz
 from linkwright.diagnostics import Diagnostic, phrase
-from tests.rviz.displays.test_topic_display import config
+from tests.rviz.displays.test_topic_display import make_config
 from tests.viewer.scene import open_world, page
 
 RVIZ = Path(linkwright.rviz.__file__).parent
@@ -16,7 +16,10 @@ _TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
 
 
 def _is_plain(text: ast.expr) -> bool:
-    """Return whether an expression is a text that is not a phrase. Phrases are checked with the catalogs."""
+    """Return whether an expression is a text that is not a phrase.
+
+    Phrases are checked with the catalogs.
+    """
     if isinstance(text, ast.IfExp):
         return _is_plain(text.body) or _is_plain(text.orelse)
     if isinstance(text, ast.BoolOp):
@@ -26,7 +29,7 @@ def _is_plain(text: ast.expr) -> bool:
     return isinstance(text, (ast.Constant, ast.JoinedStr, ast.BinOp))
 
 
-def _statuses(folder: Path) -> list[tuple[str, ast.expr]]:
+def _find_statuses(folder: Path) -> list[tuple[str, ast.expr]]:
     statuses = []
     for path in sorted(folder.rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
@@ -38,7 +41,7 @@ def _statuses(folder: Path) -> list[tuple[str, ast.expr]]:
 
 
 def test_all_statuses_are_translatable_phrases():
-    statuses = [status for room in ("displays", "frames", "visualization") for status in _statuses(RVIZ / room)]
+    statuses = [status for room in ("displays", "frames", "visualization") for status in _find_statuses(RVIZ / room)]
     assert len(statuses) > 100
     assert [place for place, text in statuses if _is_plain(text)] == []
 
@@ -48,8 +51,8 @@ async def test_statuses_are_sent_in_language_of_page():
         "zh": "没有收到消息：没有节点发布这个话题",
         "en": "No messages received: the topic has no publisher",
     }
-    wrong = {"zh": "订阅出错：话题名为空", "en": "Error subscribing: Empty topic name"}
-    async with open_world(config()) as world:
+    texts_by_language = {"zh": "订阅出错：话题名为空", "en": "Error subscribing: Empty topic name"}
+    async with open_world(make_config()) as world:
         for language, text in silent.items():
             async with page(world.viewer, f"&language={language}") as client:
                 (display,) = (await client.opened())["tree"]["displays"]
@@ -60,12 +63,14 @@ async def test_statuses_are_sent_in_language_of_page():
             await other.set(f"{display['id']}/Topic", "")
             for client, language in ((chinese, "zh"), (other, "en")):
                 message = await client.until("display_status", display=display["id"], level="error")
-                assert [(row["name"], row["text"]) for row in message["status"]] == [("Topic", wrong[language])]
+                assert [(row["name"], row["text"]) for row in message["status"]] == [
+                    ("Topic", texts_by_language[language])
+                ]
 
 
 async def test_findings_are_sent_in_language_of_page():
     async with (
-        open_world(config()) as world,
+        open_world(make_config()) as world,
         page(world.viewer, "&language=zh") as chinese,
         page(world.viewer) as other,
     ):

@@ -32,11 +32,11 @@ Visualization Manager:
 """
 
 
-def config(extra: str = "") -> RvizConfig:
+def make_config(extra: str = "") -> RvizConfig:
     return RvizConfig.parse(FILE.replace("      Topic:\n", extra + "      Topic:\n"))
 
 
-def point(x: float, frame: str = "base", stamp: int = 0) -> PointStamped:
+def make_point(x: float, frame: str = "base", stamp: int = 0) -> PointStamped:
     message = PointStamped()
     message.header.frame_id = frame
     message.header.stamp.sec = stamp
@@ -44,13 +44,13 @@ def point(x: float, frame: str = "base", stamp: int = 0) -> PointStamped:
     return message
 
 
-def point_at(stamp_ns: int, frame: str) -> PointStamped:
-    message = point(1.0, frame, stamp_ns // 1_000_000_000)
+def make_point_at(stamp_ns: int, frame: str) -> PointStamped:
+    message = make_point(1.0, frame, stamp_ns // 1_000_000_000)
     message.header.stamp.nanosec = stamp_ns % 1_000_000_000
     return message
 
 
-def points(world) -> list[list[float]]:
+def sent_points(world) -> list[list[float]]:
     """Return the points of the frames for a page, in the fixed frame, oldest first."""
     shown = sorted(contents(world.display("PointStamped")), key=lambda content: content.key)
     assert all(content.fields["kind"] == "point_marks" for content in shown)
@@ -61,13 +61,13 @@ def points(world) -> list[list[float]]:
 
 
 async def test_point_is_drawn_at_its_pose_in_fixed_frame():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         assert world.status("PointStamped") == {"Topic": ("warn", "No messages received: the topic has no publisher")}
         world.move({("base", "tip"): (1, 2, 3, 0, 0, 2**-0.5, 2**-0.5)}, static=True)
-        publisher.publish(point(1.0, "tip"))
+        publisher.publish(make_point(1.0, "tip"))
         await world.settle()
-        np.testing.assert_allclose(points(world), [[1, 3, 3]], atol=1e-6)
+        np.testing.assert_allclose(sent_points(world), [[1, 3, 3]], atol=1e-6)
         assert world.status("PointStamped") == {
             "Topic": ("ok", "1 messages received"),
             "Transform": ("ok", "Transform OK"),
@@ -75,27 +75,27 @@ async def test_point_is_drawn_at_its_pose_in_fixed_frame():
 
 
 async def test_message_waits_for_its_transform():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        publisher.publish(point(1.0, "tip"))
+        publisher.publish(make_point(1.0, "tip"))
         await world.settle()
         assert world.display("PointStamped").data() == []
         level, text = world.status("PointStamped")["Transform"]
         assert (level, text.split(":")[0]) == ("error", "Could not transform from [tip] to [base]")
         world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
         await world.settle()
-        assert points(world) == [[2, 0, 0]]
+        assert sent_points(world) == [[2, 0, 0]]
         assert world.status("PointStamped")["Transform"] == ("ok", "Transform OK")
 
 
 @skipping
 async def test_slightly_late_transforms_are_not_an_error():
     """Drivers publish their data before tf has the pose of that time; this is normal."""
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         world.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
         for _ in range(30):
-            publisher.publish(point_at(world.graph.timebase.now_ns() + 50_000_000, "tip"))
+            publisher.publish(make_point_at(world.graph.timebase.now_ns() + 50_000_000, "tip"))
             await world.settle()
             assert world.status("PointStamped").get("Transform") in (None, ("ok", "Transform OK"))
             await asyncio.sleep(0.1)
@@ -103,15 +103,15 @@ async def test_slightly_late_transforms_are_not_an_error():
             world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)})
             await world.settle()
             assert world.status("PointStamped")["Transform"] == ("ok", "Transform OK")
-        assert len(points(world)) == 1
+        assert len(sent_points(world)) == 1
 
 
 @skipping
 async def test_missing_transforms_are_an_error():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         world.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
-        publisher.publish(point_at(world.graph.timebase.now_ns() + 50_000_000, "tip"))
+        publisher.publish(make_point_at(world.graph.timebase.now_ns() + 50_000_000, "tip"))
         await world.settle()
         assert "Transform" not in world.status("PointStamped")
         await asyncio.sleep(2.0)
@@ -126,38 +126,38 @@ async def test_missing_transforms_are_an_error():
 
 
 async def test_fixed_frame_change_transforms_last_message_again():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         world.move({("base", "tip"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-        publisher.publish(point(1.0))
+        publisher.publish(make_point(1.0))
         await world.settle()
-        assert points(world) == [[1, 0, 0]]
+        assert sent_points(world) == [[1, 0, 0]]
         world.viewer.manager.set_fixed_frame("tip")
         await world.settle()
-        assert points(world) == [[0, 0, 0]]
+        assert sent_points(world) == [[0, 0, 0]]
 
 
 @pytest.mark.parametrize(("length", "expected"), [(1, [[3, 0, 0]]), (3, [[1, 0, 0], [2, 0, 0], [3, 0, 0]])])
 async def test_history_length_limits_number_of_points(length, expected):
-    async with open_world(config(f"      History Length: {length}\n")) as world:
+    async with open_world(make_config(f"      History Length: {length}\n")) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for x in (1.0, 2.0, 3.0):
-            publisher.publish(point(x))
+            publisher.publish(make_point(x))
         await world.settle()
-        assert points(world) == expected
+        assert sent_points(world) == expected
 
 
 async def test_nan_point_is_reported():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        publisher.publish(point(float("nan")))
+        publisher.publish(make_point(float("nan")))
         await world.settle()
         assert world.status("PointStamped")["Message"][0] == "error"
         assert world.display("PointStamped").data() == []
 
 
 async def test_disabled_display_unsubscribes_from_topic():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         display = world.display("PointStamped")
         assert publisher.get_subscription_count() == 1
@@ -169,7 +169,7 @@ async def test_disabled_display_unsubscribes_from_topic():
 
 
 async def test_incompatible_qos_is_reported():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         best_effort = QoSProfile(5, reliability=ReliabilityPolicy.BEST_EFFORT)
         world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", best_effort)
         await world.settle()
@@ -184,11 +184,11 @@ async def test_qos_is_read_from_file():
         "        Value: /clicked_point\n", "        Durability Policy: Transient Local\n        Value: /p\n"
     )
     async with open_world(RvizConfig.parse(text)) as world:
-        lasting = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/p", lasting)
-        publisher.publish(point(4.0))
+        transient_local = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/p", transient_local)
+        publisher.publish(make_point(4.0))
         await world.settle()
-        assert points(world) == [[4, 0, 0]]
+        assert sent_points(world) == [[4, 0, 0]]
 
 
 async def test_failing_message_is_reported_and_next_one_is_shown(monkeypatch):
@@ -197,31 +197,31 @@ async def test_failing_message_is_reported_and_next_one_is_shown(monkeypatch):
             raise ZeroDivisionError("no such point")
         self.send_marks(message, pose)
 
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         display = world.display("PointStamped")
         kind = type(display)
         monkeypatch.setattr(kind, "send_marks", kind.process_message, raising=False)
         monkeypatch.setattr(kind, "process_message", fail)
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for x in (-1.0, -2.0):
-            publisher.publish(point(x, "tip"))
-        publisher.publish(point(-3.0))
+            publisher.publish(make_point(x, "tip"))
+        publisher.publish(make_point(-3.0))
         world.move({("base", "tip"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
         await world.settle()
         assert world.status("PointStamped")["Failure"] == ("error", "The message could not be shown: no such point")
         assert world.logged().count("'Clicks' failed") == 1
-        publisher.publish(point(3.0))
+        publisher.publish(make_point(3.0))
         await world.settle()
         assert "Failure" not in world.status("PointStamped")
-        assert points(world) == [[3.0, 0.0, 0.0]]
+        assert sent_points(world) == [[3.0, 0.0, 0.0]]
 
 
 async def test_final_message_count_is_shown(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD_S", 0.05)
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 10)
         for x in range(4):
-            publisher.publish(point(float(x)))
+            publisher.publish(make_point(float(x)))
 
         def status() -> tuple[str, str]:
             level, text = world.status("PointStamped")["Topic"]
@@ -232,7 +232,7 @@ async def test_final_message_count_is_shown(monkeypatch):
 
 async def test_silent_topic_status_names_publishers_and_alternatives(monkeypatch):
     monkeypatch.setattr("linkwright.rviz.displays.base.topic_display._COUNT_PERIOD_S", 0.05)
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
 
         def status() -> str:
             return world.status("PointStamped")["Topic"][1].removeprefix("No messages received: ")
@@ -240,11 +240,13 @@ async def test_silent_topic_status_names_publishers_and_alternatives(monkeypatch
         assert status() == "the topic has no publisher"
         node = world.graph.create_node("clicks")
         node.create_publisher(PointStamped, "/other", 5)
-        there = "the topic has no publisher, but geometry_msgs/msg/PointStamped is published on /other"
-        await eventually(lambda: status() == there, what=status)
+        expected_status = "the topic has no publisher, but geometry_msgs/msg/PointStamped is published on /other"
+        await eventually(lambda: status() == expected_status, what=status)
         for name in ("/a", "/b", "/clicked_points", "/c"):
             node.create_publisher(PointStamped, name, 5)
-        await eventually(lambda: status().startswith(there.replace("/other", "/clicked_points, ")), what=status)
+        await eventually(
+            lambda: status().startswith(expected_status.replace("/other", "/clicked_points, ")), what=status
+        )
         node.create_publisher(PointStamped, "/clicked_point", 5)
         await eventually(lambda: status() == "no message arrived yet from clicks", what=status)
 
@@ -262,10 +264,10 @@ async def test_topic_type_mismatch_is_reported(monkeypatch):
 
 @skipping
 async def test_stamps_of_another_clock_are_reported():
-    async with open_world(config()) as world:
+    async with open_world(make_config()) as world:
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         world.move({("base", "tip"): (0, 0, 0, 0, 0, 0, 1)})
-        publisher.publish(point_at(world.graph.timebase.now_ns() + 60_000_000_000, "tip"))
+        publisher.publish(make_point_at(world.graph.timebase.now_ns() + 60_000_000_000, "tip"))
         await world.settle()
         await asyncio.sleep(2)
         level, text = world.status("PointStamped")["Transform"]
@@ -281,10 +283,10 @@ async def test_stamps_of_another_clock_are_reported():
     ],
 )
 async def test_qos_mismatch_status_names_property_to_change(policy, remedy):
-    wanted = {"Reliability Policy": "Reliable", "Durability Policy": "Transient Local"}
-    async with open_world(config()) as world:
+    expected_changes = {"Reliability Policy": "Reliable", "Durability Policy": "Transient Local"}
+    async with open_world(make_config()) as world:
         display = world.display("PointStamped")
-        for row, value in wanted.items():
+        for row, value in expected_changes.items():
             if row.split()[0] in remedy:
                 display.set_property(("Topic", row), value)
         world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", policy)

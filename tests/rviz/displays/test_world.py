@@ -43,7 +43,7 @@ WORLD = """\
 """
 
 
-def config(fixed: str) -> RvizConfig:
+def make_config(fixed: str) -> RvizConfig:
     return RvizConfig.parse(CONFIG.replace("FIXED", fixed))
 
 
@@ -58,7 +58,7 @@ class Simulation:
 
     async def describe(self, text: str, links: int = 3) -> None:
         self.description.publish(String(data=text))
-        await eventually(lambda: links_of(self.world) == links)
+        await eventually(lambda: sent_links(self.world) == links)
 
     async def move(self, **poses: tuple[float, ...]) -> None:
         names = tuple(name.replace("__", "::") for name in poses)
@@ -69,23 +69,23 @@ class Simulation:
         await self.world.settle()
 
 
-def sent(world, kind: str):
+def sent_message(world, kind: str):
     return next((content for content in contents(world.display("World")) if content.fields["kind"] == kind), None)
 
 
-def links_of(world) -> int:
-    scene = sent(world, "world_scene")
+def sent_links(world) -> int:
+    scene = sent_message(world, "world_scene")
     return len(scene.fields["links"]) if scene else 0
 
 
-def positions(world) -> list[list[float]]:
-    return sent(world, "world_poses").fields["poses"].reshape(-1, 7)[:, :3].round(6).tolist()
+def sent_positions(world) -> list[list[float]]:
+    return sent_message(world, "world_poses").fields["poses"].reshape(-1, 7)[:, :3].round(6).tolist()
 
 
 async def test_world_links_are_sent_with_shapes_and_poses():
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         await Simulation(world).describe(WORLD)
-        ground, base, tip = sent(world, "world_scene").fields["links"]
+        ground, base, tip = sent_message(world, "world_scene").fields["links"]
         assert [link["name"] for link in (ground, base, tip)] == ["ground::link", "robot::base", "robot::arm::tip"]
         (plane,) = ground["visuals"]
         assert (plane["kind"], plane["size"], plane["color"]) == ("plane", [10.0, 20.0], [0.7, 0.7, 0.7, 1.0])
@@ -97,43 +97,47 @@ async def test_world_links_are_sent_with_shapes_and_poses():
         assert [(collision["kind"], collision["size"]) for collision in base["collisions"]] == [
             ("ellipsoid", [1.0, 2.0, 3.0])
         ]
-        assert positions(world) == [[0, 0, 0], [1, 2, 0.5], [1, 3, 0]]
+        assert sent_positions(world) == [[0, 0, 0], [1, 2, 0.5], [1, 3, 0]]
         assert world.status("World")["World"] == ("ok", "2 models, 3 links")
 
 
 async def test_link_poses_follow_names_and_survive_new_description():
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         simulation = Simulation(world)
         await simulation.describe(WORLD)
         await simulation.move(robot__base=(5, 5, 5, 0, 0, 0, 1), nobody__link=(9, 9, 9, 0, 0, 0, 1))
-        assert positions(world) == [[0, 0, 0], [5, 5, 5], [1, 3, 0]]
-        more = WORLD.replace("</world>", '<model name="ball"><link name="link"/></model></world>')
-        await simulation.describe(more, links=4)
-        await eventually(lambda: len(positions(world)) == 4)
-        assert positions(world) == [[0, 0, 0], [5, 5, 5], [1, 3, 0], [0, 0, 0]]
-        assert sent(world, "world_poses").fields["revision"] == sent(world, "world_scene").fields["revision"] == 2
+        assert sent_positions(world) == [[0, 0, 0], [5, 5, 5], [1, 3, 0]]
+        world_with_ball = WORLD.replace("</world>", '<model name="ball"><link name="link"/></model></world>')
+        await simulation.describe(world_with_ball, links=4)
+        await eventually(lambda: len(sent_positions(world)) == 4)
+        assert sent_positions(world) == [[0, 0, 0], [5, 5, 5], [1, 3, 0], [0, 0, 0]]
+        assert (
+            sent_message(world, "world_poses").fields["revision"]
+            == sent_message(world, "world_scene").fields["revision"]
+            == 2
+        )
 
 
 async def test_static_models_follow_new_description():
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         simulation = Simulation(world)
         await simulation.describe(WORLD)
         await simulation.move(robot__base=(5, 5, 5, 0, 0, 0, 1))
         lower = WORLD.replace("<static>true</static>", "<static>true</static><pose>0 0 -1 0 0 0</pose>")
         await simulation.describe(lower)
-        await eventually(lambda: positions(world) == [[0, 0, -1], [5, 5, 5], [1, 3, 0]])
+        await eventually(lambda: sent_positions(world) == [[0, 0, -1], [5, 5, 5], [1, 3, 0]])
         await simulation.describe(lower.replace("<pose>1 2 0 0 0 0</pose>", "<static>true</static>"))
-        await eventually(lambda: positions(world) == [[0, 0, -1], [0, 0, 0.5], [0, 1, 0]])
+        await eventually(lambda: sent_positions(world) == [[0, 0, -1], [0, 0, 0.5], [0, 1, 0]])
 
 
 async def test_world_is_placed_by_robot_frame_without_world_frame():
-    async with open_world(config("odom")) as world:
+    async with open_world(make_config("odom")) as world:
         simulation = Simulation(world)
         await simulation.describe(WORLD)
         assert world.status("World")["Frame"][0] == "warn"
         world.move({("odom", "base"): (0, 0, 0.5, *IDENTITY[3:])})
-        await eventually(lambda: sent(world, "world_poses").pose is not None)
-        assert sent(world, "world_poses").pose == pytest.approx([-1, -2, 0, 0, 0, 0, 1])
+        await eventually(lambda: sent_message(world, "world_poses").pose is not None)
+        assert sent_message(world, "world_poses").pose == pytest.approx([-1, -2, 0, 0, 0, 0, 1])
         half = math.sqrt(0.5)
         world.move({("odom", "base"): (3, 0, 0.5, 0, 0, half, half)})
         await world.settle()
@@ -145,32 +149,32 @@ async def test_world_is_placed_by_robot_frame_without_world_frame():
 
 
 async def test_world_without_transforms_has_own_frame_and_no_warning():
-    async with open_world(config("world")) as world, page(world.viewer) as opened:
+    async with open_world(make_config("world")) as world, page(world.viewer) as opened:
         await Simulation(world).describe(WORLD)
         await opened.until("display_status", display="global", level="ok")
         assert world.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'")
         world.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
-        own = world.viewer.context.transforms.placed_frame
-        await eventually(lambda: (frame := own("world")) is not None and frame.parent == "odom")
+        world_frame = world.viewer.context.transforms.placed_frame
+        await eventually(lambda: (frame := world_frame("world")) is not None and frame.parent == "odom")
 
 
 async def test_tf_frames_are_placed_in_world_as_fixed_frame():
-    async with open_world(config("world")) as world, page(world.viewer):
+    async with open_world(make_config("world")) as world, page(world.viewer):
         simulation = Simulation(world)
         await simulation.describe(WORLD)
         world.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})
         await world.settle()
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
         await simulation.move(robot__base=(1, 2, 0.5, 0, 0, 0, 1))
-        assert sent(world, "world_poses").frame == "world"
+        assert sent_message(world, "world_poses").frame == "world"
         text = "tf has no frame 'world': the frames of tf are placed so that 'base' has the same pose in both"
         await eventually(lambda: world.status("World")["Frame"] == ("ok", text))
         transforms = world.viewer.context.transforms
         await eventually(lambda: transforms.placed_frame("world").parent == "odom")
         assert transforms.pose("world", "base", 0) == pytest.approx([1, 2, 0.5, 0, 0, 0, 1])
         assert transforms.pose("world", "odom", 0) == pytest.approx([-2, 2, 0, 0, 0, 0, 1])
-        frame, known = transforms.in_known_frame("world", IDENTITY)
-        assert (frame, known) == ("odom", pytest.approx([2, -2, 0, 0, 0, 0, 1]))
+        frame, is_known = transforms.in_known_frame("world", IDENTITY)
+        assert (frame, is_known) == ("odom", pytest.approx([2, -2, 0, 0, 0, 0, 1]))
         await eventually(lambda: "base" in world.viewer.manager.frames.placed)
 
         world.move({("map", "world"): IDENTITY}, static=True)
@@ -179,15 +183,15 @@ async def test_tf_frames_are_placed_in_world_as_fixed_frame():
 
 
 async def test_world_frame_of_tf_places_world():
-    async with open_world(config("map")) as world:
+    async with open_world(make_config("map")) as world:
         world.move({("map", "world"): (1, 0, 0, *IDENTITY[3:])}, static=True)
         await Simulation(world).describe(WORLD)
-        await eventually(lambda: sent(world, "world_poses").frame == "world")
-        assert sent(world, "world_poses").pose is None
+        await eventually(lambda: sent_message(world, "world_poses").frame == "world")
+        assert sent_message(world, "world_poses").pose is None
 
 
 async def test_static_poses_are_sent_once():
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         simulation = Simulation(world)
         await simulation.describe(WORLD)
         await simulation.move(robot__base=(1, 1, 1, 0, 0, 0, 1))
@@ -197,7 +201,7 @@ async def test_static_poses_are_sent_once():
         assert display.data()[-1] is before
 
 
-LOST = "<link name='l'><pose relative_to='x'/></link>"
+LOST_LINK = "<link name='l'><pose relative_to='x'/></link>"
 
 
 @pytest.mark.parametrize(
@@ -206,17 +210,17 @@ LOST = "<link name='l'><pose relative_to='x'/></link>"
         ("<sdf", "<world>:1:1: this tag has no closing '>'"),
         ("<robot name='r'/>", "the root element is <robot>, not <sdf>"),
         ("<sdf version='1.6'/>", "<sdf> contains neither a world nor a model"),
-        (f"<sdf version='1.6'><model name='m'>{LOST}</model></sdf>", "'x' cannot be determined"),
+        (f"<sdf version='1.6'><model name='m'>{LOST_LINK}</model></sdf>", "'x' cannot be determined"),
     ],
 )
 async def test_invalid_description_is_reported_and_last_world_remains(text, message):
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         simulation = Simulation(world)
         await simulation.describe(WORLD)
         simulation.description.publish(String(data=text))
         await eventually(lambda: world.status("World")["World"][0] == "error")
         assert message in world.status("World")["World"][1]
-        assert links_of(world) == 3
+        assert sent_links(world) == 3
 
 
 async def test_model_files_are_served_and_missing_ones_reported(tmp_path):
@@ -227,9 +231,9 @@ async def test_model_files_are_served_and_missing_ones_reported(tmp_path):
     visual = "<visual name='{}'><geometry><mesh><uri>{}</uri></mesh></geometry></visual>"
     shapes = visual.format("a", (model / "meshes/crate.stl").as_uri()) + visual.format("b", "file:///nowhere.stl")
     text = f"<sdf version='1.9'><model name='crate'><link name='link'>{shapes}</link></model></sdf>"
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         await Simulation(world).describe(text, links=1)
-        (link,) = sent(world, "world_scene").fields["links"]
+        (link,) = sent_message(world, "world_scene").fields["links"]
         (shape,) = link["visuals"]
         key, relative = shape["url"].partition("?")[0].removeprefix("/mesh/").split("/", 1)
         meshes = world.viewer.context.meshes
@@ -250,9 +254,9 @@ async def test_heightmap_heights_are_sent_and_limited(tmp_path):
     visual = f"<visual name='v'><geometry>{ground.format((tmp_path / 'hill.png').as_uri())}</geometry></visual>"
     visual += f"<visual name='w'><geometry>{ground.format('file:///nowhere.png')}</geometry></visual>"
     text = f"<sdf version='1.9'><model name='hill'><link name='l'>{visual}</link></model></sdf>"
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         await Simulation(world).describe(text, links=1)
-        (link,) = sent(world, "world_scene").fields["links"]
+        (link,) = sent_message(world, "world_scene").fields["links"]
         (hill,) = link["visuals"]
         assert (hill["kind"], hill["columns"], hill["url"]) == ("heightmap", 257, None)
         heights = hill["heights"].reshape(2, 257)
@@ -271,9 +275,9 @@ async def test_pbr_surface_is_sent_with_material(tmp_path):
     facts = {"plain": albedo, "metal": albedo + metal, "lamp": albedo + lamp}
     visuals = "".join(visual.format(name, surface) for name, surface in facts.items())
     text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visuals}</link></model></sdf>"
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         await Simulation(world).describe(text, links=1)
-        (link,) = sent(world, "world_scene").fields["links"]
+        (link,) = sent_message(world, "world_scene").fields["links"]
         plain, shining, lamp = link["visuals"]
         assert lamp["surface"]["emissive_map"] == lamp["surface"]["occlusion_map"] == plain["texture"]
         assert plain["surface"] is None
@@ -286,9 +290,9 @@ async def test_gazebo_material_scripts_are_recognized():
     script = "<material><script><name>Gazebo/Red</name></script></material>"
     visual = f"<visual name='v'><geometry><sphere><radius>1</radius></sphere></geometry>{script}</visual>"
     text = f"<sdf version='1.9'><model name='ball'><link name='l'>{visual}</link></model></sdf>"
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         await Simulation(world).describe(text, links=1)
-        (link,) = sent(world, "world_scene").fields["links"]
+        (link,) = sent_message(world, "world_scene").fields["links"]
         assert link["visuals"][0]["color"] == [1.0, 0.0, 0.0, 1.0]
 
 
@@ -307,9 +311,9 @@ LIGHTS = """\
 
 
 async def test_world_lights_are_sent_with_pose_and_properties():
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         await Simulation(world).describe(LIGHTS, links=1)
-        scene = sent(world, "world_scene").fields
+        scene = sent_message(world, "world_scene").fields
         assert (scene["ambient"], scene["background"], scene["shadows"]) == ([0.1, 0.2, 0.3], [0.7, 0.7, 0.7], False)
         sun, bulb = scene["lights"]
         assert (sun["kind"], sun["link"], sun["direction"], sun["color"]) == (
@@ -336,24 +340,24 @@ SKY = """<world name="yard"><scene><sky><time>{}</time><clouds/></sky>
     ],
 )
 async def test_sky_and_fog_are_sent(time, type_, daylight, fog):
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         await Simulation(world).describe(WORLD)
-        scene = sent(world, "world_scene").fields
+        scene = sent_message(world, "world_scene").fields
         assert (scene["daylight"], scene["fog"]) == (None, None)
         await Simulation(world).describe(WORLD.replace('<world name="yard">', SKY.format(time, type_)))
-        await eventually(lambda: sent(world, "world_scene").fields["revision"] == 2)
-        scene = sent(world, "world_scene").fields
+        await eventually(lambda: sent_message(world, "world_scene").fields["revision"] == 2)
+        scene = sent_message(world, "world_scene").fields
         assert (scene["daylight"], scene["fog"]) == (daylight, fog)
 
 
-SEEING = """
+SENSING_MODEL = """
   <model name="scout"><link name="head"><pose>0 0 1 0 0 0</pose>
     <sensor name="laser" type="gpu_lidar"><pose>0.1 0 0 0 0 0</pose><visualize>true</visualize>
       <lidar><scan><horizontal><samples>1000</samples><min_angle>-1</min_angle><max_angle>0.998</max_angle></horizontal>
         <vertical><samples>32</samples><min_angle>-0.31</min_angle><max_angle>0.31</max_angle></vertical></scan>
         <range><min>0.2</min><max>20</max></range></lidar></sensor>
     <sensor name="spare" type="ray"><ray><scan><horizontal><samples>3</samples></horizontal></scan></ray></sensor>
-    <sensor name="eye" type="camera"><camera><horizontal_fov>1.5707963267948966</horizontal_fov>
+    <sensor name="camera" type="camera"><camera><horizontal_fov>1.5707963267948966</horizontal_fov>
       <image><width>200</width><height>100</height></image><clip><near>0.5</near><far>8</far></clip></camera></sensor>
   </link></model>
 </world>"""
@@ -365,17 +369,17 @@ def subscribed_topics(world) -> set[str]:
 
 
 async def test_lidar_scans_are_subscribed_while_rays_are_drawn():
-    async with open_world(config("world")) as world:
+    async with open_world(make_config("world")) as world:
         simulation = Simulation(world)
         await simulation.describe(WORLD)
         assert subscribed_topics(world) == set()
-        await simulation.describe(WORLD.replace("</world>", SEEING), links=4)
-        laser, spare = sent(world, "world_scene").fields["lidars"]
+        await simulation.describe(WORLD.replace("</world>", SENSING_MODEL), links=4)
+        laser, idle_lidar = sent_message(world, "world_scene").fields["lidars"]
         assert (laser["name"], laser["link"], laser["visualized"]) == ("scout::head::laser", "scout::head", True)
         assert (laser["position"], laser["nearest"], laser["farthest"]) == ([0.1, 0.0, 0.0], 0.2, 20.0)
         assert (laser["vertical"]["count"], laser["vertical"]["step"]) == (16, pytest.approx(0.04))
         assert (laser["horizontal"]["count"], laser["horizontal"]["step"]) == (44, pytest.approx(0.046))
-        assert (spare["visualized"], spare["farthest"]) == (False, 30.0)
+        assert (idle_lidar["visualized"], idle_lidar["farthest"]) == (False, 30.0)
         assert subscribed_topics(world) == {"/world_rays"}
         rays = world.graph.create_node("rays").create_publisher(SCAN, "/world_rays", SENSOR_DATA_QOS)
         ranges = np.arange(32_000, dtype=np.float32)
@@ -383,28 +387,28 @@ async def test_lidar_scans_are_subscribed_while_rays_are_drawn():
         rays.publish(SCAN(header=Header(frame_id="scout::head::laser"), ranges=ranges[:7]))
         rays.publish(SCAN(header=Header(frame_id="nobody"), ranges=ranges))
         await world.settle()
-        shown = sent(world, "world_rays").fields
+        shown = sent_message(world, "world_rays").fields
         assert shown["lidar"] == "scout::head::laser"
         assert shown["ranges"].reshape(16, 44)[1, :3].tolist() == [2000.0, 2023.0, 2046.0]
 
-        revision = sent(world, "world_scene").fields["revision"]  # recordings publish the world repeatedly
-        simulation.description.publish(String(data=WORLD.replace("</world>", SEEING)))
-        await eventually(lambda: sent(world, "world_scene").fields["revision"] > revision)
-        assert sent(world, "world_rays") is not None
+        revision = sent_message(world, "world_scene").fields["revision"]  # recordings publish the world repeatedly
+        simulation.description.publish(String(data=WORLD.replace("</world>", SENSING_MODEL)))
+        await eventually(lambda: sent_message(world, "world_scene").fields["revision"] > revision)
+        assert sent_message(world, "world_rays") is not None
         world.display("World").on_time_reset()
-        assert sent(world, "world_rays") is None
+        assert sent_message(world, "world_rays") is None
 
         world.display("World").set_property(("Lidar Rays",), "All")
         assert subscribed_topics(world) == {"/world_rays", "/world_rays/others"}
         world.display("World").set_property(("Lidar Rays",), "None")
         assert subscribed_topics(world) == set()
-        assert sent(world, "world_rays") is None
+        assert sent_message(world, "world_rays") is None
 
 
 async def test_cameras_are_sent_with_field_of_view():
-    async with open_world(config("world")) as world:
-        await Simulation(world).describe(WORLD.replace("</world>", SEEING), links=4)
-        (camera,) = sent(world, "world_scene").fields["cameras"]
-        assert (camera["name"], camera["visualized"]) == ("scout::head::eye", False)
+    async with open_world(make_config("world")) as world:
+        await Simulation(world).describe(WORLD.replace("</world>", SENSING_MODEL), links=4)
+        (camera,) = sent_message(world, "world_scene").fields["cameras"]
+        assert (camera["name"], camera["visualized"]) == ("scout::head::camera", False)
         assert [camera[side] for side in ("left", "right", "up", "down")] == pytest.approx([1, 1, 0.5, 0.5])
         assert (camera["near"], camera["far"]) == (0.5, 8.0)

@@ -1,3 +1,5 @@
+"""The stream of transforms to pages: rates, pauses and fixed frames."""
+
 from __future__ import annotations
 
 import asyncio
@@ -15,7 +17,7 @@ from tests.viewer.scene import IDENTITY, unpack
 from tests.waiting import eventually
 
 
-class Rig:
+class StreamRecorder:
     """A stream with a record of its output."""
 
     def __init__(self) -> None:
@@ -85,8 +87,8 @@ class Rig:
 
 
 @asynccontextmanager
-async def running() -> AsyncIterator[Rig]:
-    world = Rig()
+async def run_stream() -> AsyncIterator[StreamRecorder]:
+    world = StreamRecorder()
     try:
         yield world
     finally:
@@ -94,23 +96,23 @@ async def running() -> AsyncIterator[Rig]:
         await world.graph.close()
 
 
-def streaming(test):
+def run_with_recorder(test):
     """Run a test with a rig, in time that is skipped."""
 
     @skipping
     async def run():
-        async with running() as rig:
-            await test(rig)
+        async with run_stream() as recorder:
+            await test(recorder)
 
     run.__name__ = test.__name__
     return run
 
 
-@streaming
-async def test_frame_table_precedes_transforms_and_frame_event(rig):
-    rig.move(1.0)
-    await rig.settle()
-    table, transforms, frames = rig.said
+@run_with_recorder
+async def test_frame_table_precedes_transforms_and_frame_event(recorder):
+    recorder.move(1.0)
+    await recorder.settle()
+    table, transforms, frames = recorder.said
     tip, base = table.names.index("tip"), table.names.index("base")
     assert (table.parents[tip], table.parents[base]) == (base, -1)
     assert transforms.revision == table.revision
@@ -119,162 +121,162 @@ async def test_frame_table_precedes_transforms_and_frame_event(rig):
     assert frames.placed == {"tip", "base"}
 
 
-@streaming
-async def test_change_after_pause_is_sent_at_once(rig):
-    rig.move(1.0)
+@run_with_recorder
+async def test_change_after_pause_is_sent_at_once(recorder):
+    recorder.move(1.0)
     await asyncio.sleep(0.1)
-    rig.said.clear()
-    rig.move(2.0)
-    await rig.settle()
-    assert rig.kinds() == ["Transforms"]
+    recorder.said.clear()
+    recorder.move(2.0)
+    await recorder.settle()
+    assert recorder.kinds() == ["Transforms"]
 
 
-@streaming
-async def test_updates_are_limited_to_frame_rate_and_last_change_is_sent(rig):
+@run_with_recorder
+async def test_updates_are_limited_to_frame_rate_and_last_change_is_sent(recorder):
     for x in range(500):
-        rig.move(float(x))
+        recorder.move(float(x))
         await asyncio.sleep(0.001)
     await asyncio.sleep(0.1)
-    assert 15 <= len(rig.sent()) <= 18  # half a second at 30 Hz, and the first at once
-    assert rig.pose("tip")[0] == x
+    assert 15 <= len(recorder.sent()) <= 18  # half a second at 30 Hz, and the first at once
+    assert recorder.pose("tip")[0] == x
 
 
-@streaming
-async def test_changes_at_frame_rate_are_sent_without_delay(rig):
-    rig.move(-2.0)
-    await rig.settle()
-    rig.move(-1.0)
+@run_with_recorder
+async def test_changes_at_frame_rate_are_sent_without_delay(recorder):
+    recorder.move(-2.0)
+    await recorder.settle()
+    recorder.move(-1.0)
     await asyncio.sleep(0.6 / 30)
     at_once = []
     for number in range(36):
-        rig.said.clear()
-        rig.move(float(number))
+        recorder.said.clear()
+        recorder.move(float(number))
         await asyncio.sleep(0.01)
-        at_once.append(len(rig.sent()) > 0)
+        at_once.append(len(recorder.sent()) > 0)
         await asyncio.sleep(1 / 30 - 0.01)
     assert all(at_once[18:])
 
 
-@streaming
-async def test_fixed_frame_may_be_placed_by_display(rig):
-    rig.stream.fixed_frame = "world"
-    rig.move(1.0)
-    await rig.settle()
-    assert rig.said[-1].placed == {"world"}
-    rig.history.set_placed_frame("display", PlacedFrame("world", "base", np.array([0.0, 2.0, *IDENTITY[2:]])))
+@run_with_recorder
+async def test_fixed_frame_may_be_placed_by_display(recorder):
+    recorder.stream.fixed_frame = "world"
+    recorder.move(1.0)
+    await recorder.settle()
+    assert recorder.said[-1].placed == {"world"}
+    recorder.history.set_placed_frame("display", PlacedFrame("world", "base", np.array([0.0, 2.0, *IDENTITY[2:]])))
     await asyncio.sleep(0.1)
-    assert rig.pose("tip") == [1, 2, 0, 0, 0, 0, 1]
-    assert rig.said[-1].placed == {"world", "base", "tip"}
-    rig.send({("base", "world"): IDENTITY})
+    assert recorder.pose("tip") == [1, 2, 0, 0, 0, 0, 1]
+    assert recorder.said[-1].placed == {"world", "base", "tip"}
+    recorder.send({("base", "world"): IDENTITY})
     await asyncio.sleep(0.1)
-    assert rig.pose("tip") == [1, 0, 0, 0, 0, 0, 1]
+    assert recorder.pose("tip") == [1, 0, 0, 0, 0, 0, 1]
 
 
-@streaming
-async def test_equal_transforms_are_not_sent_again(rig):
-    rig.move(1.0)
-    await rig.settle()
-    rig.kinds()
+@run_with_recorder
+async def test_equal_transforms_are_not_sent_again(recorder):
+    recorder.move(1.0)
+    await recorder.settle()
+    recorder.kinds()
     for _ in range(5):
-        rig.move(1.0)
+        recorder.move(1.0)
         await asyncio.sleep(0.02)
-    assert rig.kinds() == []
+    assert recorder.kinds() == []
 
 
-@streaming
-async def test_silent_frames_age(rig):
-    rig.stream.fade_time = 0.6
-    rig.send({("base", "fix"): IDENTITY}, static=True)
-    rig.move(1.0)
+@run_with_recorder
+async def test_silent_frames_age(recorder):
+    recorder.stream.fade_time = 0.6
+    recorder.send({("base", "fix"): IDENTITY}, static=True)
+    recorder.move(1.0)
     await asyncio.sleep(1.2)
-    ages = rig.ages("tip")
+    ages = recorder.ages("tip")
     assert ages[0] < 0.1
     assert ages == sorted(ages)
     assert ages[-1] > 0.6
     count = len(ages)
     await asyncio.sleep(0.6)
-    assert len(rig.ages("tip")) == count  # an expired frame is not sent again
-    assert set(rig.ages("fix")) == {0.0}  # static frames never age
-    rig.move(1.0)
-    await rig.settle()
-    assert rig.ages("tip")[-1] < 0.1  # the frame is received again, although it did not move
+    assert len(recorder.ages("tip")) == count  # an expired frame is not sent again
+    assert set(recorder.ages("fix")) == {0.0}  # static frames never age
+    recorder.move(1.0)
+    await recorder.settle()
+    assert recorder.ages("tip")[-1] < 0.1  # the frame is received again, although it did not move
 
 
-@streaming
-async def test_ages_are_not_sent_without_fade_time(rig):
-    rig.stream.fade_time = None
-    rig.move(1.0)
+@run_with_recorder
+async def test_ages_are_not_sent_without_fade_time(recorder):
+    recorder.stream.fade_time = None
+    recorder.move(1.0)
     await asyncio.sleep(0.6)
-    assert len(rig.sent()) == 1
+    assert len(recorder.sent()) == 1
 
 
-@streaming
-async def test_nothing_is_sent_without_pages(rig):
-    rig.watched = False
-    rig.move(1.0)
-    await rig.settle()
-    assert rig.said == []
-    rig.stream.refresh()
-    table, frame = rig.stream.current_frames
+@run_with_recorder
+async def test_nothing_is_sent_without_pages(recorder):
+    recorder.watched = False
+    recorder.move(1.0)
+    await recorder.settle()
+    assert recorder.said == []
+    recorder.stream.refresh()
+    table, frame = recorder.stream.current_frames
     assert unpack(frame).revision == table.revision
-    assert rig.kinds() == ["FrameTable", "Transforms", "FrameView"]
+    assert recorder.kinds() == ["FrameTable", "Transforms", "FrameView"]
 
 
-@streaming
-async def test_fixed_frame_change_sends_all_transforms(rig):
-    rig.move(1.0)
-    await rig.settle()
-    rig.said.clear()
-    rig.stream.fixed_frame = "tip"
-    rig.stream.refresh()
-    transforms, frames = rig.said
-    assert rig.pose("base")[0] == -1.0
-    assert transforms is rig.sent()[-1]
+@run_with_recorder
+async def test_fixed_frame_change_sends_all_transforms(recorder):
+    recorder.move(1.0)
+    await recorder.settle()
+    recorder.said.clear()
+    recorder.stream.fixed_frame = "tip"
+    recorder.stream.refresh()
+    transforms, frames = recorder.said
+    assert recorder.pose("base")[0] == -1.0
+    assert transforms is recorder.sent()[-1]
     assert frames.fixed_frame == "tip"
 
 
-@streaming
-async def test_unknown_fixed_frame_gives_nan_poses(rig):
-    rig.stream.fixed_frame = "map"
-    rig.move(1.0)
-    await rig.settle()
-    _, transforms, frames = rig.said
+@run_with_recorder
+async def test_unknown_fixed_frame_gives_nan_poses(recorder):
+    recorder.stream.fixed_frame = "map"
+    recorder.move(1.0)
+    await recorder.settle()
+    _, transforms, frames = recorder.said
     assert np.isnan(transforms.poses).all()
     assert frames.placed == {"map"}
     assert frames.problem("tip") == "No transform from [tip] to [map]"
 
 
-@streaming
-async def test_frame_of_single_link_robot_is_sent_without_tf(rig):
-    rig.own_frames = frozenset({"base"})
-    rig.stream.on_robot_changed(set())
-    await rig.settle()
-    table, transforms, frames = rig.said
+@run_with_recorder
+async def test_frame_of_single_link_robot_is_sent_without_tf(recorder):
+    recorder.own_frames = frozenset({"base"})
+    recorder.stream.on_robot_changed(set())
+    await recorder.settle()
+    table, transforms, frames = recorder.said
     assert (table.names, table.parents) == (["base"], [-1])
     assert transforms.poses.tolist() == [list(IDENTITY)]
     assert frames.names == ()  # tf does not have this frame
-    rig.said.clear()
-    rig.move(1.0)
-    await eventually(lambda: rig.said)
-    assert sorted(rig.said[0].names) == ["base", "tip"]
+    recorder.said.clear()
+    recorder.move(1.0)
+    await eventually(lambda: recorder.said)
+    assert sorted(recorder.said[0].names) == ["base", "tip"]
 
 
-@streaming
-async def test_frames_of_removed_robot_are_removed(rig):
-    rig.send({("base", "tip"): IDENTITY, ("base", "old"): IDENTITY})
-    await rig.settle()
-    rig.said.clear()
-    rig.stream.on_robot_changed({"old", "never there"})
-    await eventually(lambda: len(rig.said) == 3)
-    table, transforms, frames = rig.said
+@run_with_recorder
+async def test_frames_of_removed_robot_are_removed(recorder):
+    recorder.send({("base", "tip"): IDENTITY, ("base", "old"): IDENTITY})
+    await recorder.settle()
+    recorder.said.clear()
+    recorder.stream.on_robot_changed({"old", "never there"})
+    await eventually(lambda: len(recorder.said) == 3)
+    table, transforms, frames = recorder.said
     assert sorted(table.names) == ["base", "tip"]
     assert len(transforms.poses) == 2
     assert "old" not in frames.names
 
 
-@streaming
-async def test_stamp_is_that_of_newest_transform(rig):
-    rig.move(1.0, stamp_ns=2_500_000_000)
-    rig.send({("base", "b"): IDENTITY}, stamp_ns=1_000_000_000)
-    await eventually(rig.sent)
-    assert rig.sent()[-1].stamp == 2.5
+@run_with_recorder
+async def test_stamp_is_that_of_newest_transform(recorder):
+    recorder.move(1.0, stamp_ns=2_500_000_000)
+    recorder.send({("base", "b"): IDENTITY}, stamp_ns=1_000_000_000)
+    await eventually(recorder.sent)
+    assert recorder.sent()[-1].stamp == 2.5

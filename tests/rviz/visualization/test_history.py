@@ -1,10 +1,12 @@
+"""The history of edits: undo, redo and merged edits."""
+
 from __future__ import annotations
 
 from linkwright.page.protocol.configuration import EditName
 from linkwright.rviz.visualization.display_tree import MAX_EDITS, MERGE_INTERVAL, Edit, History
 
 
-class Value:
+class EditedValue:
     """A number, and edits of it."""
 
     def __init__(self) -> None:
@@ -29,7 +31,7 @@ class Value:
 
 
 def test_edits_are_undone_and_redone():
-    value = Value()
+    value = EditedValue()
     for number in (1, 2, 3):
         value.set(number, None)
     value.history.undo()
@@ -50,7 +52,7 @@ def test_edits_are_undone_and_redone():
 
 
 def test_edits_of_one_drag_are_merged():
-    value = Value()
+    value = EditedValue()
     for number in (1, 2, 3):
         value.now += MERGE_INTERVAL / 2
         value.set(number)
@@ -65,7 +67,7 @@ def test_edits_of_one_drag_are_merged():
 
 
 def test_edits_of_different_values_are_not_merged():
-    value = Value()
+    value = EditedValue()
     value.set(1, "a")
     value.set(2, "b")
     value.history.undo()
@@ -73,7 +75,7 @@ def test_edits_of_different_values_are_not_merged():
 
 
 def test_saved_state_is_tracked_through_undo_and_redo():
-    value = Value()
+    value = EditedValue()
     value.set(1)
     value.history.mark_saved()
     assert not value.history.has_unsaved_edits
@@ -91,7 +93,7 @@ def test_saved_state_is_tracked_through_undo_and_redo():
 
 
 def test_permanent_edit_counts_as_unsaved():
-    value = Value()
+    value = EditedValue()
     value.history.add_permanent_edit()
     assert value.history.has_unsaved_edits
     value.history.mark_saved()
@@ -102,7 +104,7 @@ def test_permanent_edit_counts_as_unsaved():
 
 
 def test_history_length_is_limited():
-    value = Value()
+    value = EditedValue()
     for number in range(MAX_EDITS + 10):
         value.set(number, None)
     steps = 0

@@ -74,13 +74,13 @@ async def test_fade_time_is_shortest_of_tf_displays():
     async with open_world(RvizConfig.parse(FRAMES)) as world:
         manager = world.viewer.manager
         stream, tree = manager._stream, manager.tree
-        group, grouped, alone = manager.displays
+        group, grouped, ungrouped = manager.displays
         assert stream.fade_time == 5
         tree.check(group, False)
         assert stream.fade_time == 8
-        alone.set_property(("Frame Timeout",), 3.0)
+        ungrouped.set_property(("Frame Timeout",), 3.0)
         assert stream.fade_time == 3
-        tree.remove([alone])
+        tree.remove([ungrouped])
         assert stream.fade_time is None
         manager.history.undo()
         assert stream.fade_time == 3
@@ -153,9 +153,9 @@ async def test_robot_model_is_added_by_description_topic():
         publisher.publish(String(data='<robot name="other"><link name="base"/></robot>'))
         await client.send("request_display_choices")
         topics = (await client.until("display_choices"))["topics"]
-        offered = next(topic for topic in topics if topic["topic"] == "/other/robot_description")
+        topic_entry = next(topic for topic in topics if topic["topic"] == "/other/robot_description")
         cls = "rviz_default_plugins/RobotModel"
-        assert cls in offered["classes"]
+        assert cls in topic_entry["classes"]
         await edit(client, "add_display", cls=cls, name="Other", group=None, topic="/other/robot_description")
         assert entries(world)[-1]["Description Topic"]["Value"] == "/other/robot_description"
         assert publisher.get_subscription_count() == 1
@@ -333,7 +333,7 @@ async def test_drag_is_undone_in_one_step():
         await client.until("property_changed", id="display-1/Alpha", value=0.3)
         assert entries(world)[0]["Alpha"] == 0.3
         state = await undo(client)
-        rows = {row["name"]: row for row in (await rows_of(client, world, "display-1"))}
+        rows = {row["name"]: row for row in (await wait_for_rows(client, world, "display-1"))}
         assert rows["Alpha"]["value"] == 0.5
         assert world.viewer.config.text() == TEXT
         assert state["redo"] == {"kind": "set", "name": "Alpha"}
@@ -341,7 +341,7 @@ async def test_drag_is_undone_in_one_step():
         assert entries(world)[0]["Alpha"] == 0.3
 
 
-async def rows_of(client, world, identity: str) -> list[dict]:
+async def wait_for_rows(client, world, identity: str) -> list[dict]:
     messages = [
         message for message in client.messages if isinstance(message, dict) and message["type"] == "display_properties"
     ]

@@ -13,7 +13,7 @@ from tests.waiting import eventually
 
 
 @asynccontextmanager
-async def own_page(world, key: str = "0123456789abcdef"):
+async def open_own_page(world, key: str = "0123456789abcdef"):
     address = world.viewer.url.replace("/?", "/ws?") + f"&own={key}"
     async with aiohttp.ClientSession() as session, session.ws_connect(address) as socket:
         yield Client(socket)
@@ -33,26 +33,26 @@ async def test_page_may_have_own_displays(monkeypatch):
     monkeypatch.setattr(manager, "LINGERING", 0.05)
     async with opened() as (world, shared):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
-        async with own_page(world) as own:
-            opening = await own.opened()
+        async with open_own_page(world) as own_client:
+            opening = await own_client.opened()
             assert (opening["configuration"]["is_own"], opening["configuration"]["path"]) == (True, None)
             ids = [display["id"] for display in opening["tree"]["displays"]]
             assert ids == [f"display-{n}" for n in range(5, 9)]
             assert publisher.get_subscription_count() == 2
             await shared.drain()
-            await own.set(f"{ids[0]}/Alpha", 0.125)
-            await own.until("property_changed", id=f"{ids[0]}/Alpha")
-            await own.set("global/Fixed Frame", "odom")
-            await own.until("configuration")
-            await own.set("display-1/Alpha", 0.9)  # the page does not have this shared display
+            await own_client.set(f"{ids[0]}/Alpha", 0.125)
+            await own_client.until("property_changed", id=f"{ids[0]}/Alpha")
+            await own_client.set("global/Fixed Frame", "odom")
+            await own_client.until("configuration")
+            await own_client.set("display-1/Alpha", 0.9)  # the page does not have this shared display
             assert await shared.drain() == []
             assert world.viewer.config.text() == TEXT
             assert world.viewer._node.get_parameter("fixed_frame").value == "base"
-        async with own_page(world) as again:  # the page was reloaded
-            opening = await again.opened()
+        async with open_own_page(world) as reloaded_client:  # the page was reloaded
+            opening = await reloaded_client.opened()
             assert [display["id"] for display in opening["tree"]["displays"]] == ids
         await eventually(lambda: publisher.get_subscription_count() == 1)
-        async with own_page(world) as later:
+        async with open_own_page(world) as later:
             opening = await later.opened()
             assert [display["id"] for display in opening["tree"]["displays"]] != ids
 
@@ -62,10 +62,10 @@ async def test_number_of_lingering_own_displays_is_limited(monkeypatch):
     async with opened() as (world, _):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for number in range(5):
-            async with own_page(world, f"page-number-{number}") as client:
+            async with open_own_page(world, f"page-number-{number}") as client:
                 await client.opened()
         await eventually(lambda: publisher.get_subscription_count() == 3)  # for all pages, and two closed pages
-        async with own_page(world, "page-number-4") as client:
+        async with open_own_page(world, "page-number-4") as client:
             opening = await client.opened()
             assert opening["tree"]["displays"][0]["id"] == "display-21"  # the page has new displays
 
@@ -73,5 +73,5 @@ async def test_number_of_lingering_own_displays_is_limited(monkeypatch):
 async def test_page_with_invalid_key_shares_displays():
     async with opened() as (world, _):
         for key in ("short", "../../../etc/passwd", "x" * 100):
-            async with own_page(world, key) as client:
+            async with open_own_page(world, key) as client:
                 assert (await client.opened())["configuration"]["is_own"] is False

@@ -46,11 +46,11 @@ def worlds(draw) -> str:
     return text.replace("\n", draw(ENDS))
 
 
-def poses_of(world) -> dict[str, tuple[float, ...]]:
+def link_poses(world) -> dict[str, tuple[float, ...]]:
     return {placed_link.name: placed_link.pose for placed_link in placed_links(world.world)}
 
 
-def close(first, second, tolerance: float = 1e-6) -> bool:
+def are_close(first, second, tolerance: float = 1e-6) -> bool:
     """Return whether transforms are equal; a quaternion equals its negative."""
     straight = all(abs(a - b) <= tolerance for a, b in zip(first[:3], second[:3], strict=True))
     return straight and abs(abs(sum(a * b for a, b in zip(first[3:], second[3:], strict=True))) - 1) <= tolerance
@@ -65,7 +65,7 @@ def test_moved_entity_has_new_pose_and_others_stay(text, pose, name):
         f"<sdf version='1.9'><world name='w'><model name='m'><pose>{' '.join(map(format_length, pose))}</pose>"
         "<link name='l'/></model></world></sdf>"
     )
-    assert close(moved.entities[name].world_pose, expected.entities["m"].world_pose, 1e-5)
+    assert are_close(moved.entities[name].world_pose, expected.entities["m"].world_pose, 1e-5)
     for other in {"a", "b&c", "d"} - {name}:
         assert moved.entities[other].world_pose == original.entities[other].world_pose
     element = original.entities[name].element
@@ -77,10 +77,10 @@ def test_moved_entity_has_new_pose_and_others_stay(text, pose, name):
 
 @settings(max_examples=40)
 @given(worlds(), SIZES, st.booleans())
-def test_inverse_size_and_name_changes_restore_text(text, size, twice):
+def test_inverse_size_and_name_changes_restore_text(text, size, is_repeated):
     original = world_text(text)
     old = original.entities["a"].shape.size
-    names = ["a", "d"] if twice else ["a"]
+    names = ["a", "d"] if is_repeated else ["a"]
     changed = change(original, [Change(name, new_name=f"new {name}", size=size) for name in names])
     assert changed.entities["new a"].shape.size == size
     masses = [model.links[0].inertial for model in original.world.models]
@@ -100,7 +100,7 @@ def test_deleting_copies_restores_text(text, offset):
     for name, new in zip(["a", "b&c", "d"], names, strict=True):
         old_pose = original.entities[name].world_pose
         expected_pose = (*(a + b for a, b in zip(old_pose[:3], offset, strict=True)), *old_pose[3:])
-        assert close(with_copies.entities[new].world_pose, expected_pose, 1e-5)
+        assert are_close(with_copies.entities[new].world_pose, expected_pose, 1e-5)
         assert original.entities[name].element.text() == with_copies.entities[name].element.text()
     assert "".join(delete(with_copies, names).text.split()) == "".join(text.split())
 
@@ -111,8 +111,8 @@ def test_ungrouping_restores_poses(text):
     original = world_text(text)
     grouped = group(original, ["a", "d"], "g")
     assert set(grouped.entities) == {"g", "b&c"}
-    poses_before, ungrouped = poses_of(original), ungroup(grouped, "g")[0]
-    for name, pose in poses_of(ungrouped).items():
-        assert close(pose, poses_before[name], 1e-5)
-    for name, pose in poses_of(grouped).items():
-        assert close(pose, poses_before[name.removeprefix("g::")], 1e-5)
+    poses_before, ungrouped = link_poses(original), ungroup(grouped, "g")[0]
+    for name, pose in link_poses(ungrouped).items():
+        assert are_close(pose, poses_before[name], 1e-5)
+    for name, pose in link_poses(grouped).items():
+        assert are_close(pose, poses_before[name.removeprefix("g::")], 1e-5)

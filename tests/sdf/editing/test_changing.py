@@ -12,7 +12,7 @@ from linkwright.sdf.editing import Change, EditError, change, copy, delete
 from tests.sdf.editing.texts import BOX, PLAIN, world_text, world_with
 
 
-def difference(old: str, new: str) -> list[str]:
+def changed_lines(old: str, new: str) -> list[str]:
     """Return the removed and the added lines, without surrounding spaces."""
     lines = difflib.ndiff(old.splitlines(), new.splitlines())
     return [f"{line[0]} {line[1:].strip()}" for line in lines if line[0] in "+-"]
@@ -20,7 +20,7 @@ def difference(old: str, new: str) -> list[str]:
 
 def lines_changed_by(text: str, *changes: Change) -> list[str]:
     original = world_text(text)
-    return difference(original.text, change(original, changes).text)
+    return changed_lines(original.text, change(original, changes).text)
 
 
 def test_world_entities_are_listed():
@@ -135,13 +135,13 @@ def test_color_replaces_material_script():
 
 
 def test_static_flag_is_set_and_cleared():
-    still = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
-    assert still.entities["box"].is_static
-    assert not still.entities["ground_plane"].is_static
-    assert "<pose>2 0 0.250 0 0 0</pose>\n      <static>true</static>\n" in still.text
-    bare = PLAIN.replace(PLAIN[PLAIN.index("        <inertial>") : PLAIN.index("        <collision")], "")
-    still = change(world_text(bare), [Change("box", static=True)])
-    moves = change(still, [Change("box", static=False, size=(1.0, 1.0, 1.0))])
+    static_text = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
+    assert static_text.entities["box"].is_static
+    assert not static_text.entities["ground_plane"].is_static
+    assert "<pose>2 0 0.250 0 0 0</pose>\n      <static>true</static>\n" in static_text.text
+    plain_model = PLAIN.replace(PLAIN[PLAIN.index("        <inertial>") : PLAIN.index("        <collision")], "")
+    static_text = change(world_text(plain_model), [Change("box", static=True)])
+    moves = change(static_text, [Change("box", static=False, size=(1.0, 1.0, 1.0))])
     assert "<static>false</static>" in moves.text
     assert moves.world.models[0].links[0].inertial.inertia.ixx == pytest.approx(1 / 6, abs=1e-6)
     with pytest.raises(EditError, match="'lamp' is a light"):
@@ -157,7 +157,7 @@ def test_renaming_updates_references():
         '<axis><xyz expressed_in="a">0 0 1</xyz></axis></joint>',
     )
     renamed = change(text, [Change("a", new_name='c "1"')])
-    lines = difference(text.text.replace("><", ">\n<"), renamed.text.replace("><", ">\n<"))
+    lines = changed_lines(text.text.replace("><", ">\n<"), renamed.text.replace("><", ">\n<"))
     assert [line for line in lines if line[0] == "+"] == [
         '+ <model name="c &quot;1&quot;">',
         '+ <pose relative_to="c &quot;1&quot;::l">0 0 1 0 0 0</pose>',

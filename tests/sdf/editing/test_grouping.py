@@ -9,8 +9,8 @@ from linkwright.sdf.editing.changing import Change
 from linkwright.sdf.frames import placed_links
 from tests.sdf.editing.texts import BOX, PLAIN, world_text, world_with
 
-OTHER = BOX.replace("'box'", "'crate'").replace(">2 0 0.250 0 0 0<", ">4 1 0.25 0 0 1.5<")
-TWO = PLAIN.replace(BOX, f"{BOX}    <!-- between -->\n{OTHER}")
+OTHER_BOX = BOX.replace("'box'", "'crate'").replace(">2 0 0.250 0 0 0<", ">4 1 0.25 0 0 1.5<")
+TWO_BOXES = PLAIN.replace(BOX, f"{BOX}    <!-- between -->\n{OTHER_BOX}")
 
 
 def link_poses(world: WorldText) -> dict[str, tuple[float, ...]]:
@@ -18,7 +18,7 @@ def link_poses(world: WorldText) -> dict[str, tuple[float, ...]]:
 
 
 def test_group_is_a_model_and_members_keep_poses():
-    original = world_text(TWO)
+    original = world_text(TWO_BOXES)
     grouped = group(original, ["crate", "box"], "pile")
     assert grouped.entities["pile"].member_names == ("box", "crate")
     assert list(grouped.entities) == ["ground_plane", "pile", "lamp"]
@@ -30,14 +30,14 @@ def test_group_is_a_model_and_members_keep_poses():
 
 
 def test_ungrouping_restores_text():
-    original = PLAIN.replace(BOX, BOX + OTHER).replace("0.250", "0.25")
+    original = PLAIN.replace(BOX, BOX + OTHER_BOX).replace("0.250", "0.25")
     text, names = ungroup(group(world_text(original), ["box", "crate"], "pile"), "pile")
     assert names == ["box", "crate"]
     assert text.text == original
 
 
 def test_nested_and_rotated_groups_keep_link_poses():
-    text, _ = add_shape(group(world_text(TWO), ["box", "crate"], "pile"), "box", (0, 0, 1, 0.1, 0.2, 0.3))
+    text, _ = add_shape(group(world_text(TWO_BOXES), ["box", "crate"], "pile"), "box", (0, 0, 1, 0.1, 0.2, 0.3))
     text = change(text, [Change("pile", pose=(1, 1, 1, 0.5, 0.6, 0.7))])
     text = group(text, ["pile", "box"], "heap")
     poses_before = link_poses(text)
@@ -93,7 +93,7 @@ def test_included_models_can_be_grouped_and_static_group_is_static():
 )
 def test_invalid_group_is_rejected(names, reason):
     with pytest.raises(EditError, match=reason):
-        group(world_text(TWO), names, "g")
+        group(world_text(TWO_BOXES), names, "g")
 
 
 def test_ungrouping_other_models_is_rejected():
@@ -101,7 +101,7 @@ def test_ungrouping_other_models_is_rejected():
         ungroup(world_text(PLAIN), "box")
     with pytest.raises(EditError, match="'ground_plane' is not a group"):
         ungroup(world_text(PLAIN), "ground_plane")
-    grouped = group(world_text(TWO), ["box", "crate"], "g").text
+    grouped = group(world_text(TWO_BOXES), ["box", "crate"], "g").text
     with_frame = grouped.replace("    <light", '    <frame name="f" attached_to="g"/>\n    <light')
     with pytest.raises(EditError, match="another element refers to it"):
         ungroup(world_text(with_frame), "g")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.simulation.fluids.server import running_server
-from tests.simulation.test_plugins import SECOND
+from tests.simulation.test_plugins import SECOND_NS
 from tests.simulation.worlds import box, model
 
 WATER_AND_AIR = (
@@ -22,11 +22,11 @@ DAMPING = (
 )
 
 
-def water(surface: float = 0.0, extra: str = "") -> str:
+def buoyancy_plugin(surface: float = 0.0, extra: str = "") -> str:
     return WATER_AND_AIR.format(surface=surface, extra=extra)
 
 
-def floating(shape: str, volume: float, pose: str, density: float = 500.0, plugin: str = DAMPING) -> str:
+def floating_model(shape: str, volume: float, pose: str, density: float = 500.0, plugin: str = DAMPING) -> str:
     """Return a model of this density, whose motion dies out."""
     mass = density * volume
     inertia = "".join(f"<{name}>{mass / 6}</{name}>" for name in ("ixx", "iyy", "izz"))
@@ -37,7 +37,7 @@ def floating(shape: str, volume: float, pose: str, density: float = 500.0, plugi
     )
 
 
-def height(server, link: str = "float::link") -> float:
+def link_height(server, link: str = "float::link") -> float:
     return server.simulation.link_pose(link)[2]
 
 
@@ -52,27 +52,39 @@ def height(server, link: str = "float::link") -> float:
     ],
 )
 async def test_body_of_half_density_of_water_is_half_immersed(shape, volume, draught):
-    async with running_server(water(surface=1.0), floating(shape, volume, "0 0 1.1 0 0 0")) as (server, _, log):
-        server.advance(10 * SECOND)
-        assert height(server) == pytest.approx(1.0, abs=0.002)
+    async with running_server(buoyancy_plugin(surface=1.0), floating_model(shape, volume, "0 0 1.1 0 0 0")) as (
+        server,
+        _,
+        log,
+    ):
+        server.advance(10 * SECOND_NS)
+        assert link_height(server) == pytest.approx(1.0, abs=0.002)
         assert not log
 
 
 async def test_draught_follows_density_of_box():
     shape = "<box><size>1 1 0.4</size></box>"
-    async with running_server(water(), floating(shape, 0.4, "0 0 0.2 0 0 0", density=900.0)) as (server, _, __):
-        server.advance(10 * SECOND)
-        assert height(server) == pytest.approx(0.2 - 0.9 * 0.4, abs=0.001)
+    async with running_server(buoyancy_plugin(), floating_model(shape, 0.4, "0 0 0.2 0 0 0", density=900.0)) as (
+        server,
+        _,
+        __,
+    ):
+        server.advance(10 * SECOND_NS)
+        assert link_height(server) == pytest.approx(0.2 - 0.9 * 0.4, abs=0.001)
 
 
 async def test_heave_has_period_of_mass_and_waterplane():
     """Without damping, the period is 2 pi sqrt(m / (rho g A))."""
     shape = "<box><size>1 1 0.4</size></box>"
-    async with running_server(water(), floating(shape, 0.4, "0 0 0.05 0 0 0", plugin="")) as (server, _, __):
+    async with running_server(buoyancy_plugin(), floating_model(shape, 0.4, "0 0 0.05 0 0 0", plugin="")) as (
+        server,
+        _,
+        __,
+    ):
         heights = []
         for _ in range(400):
-            server.advance(SECOND // 100)
-            heights.append(height(server))
+            server.advance(SECOND_NS // 100)
+            heights.append(link_height(server))
     rising = [index for index in range(1, len(heights)) if heights[index - 1] < 0.0 <= heights[index]]
     periods = np.diff(rising) / 100
     assert len(periods) >= 2
@@ -81,14 +93,14 @@ async def test_heave_has_period_of_mass_and_waterplane():
 
 async def test_flat_box_rights_itself_and_tall_box_capsizes():
     """The metacentric height of a box of half the density of water is b2 / (6 h) - h / 4."""
-    flat = floating("<box><size>1 1 0.4</size></box>", 0.4, "0 0 0 0.2 0 0")
-    tall = floating("<box><size>0.3 0.3 1</size></box>", 0.09, "0 0 0 0.2 0 0")
-    for body, is_stable in ((flat, True), (tall, False)):
-        async with running_server(water(), body) as (server, _, __):
-            server.advance(20 * SECOND)
+    flat_box = floating_model("<box><size>1 1 0.4</size></box>", 0.4, "0 0 0 0.2 0 0")
+    tall = floating_model("<box><size>0.3 0.3 1</size></box>", 0.09, "0 0 0 0.2 0 0")
+    for body, is_stable in ((flat_box, True), (tall, False)):
+        async with running_server(buoyancy_plugin(), body) as (server, _, __):
+            server.advance(20 * SECOND_NS)
             simulation = server.simulation
-            up = simulation.data.xmat[simulation.body("float::link")].reshape(3, 3)[2, 2]
-            assert bool(up > 0.999) is is_stable, up
+            up_component = simulation.data.xmat[simulation.body("float::link")].reshape(3, 3)[2, 2]
+            assert bool(up_component > 0.999) is is_stable, up_component
 
 
 async def test_uniform_fluid_lifts_only_enabled_bodies():
@@ -98,7 +110,7 @@ async def test_uniform_fluid_lifts_only_enabled_bodies():
     )
     parts = box("light", "0 0 5 0 0 0", mass=250.0), box("heavy", "5 0 5 0 0 0", mass=250.0)
     async with running_server(plugin, *parts) as (server, _, log):
-        server.advance(SECOND // 2)
+        server.advance(SECOND_NS // 2)
         velocity, _ = server.simulation.link_velocity("light::link")
         assert velocity[2] == pytest.approx((500 / 250 - 1) * 9.81 * 0.5, rel=0.01)
         velocity, _ = server.simulation.link_velocity("heavy::link")
@@ -110,9 +122,9 @@ async def test_lift_follows_gravity_and_ends_with_plugin():
     plugin = '<plugin name="b" filename="gz-sim-buoyancy-system"/>'
     async with running_server(plugin, box("float", "0 0 5 0 0 0", mass=500.0)) as (server, _, __):
         server.simulation.set_gravity((0.0, 0.0, -1.62))
-        server.advance(SECOND // 100)
+        server.advance(SECOND_NS // 100)
         start, _ = server.simulation.link_velocity("float::link")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         velocity, _ = server.simulation.link_velocity("float::link")
         assert velocity[2] - start[2] == pytest.approx((1000 / 500 - 1) * 1.62, rel=0.01)
         assert server.simulation.data.body("float::link").xfrc_applied[2] == pytest.approx(1000 * 1.62)
@@ -120,11 +132,11 @@ async def test_lift_follows_gravity_and_ends_with_plugin():
 
 
 async def test_body_that_is_spawned_later_floats_too():
-    async with running_server(water()) as (server, _, __):
-        server.advance(SECOND)
-        server.simulation.spawn(model(floating("<box><size>1 1 0.4</size></box>", 0.4, "0 0 0 0 0 0")), "float")
-        server.advance(5 * SECOND)
-        assert height(server) == pytest.approx(0.0, abs=0.01)
+    async with running_server(buoyancy_plugin()) as (server, _, __):
+        server.advance(SECOND_NS)
+        server.simulation.spawn(model(floating_model("<box><size>1 1 0.4</size></box>", 0.4, "0 0 0 0 0 0")), "float")
+        server.advance(5 * SECOND_NS)
+        assert link_height(server) == pytest.approx(0.0, abs=0.01)
 
 
 async def test_classic_plugin_lifts_model_by_stated_volume():
@@ -134,7 +146,7 @@ async def test_classic_plugin_lifts_model_by_stated_volume():
     )
     part = box("float", "0 0 5 0 0 0", mass=250.0).replace("</model>", f"{plugin}</model>")
     async with running_server(part) as (server, _, log):
-        server.advance(SECOND // 2)
+        server.advance(SECOND_NS // 2)
         velocity, _ = server.simulation.link_velocity("float::link")
         assert velocity[2] == pytest.approx(9.81 * 0.5, rel=0.01)
         assert not log
@@ -144,10 +156,13 @@ async def test_classic_plugin_lifts_model_by_stated_volume():
     ("plugin", "message"),
     [
         (
-            water().replace("<density>0</density>", "<density>air</density>"),
+            buoyancy_plugin().replace("<density>0</density>", "<density>air</density>"),
             "<density_change> needs a number in <density>",
         ),
-        (water().replace("<above_depth>0.0</above_depth>", ""), "<density_change> needs a number in <above_depth>"),
+        (
+            buoyancy_plugin().replace("<above_depth>0.0</above_depth>", ""),
+            "<density_change> needs a number in <above_depth>",
+        ),
     ],
 )
 async def test_invalid_layer_is_reported(plugin, message):

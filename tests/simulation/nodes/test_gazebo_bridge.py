@@ -1,4 +1,7 @@
-"""parameter_bridge and image_bridge: conversion between topics whose names or types differ between gz and ROS."""
+"""parameter_bridge and image_bridge.
+
+They convert between topics whose names or types differ between gz and ROS.
+"""
 
 from __future__ import annotations
 
@@ -25,14 +28,14 @@ from tests.remote_publishers import RemotePublisher, RemoteTransport
 SCAN = "/scan@sensor_msgs/msg/LaserScan[gz.msgs.LaserScan"
 
 
-def record_messages(stage, message_type, topic):
+def record_messages(harness, message_type, topic):
     messages = []
-    stage.node.create_subscription(get_message(message_type), topic, messages.append, 10)
+    harness.node.create_subscription(get_message(message_type), topic, messages.append, 10)
     return messages
 
 
-def publisher(stage, message_type, topic):
-    return stage.node.create_publisher(get_message(message_type), topic, 10)
+def create_publisher(harness, message_type, topic):
+    return harness.node.create_publisher(get_message(message_type), topic, 10)
 
 
 @pytest.mark.parametrize(
@@ -85,95 +88,97 @@ def test_malformed_bridge_file_is_rejected(text, message, tmp_path: Path):
         read_bridge_file(str(tmp_path / "nothing.yaml"))
 
 
-async def test_topic_of_same_name_is_not_duplicated(stage):
-    scans = record_messages(stage, "sensor_msgs/msg/LaserScan", "/scan")
-    ParameterBridge(stage.graph, NodeOptions(arguments=[SCAN]))
-    publisher(stage, "sensor_msgs/msg/LaserScan", "/scan").publish(get_message("sensor_msgs/msg/LaserScan")())
-    await stage.graph.settle()
+async def test_topic_of_same_name_is_not_duplicated(harness):
+    scans = record_messages(harness, "sensor_msgs/msg/LaserScan", "/scan")
+    ParameterBridge(harness.graph, NodeOptions(arguments=[SCAN]))
+    create_publisher(harness, "sensor_msgs/msg/LaserScan", "/scan").publish(get_message("sensor_msgs/msg/LaserScan")())
+    await harness.graph.settle()
     assert len(scans) == 1
 
 
-async def test_topics_exist_before_simulation(stage):
+async def test_topics_exist_before_simulation(harness):
     arguments = (SCAN, "/odom@nav_msgs/msg/Odometry[gz.msgs.Odometry", "/cmd_vel@geometry_msgs/msg/Twist]gz.msgs.Twist")
-    ParameterBridge(stage.graph, NodeOptions(arguments=[*arguments, "/both@std_msgs/msg/String@gz.msgs.StringMsg"]))
-    topics = dict(stage.graph.get_topic_names_and_types())
+    ParameterBridge(harness.graph, NodeOptions(arguments=[*arguments, "/both@std_msgs/msg/String@gz.msgs.StringMsg"]))
+    topics = dict(harness.graph.get_topic_names_and_types())
     assert {"/scan", "/odom", "/cmd_vel", "/both"} <= topics.keys()
-    counts = {name: (stage.node.count_publishers(name), stage.node.count_subscribers(name)) for name in topics}
+    counts = {name: (harness.node.count_publishers(name), harness.node.count_subscribers(name)) for name in topics}
     assert [counts[name] for name in ("/scan", "/cmd_vel", "/both")] == [(1, 0), (0, 1), (1, 1)]
 
 
 @pytest.mark.parametrize("types", ["", "@gz.msgs.WorldControl@gz.msgs.Boolean"])
-async def test_service_is_reported_and_topics_are_bridged(stage, logged, types):
+async def test_service_is_reported_and_topics_are_bridged(harness, logged, types):
     arguments = [f"/world/empty/control@ros_gz_interfaces/srv/ControlWorld{types}", SCAN]
-    ParameterBridge(stage.graph, NodeOptions(arguments=arguments))
-    assert "/scan" in stage.graph.topics()
+    ParameterBridge(harness.graph, NodeOptions(arguments=arguments))
+    assert "/scan" in harness.graph.topics()
     assert logged("WARN") == ["/world/empty/control is not bridged: services of gz are not supported"]
 
 
-async def test_remapped_topic_is_bridged(stage):
+async def test_remapped_topic_is_bridged(harness):
     message_type = "nav_msgs/msg/Odometry"
-    odometry = record_messages(stage, message_type, "/odom")
+    odometry = record_messages(harness, message_type, "/odom")
     argument = f"/model/mbot/odometry@{message_type}[gz.msgs.Odometry"
-    ParameterBridge(stage.graph, NodeOptions(arguments=[argument], remappings=[("/model/mbot/odometry", "/odom")]))
-    publisher(stage, message_type, "/model/mbot/odometry").publish(get_message(message_type)(child_frame_id="base"))
-    await stage.graph.settle()
+    ParameterBridge(harness.graph, NodeOptions(arguments=[argument], remappings=[("/model/mbot/odometry", "/odom")]))
+    create_publisher(harness, message_type, "/model/mbot/odometry").publish(
+        get_message(message_type)(child_frame_id="base")
+    )
+    await harness.graph.settle()
     assert [message.child_frame_id for message in odometry] == ["base"]
 
 
-async def test_bidirectional_bridge_does_not_loop(stage):
+async def test_bidirectional_bridge_does_not_loop(harness):
     message_type = "std_msgs/msg/String"
-    ros, gz = record_messages(stage, message_type, "/ros"), record_messages(stage, message_type, "/gz")
+    ros, gz = record_messages(harness, message_type, "/ros"), record_messages(harness, message_type, "/gz")
     argument = f"/gz@{message_type}@gz.msgs.StringMsg"
-    ParameterBridge(stage.graph, NodeOptions(arguments=[argument], remappings=[("/gz", "/ros")]))
-    to_ros, to_gz = publisher(stage, message_type, "/gz"), publisher(stage, message_type, "/ros")
+    ParameterBridge(harness.graph, NodeOptions(arguments=[argument], remappings=[("/gz", "/ros")]))
+    to_ros, to_gz = create_publisher(harness, message_type, "/gz"), create_publisher(harness, message_type, "/ros")
     for number in range(3):
         to_ros.publish(get_message(message_type)(data=f"up {number}"))
         to_gz.publish(get_message(message_type)(data=f"down {number}"))
-        await stage.graph.settle()
+        await harness.graph.settle()
     expected = sorted(f"{way} {number}" for way in ("up", "down") for number in range(3))
     assert sorted(message.data for message in ros) == expected
     assert sorted(message.data for message in gz) == expected
 
 
-async def test_twist_stamped_is_converted_to_twist(stage, tmp_path: Path):
-    twists = record_messages(stage, "geometry_msgs/msg/Twist", hidden_gz_topic("/cmd_vel"))
+async def test_twist_stamped_is_converted_to_twist(harness, tmp_path: Path):
+    twists = record_messages(harness, "geometry_msgs/msg/Twist", hidden_gz_topic("/cmd_vel"))
     path = tmp_path / "bridge.yaml"
     path.write_text(
         "- topic_name: cmd_vel\n  ros_type_name: geometry_msgs/msg/TwistStamped\n"
         "  gz_type_name: gz.msgs.Twist\n  direction: ROS_TO_GZ\n",
         encoding="utf-8",
     )
-    ParameterBridge(stage.graph, stage.options({"config_file": str(path)}))
+    ParameterBridge(harness.graph, harness.options({"config_file": str(path)}))
     stamped = get_message("geometry_msgs/msg/TwistStamped")()
     stamped.twist.linear.x = 0.25
-    publisher(stage, "geometry_msgs/msg/TwistStamped", "/cmd_vel").publish(stamped)
-    await stage.graph.settle()
+    create_publisher(harness, "geometry_msgs/msg/TwistStamped", "/cmd_vel").publish(stamped)
+    await harness.graph.settle()
     assert [message.linear.x for message in twists] == [0.25]
-    assert stage.graph.topics()["/cmd_vel"] == ["geometry_msgs/msg/TwistStamped"]
+    assert harness.graph.topics()["/cmd_vel"] == ["geometry_msgs/msg/TwistStamped"]
 
 
-async def test_unknown_type_is_reported_and_other_topics_are_bridged(stage, logged):
+async def test_unknown_type_is_reported_and_other_topics_are_bridged(harness, logged):
     message_type = "std_msgs/msg/String"
-    ros = record_messages(stage, message_type, "/ros")
+    ros = record_messages(harness, message_type, "/ros")
     arguments = ["/a@strange_msgs/msg/Thing[gz.msgs.Thing", f"/gz@{message_type}[gz.msgs.StringMsg"]
-    ParameterBridge(stage.graph, NodeOptions(arguments=arguments, remappings=[("/gz", "/ros")]))
-    publisher(stage, message_type, "/gz").publish(get_message(message_type)(data="hello"))
-    await stage.graph.settle()
+    ParameterBridge(harness.graph, NodeOptions(arguments=arguments, remappings=[("/gz", "/ros")]))
+    create_publisher(harness, message_type, "/gz").publish(get_message(message_type)(data="hello"))
+    await harness.graph.settle()
     assert logged("WARN") == ["/a is not bridged: there is no type strange_msgs/msg/Thing"]
     assert [message.data for message in ros] == ["hello"]
 
 
-async def test_image_bridge_forwards_images(stage):
+async def test_image_bridge_forwards_images(harness):
     message_type = "sensor_msgs/msg/Image"
-    images = record_messages(stage, message_type, "/camera/color")
-    bridge = ImageBridge(stage.graph, NodeOptions(arguments=["/camera"], remappings=[("/camera", "/camera/color")]))
-    publisher(stage, message_type, "/camera").publish(get_message(message_type)(width=4))
-    await stage.graph.settle()
+    images = record_messages(harness, message_type, "/camera/color")
+    bridge = ImageBridge(harness.graph, NodeOptions(arguments=["/camera"], remappings=[("/camera", "/camera/color")]))
+    create_publisher(harness, message_type, "/camera").publish(get_message(message_type)(width=4))
+    await harness.graph.settle()
     assert [message.width for message in images] == [4]
     bridge.close()
 
 
-async def test_lazy_bridge_subscribes_only_while_it_has_subscribers(stage, tmp_path: Path):
+async def test_lazy_bridge_subscribes_only_while_it_has_subscribers(harness, tmp_path: Path):
     message_type = "std_msgs/msg/String"
     path = tmp_path / "bridge.yaml"
     path.write_text(
@@ -182,97 +187,98 @@ async def test_lazy_bridge_subscribes_only_while_it_has_subscribers(stage, tmp_p
         "  direction: GZ_TO_ROS\n  lazy: true\n  publisher_queue: 3\n  subscriber_queue: 4\n",
         encoding="utf-8",
     )
-    ParameterBridge(stage.graph, stage.options({"config_file": str(path)}))
-    source = publisher(stage, message_type, "/gz")
-    await stage.graph.settle()
+    ParameterBridge(harness.graph, harness.options({"config_file": str(path)}))
+    source = create_publisher(harness, message_type, "/gz")
+    await harness.graph.settle()
     assert source.get_subscription_count() == 0
-    subscription = stage.node.create_subscription(get_message(message_type), "/ros", lambda message: None, 10)
-    await stage.graph.settle()
+    subscription = harness.node.create_subscription(get_message(message_type), "/ros", lambda message: None, 10)
+    await harness.graph.settle()
     assert source.get_subscription_count() == 1
-    (result,) = stage.node.get_publishers_info_by_topic("/ros")
+    (result,) = harness.node.get_publishers_info_by_topic("/ros")
     assert result.qos_profile.depth == 3
-    stage.node.destroy_subscription(subscription)
-    await stage.graph.settle()
+    harness.node.destroy_subscription(subscription)
+    await harness.graph.settle()
     assert source.get_subscription_count() == 0
 
 
-async def test_parameters_override_qos(stage):
+async def test_parameters_override_qos(harness):
     message_type = "tf2_msgs/msg/TFMessage"
     argument = f"/model/robot/pose_static@{message_type}[gz.msgs.Pose_V"
     overrides = {"qos_overrides": {"/tf_static": {"publisher": {"durability": "transient_local"}}}}
     options = NodeOptions(
         arguments=[argument], remappings=[("/model/robot/pose_static", "/tf_static")], parameters=overrides
     )
-    ParameterBridge(stage.graph, options)
-    publisher(stage, message_type, "/model/robot/pose_static").publish(get_message(message_type)())
-    await stage.graph.settle()
+    ParameterBridge(harness.graph, options)
+    create_publisher(harness, message_type, "/model/robot/pose_static").publish(get_message(message_type)())
+    await harness.graph.settle()
     messages = []
     latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-    stage.node.create_subscription(get_message(message_type), "/tf_static", messages.append, latched)
-    await stage.graph.settle()
+    harness.node.create_subscription(get_message(message_type), "/tf_static", messages.append, latched)
+    await harness.graph.settle()
     assert len(messages) == 1
 
 
-async def test_poses_are_converted_to_requested_type(stage, logged):
+async def test_poses_are_converted_to_requested_type(harness, logged):
     transform = get_message("geometry_msgs/msg/TransformStamped")()
     transform.header.frame_id, transform.transform.translation.x = "robot", 2.0
     type_names = ("Pose", "PoseStamped", "Transform", "PoseArray")
     results = {
-        type_name: record_messages(stage, f"geometry_msgs/msg/{type_name}", f"/{type_name}") for type_name in type_names
+        type_name: record_messages(harness, f"geometry_msgs/msg/{type_name}", f"/{type_name}")
+        for type_name in type_names
     }
     arguments = [f"/one@geometry_msgs/msg/{type_name}[gz.msgs.Pose" for type_name in type_names[:3]]
     for type_name, argument in zip(type_names[:3], arguments, strict=True):
         name = f"bridge_{type_name.lower()}"
         ParameterBridge(
-            stage.graph, NodeOptions(name=name, arguments=[argument], remappings=[("/one", f"/{type_name}")])
+            harness.graph, NodeOptions(name=name, arguments=[argument], remappings=[("/one", f"/{type_name}")])
         )
     argument = "/many@geometry_msgs/msg/PoseArray[gz.msgs.Pose_V"
-    ParameterBridge(stage.graph, NodeOptions(arguments=[argument], remappings=[("/many", "/PoseArray")]))
-    publisher(stage, "geometry_msgs/msg/TransformStamped", "/one").publish(transform)
-    publisher(stage, "tf2_msgs/msg/TFMessage", "/many").publish(
+    ParameterBridge(harness.graph, NodeOptions(arguments=[argument], remappings=[("/many", "/PoseArray")]))
+    create_publisher(harness, "geometry_msgs/msg/TransformStamped", "/one").publish(transform)
+    create_publisher(harness, "tf2_msgs/msg/TFMessage", "/many").publish(
         get_message("tf2_msgs/msg/TFMessage")(transforms=[transform])
     )
-    await stage.graph.settle()
+    await harness.graph.settle()
     assert results["Pose"][0].position.x == results["PoseStamped"][0].pose.position.x == 2.0
     assert results["Transform"][0].translation.x == results["PoseArray"][0].poses[0].position.x == 2.0
     assert results["PoseStamped"][0].header.frame_id == results["PoseArray"][0].header.frame_id == "robot"
     argument = "/one@geometry_msgs/msg/Pose]gz.msgs.Pose"
-    ParameterBridge(stage.graph, NodeOptions(name="back", arguments=[argument]))
+    ParameterBridge(harness.graph, NodeOptions(name="back", arguments=[argument]))
     assert logged("WARN") == [
         "/one is not bridged: geometry_msgs/msg/Pose cannot be converted to geometry_msgs/msg/TransformStamped"
     ]
 
 
-async def test_gz_topic_names_can_be_expanded_with_namespace(stage):
+async def test_gz_topic_names_can_be_expanded_with_namespace(harness):
     message_type = "std_msgs/msg/String"
-    ros = record_messages(stage, message_type, "/ros")
+    ros = record_messages(harness, message_type, "/ros")
     options = NodeOptions(
         arguments=[f"chatter@{message_type}[gz.msgs.StringMsg"],
         namespace="/demo",
         parameters={"expand_gz_topic_names": True},
         remappings=[("chatter", "/ros")],
     )
-    ParameterBridge(stage.graph, options)
-    publisher(stage, message_type, "/demo/chatter").publish(get_message(message_type)(data="hello"))
-    await stage.graph.settle()
+    ParameterBridge(harness.graph, options)
+    create_publisher(harness, message_type, "/demo/chatter").publish(get_message(message_type)(data="hello"))
+    await harness.graph.settle()
     assert [message.data for message in ros] == ["hello"]
 
 
 @pytest.mark.parametrize(("encoding", "pixel"), [("rgb8", [200, 100, 50]), ("bgr8", [50, 100, 200]), ("mono8", [120])])
-async def test_compressed_images_are_published_while_subscribed(stage, encoding, pixel):
+async def test_compressed_images_are_published_while_subscribed(harness, encoding, pixel):
     images = pytest.importorskip("PIL.Image")
     message_type = "sensor_msgs/msg/Image"
-    ImageBridge(stage.graph, NodeOptions(arguments=["/camera"]))
-    camera = publisher(stage, message_type, "/camera")
-    await stage.graph.settle()
+    ImageBridge(harness.graph, NodeOptions(arguments=["/camera"]))
+    camera = create_publisher(harness, message_type, "/camera")
+    await harness.graph.settle()
     assert camera.get_subscription_count() == 0
-    compressed = record_messages(stage, "sensor_msgs/msg/CompressedImage", "/camera/compressed")
-    await stage.graph.settle()
+    compressed = record_messages(harness, "sensor_msgs/msg/CompressedImage", "/camera/compressed")
+    await harness.graph.settle()
     step = 8 * len(pixel)
     camera.publish(get_message(message_type)(width=8, height=8, encoding=encoding, step=step, data=pixel * 64))
-    await stage.graph.settle()
+    await harness.graph.settle()
     camera.publish(get_message(message_type)(width=8, height=8, encoding="16UC1", step=16, data=[0] * 128))
-    await stage.graph.settle()
+    await harness.graph.settle()
     (frame,) = compressed
     assert frame.format.startswith(f"{encoding}; jpeg compressed")
     decoded = images.open(BytesIO(bytes(frame.data)))
@@ -295,15 +301,15 @@ def test_invalid_topic_settings_are_rejected(setting, message, tmp_path: Path):
 
 
 @pytest.mark.parametrize("ros_type", ["geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"])
-async def test_lost_publisher_stops_drive_behind_bridge(stage, ros_type):
+async def test_lost_publisher_stops_drive_behind_bridge(harness, ros_type):
     argument = f"/cmd_vel@{ros_type}]gz.msgs.Twist"
-    bridge = ParameterBridge(stage.graph, NodeOptions(arguments=[argument, "--ros-args", "-r", "/cmd_vel:=/drive"]))
-    commands = record_messages(stage, "geometry_msgs/msg/Twist", "/cmd_vel")
-    driver = RemotePublisher(RemoteTransport(stage.graph), "/drive", msg_type=ros_type)
+    bridge = ParameterBridge(harness.graph, NodeOptions(arguments=[argument, "--ros-args", "-r", "/cmd_vel:=/drive"]))
+    commands = record_messages(harness, "geometry_msgs/msg/Twist", "/cmd_vel")
+    driver = RemotePublisher(RemoteTransport(harness.graph), "/drive", msg_type=ros_type)
     message = get_message(ros_type)()
     getattr(message, "twist", message).linear.x = 0.3
     driver.send(message)
     driver.disappear()
-    await stage.graph.settle()
+    await harness.graph.settle()
     assert [twist.linear.x for twist in commands] == [0.3, 0.0]
     bridge.close()

@@ -15,7 +15,7 @@ from linkwright.nodes import NodeOptions
 from linkwright.simulation.nodes.create import Create
 from linkwright.simulation.nodes.entities import DeleteEntity, Remove, SetEntityPose
 from linkwright.simulation.nodes.spawn_entity import SpawnEntity, parse_arguments
-from tests.nodes.stage import Stage
+from tests.nodes.harness import NodeHarness
 
 ROBOT = "<robot name='r'><link name='base'/></robot>"
 
@@ -31,14 +31,14 @@ class Simulator:
         calls: other services that were called.
     """
 
-    def __init__(self, stage: Stage, namespace: str = "") -> None:
+    def __init__(self, harness: NodeHarness, namespace: str = "") -> None:
         self.spawned: list[Any] = []
         self.deleted: list[str] = []
         self.new_states: list[Any] = []
         self.names = ["ground"]
         self.calls: list[str] = []
         self.refuses = False
-        node = stage.graph.create_node("gazebo", namespace=namespace or "/")
+        node = harness.graph.create_node("gazebo", namespace=namespace or "/")
         node.create_service(get_service("gazebo_msgs/srv/SpawnEntity"), "spawn_entity", self._spawn)
         node.create_service(get_service("gazebo_msgs/srv/DeleteEntity"), "delete_entity", self._delete)
         node.create_service(get_service("gazebo_msgs/srv/SetEntityState"), "set_entity_state", self._set_state)
@@ -70,21 +70,21 @@ class Simulator:
         return response
 
 
-def spawn_entity(stage: Stage, *arguments: str, **options: Any) -> SpawnEntity:
-    return SpawnEntity(stage.graph, NodeOptions(arguments=list(arguments), **options))
+def start_spawn_entity(harness: NodeHarness, *arguments: str, **options: Any) -> SpawnEntity:
+    return SpawnEntity(harness.graph, NodeOptions(arguments=list(arguments), **options))
 
 
-def create(stage: Stage, *arguments: str, **parameters: Any) -> Create:
-    return Create(stage.graph, NodeOptions(arguments=list(arguments), parameters=parameters))
+def start_create(harness: NodeHarness, *arguments: str, **parameters: Any) -> Create:
+    return Create(harness.graph, NodeOptions(arguments=list(arguments), parameters=parameters))
 
 
-async def test_published_description_is_spawned_at_pose(stage, logged):
-    simulator = Simulator(stage)
+async def test_published_description_is_spawned_at_pose(harness, logged):
+    simulator = Simulator(harness)
     pose_arguments = ("-x", "1.5", "-y", "-2", "-z", "0.1", "-Y", str(math.pi / 2))
-    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", *pose_arguments)
-    await stage.graph.settle()
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", *pose_arguments)
+    await harness.graph.settle()
     assert simulator.spawned == []
-    await stage.describe(ROBOT)
+    await harness.describe(ROBOT)
     (request,) = simulator.spawned
     assert (request.name, request.xml, request.reference_frame) == ("mbot", ROBOT, "")
     pose = request.initial_pose
@@ -94,74 +94,74 @@ async def test_published_description_is_spawned_at_pose(stage, logged):
     assert logged("INFO")[-1] == "Spawn status: spawned mbot"
 
 
-async def test_latched_description_is_spawned(stage):
-    simulator = Simulator(stage)
-    await stage.describe(ROBOT)
-    node = create(stage, "-name", "mbot", "-topic", "robot_description", "-z=0.5")
-    await stage.graph.settle()
+async def test_latched_description_is_spawned(harness):
+    simulator = Simulator(harness)
+    await harness.describe(ROBOT)
+    node = start_create(harness, "-name", "mbot", "-topic", "robot_description", "-z=0.5")
+    await harness.graph.settle()
     assert simulator.spawned[0].initial_pose.position.z == 0.5
     assert node.finished.result() == 0
 
 
-async def test_only_first_description_is_spawned(stage):
-    await stage.describe(ROBOT)
-    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot")
-    await stage.graph.settle()
-    await stage.describe(ROBOT.replace("base", "other"))
-    simulator = Simulator(stage)
-    await stage.graph.settle()
+async def test_only_first_description_is_spawned(harness):
+    await harness.describe(ROBOT)
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot")
+    await harness.graph.settle()
+    await harness.describe(ROBOT.replace("base", "other"))
+    simulator = Simulator(harness)
+    await harness.graph.settle()
     assert [request.xml for request in simulator.spawned] == [ROBOT]
     assert node.finished.result() == 0
 
 
-async def test_spawn_entity_waits_for_service_until_timeout(stage, logged):
-    await stage.describe(ROBOT)
-    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-timeout", "7")
-    await stage.clock.advance(6.9)
+async def test_spawn_entity_waits_for_service_until_timeout(harness, logged):
+    await harness.describe(ROBOT)
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-timeout", "7")
+    await harness.clock.advance(6.9)
     assert not node.finished.done()
     assert logged("INFO")[-1] == "Waiting for service /spawn_entity, timeout = 7"
-    await stage.clock.advance(0.2)
+    await harness.clock.advance(0.2)
     assert node.finished.result() == 1
     assert logged("ERROR") == ["Service /spawn_entity unavailable. Was the simulation started?"]
 
 
-async def test_rejected_spawn_exits_with_status_1(stage, logged):
-    simulator = Simulator(stage)
+async def test_rejected_spawn_exits_with_status_1(harness, logged):
+    simulator = Simulator(harness)
     simulator.refuses = True
-    await stage.describe(ROBOT)
-    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot")
-    await stage.graph.settle()
+    await harness.describe(ROBOT)
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot")
+    await harness.graph.settle()
     assert node.finished.result() == 1
     assert logged("ERROR") == ["Spawning 'mbot' failed: Entity already exists"]
 
 
-async def test_robot_and_gazebo_namespaces_are_applied(stage):
-    simulator = Simulator(stage, "/sim")
-    await stage.describe(ROBOT)
+async def test_robot_and_gazebo_namespaces_are_applied(harness):
+    simulator = Simulator(harness, "/sim")
+    await harness.describe(ROBOT)
     arguments = ("-topic", "/robot_description", "-entity", "a", "-gazebo_namespace", "/sim")
-    spawn_entity(stage, *arguments, namespace="/one")
-    spawn_entity(stage, *arguments, "-robot_namespace", "two")
-    await stage.graph.settle()
+    start_spawn_entity(harness, *arguments, namespace="/one")
+    start_spawn_entity(harness, *arguments, "-robot_namespace", "two")
+    await harness.graph.settle()
     assert [request.robot_namespace for request in simulator.spawned] == ["/one", "two"]
 
 
 async def test_entities_are_spawned_from_file_database_and_stdin(
-    stage, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    harness, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    simulator = Simulator(stage)
+    simulator = Simulator(harness)
     model = tmp_path / "models" / "box"
     model.mkdir(parents=True)
     (model / "model.sdf").write_text("<sdf version='1.6'><model name='box'/></sdf>", encoding="utf-8")
     (tmp_path / "robot.urdf").write_text(ROBOT.replace("base", "package://p/m.dae"), encoding="utf-8")
     monkeypatch.setenv("GAZEBO_MODEL_PATH", str(tmp_path / "models"))
     monkeypatch.setattr("sys.stdin", io.StringIO(ROBOT))
-    spawn_entity(stage, "-file", str(tmp_path / "robot.urdf"), "-entity", "a", "-package_to_model")
-    spawn_entity(stage, "-database", "box", "-entity", "b")
-    spawn_entity(stage, "-stdin", "-entity", "c")
-    create(stage, "-file", "model://box", "-name", "d")
-    create(stage, "--string", ROBOT, "--name=e")
-    create(stage, "-param", "text", "-name", "f", text=ROBOT)
-    await stage.graph.settle()
+    start_spawn_entity(harness, "-file", str(tmp_path / "robot.urdf"), "-entity", "a", "-package_to_model")
+    start_spawn_entity(harness, "-database", "box", "-entity", "b")
+    start_spawn_entity(harness, "-stdin", "-entity", "c")
+    start_create(harness, "-file", "model://box", "-name", "d")
+    start_create(harness, "--string", ROBOT, "--name=e")
+    start_create(harness, "-param", "text", "-name", "f", text=ROBOT)
+    await harness.graph.settle()
     box = (model / "model.sdf").read_text(encoding="utf-8")
     sent = {request.name: request.xml for request in simulator.spawned}
     assert sent == {
@@ -174,52 +174,52 @@ async def test_entities_are_spawned_from_file_database_and_stdin(
     }
 
 
-async def test_unpause_option_unpauses_physics(stage):
-    simulator = Simulator(stage)
-    await stage.describe(ROBOT)
-    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-unpause")
-    await stage.graph.settle()
+async def test_unpause_option_unpauses_physics(harness):
+    simulator = Simulator(harness)
+    await harness.describe(ROBOT)
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-unpause")
+    await harness.graph.settle()
     assert simulator.calls == ["unpause"]
     assert node.finished.result() == 0
 
 
-async def test_wait_option_waits_for_other_entity(stage):
-    simulator = Simulator(stage)
-    await stage.describe(ROBOT)
-    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-wait", "table")
-    await stage.clock.advance(2.0)
+async def test_wait_option_waits_for_other_entity(harness):
+    simulator = Simulator(harness)
+    await harness.describe(ROBOT)
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-wait", "table")
+    await harness.clock.advance(2.0)
     assert simulator.spawned == []
     simulator.names.append("table")
-    await stage.clock.advance(1.0)
+    await harness.clock.advance(1.0)
     assert len(simulator.spawned) == 1
     assert node.finished.result() == 0
 
 
-async def test_bound_entity_is_deleted_with_node(stage):
-    simulator = Simulator(stage)
-    await stage.describe(ROBOT)
-    node = spawn_entity(stage, "-topic", "robot_description", "-entity", "mbot", "-b")
-    await stage.graph.settle()
+async def test_bound_entity_is_deleted_with_node(harness):
+    simulator = Simulator(harness)
+    await harness.describe(ROBOT)
+    node = start_spawn_entity(harness, "-topic", "robot_description", "-entity", "mbot", "-b")
+    await harness.graph.settle()
     assert not node.finished.done()
     node.close()
-    await stage.graph.settle()
+    await harness.graph.settle()
     assert simulator.deleted == ["mbot"]
 
 
-async def test_create_allow_renaming_finds_free_name(stage):
-    simulator = Simulator(stage)
+async def test_create_allow_renaming_finds_free_name(harness):
+    simulator = Simulator(harness)
     simulator.names = ["mbot", "mbot_0"]
-    create(stage, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "true")
-    create(stage, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "false")
-    create(stage, "-allow_renaming", "-string", ROBOT, "-name", "other")
-    await stage.graph.settle()
+    start_create(harness, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "true")
+    start_create(harness, "-string", ROBOT, "-name", "mbot", "-allow_renaming", "false")
+    start_create(harness, "-allow_renaming", "-string", ROBOT, "-name", "other")
+    await harness.graph.settle()
     assert sorted(request.name for request in simulator.spawned) == ["mbot", "mbot_1", "other"]
 
 
-async def test_create_accepts_parameters_and_ignores_unknown_options(stage):
-    simulator = Simulator(stage)
-    create(stage, "-wonder", "1", name="mbot", string=ROBOT, x=1.0, Y=0.0)
-    await stage.graph.settle()
+async def test_create_accepts_parameters_and_ignores_unknown_options(harness):
+    simulator = Simulator(harness)
+    start_create(harness, "-wonder", "1", name="mbot", string=ROBOT, x=1.0, Y=0.0)
+    await harness.graph.settle()
     assert (simulator.spawned[0].name, simulator.spawned[0].initial_pose.position.x) == ("mbot", 1.0)
 
 
@@ -250,31 +250,31 @@ def test_invalid_spawn_arguments_are_rejected(arguments, message):
         (["-file", "model://nothing", "-name", "a"], "NODE811"),
     ],
 )
-async def test_create_reports_errors(stage, arguments, code):
+async def test_create_reports_errors(harness, arguments, code):
     with pytest.raises(LinkwrightError) as error:
-        create(stage, *arguments)
+        start_create(harness, *arguments)
     assert error.value.diagnostics[0].code == code
 
 
 @pytest.mark.parametrize(("name", "status"), [("ground", 0), ("nothing", 1)])
-async def test_remove_and_delete_entity_delete_model_and_exit(stage, name, status):
-    simulator = Simulator(stage)
-    remove = Remove(stage.graph, NodeOptions(parameters={"entity_name": name, "world": "any"}))
-    delete = DeleteEntity(stage.graph, NodeOptions(arguments=["--name", name]))
-    await stage.graph.settle()
+async def test_remove_and_delete_entity_delete_model_and_exit(harness, name, status):
+    simulator = Simulator(harness)
+    remove = Remove(harness.graph, NodeOptions(parameters={"entity_name": name, "world": "any"}))
+    delete = DeleteEntity(harness.graph, NodeOptions(arguments=["--name", name]))
+    await harness.graph.settle()
     assert (remove.finished.result(), delete.finished.result()) == (status, status)
     assert simulator.deleted == [name, name]
 
 
-async def test_set_entity_pose_moves_model_and_exits(stage):
-    simulator = Simulator(stage)
+async def test_set_entity_pose_moves_model_and_exits(harness):
+    simulator = Simulator(harness)
     arguments = ["--name", "ground", "--pos", "-1", "2", "3", "--euler", "0", "0", str(math.pi)]
-    turned = SetEntityPose(stage.graph, NodeOptions(arguments=arguments))
-    plain = SetEntityPose(
-        stage.graph, NodeOptions(arguments=["--name", "link", "--type", "2", "--quat", "1", "0", "0", "0"])
+    turned = SetEntityPose(harness.graph, NodeOptions(arguments=arguments))
+    set_pose = SetEntityPose(
+        harness.graph, NodeOptions(arguments=["--name", "link", "--type", "2", "--quat", "1", "0", "0", "0"])
     )
-    await stage.graph.settle()
-    assert (turned.finished.result(), plain.finished.result()) == (0, 1)
+    await harness.graph.settle()
+    assert (turned.finished.result(), set_pose.finished.result()) == (0, 1)
     first, second = simulator.new_states
     position = first.pose.position
     assert (position.x, position.y, position.z) == (-1.0, 2.0, 3.0)
@@ -291,7 +291,7 @@ async def test_set_entity_pose_moves_model_and_exits(stage):
         (SetEntityPose, ["--name", "a", "--type", "5"]),
     ],
 )
-async def test_missing_or_invalid_arguments_are_reported(stage, node, arguments):
+async def test_missing_or_invalid_arguments_are_reported(harness, node, arguments):
     with pytest.raises(LinkwrightError) as error:
-        node(stage.graph, NodeOptions(arguments=arguments))
+        node(harness.graph, NodeOptions(arguments=arguments))
     assert error.value.diagnostics[0].code == "NODE812"

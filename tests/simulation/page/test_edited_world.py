@@ -16,7 +16,7 @@ from tests.sdf.editing.texts import PLAIN
 NO_PACKAGES = PackageFinder(start=Path("/nonexistent"), environment={})
 
 
-def renamed_world(path: Path, name: str = "机器人 é") -> EditedWorld:
+def rename_world(path: Path, name: str = "机器人 é") -> EditedWorld:
     world = EditedWorld.of_file(path, NO_PACKAGES)
     world.edit(lambda text: change(text, [Change("box", new_name=name)]))
     return world
@@ -38,7 +38,7 @@ def test_save_keeps_encoding_bom_and_line_ends(tmp_path, bom, encoding, declared
         text = text.replace('version="1.0"', f'version="1.0" encoding="{declared_encoding}"')
     path = tmp_path / "w.world"
     path.write_bytes(bom + text.encode(encoding))
-    renamed_world(path).save(None)
+    rename_world(path).save(None)
     data = path.read_bytes()
     assert data.startswith(bom)
     saved_text = data.removeprefix(bom).decode(encoding)
@@ -61,7 +61,7 @@ def test_change_without_effect_adds_no_undo_step(tmp_path):
 def test_new_change_clears_redo(tmp_path):
     path = tmp_path / "w.world"
     path.write_text(PLAIN)
-    world = renamed_world(path, "a")
+    world = rename_world(path, "a")
     world.undo()
     assert (world.can_undo, world.can_redo, world.is_unsaved) == (False, True, False)
     world.edit(lambda text: change(text, [Change("box", static=True)]))
@@ -72,7 +72,7 @@ def test_save_does_not_overwrite_other_files(tmp_path):
     path, other = tmp_path / "w.world", tmp_path / "other.world"
     path.write_text(PLAIN)
     other.write_text("mine")
-    world = renamed_world(path)
+    world = rename_world(path)
     with pytest.raises(EditError, match=r"the file '.*other\.world' already exists: choose another name"):
         world.save("other.world")
     with pytest.raises(EditError, match=r"cannot write '.*none/w.world'"):
@@ -92,7 +92,7 @@ def test_xacro_world_is_saved_expanded_to_new_file(tmp_path):
     path = tmp_path / "w.world.xacro"
     source = PLAIN.replace("-- dashes", "dashes").replace("<sdf ", '<sdf xmlns:xacro="http://www.ros.org/wiki/xacro" ')
     path.write_text(source.replace(">2 0 0.250", ">${1 + 1} 0 0.250"))
-    world = renamed_world(path)
+    world = rename_world(path)
     assert (world.file, world.path) == (None, tmp_path / "w.world")
     with pytest.raises(EditError, match="no file yet"):
         world.save(None)
@@ -117,12 +117,12 @@ def test_shipped_worlds_are_not_overwritten(tmp_path):
 def test_unsaved_changes_are_stored(tmp_path):
     path, folder = tmp_path / "w.world", tmp_path / "state" / "unsaved"
     path.write_bytes(codecs.BOM_UTF8 + PLAIN.encode())
-    diagnostics = [renamed_world(path, name).store_unsaved(folder) for name in ("a", "b")]
+    diagnostics = [rename_world(path, name).store_unsaved(folder) for name in ("a", "b")]
     (file,) = folder.iterdir()
     assert [diagnostic.code for diagnostic in diagnostics] == ["RVIZ301", "RVIZ301"]
     assert f"'{path}'" in diagnostics[0].message
     assert f"'{file}'" in diagnostics[0].message
     assert file.read_bytes() == codecs.BOM_UTF8 + PLAIN.replace("'box'", "'b'").encode()
     (tmp_path / "file").touch()
-    diagnostic = renamed_world(path).store_unsaved(tmp_path / "file" / "unsaved")
+    diagnostic = rename_world(path).store_unsaved(tmp_path / "file" / "unsaved")
     assert (diagnostic.code, "cannot write" in diagnostic.message) == ("RVIZ104", True)

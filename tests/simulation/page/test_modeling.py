@@ -1,4 +1,7 @@
-"""Editing of a world in the page: messages of pages change the world's file and the simulation."""
+"""Editing of a world in the page.
+
+Messages of pages change the world's file and the simulation.
+"""
 
 from __future__ import annotations
 
@@ -77,7 +80,7 @@ def write_world(tmp_path: Path, text: str = PLAIN) -> Path:
     return path
 
 
-def change(name: str, **fields) -> dict:
+def make_change(name: str, **fields) -> dict:
     return dict.fromkeys(("pose", "size", "new_name", "static", "color")) | {"name": name} | fields
 
 
@@ -113,7 +116,7 @@ async def test_changes_are_loaded_undone_and_saved(tmp_path):
     path = write_world(tmp_path)
     path.chmod(0o640)
     async with modeling_session(path) as (simulation, client, _):
-        await client.send("change_entities", changes=[change("box", pose=[3, 0, 0.25, 0, 0, 0])])
+        await client.send("change_entities", changes=[make_change("box", pose=[3, 0, 0.25, 0, 0, 0])])
         state = await client.until("modeling_state", unsaved=True)
         assert (state["can_undo"], state["can_redo"]) == (True, False)
         resource = await simulation.last_loaded()
@@ -150,7 +153,10 @@ async def test_modeling_messages_edit_entities(tmp_path):
         assert "pile" in await names("group_entities", names=["box", "box_2"], name="pile")
         assert "box_2" not in await names("delete_entities", names=["sun", "lamp"])
         assert "box_2" in await names("ungroup_entity", name="pile")
-        changes = [change("wall", size=[1, 2, 3], color=[0, 0, 1, 1]), change("ramp", new_name="slope", static=False)]
+        changes = [
+            make_change("wall", size=[1, 2, 3], color=[0, 0, 1, 1]),
+            make_change("ramp", new_name="slope", static=False),
+        ]
         await client.send("change_entities", changes=changes)
         entities = {entity["name"]: entity for entity in (await client.until("modeling_state"))["entities"]}
         assert (entities["wall"]["size"], entities["wall"]["color"]) == ([1, 2, 3], [0, 0, 1, 1])

@@ -28,7 +28,10 @@ SERVICES = {
 
 
 class FakeSimulator:
-    """The topics and services of a simulator; it records requests, and returns a fixed pose for each model."""
+    """The topics and services of a simulator.
+
+    It records requests, and returns a fixed pose for each model.
+    """
 
     def __init__(self, world) -> None:
         self.world = world

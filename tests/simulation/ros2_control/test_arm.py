@@ -1,4 +1,7 @@
-"""An arm in a simulated world: it follows trajectories by position, velocity and effort commands."""
+"""An arm in a simulated world.
+
+It follows trajectories by position, velocity and effort commands.
+"""
 
 from __future__ import annotations
 
@@ -10,23 +13,27 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_action, get_service
 from tests.control.controllers.arm import SentGoal, trajectory
-from tests.simulation.test_plugins import SECOND, running_server
+from tests.simulation.test_plugins import SECOND_NS, running_server
 
 ACTION = "control_msgs/action/FollowJointTrajectory"
 JOINTS = ("shoulder", "elbow")
 SUCCEEDED, CANCELED = 4, 5
-LENGTH, MASS = 0.5, 1.0
+ARM_LENGTH_M, ARM_MASS_KG = 0.5, 1.0
 """The length of each link in m, and its mass in kg."""
 
 
 def model(write_parameters: Path) -> str:
-    """Return an arm of two links of 1 kg, fixed to the world at a height of 2 m, that turn up and down."""
+    """Return an arm of two links of 1 kg that turn up and down.
+
+    It is fixed to the world at a height of 2 m.
+    """
     inertia = "<ixx>0.001</ixx><iyy>0.02</iyy><izz>0.02</izz>"
     links = joints = ""
     for number, (name, parent) in enumerate(zip(JOINTS, ("world", "shoulder_link"), strict=True)):
         links += (
-            f'<link name="{name}_link"><pose>{number * LENGTH} 0 0 0 0 0</pose><inertial>'
-            f"<pose>{LENGTH / 2} 0 0 0 0 0</pose><mass>{MASS}</mass><inertia>{inertia}</inertia></inertial></link>"
+            f'<link name="{name}_link"><pose>{number * ARM_LENGTH_M} 0 0 0 0 0</pose><inertial>'
+            f"<pose>{ARM_LENGTH_M / 2} 0 0 0 0 0</pose><mass>{ARM_MASS_KG}</mass>"
+            f"<inertia>{inertia}</inertia></inertial></link>"
         )
         joints += (
             f'<joint name="{name}" type="revolute"><parent>{parent}</parent><child>{name}_link</child><axis>'
@@ -40,7 +47,10 @@ def model(write_parameters: Path) -> str:
 
 
 def description(command_interface: str) -> str:
-    """Return the description for the controllers: all joints have one kind of command interface."""
+    """Return the description for the controllers.
+
+    All joints have one kind of command interface.
+    """
     interfaces = f"<command_interface name='{command_interface}'/>" + "".join(
         f"<state_interface name='{state_interface}'/>" for state_interface in ("position", "velocity")
     )
@@ -77,7 +87,7 @@ class Arm:
     """The arm with an active controller."""
 
     def __init__(self, server: Any, graph: Any) -> None:
-        self.server, self.graph, self.node = server, graph, graph.create_node("audience")
+        self.server, self.graph, self.node = server, graph, graph.create_node("test_node")
 
     async def start_controller(self, interface: str, wait: float = 0.02) -> None:
         """Start the controller; ``wait`` is the simulated time after each call, in s."""
@@ -99,11 +109,11 @@ class Arm:
 
     async def advance(self, seconds: float) -> None:
         """Advance the time in steps, and deliver messages between them."""
-        remaining = round(seconds * SECOND)
+        remaining = round(seconds * SECOND_NS)
         while True:
             await self.graph.settle()
-            self.server.advance(min(remaining, SECOND // 100))
-            remaining -= SECOND // 100
+            self.server.advance(min(remaining, SECOND_NS // 100))
+            remaining -= SECOND_NS // 100
             if remaining <= 0:
                 break
         await self.graph.settle()

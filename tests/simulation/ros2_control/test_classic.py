@@ -33,14 +33,17 @@ MANAGER = """
     joints: [swing]
 """
 GAINS = "\n{node}:\n  ros__parameters:\n    pid_gains:\n      swing: {{{gains}}}\n"
-SOFT = (
+SOFT_LIMITS = (
     "<safety_controller soft_lower_limit='-0.2' soft_upper_limit='0.2' k_position='{k_position}' "
     "k_velocity='{k_velocity}'/>"
 )
 
 
-def urdf(interface: str, extra: str = "", safety: str = "", effort: float = 20.0) -> str:
-    """Return a horizontal arm at a height of 1 m, which turns up and down about the joint ``swing``."""
+def robot_urdf(interface: str, extra: str = "", safety: str = "", effort: float = 20.0) -> str:
+    """Return a horizontal arm at a height of 1 m.
+
+    It turns up and down about the joint ``swing``.
+    """
     return f"""
 <robot name="arm">
   <link name="world"/>
@@ -72,7 +75,7 @@ class ClassicRobot(ControlledRobot):
 
 
 @asynccontextmanager
-async def arm(text: str, topic: str = "/robot_description"):
+async def run_arm(text: str, topic: str = "/robot_description"):
     """Run the arm's simulation; yield the robot and the log."""
     async with running_server(options=None) as (server, graph, log):
         robot = DescriptionLibrary().read(text).robot
@@ -85,7 +88,10 @@ async def arm(text: str, topic: str = "/robot_description"):
 
 @pytest.fixture
 def file(tmp_path):
-    """Return a function that writes the parameters for a kind of command, and returns the plugin's element."""
+    """Return a function that writes the parameters for a kind of command.
+
+    It returns the plugin's element.
+    """
 
     def write(kind: str, gains: str = "", node: str = "gazebo_ros_control") -> str:
         path = tmp_path / "controllers.yaml"
@@ -97,7 +103,7 @@ def file(tmp_path):
 
 
 async def test_position_commands_set_the_joint_despite_its_reduction(file):
-    async with arm(urdf("position", file("position"))) as (world, log):
+    async with run_arm(robot_urdf("position", file("position"))) as (world, log):
         states = Recording(world.graph, world.server.node, "/joint_states")
         await world.advance(0.3)
         assert world.state[0] == pytest.approx(0.0, abs=0.01)  # held before any controller starts
@@ -116,14 +122,14 @@ async def test_position_commands_set_the_joint_despite_its_reduction(file):
 
 async def test_joint_without_command_falls_only_with_effort_interface(file):
     for kind, is_held in (("effort", False), ("velocity", True)):
-        async with arm(urdf(kind, file(kind))) as (world, _):
+        async with run_arm(robot_urdf(kind, file(kind))) as (world, _):
             await world.advance(0.3)
             assert (abs(world.state[0]) < 0.05) is is_held, kind
 
 
 async def test_wheel_without_controller_is_free_for_other_plugins(file):
-    text = urdf("velocity", file("velocity"), effort=100.0).replace("revolute", "continuous")
-    async with arm(text) as (world, _):
+    text = robot_urdf("velocity", file("velocity"), effort=100.0).replace("revolute", "continuous")
+    async with run_arm(text) as (world, _):
         await world.advance(0.3)
         assert world.state[0] > 0.2
         await world.start_controllers()
@@ -133,7 +139,7 @@ async def test_wheel_without_controller_is_free_for_other_plugins(file):
 
 
 async def test_effort_commands_push_the_joint_within_its_limit(file):
-    async with arm(urdf("effort", file("effort"), effort=3.0)) as (world, log):
+    async with run_arm(robot_urdf("effort", file("effort"), effort=3.0)) as (world, log):
         states = Recording(world.graph, world.server.node, "/joint_states")
         await world.start_controllers()
         await world.move(-100.0)
@@ -143,7 +149,7 @@ async def test_effort_commands_push_the_joint_within_its_limit(file):
 
 
 async def test_velocity_commands_turn_the_joint_within_its_limits(file):
-    async with arm(urdf("velocity", file("velocity"), effort=100.0)) as (world, _):
+    async with run_arm(robot_urdf("velocity", file("velocity"), effort=100.0)) as (world, _):
         await world.start_controllers()
         await world.move(0.5)
         await world.advance(0.4)
@@ -154,7 +160,7 @@ async def test_velocity_commands_turn_the_joint_within_its_limits(file):
 
 @pytest.mark.parametrize(("kind", "gains"), [("position", "p: 60.0, d: 6.0"), ("velocity", "p: 10.0")])
 async def test_gains_make_a_pid_controller_push_the_joint(file, kind, gains):
-    async with arm(urdf(kind, file(kind, gains))) as (world, _):
+    async with run_arm(robot_urdf(kind, file(kind, gains))) as (world, _):
         await world.start_controllers()
         await world.move(0.3)
         await world.advance(0.8)
@@ -173,7 +179,7 @@ async def test_gains_make_a_pid_controller_push_the_joint(file, kind, gains):
     ],
 )
 async def test_integral_of_pid_acts_within_its_clamp(file, gains, is_reached):
-    async with arm(urdf("position", file("position", gains))) as (world, _):
+    async with run_arm(robot_urdf("position", file("position", gains))) as (world, _):
         await world.start_controllers()
         await world.move(0.3)
         await world.advance(2.0)
@@ -190,9 +196,9 @@ def test_antiwindup_selects_the_strategy(value, strategy):
 @pytest.mark.parametrize(("legacy", "node"), [("", "/gazebo_ros_control"), ("false", "/r1/gazebo_ros_control")])
 async def test_gains_are_in_the_root_namespace_unless_legacy_mode_is_off(file, legacy, node):
     mode = f"<legacyModeNS>{legacy}</legacyModeNS>" if legacy else ""
-    for given, has_pid in ((node, True), ("/r2/gazebo_ros_control", False)):
-        extra = file("position", "p: 60.0, d: 6.0", given) + f"<robotNamespace>/r1</robotNamespace>{mode}"
-        async with arm(urdf("position", extra), "/r1/robot_description") as (world, _):
+    for node_name, has_pid in ((node, True), ("/r2/gazebo_ros_control", False)):
+        extra = file("position", "p: 60.0, d: 6.0", node_name) + f"<robotNamespace>/r1</robotNamespace>{mode}"
+        async with run_arm(robot_urdf("position", extra), "/r1/robot_description") as (world, _):
             world.manager = "/r1/controller_manager"
             await world.start_controllers()
             await world.move(0.3, "/r1/arm/commands")
@@ -201,9 +207,9 @@ async def test_gains_are_in_the_root_namespace_unless_legacy_mode_is_off(file, l
 
 
 async def test_pid_of_continuous_joint_turns_the_shortest_way(file):
-    text = urdf("position", file("position", "p: 60.0, d: 6.0")).replace("revolute", "continuous")
+    text = robot_urdf("position", file("position", "p: 60.0, d: 6.0")).replace("revolute", "continuous")
     text = text.replace('velocity="4"', 'velocity="0"')  # without a limit, the whole command arrives at once
-    async with arm(text) as (world, _):
+    async with run_arm(text) as (world, _):
         await world.start_controllers()
         await world.move(6.0)
         await world.advance(2.0)
@@ -211,26 +217,26 @@ async def test_pid_of_continuous_joint_turns_the_shortest_way(file):
 
 
 async def test_gains_without_p_or_for_efforts_are_ignored(file):
-    async with arm(urdf("position", file("position", "d: 6.0"))) as (world, _):
+    async with run_arm(robot_urdf("position", file("position", "d: 6.0"))) as (world, _):
         await world.start_controllers()
         await world.move(0.3)
         await world.advance(0.3)
         assert world.state[0] == pytest.approx(0.3, abs=0.01)
-    async with arm(urdf("effort", file("effort", "p: 60.0"))) as (world, _):
+    async with run_arm(robot_urdf("effort", file("effort", "p: 60.0"))) as (world, _):
         await world.start_controllers()
         await world.move(-0.2 * 9.81)
         assert not world.server.plugins("arm")[0]._systems[0].has_pids
 
 
 async def test_gain_that_is_not_a_number_is_reported(file):
-    async with arm(urdf("position", file("position", "p: stiff"))) as (_, log):
+    async with run_arm(robot_urdf("position", file("position", "p: stiff"))) as (_, log):
         warnings = [record.text for record in log if record.level == LogLevel.WARN]
         assert "the PID parameter p of joint 'swing' is not a number: 'stiff'" in warnings
 
 
 async def test_soft_limits_stop_position_commands_and_slow_velocities(file):
-    safety = SOFT.format(k_position=20.0, k_velocity=10.0)
-    async with arm(urdf("position", file("position"), safety)) as (world, _):
+    safety = SOFT_LIMITS.format(k_position=20.0, k_velocity=10.0)
+    async with run_arm(robot_urdf("position", file("position"), safety)) as (world, _):
         await world.start_controllers()
         await world.move(0.4)
         await world.advance(1.0)
@@ -240,7 +246,7 @@ async def test_soft_limits_stop_position_commands_and_slow_velocities(file):
 async def test_control_period_is_the_period_of_updates(file):
     rates = {}
     for period in ("", "<controlPeriod>0.02</controlPeriod>", "<controlPeriod>0.0001</controlPeriod>"):
-        async with arm(urdf("position", file("position") + period)) as (world, log):
+        async with run_arm(robot_urdf("position", file("position") + period)) as (world, log):
             rates[period] = world.server.plugins("arm")[0]._manager.update_rate
             is_reported = any("is shorter than the step of the simulation" in str(record.text) for record in log)
             assert is_reported is ("0.0001" in period)
@@ -250,7 +256,7 @@ async def test_control_period_is_the_period_of_updates(file):
 async def test_update_rate_of_manager_applies_without_control_period(file, tmp_path):
     rate = tmp_path / "rate.yaml"
     rate.write_text("controller_manager: {ros__parameters: {update_rate: 200}}\n")
-    async with arm(urdf("position", f"{file('position')}<parameters>{rate}</parameters>")) as (world, _):
+    async with run_arm(robot_urdf("position", f"{file('position')}<parameters>{rate}</parameters>")) as (world, _):
         assert world.server.plugins("arm")[0]._manager.update_rate == 200.0
 
 
@@ -262,17 +268,17 @@ async def test_description_is_searched_for_in_outer_namespaces(file):
         ("/arm_description", True),
         ("/robot_description", False),
     ):
-        async with arm(urdf("position", extra), topic) as (world, _):
+        async with run_arm(robot_urdf("position", extra), topic) as (world, _):
             assert world.server.plugins("arm")[0]._is_loaded is is_found, topic
     absolute = extra.replace("arm_description", "/far/arm_description")
-    async with arm(urdf("position", absolute), "/far/arm_description") as (world, _):
+    async with run_arm(robot_urdf("position", absolute), "/far/arm_description") as (world, _):
         assert world.server.plugins("arm")[0]._is_loaded
 
 
 @pytest.mark.parametrize("kind", TYPES)
 async def test_emergency_stop_holds_positions_and_stops_velocities_and_efforts(file, kind):
     extra = file(kind) + "<eStopTopic>e_stop</eStopTopic>"
-    async with arm(urdf(kind, extra, effort=100.0)) as (world, _):
+    async with run_arm(robot_urdf(kind, extra, effort=100.0)) as (world, _):
         publisher = world.node.create_publisher("std_msgs/msg/Bool", "/e_stop", 10)
         await world.start_controllers()
         await world.move({"position": 0.1, "velocity": 0.2, "effort": -30.0}[kind])
@@ -293,7 +299,7 @@ async def test_emergency_stop_holds_positions_and_stops_velocities_and_efforts(f
 
 async def test_other_robot_simulator_is_replaced_with_a_warning(file):
     extra = file("position") + "<robotSimType>my_robot/MyRobotHWSim</robotSimType>"
-    async with arm(urdf("position", extra)) as (world, log):
+    async with run_arm(robot_urdf("position", extra)) as (world, log):
         assert "the robot simulator 'my_robot/MyRobotHWSim' is not available; DefaultRobotHWSim is used" in [
             record.text for record in log
         ]
@@ -301,7 +307,7 @@ async def test_other_robot_simulator_is_replaced_with_a_warning(file):
 
 
 async def test_position_is_kept_when_world_restarts(file):
-    async with arm(urdf("position", file("position"))) as (world, _):
+    async with run_arm(robot_urdf("position", file("position"))) as (world, _):
         await world.start_controllers()
         await world.move(0.3)
         await world.advance(0.3)
@@ -316,8 +322,8 @@ async def test_documented_parameters_move_the_joint(page, tmp_path):
     (block,) = (block for block in re.findall(r"```yaml\n(.*?)```", text, re.DOTALL) if "gazebo_ros_control" in block)
     path = tmp_path / "controllers.yaml"
     path.write_text(block)
-    description = urdf("effort", f"<parameters>{path}</parameters>").replace("swing", "elbow")
-    async with arm(description) as (world, _):
+    description = robot_urdf("effort", f"<parameters>{path}</parameters>").replace("swing", "elbow")
+    async with run_arm(description) as (world, _):
         await world.start_controllers("elbow_controller")
         publisher = world.node.create_publisher("std_msgs/msg/Float64", "/elbow_controller/command", 10)
         publisher.publish(publisher.msg_type(data=-0.3))

@@ -1,4 +1,7 @@
-"""Drives in a simulated world: controllers turn motors, wheels roll, and odometry is compared with the truth."""
+"""Drives in a simulated world.
+
+Controllers turn motors, wheels roll, and odometry is compared with the truth.
+"""
 
 from __future__ import annotations
 
@@ -15,17 +18,20 @@ from linkwright.control.odometry import yaw_of
 from linkwright.kinematics.planar import PlanarPose
 from tests.control.controllers.driving import stamped_twist
 from tests.simulation.ros2_control.test_plugin import PLUGINS, ControlledRobot
-from tests.simulation.test_ackermann import BASE, RADIUS, TRACK, car
-from tests.simulation.test_gz_drives import LENGTH, WIDTH, mecanum
+from tests.simulation.test_ackermann import TRACK_WIDTH, WHEEL_RADIUS, WHEELBASE, car
+from tests.simulation.test_gz_drives import LENGTH, WIDTH, mecanum_robot
 from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND, mbot
 
-TIMEOUT = 0.2
+TIMEOUT_S = 0.2
 
 
 @dataclass(frozen=True)
-class Robot:
-    """A robot: its model, the command interface of each joint, and the controller with its parameters."""
+class RobotSetup:
+    """The model of a robot, with its command interfaces and controller.
+
+    Each joint has a command interface, and the controller has parameters.
+    """
 
     model: str
     text: str
@@ -63,7 +69,7 @@ class Robot:
         )
 
 
-DIFFERENTIAL = Robot(
+DIFFERENTIAL = RobotSetup(
     "mbot",
     mbot(),
     dict.fromkeys(("left_joint", "right_joint"), "velocity"),
@@ -73,7 +79,7 @@ DIFFERENTIAL = Robot(
         "right_wheel_names": ["right_joint"],
         "wheel_separation": 0.38,
         "wheel_radius": 0.06,
-        "cmd_vel_timeout": TIMEOUT,
+        "cmd_vel_timeout": TIMEOUT_S,
         "publish_rate": 100.0,
         "linear": {"x": {"max_acceleration": 2.0}},
     },
@@ -81,7 +87,7 @@ DIFFERENTIAL = Robot(
     "/base/odom",
 )
 _REAR, _STEERING = ["rear_right_joint", "rear_left_joint"], ["right_steering_joint", "left_steering_joint"]
-ACKERMANN = Robot(
+ACKERMANN = RobotSetup(
     "car",
     car(""),
     dict.fromkeys(_REAR, "velocity") | dict.fromkeys(_STEERING, "position"),
@@ -89,10 +95,10 @@ ACKERMANN = Robot(
     {
         "traction_joints_names": _REAR,
         "steering_joints_names": _STEERING,
-        "wheelbase": BASE,
-        "traction_track_width": TRACK,
-        "traction_wheels_radius": RADIUS,
-        "reference_timeout": TIMEOUT,
+        "wheelbase": WHEELBASE,
+        "traction_track_width": TRACK_WIDTH,
+        "traction_wheels_radius": WHEEL_RADIUS,
+        "reference_timeout": TIMEOUT_S,
         "position_feedback": True,
     },
 )
@@ -102,27 +108,29 @@ _CORNERS = {
     "rear_left": "back_left",
     "rear_right": "back_right",
 }
-MECANUM = Robot(
+MECANUM = RobotSetup(
     "robot",
-    mecanum().partition("<plugin")[0] + "</model>",
+    mecanum_robot().partition("<plugin")[0] + "</model>",
     {f"{corner}_joint": "velocity" for corner in _CORNERS.values()},
     "mecanum_drive_controller/MecanumDriveController",
     {
         **{f"{name}_wheel_command_joint_name": f"{corner}_joint" for name, corner in _CORNERS.items()},
         "kinematics": {
-            "wheels_radius": RADIUS,
+            "wheels_radius": WHEEL_RADIUS,
             "sum_of_robot_center_projection_on_X_Y_axis": (LENGTH + WIDTH) / 2.0,
         },
-        "reference_timeout": TIMEOUT,
+        "reference_timeout": TIMEOUT_S,
     },
 )
-ALL = pytest.mark.parametrize("robot", [DIFFERENTIAL, ACKERMANN, MECANUM], ids=["differential", "ackermann", "mecanum"])
+all_drives = pytest.mark.parametrize(
+    "robot", [DIFFERENTIAL, ACKERMANN, MECANUM], ids=["differential", "ackermann", "mecanum"]
+)
 
 
-class Drive(ControlledRobot):
+class DrivenRobot(ControlledRobot):
     """A robot that is driven in a world."""
 
-    def __init__(self, server: Any, graph: Any, robot: Robot) -> None:
+    def __init__(self, server: Any, graph: Any, robot: RobotSetup) -> None:
         super().__init__(server, graph)
         self.robot = robot
         self._publisher = self.node.create_publisher("geometry_msgs/msg/TwistStamped", robot.command, 10)
@@ -154,14 +162,14 @@ class Drive(ControlledRobot):
 
 
 @asynccontextmanager
-async def start_drive(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
+async def start_drive(robot: RobotSetup, folder: Path) -> AsyncIterator[DrivenRobot]:
     """Run a world with the robot at rest, and its controller active."""
     file = folder / "controllers.yaml"
     file.write_text(robot.controllers())
     filename, name, hardware = PLUGINS["gz"]
     plugin = f'<plugin filename="{filename}" name="{name}"><parameters>{file}</parameters></plugin>'
     async with running_server(GROUND, robot.text.replace("</model>", f"{plugin}</model>")) as (server, graph, log):
-        drive = Drive(server, graph, robot)
+        drive = DrivenRobot(server, graph, robot)
         await drive.describe(robot.description(hardware))
         await drive.start("base")
         await drive.advance(0.5)
@@ -169,13 +177,13 @@ async def start_drive(robot: Robot, folder: Path) -> AsyncIterator[Drive]:
         assert not [record.text for record in log if record.level.name in ("WARN", "ERROR")]
 
 
-@ALL
+@all_drives
 async def test_odometry_matches_truth_over_five_meters(robot, tmp_path):
     async with start_drive(robot, tmp_path) as drive:
         await drive.drive(5.0, 1.0)
         await drive.advance(1.0)
         truth, odometry = drive.truth, drive.odometry
-        assert odometry.x == pytest.approx(5.0 + TIMEOUT / 2.0, abs=0.02)
+        assert odometry.x == pytest.approx(5.0 + TIMEOUT_S / 2.0, abs=0.02)
         assert (truth.x, truth.y) == pytest.approx((odometry.x, 0.0), abs=0.05)
 
 
@@ -185,11 +193,11 @@ async def test_odometry_matches_truth_on_arc(robot, tmp_path):
         await drive.drive(6.0, 0.4, 0.3)
         await drive.advance(1.0)
         truth, odometry = drive.truth, drive.odometry
-        assert odometry.yaw == pytest.approx(0.3 * (6.0 + TIMEOUT / 2.0), abs=0.05)
+        assert odometry.yaw == pytest.approx(0.3 * (6.0 + TIMEOUT_S / 2.0), abs=0.05)
         assert (odometry.x, odometry.y, odometry.yaw) == pytest.approx((truth.x, truth.y, truth.yaw), abs=0.04)
 
 
-@ALL
+@all_drives
 async def test_robot_stops_when_commands_stop(robot, tmp_path):
     async with start_drive(robot, tmp_path) as drive:
         await drive.drive(1.0, 0.5)
@@ -203,6 +211,9 @@ async def test_robot_stops_when_commands_stop(robot, tmp_path):
 
 
 async def test_wheels_of_robot_require_one_model_compilation(tmp_path):
-    """Motors require a new compilation of MuJoCo's model. With one per wheel, many robots would start slowly."""
+    """Motors require a new compilation of MuJoCo's model.
+
+    With one per wheel, many robots would start slowly.
+    """
     async with start_drive(DIFFERENTIAL, tmp_path) as drive:
         assert drive.server.simulation.revision <= 1

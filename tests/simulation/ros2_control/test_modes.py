@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tests.simulation.ros2_control.test_plugin import ControlledRobot, description, robot_with_plugin, wheel
+from tests.simulation.ros2_control.test_plugin import ControlledRobot, robot_description, robot_with_plugin, wheel_joint
 from tests.simulation.test_plugins import running_server
 
 EFFORTS = (
@@ -29,7 +29,7 @@ def write_parameters(tmp_path):
     return write
 
 
-def angle(server) -> float:
+def joint_angle(server) -> float:
     return server.simulation.joint_state("mbot::left_joint")[0]
 
 
@@ -39,22 +39,22 @@ def angle(server) -> float:
     ids=["effort", "effort and velocity"],
 )
 async def test_unclaimed_effort_joint_is_held_and_released_by_controller(write_parameters, interfaces, min_angle):
-    text = description(wheel("left_joint", "effort").replace("<state", f"{interfaces}<state", 1))
+    text = robot_description(wheel_joint("left_joint", "effort").replace("<state", f"{interfaces}<state", 1))
     async with running_server(robot_with_plugin(write_parameters(EFFORTS))) as (server, graph, _):
         world = ControlledRobot(server, graph)
         await world.describe(text)
         server.simulation.push("mbot::left_wheel", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), by="test")
         await world.advance(0.3)
-        assert angle(server) == pytest.approx(0.0, abs=0.01)
+        assert joint_angle(server) == pytest.approx(0.0, abs=0.01)
         await world.start("arm")
-        start = angle(server)
+        start = joint_angle(server)
         await world.command(0.01, topic="/arm/commands")
         await world.advance(0.3)
-        assert angle(server) - start > min_angle
+        assert joint_angle(server) - start > min_angle
         assert (await world.call("switch_controller", deactivate_controllers=["arm"], strictness=2)).ok
-        stop_angle = angle(server)
+        stop_angle = joint_angle(server)
         await world.advance(0.5)
-        assert angle(server) == pytest.approx(stop_angle, abs=0.3)
+        assert joint_angle(server) == pytest.approx(stop_angle, abs=0.3)
 
 
 @pytest.mark.parametrize(("interface", "min_angle"), [("effort", 0.5), ("velocity", 0.01)])
@@ -62,20 +62,20 @@ async def test_unclaimed_joint_turns_freely_with_hold_joints_false(write_paramet
     text = robot_with_plugin(write_parameters(EFFORTS), extra="<hold_joints>false</hold_joints>")
     async with running_server(text) as (server, graph, _):
         world = ControlledRobot(server, graph)
-        await world.describe(description(wheel("left_joint", interface)))
+        await world.describe(robot_description(wheel_joint("left_joint", interface)))
         server.simulation.push("mbot::left_wheel", (0.0, 0.0, 0.0), (0.0, 0.01, 0.0), by="test")
         await world.advance(0.3)
-        assert angle(server) > min_angle
+        assert joint_angle(server) > min_angle
 
 
 async def test_position_proportional_gain_approaches_gradually(write_parameters):
     gain = "<position_proportional_gain>0.1</position_proportional_gain>"
     async with running_server(robot_with_plugin(write_parameters(POSITIONS), "gz", gain)) as (server, graph, _):
         world = ControlledRobot(server, graph)
-        await world.describe(description(wheel("left_joint", "position")))
+        await world.describe(robot_description(wheel_joint("left_joint", "position")))
         await world.start("arm")
         await world.command(1.0, topic="/arm/commands")
         await world.advance(0.08)
-        assert 0.3 < angle(server) < 1.0 - 0.9**10  # without the gain, the first step would be 0.9
+        assert 0.3 < joint_angle(server) < 1.0 - 0.9**10  # without the gain, the first step would be 0.9
         await world.advance(1.0)
-        assert angle(server) == pytest.approx(1.0, abs=0.01)
+        assert joint_angle(server) == pytest.approx(1.0, abs=0.01)

@@ -5,19 +5,19 @@ from __future__ import annotations
 import pytest
 
 from linkwright.graph.log.logger import LogLevel
-from tests.simulation.ros2_control.test_plugin import ControlledRobot, description, robot_with_plugin, wheel
+from tests.simulation.ros2_control.test_plugin import ControlledRobot, robot_description, robot_with_plugin, wheel_joint
 from tests.simulation.test_plugins import running_server
 
-KINDS = {
+INTERFACES_BY_KIND = {
     "position": "position_controllers/JointGroupPositionController",
     "velocity": "velocity_controllers/JointGroupVelocityController",
 }
 GAINS = {"position": {"kp": 0.02, "kd": 0.005}, "velocity": {"kp": 0.003, "ki": 0.01, "max_integral_error": 10.0}}
 
 
-def parameter_file(path, kind: str, extra: str = ""):
+def write_parameter_file(path, kind: str, extra: str = ""):
     path.write_text(
-        f"controller_manager: {{ros__parameters: {{arm: {{type: {KINDS[kind]}}}}}}}\n"
+        f"controller_manager: {{ros__parameters: {{arm: {{type: {INTERFACES_BY_KIND[kind]}}}}}}}\n"
         f"arm: {{ros__parameters: {{joints: [left_joint]}}}}\n{extra}"
     )
     return path
@@ -27,7 +27,7 @@ def description_with_gains(kind: str, **overrides: object) -> str:
     prefix = {"position": "pos_", "velocity": "vel_"}[kind]
     gains = {**GAINS[kind], **overrides}
     params = "".join(f"<param name='{prefix}{name}'>{value}</param>" for name, value in gains.items())
-    return description(wheel("left_joint", f"{kind}_pid").replace("<state", f"{params}<state", 1))
+    return robot_description(wheel_joint("left_joint", f"{kind}_pid").replace("<state", f"{params}<state", 1))
 
 
 def file_with_gains(kind: str) -> str:
@@ -35,14 +35,14 @@ def file_with_gains(kind: str) -> str:
 
 
 @pytest.mark.parametrize("source", ["description", "file"])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", INTERFACES_BY_KIND)
 async def test_pid_moves_joint_to_command_and_stops_with_controller(tmp_path, kind, source):
     is_in_description = source == "description"
-    path = parameter_file(tmp_path / "controllers.yaml", kind, "" if is_in_description else file_with_gains(kind))
+    path = write_parameter_file(tmp_path / "controllers.yaml", kind, "" if is_in_description else file_with_gains(kind))
     async with running_server(robot_with_plugin(path)) as (server, graph, log):
         world = ControlledRobot(server, graph)
         await world.describe(
-            description_with_gains(kind) if is_in_description else description(wheel("left_joint", kind))
+            description_with_gains(kind) if is_in_description else robot_description(wheel_joint("left_joint", kind))
         )
         await world.start("arm")
         server.simulation.push("mbot::base_link", (0.0, 0.0, 40.0), by="test")  # lift the wheels into the air
@@ -61,7 +61,7 @@ async def test_pid_moves_joint_to_command_and_stops_with_controller(tmp_path, ki
 
 
 async def test_gain_that_is_not_a_number_is_reported(tmp_path):
-    path = parameter_file(tmp_path / "controllers.yaml", "position")
+    path = write_parameter_file(tmp_path / "controllers.yaml", "position")
     async with running_server(robot_with_plugin(path)) as (server, graph, log):
         await ControlledRobot(server, graph).describe(description_with_gains("position", kp="stiff"))
         logged = [record.text for record in log if record.level == LogLevel.WARN]

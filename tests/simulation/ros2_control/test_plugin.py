@@ -1,3 +1,5 @@
+"""The ros2_control plugin of Gazebo: controlled joints and sensors in a simulation."""
+
 from __future__ import annotations
 
 from math import isnan
@@ -7,7 +9,7 @@ import pytest
 from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, get_service
 from linkwright.testing import Recording
-from tests.simulation.test_plugins import SECOND, robot, running_server
+from tests.simulation.test_plugins import SECOND_NS, robot, running_server
 from tests.simulation.worlds import GROUND, model
 
 FILE = """
@@ -28,7 +30,7 @@ PLUGINS = {
 IMU = "<sensor name='imu' type='imu'><update_rate>10</update_rate></sensor>"
 
 
-def wheel(name: str, command: str = "velocity", initial: str = "") -> str:
+def wheel_joint(name: str, command: str = "velocity", initial: str = "") -> str:
     value = f"<param name='initial_value'>{initial}</param>" if initial else ""
     return (
         f"<joint name='{name}'><command_interface name='{command}'/>"
@@ -37,7 +39,7 @@ def wheel(name: str, command: str = "velocity", initial: str = "") -> str:
     )
 
 
-def description(control: str, plugin: str = PLUGINS["classic"][2]) -> str:
+def robot_description(control: str, plugin: str = PLUGINS["classic"][2]) -> str:
     joints = "".join(
         f"<link name='{side}'/><joint name='{side}_joint' type='continuous'><parent link='base'/><child link='{side}'/>"
         "</joint>"
@@ -54,7 +56,7 @@ class ControlledRobot:
 
     def __init__(self, server, graph) -> None:
         self.server, self.graph = server, graph
-        self.node = graph.create_node("audience")
+        self.node = graph.create_node("test_node")
 
     async def describe(self, text: str, topic: str = "/robot_description") -> None:
         self.node.create_publisher(String, topic, DESCRIPTION_QOS).publish(String(data=text))
@@ -62,7 +64,7 @@ class ControlledRobot:
 
     async def advance(self, seconds: float) -> None:
         await self.graph.settle()
-        self.server.advance(round(seconds * SECOND))
+        self.server.advance(round(seconds * SECOND_NS))
         await self.graph.settle()
 
     async def call(self, service: str, manager: str = "/controller_manager", **fields):
@@ -105,7 +107,9 @@ async def test_wheels_follow_commands_and_stop_with_controller(file, plugin):
     async with running_server(GROUND, robot_with_plugin(file, plugin)) as (server, graph, log):
         world = ControlledRobot(server, graph)
         states = Recording(graph, server.node, "/joint_states")
-        await world.describe(description(wheel("left_joint") + wheel("right_joint"), PLUGINS[plugin][2]))
+        await world.describe(
+            robot_description(wheel_joint("left_joint") + wheel_joint("right_joint"), PLUGINS[plugin][2])
+        )
         await world.start("broadcaster", "wheels")
         await world.command(2.0, 2.0)
         await world.advance(2.0)
@@ -123,8 +127,8 @@ async def test_servos_of_all_joints_require_one_model_compilation(file):
     async with running_server(robot_with_plugin(file), options=None) as (server, graph, _):
         world = ControlledRobot(server, graph)
         revision = server.simulation.revision
-        wheels = wheel("left_joint", "position", "0.5") + wheel("right_joint", "position", "-0.4")
-        await world.describe(description(wheels))
+        wheels = wheel_joint("left_joint", "position", "0.5") + wheel_joint("right_joint", "position", "-0.4")
+        await world.describe(robot_description(wheels))
         assert server.simulation.revision == revision + 1
         await world.advance(0.5)
         positions = [server.simulation.joint_state(f"mbot::{side}_joint")[0] for side in ("left", "right")]
@@ -140,7 +144,7 @@ async def test_positions_are_held_from_initial_values(file, tmp_path):
     extra = f"<parameters>{positions}</parameters>"
     async with running_server(robot_with_plugin(file, extra=extra), options=None) as (server, graph, _):
         world = ControlledRobot(server, graph)
-        await world.describe(description(wheel("left_joint", "position", "0.5")))
+        await world.describe(robot_description(wheel_joint("left_joint", "position", "0.5")))
         assert server.simulation.joint_state("mbot::left_joint")[0] == pytest.approx(0.5, abs=0.01)
         await world.start("arm")
         await world.command(-0.25, topic="/arm/commands")
@@ -158,7 +162,7 @@ async def test_efforts_are_applied_and_measured(file, tmp_path):
     async with running_server(GROUND, robot_with_plugin(efforts)) as (server, graph, _):
         world = ControlledRobot(server, graph)
         states = Recording(graph, server.node, "/joint_states")
-        await world.describe(description(wheel("left_joint", "effort")))
+        await world.describe(robot_description(wheel_joint("left_joint", "effort")))
         await world.start("arm", "broadcaster")
         await world.command(0.01, topic="/arm/commands")
         await world.advance(0.2)
@@ -172,7 +176,7 @@ async def test_imu_provides_state_interfaces(file):
     async with running_server(GROUND, robot_with_plugin(file, elements=IMU)) as (server, graph, _):
         world = ControlledRobot(server, graph)
         states = Recording(graph, server.node, "/dynamic_joint_states")
-        await world.describe(description(wheel("left_joint") + sensor))
+        await world.describe(robot_description(wheel_joint("left_joint") + sensor))
         await world.start("broadcaster")
         await world.advance(0.5)
         values = dict(zip(states.last.joint_names, states.last.interface_values, strict=True))["imu"]
@@ -188,16 +192,22 @@ async def test_namespace_name_and_remappings_of_manager(file):
     )
     async with running_server(GROUND, robot_with_plugin(file, extra=extra)) as (server, graph, _):
         world = ControlledRobot(server, graph)
-        await world.describe(description(wheel("left_joint") + wheel("right_joint")), "/r1/robot_description")
+        await world.describe(
+            robot_description(wheel_joint("left_joint") + wheel_joint("right_joint")), "/r1/robot_description"
+        )
         await world.start("wheels", manager="/r1/manager")
         assert "/r1/wheels" in graph.node_names()
 
 
 async def test_joints_and_sensors_missing_in_model_are_reported(file):
-    text = wheel("left_joint") + wheel("third_joint") + "<sensor name='ft'><state_interface name='force.x'/></sensor>"
+    text = (
+        wheel_joint("left_joint")
+        + wheel_joint("third_joint")
+        + "<sensor name='ft'><state_interface name='force.x'/></sensor>"
+    )
     async with running_server(GROUND, robot_with_plugin(file)) as (server, graph, log):
         world = ControlledRobot(server, graph)
-        await world.describe(description(text))
+        await world.describe(robot_description(text))
         joint, sensor = (record.text for record in log if record.level.name == "WARN")
         assert joint == "Skipping joint in the URDF named 'third_joint' which is not in the gazebo model."
         assert sensor.startswith(
@@ -213,7 +223,7 @@ async def test_reset_keeps_controllers_active(file):
     async with running_server(GROUND, robot_with_plugin(file)) as (server, graph, _):
         world = ControlledRobot(server, graph)
         states = Recording(graph, server.node, "/joint_states")
-        await world.describe(description(wheel("left_joint") + wheel("right_joint")))
+        await world.describe(robot_description(wheel_joint("left_joint") + wheel_joint("right_joint")))
         await world.start("broadcaster", "wheels")
         await world.command(2.0, 2.0)
         await world.advance(0.5)
@@ -227,18 +237,18 @@ async def test_reset_keeps_controllers_active(file):
 async def test_manager_is_removed_with_robot(file):
     async with running_server(GROUND, robot_with_plugin(file)) as (server, graph, _):
         world = ControlledRobot(server, graph)
-        await world.describe(description(wheel("left_joint") + wheel("right_joint")))
+        await world.describe(robot_description(wheel_joint("left_joint") + wheel_joint("right_joint")))
         await world.start("broadcaster", "wheels")
         server.delete("mbot")
         await world.advance(0.1)
-        assert graph.node_names() == ["/audience", "/gazebo"]
+        assert graph.node_names() == ["/gazebo", "/test_node"]
 
 
 async def test_controllers_stay_active_when_model_is_replaced(file):
     text = robot_with_plugin(file)
     async with running_server(GROUND, text) as (server, graph, _):
         world = ControlledRobot(server, graph)
-        await world.describe(description(wheel("left_joint") + wheel("right_joint")))
+        await world.describe(robot_description(wheel_joint("left_joint") + wheel_joint("right_joint")))
         await world.start("broadcaster", "wheels")
         heavier = text.replace("<mass>", "<mass>1", 1)
         server.replace_model(model(heavier), "mbot")
@@ -257,7 +267,7 @@ async def test_respawned_robot_has_no_controllers(file):
     text = robot_with_plugin(file)
     async with running_server(GROUND, text) as (server, graph, _):
         world = ControlledRobot(server, graph)
-        await world.describe(description(wheel("left_joint") + wheel("right_joint")))
+        await world.describe(robot_description(wheel_joint("left_joint") + wheel_joint("right_joint")))
         await world.start("wheels")
         server.delete("mbot")
         server.spawn(model(text), "mbot")
@@ -266,8 +276,12 @@ async def test_respawned_robot_has_no_controllers(file):
 
 
 async def test_vendor_copy_of_plugin_is_reported_once(file):
-    two = robot_with_plugin(file, "copy", "<controller_manager_name>other</controller_manager_name>")
-    async with running_server(GROUND, robot_with_plugin(file, "copy"), two.replace('"mbot"', '"two"')) as (_, __, log):
+    description_with_two_plugins = robot_with_plugin(
+        file, "copy", "<controller_manager_name>other</controller_manager_name>"
+    )
+    async with running_server(
+        GROUND, robot_with_plugin(file, "copy"), description_with_two_plugins.replace('"mbot"', '"two"')
+    ) as (_, __, log):
         logged = [record.text for record in log if "is simulated as" in record.text]
     assert logged == [
         (

@@ -8,11 +8,11 @@ import pytest
 
 from tests.simulation.worlds import box, make_simulation
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 BODY = "<inertial><mass>1</mass><inertia><ixx>.1</ixx><iyy>.1</iyy><izz>.1</izz></inertia></inertial>"
 
 
-def wheel(name: str, y: float, axis: str) -> str:
+def wheel_model(name: str, y: float, axis: str) -> str:
     """Return a wheel on a fixed axle."""
     return (
         f'<link name="{name}"><pose>0 {y} 0 0 0 0</pose>{BODY}</link><joint name="{name}_axle" type="revolute">'
@@ -20,22 +20,22 @@ def wheel(name: str, y: float, axis: str) -> str:
     )
 
 
-def gears(ratio: float, axis: str = "1 0 0", gearbox_first: bool = False) -> str:
+def geared_wheels(ratio: float, axis: str = "1 0 0", gearbox_first: bool = False) -> str:
     gearbox = (
         '<joint name="gears" type="gearbox"><parent>a</parent><child>b</child>'
         f"<gearbox_ratio>{ratio}</gearbox_ratio><gearbox_reference_body>world</gearbox_reference_body>"
         "<axis><xyz>1 0 0</xyz></axis><axis2><xyz>1 0 0</xyz></axis2></joint>"
     )
-    wheels = wheel("a", 0, "1 0 0") + wheel("b", 1, axis)
+    wheels = wheel_model("a", 0, "1 0 0") + wheel_model("b", 1, axis)
     return f'<model name="m">{gearbox + wheels if gearbox_first else wheels + gearbox}</model>'
 
 
 @pytest.mark.parametrize("gearbox_first", [True, False])
 @pytest.mark.parametrize(("axis", "ratio"), [("1 0 0", 1.5), ("-1 0 0", -1.5)])
 def test_gearbox_child_turns_by_negative_ratio(axis, ratio, gearbox_first):
-    simulation = make_simulation(gears(-1.5, axis, gearbox_first))
+    simulation = make_simulation(geared_wheels(-1.5, axis, gearbox_first))
     simulation.push_joint("m::a_axle", 1.0)
-    simulation.advance(SECOND)
+    simulation.advance(SECOND_NS)
     angle, _ = simulation.joint_state("m::a_axle")
     assert angle > 0.1
     assert simulation.joint_state("m::b_axle")[0] == pytest.approx(ratio * angle, abs=1e-3)
@@ -48,7 +48,7 @@ def test_screw_joint_moves_by_pitch_per_revolution():
     )
     simulation = make_simulation(screw, gravity="0 0 0")
     simulation.push_joint("m::screw", 1.0)
-    simulation.advance(SECOND)
+    simulation.advance(SECOND_NS)
     angle, _ = simulation.joint_state("m::screw")
     assert angle > 1.0
     assert simulation.link_pose("m::nut")[2] == pytest.approx(0.01 * angle / tau, abs=1e-4)
@@ -58,9 +58,9 @@ def test_kinematic_model_keeps_pose_and_pushes_others():
     shape = '<collision name="c"><geometry><box><size>1 1 1</size></box></geometry></collision>'
     lift = f'<model name="lift"><pose>0 0 0.5 0 0 0</pose><link name="l"><kinematic>1</kinematic>{shape}</link></model>'
     simulation = make_simulation(lift, box("crate", pose="0 0 1.5 0 0 0"))
-    simulation.advance(SECOND // 10)
+    simulation.advance(SECOND_NS // 10)
     assert simulation.model_pose("lift")[:3] == pytest.approx((0, 0, 0.5))
     simulation.set_model_pose("lift", (0.0, 0.0, 0.52, 0.0, 0.0, 0.0, 1.0))
-    simulation.advance(SECOND)
+    simulation.advance(SECOND_NS)
     assert simulation.model_pose("lift")[:3] == pytest.approx((0, 0, 0.52))
     assert simulation.model_pose("crate")[2] == pytest.approx(1.52, abs=5e-3)

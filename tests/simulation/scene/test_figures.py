@@ -22,15 +22,15 @@ PATH = (
 )
 ACTOR = f'<actor name="walker"><pose>0 1 0 0 0 0</pose>{LINK}{PATH}</actor>'
 GZ = '<plugin filename="gz-sim-physics-system" name="gz::sim::systems::Physics"/>'
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 
 
 def test_actor_follows_trajectory_in_simulated_time():
     simulation = make_simulation(GROUND, ACTOR)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 0, 1))
-    simulation.advance(SECOND)
+    simulation.advance(SECOND_NS)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((4, 0, 1))
-    simulation.advance(2 * SECOND)
+    simulation.advance(2 * SECOND_NS)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((4, 0, 1))
     simulation.reset()
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((2, 0, 1))
@@ -43,19 +43,19 @@ def test_actor_trajectory_is_relative_to_actor_in_gz_worlds():
 
 def test_actor_without_trajectory_keeps_its_pose():
     simulation = make_simulation(GROUND, f'<actor name="walker"><pose>0 1 0 0 0 0</pose>{LINK}<script/></actor>')
-    simulation.advance(SECOND // 100)
+    simulation.advance(SECOND_NS // 100)
     assert simulation.link_pose("walker::head")[:3] == pytest.approx((0, 1, 1))
 
 
 def test_actor_does_not_collide():
     simulation = make_simulation(GROUND, box("crate", pose="4 0 0.5 0 0 0"), ACTOR)
-    simulation.advance(2 * SECOND)
+    simulation.advance(2 * SECOND_NS)
     assert simulation.link_pose("crate::link")[:2] == pytest.approx((4, 0), abs=1e-4)
 
 
 def test_rays_against_visuals_hit_actor():
     simulation = make_simulation(GROUND, ACTOR)
-    simulation.advance(SECOND)
+    simulation.advance(SECOND_NS)
     simulation.refresh()
     groups = np.zeros(GROUPS, dtype=np.uint8)
     groups[VISUAL_GROUP] = 1

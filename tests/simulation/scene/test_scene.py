@@ -24,7 +24,7 @@ endsolid room
 """
 
 
-def quad(*corners: tuple[float, float, float]) -> str:
+def quad_facets(*corners: tuple[float, float, float]) -> str:
     """Return the two triangles of a quad."""
     a, b, c, d = (" ".join(map(str, corner)) for corner in corners)
     return "".join(
@@ -37,10 +37,10 @@ def quad(*corners: tuple[float, float, float]) -> str:
 def room(tmp_path):
     """Return the mesh file of a room of 4 m by 4 m without a ceiling, whose walls face inward."""
     walls = [
-        quad((2, -2, 0), (2, 2, 0), (2, 2, 1), (2, -2, 1)),
-        quad((-2, 2, 0), (-2, -2, 0), (-2, -2, 1), (-2, 2, 1)),
-        quad((2, 2, 0), (-2, 2, 0), (-2, 2, 1), (2, 2, 1)),
-        quad((-2, -2, 0), (2, -2, 0), (2, -2, 1), (-2, -2, 1)),
+        quad_facets((2, -2, 0), (2, 2, 0), (2, 2, 1), (2, -2, 1)),
+        quad_facets((-2, 2, 0), (-2, -2, 0), (-2, -2, 1), (-2, 2, 1)),
+        quad_facets((2, 2, 0), (-2, 2, 0), (-2, 2, 1), (2, 2, 1)),
+        quad_facets((-2, -2, 0), (2, -2, 0), (2, -2, 1), (-2, -2, 1)),
     ]
     path = tmp_path / "room.stl"
     path.write_text(ROOM.format(facets="".join(walls)))
@@ -163,7 +163,7 @@ def test_invalid_mass_and_inertia_are_reported():
     simulation.advance(NANOSECONDS_PER_SECOND)
 
 
-def moments(ixx: float, iyy: float, izz: float) -> Simulation:
+def inertia_element(ixx: float, iyy: float, izz: float) -> Simulation:
     inertia = f"<inertia><ixx>{ixx!r}</ixx><iyy>{iyy!r}</iyy><izz>{izz!r}</izz></inertia>"
     return make_simulation(
         f'<model name="m"><link name="l"><inertial><mass>1</mass>{inertia}</inertial></link></model>'
@@ -171,7 +171,7 @@ def moments(ixx: float, iyy: float, izz: float) -> Simulation:
 
 
 def test_inertia_violating_triangle_inequality_is_reported():
-    simulation = moments(1.0, 1.0, 9.0)
+    simulation = inertia_element(1.0, 1.0, 9.0)
     (diagnostic,) = simulation.scene.diagnostics
     assert (diagnostic.code, "the mean of its moments is used" in diagnostic.message) == ("SIM111", True)
     assert simulation.model.body("m::l").inertia == pytest.approx([11 / 3] * 3)
@@ -179,12 +179,12 @@ def test_inertia_violating_triangle_inequality_is_reported():
 
 @pytest.mark.parametrize("izz", [2.0, 2.0000000000000004, 1.9999999999999998, 2.000001])
 def test_flat_bodies_keep_their_inertia(izz):
-    simulation = moments(1.0, 1.0, izz)
+    simulation = inertia_element(1.0, 1.0, izz)
     assert simulation.scene.diagnostics == []
     assert sorted(simulation.model.body("m::l").inertia) == pytest.approx([1.0, 1.0, 2.0], rel=1e-5)
 
 
-def arm(second: str) -> str:
+def arm_model(second: str) -> str:
     link = "<inertial><mass>1</mass><inertia><ixx>0.1</ixx><iyy>0.1</iyy><izz>0.1</izz></inertia></inertial>"
     return f"""<model name="arm"><link name="base">{link}</link>
     <link name="one">{link}</link><link name="two">{link}</link>
@@ -196,7 +196,7 @@ def arm(second: str) -> str:
 
 def test_mimic_joint_follows_other_joint():
     mimic = '<mimic joint="a"><multiplier>-2</multiplier><offset>0.5</offset><reference>0</reference></mimic>'
-    simulation = make_simulation(arm(mimic))
+    simulation = make_simulation(arm_model(mimic))
     simulation.push("arm::one", (0.0, 0.0, 0.0), (0.0, 0.0, 0.1))
     simulation.advance(2 * NANOSECONDS_PER_SECOND)
     leader, follower = (simulation.joint_state(f"arm::{name}")[0] for name in ("a", "b"))
@@ -220,7 +220,7 @@ def test_links_of_model_collide_only_with_self_collide():
 def test_mesh_wheel_has_single_contact_point(tmp_path):
     angles = np.linspace(0, 2 * np.pi, 25)[:-1]
     rim = [(0.1 * np.cos(angle), y, 0.1 * np.sin(angle)) for angle in angles for y in (-0.02, 0.02)]
-    facets = "".join(quad(rim[i], rim[i + 1], rim[(i + 3) % 48], rim[(i + 2) % 48]) for i in range(0, 48, 2))
+    facets = "".join(quad_facets(rim[i], rim[i + 1], rim[(i + 3) % 48], rim[(i + 2) % 48]) for i in range(0, 48, 2))
     path = tmp_path / "wheel.stl"
     path.write_text(ROOM.format(facets=facets))
     text = f"""<model name="m"><link name="base"/><link name="wheel"><collision name="c"><geometry><mesh>

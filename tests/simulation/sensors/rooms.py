@@ -55,10 +55,10 @@ def lidar(text: str) -> Lidar:
 
 
 def single_row_lidar(
-    samples: int, low: float, high: float, extra: str = "", *, near: float = 0.1, far: float = 30.0
+    samples: int, low: float, high: float, extra: str = "", *, min_range: float = 0.1, max_range: float = 30.0
 ) -> Lidar:
     """Return a lidar with one row; angles in rad."""
     return lidar(
         f"<scan><horizontal><samples>{samples}</samples><min_angle>{low}</min_angle><max_angle>{high}</max_angle>"
-        f"</horizontal></scan><range><min>{near}</min><max>{far}</max></range>{extra}"
+        f"</horizontal></scan><range><min>{min_range}</min><max>{max_range}</max></range>{extra}"
     )

@@ -28,14 +28,14 @@ from tests.simulation.worlds import GROUND, box, make_simulation, mbot
 GENERATOR = np.random.default_rng(0)
 
 
-def imu(simulation: Simulation, link: str, text: str = "", *, seed: int = 0, initial: bool = False) -> ImuSensor:
+def make_imu(simulation: Simulation, link: str, text: str = "", *, seed: int = 0, initial: bool = False) -> ImuSensor:
     element = sensor(f"<imu>{text}</imu>", "imu").imu
     return ImuSensor(Mount(simulation, link), element, generator=np.random.default_rng(seed), initial_reference=initial)
 
 
 def test_imu_at_rest_measures_gravity_reaction():
     simulation = make_simulation(GROUND, mbot(), gravity="0 0 -9.8")
-    sensor = imu(simulation, "mbot::base_link")
+    sensor = make_imu(simulation, "mbot::base_link")
     simulation.advance(NANOSECONDS_PER_SECOND)
     measurement = sensor.measure()
     assert measurement.linear_acceleration == pytest.approx([0, 0, 9.8], abs=1e-3)
@@ -46,7 +46,7 @@ def test_imu_at_rest_measures_gravity_reaction():
 def test_falling_imu_measures_no_acceleration():
     simulation = make_simulation(box("box", "0 0 9 0.3 0.2 0.1"))
     simulation.advance(NANOSECONDS_PER_SECOND // 10)
-    assert imu(simulation, "box::link").measure().linear_acceleration == pytest.approx([0, 0, 0], abs=1e-9)
+    assert make_imu(simulation, "box::link").measure().linear_acceleration == pytest.approx([0, 0, 0], abs=1e-9)
 
 
 def test_imu_on_curve_measures_centripetal_acceleration():
@@ -58,7 +58,7 @@ def test_imu_on_curve_measures_centripetal_acceleration():
             motor.target = hundredth / 100 * (speed + yaw_rate * side) / 0.06
         simulation.advance(NANOSECONDS_PER_SECOND // 100)
     simulation.advance(NANOSECONDS_PER_SECOND)
-    measurement = imu(simulation, "mbot::base_link").measure()
+    measurement = make_imu(simulation, "mbot::base_link").measure()
     assert measurement.angular_velocity == pytest.approx([0, 0, yaw_rate], abs=1e-3)
     assert measurement.linear_acceleration == pytest.approx([0, speed * yaw_rate, 9.81], abs=2e-3)
     mount = Mount(simulation, "mbot::base_link", (0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
@@ -68,8 +68,8 @@ def test_imu_on_curve_measures_centripetal_acceleration():
 
 def test_imu_orientation_is_relative_to_world_or_start():
     simulation = make_simulation(box("box", f"0 0 9 0 0 {pi / 2}"))
-    assert imu(simulation, "box::link").measure().orientation == pytest.approx([0, 0, 0.5**0.5, 0.5**0.5])
-    assert imu(simulation, "box::link", initial=True).measure().orientation == pytest.approx([0, 0, 0, 1])
+    assert make_imu(simulation, "box::link").measure().orientation == pytest.approx([0, 0, 0.5**0.5, 0.5**0.5])
+    assert make_imu(simulation, "box::link", initial=True).measure().orientation == pytest.approx([0, 0, 0, 1])
 
 
 def test_imu_noise_has_configured_deviation_and_bias():
@@ -77,7 +77,7 @@ def test_imu_noise_has_configured_deviation_and_bias():
         '<angular_velocity><x><noise type="gaussian"><stddev>0.2</stddev></noise></x></angular_velocity>'
         '<linear_acceleration><z><noise type="gaussian"><bias_mean>5</bias_mean></noise></z></linear_acceleration>'
     )
-    sensor = imu(make_simulation(box("box", "0 0 9 0 0 0")), "box::link", text)
+    sensor = make_imu(make_simulation(box("box", "0 0 9 0 0 0")), "box::link", text)
     rates = np.array([sensor.measure().angular_velocity for _ in range(2000)])
     assert np.std(rates[:, 0]) == pytest.approx(0.2, rel=0.1)
     assert not rates[:, 1:].any()
@@ -91,7 +91,7 @@ def test_dynamic_bias_stays_within_its_deviation():
         "<dynamic_bias_correlation_time>0.02</dynamic_bias_correlation_time></noise></x></angular_velocity>"
     )
     simulation = make_simulation(box("box", "0 0 9 0 0 0"))
-    sensor, rates = imu(simulation, "box::link", text), []
+    sensor, rates = make_imu(simulation, "box::link", text), []
     for _ in range(1000):
         simulation.advance(NANOSECONDS_PER_SECOND // 1000)
         rates.append(sensor.measure().angular_velocity[0])

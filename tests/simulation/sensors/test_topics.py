@@ -15,7 +15,7 @@ from linkwright.testing import Recording
 from tests.simulation.sensors.rooms import block
 from tests.simulation.worlds import GROUND, box, make_simulation
 
-SECOND = 1_000_000_000
+SECOND_NS = 1_000_000_000
 WALL = block("wall", "2.5 0 0 0 0 0", "1 20 20")
 RAYS = (
     "<scan><horizontal><samples>3</samples><min_angle>-1.5707963267948966</min_angle><max_angle>1.5707963267948966"
@@ -32,7 +32,7 @@ def robot_with(*elements: str, link: str = "head", extra: str = "") -> str:
     return f'<model name="robot"><static>true</static><link name="{link}">{"".join(elements)}</link>{extra}</model>'
 
 
-def sensor(kind: str, text: str, name: str = "eye", rate: float = 10) -> str:
+def sensor(kind: str, text: str, name: str = "sensor", rate: float = 10) -> str:
     return f'<sensor name="{name}" type="{kind}"><update_rate>{rate}</update_rate>{text}</sensor>'
 
 
@@ -52,7 +52,7 @@ async def running_server(*parts: str):
     await graph.close()
 
 
-async def last_messages(server: SimulationServer, graph: Graph, *topics: str, duration: int = SECOND // 10) -> list:
+async def last_messages(server: SimulationServer, graph: Graph, *topics: str, duration: int = SECOND_NS // 10) -> list:
     """Advance the simulation, and return the last message of each topic."""
     recordings = [Recording(graph, server.node, topic) for topic in topics]
     server.advance(duration)
@@ -65,7 +65,7 @@ async def test_classic_ray_sensor_publishes_scan():
     text = robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so", ros)))
     async with running_server(WALL, text) as (server, graph, log):
         (scan,) = await last_messages(server, graph, "/scan")
-        assert (scan.header.stamp.sec, scan.header.stamp.nanosec) == (0, SECOND // 10)
+        assert (scan.header.stamp.sec, scan.header.stamp.nanosec) == (0, SECOND_NS // 10)
         assert scan.header.frame_id == "head"
         assert list(scan.ranges) == [inf, 2.0, inf]
         assert (scan.angle_min, scan.angle_increment) == (pytest.approx(-pi / 2), pytest.approx(pi / 2))
@@ -78,9 +78,9 @@ async def test_classic_ray_sensor_publishes_scan():
 async def test_ray_sensor_does_not_publish_without_subscribers():
     text = robot_with(sensor("ray", f"<ray>{RAYS}</ray>" + plugin("libgazebo_ros_ray_sensor.so")))
     async with running_server(WALL, text) as (server, graph, _):
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         recording = Recording(graph, server.node, "/driver/out")
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 10
 
@@ -97,11 +97,11 @@ async def test_displayed_rays_and_scan_share_one_measurement(visualize: str, top
         measurements = []
         measure = lidar.lidar.measure
         lidar.lidar.measure = lambda: measurements.append(None) or measure()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         assert not measurements
         rays, scan = await last_messages(server, graph, topic, "/scan")
         assert len(measurements) == 1
-        assert rays.header.frame_id == "robot::head::eye"
+        assert rays.header.frame_id == "robot::head::sensor"
         assert list(rays.ranges) == [inf, 2.0, inf] * 2
         assert list(scan.ranges) == [inf, 2.0, inf]
 
@@ -164,7 +164,7 @@ async def test_ros_1_laser_plugins_publish_their_message_types(library: str):
         assert not log
 
 
-def rows_of(cloud) -> np.ndarray:
+def point_rows(cloud) -> np.ndarray:
     """Return the points of a cloud as an array with the names of its fields."""
     types = {4: np.uint16, 7: np.float32}
     layout = np.dtype(
@@ -192,7 +192,7 @@ async def test_velodyne_points_have_ring():
         log,
     ):
         (message,) = await last_messages(server, graph, "/points")
-        rows = rows_of(message)
+        rows = point_rows(message)
         assert (message.height, message.width, message.is_dense) == (1, 2, True)
         assert rows["ring"].tolist() == [0, 1]
         assert rows["z"].tolist() == pytest.approx([-2 * tan(0.1), 2 * tan(0.1)])
@@ -209,7 +209,7 @@ async def test_organized_velodyne_cloud_has_row_per_firing():
         log,
     ):
         (message,) = await last_messages(server, graph, "/points")
-        rows = rows_of(message).reshape(message.height, message.width)
+        rows = point_rows(message).reshape(message.height, message.width)
         assert (message.height, message.width, message.is_dense) == (3, 2, False)
         assert rows["ring"].tolist() == [[0, 1]] * 3
         assert np.isfinite(rows["x"]).tolist() == [[False, False], [True, True], [False, False]]
@@ -220,7 +220,7 @@ async def test_gz_lidar_publishes_points_beside_scan():
     text = robot_with(sensor("gpu_lidar", f"<topic>lidar</topic><lidar>{RAYS}</lidar>"))
     async with running_server(WALL, text) as (server, graph, log):
         scan, cloud = await last_messages(server, graph, "/lidar", "/lidar/points")
-        assert scan.header.frame_id == "robot/head/eye"
+        assert scan.header.frame_id == "robot/head/sensor"
         assert list(scan.ranges) == [inf, 2.0, inf]
         assert (cloud.width, cloud.height, cloud.is_dense) == (3, 1, False)
         assert [(field.name, field.offset) for field in cloud.fields][3:] == [("intensity", 16), ("ring", 24)]
@@ -230,7 +230,7 @@ async def test_gz_lidar_publishes_points_beside_scan():
 
 async def test_gz_sensor_without_topic_has_default_gz_name():
     async with running_server(WALL, robot_with(sensor("gpu_lidar", f"<lidar>{RAYS}</lidar>"))) as (server, graph, _):
-        (scan,) = await last_messages(server, graph, "/world/test/model/robot/link/head/sensor/eye/scan")
+        (scan,) = await last_messages(server, graph, "/world/test/model/robot/link/head/sensor/sensor/scan")
         assert scan.ranges[1] == 2.0
 
 
@@ -250,12 +250,12 @@ async def test_imu_plugins_publish_gravity_and_noise(library: str | None, text: 
         graph,
         log,
     ):
-        (message,) = await last_messages(server, graph, topic, duration=SECOND)
+        (message,) = await last_messages(server, graph, topic, duration=SECOND_NS)
         assert message.linear_acceleration.z == pytest.approx(9.81, abs=1e-3)
         assert message.angular_velocity_covariance[8] == pytest.approx(0.01)
         assert message.angular_velocity.z != 0
         assert not message.orientation_covariance.any()
-        assert message.header.frame_id == ("link" if topic == "/driver/out" else "one/link/eye")
+        assert message.header.frame_id == ("link" if topic == "/driver/out" else "one/link/sensor")
         assert not log
 
 
@@ -268,7 +268,7 @@ async def test_ros_1_imu_plugin_names_its_link():
         graph,
         log,
     ):
-        (message,) = await last_messages(server, graph, "/imu", duration=SECOND)
+        (message,) = await last_messages(server, graph, "/imu", duration=SECOND_NS)
         assert message.linear_acceleration.z == pytest.approx(9.81, abs=1e-3)
         assert not log
 
@@ -278,18 +278,18 @@ async def test_gz_contacts_are_published_while_touching():
     text = box("crate", "0 0 0.7 0 0 0", "1 1 1", 2.0).replace("</link>", f"{element}</link>")
     async with running_server(GROUND, text) as (server, graph, log):
         recording = Recording(graph, server.node, "/touched")
-        server.advance(SECOND // 10)
+        server.advance(SECOND_NS // 10)
         await graph.settle()
         assert len(recording) == 0
-        server.advance(2 * SECOND)
+        server.advance(2 * SECOND_NS)
         await graph.settle()
         (contact,) = recording.last.contacts
         assert (contact.collision1.name, contact.collision1.type) == ("crate::link::collision", 5)
         assert contact.collision2.name == "ground::link::collision"
         assert len(contact.wrenches) == len(contact.depths) == len(contact.positions) == len(contact.normals)
-        up = sum(wrench.body_1_wrench.force.z for wrench in contact.wrenches)
-        assert up == pytest.approx(2.0 * 9.81, rel=0.02)
-        assert sum(wrench.body_2_wrench.force.z for wrench in contact.wrenches) == pytest.approx(-up)
+        upward_force = sum(wrench.body_1_wrench.force.z for wrench in contact.wrenches)
+        assert upward_force == pytest.approx(2.0 * 9.81, rel=0.02)
+        assert sum(wrench.body_2_wrench.force.z for wrench in contact.wrenches) == pytest.approx(-upward_force)
         assert not log
 
 
@@ -303,9 +303,9 @@ async def test_gz_altimeter_and_air_pressure_are_published():
     )
     text = box("crate", "0 0 50 0 0 0", "1 1 1", 2.0).replace("</link>", "".join(sensors) + "</link>")
     async with running_server(text) as (server, graph, log):
-        height, air = await last_messages(server, graph, "/height", "/air", duration=SECOND)
+        height, air = await last_messages(server, graph, "/height", "/air", duration=SECOND_NS)
         assert (height.vertical_position, height.vertical_velocity) == pytest.approx((-4.905, -9.81), abs=0.01)
-        assert (height.vertical_reference, height.header.frame_id) == (50.0, "crate/link/eye")
+        assert (height.vertical_reference, height.header.frame_id) == (50.0, "crate/link/sensor")
         assert air.fluid_pressure == pytest.approx(99606.0, abs=20.0)
         assert air.variance == 4.0
         assert not log
@@ -320,7 +320,7 @@ async def test_bumper_publishes_contacts():
         graph,
         log,
     ):
-        (message,) = await last_messages(server, graph, "/bumper_states", duration=SECOND)
+        (message,) = await last_messages(server, graph, "/bumper_states", duration=SECOND_NS)
         (state,) = message.states
         assert message.header.frame_id == "world"
         assert state.collision2_name == "ground::link::collision"
@@ -375,7 +375,7 @@ async def test_force_torque_sensors_publish_wrench():
         assert not log
 
 
-def pixels_of(message) -> np.ndarray:
+def image_pixels(message) -> np.ndarray:
     channels = message.step // message.width
     return np.frombuffer(bytes(message.data), np.uint8).reshape(message.height, message.width, channels)
 
@@ -387,7 +387,7 @@ async def test_classic_camera_publishes_image_and_camera_info():
         image, info = await last_messages(server, graph, "/front/image_raw", "/front/camera_info")
         assert (image.width, image.height, image.encoding, image.step) == (64, 48, "rgb8", 192)
         assert image.header.frame_id == info.header.frame_id == "optical"
-        red = pixels_of(image)[24, 32]
+        red = image_pixels(image)[24, 32]
         assert red[0] > 50
         assert red[1] == red[2] == 0
         focal = 64 / (2 * tan(pi / 4))
@@ -408,15 +408,15 @@ async def test_image_format_sets_encoding(image_format: str, encoding: str, step
         graph,
         _,
     ):
-        (image,) = await last_messages(server, graph, "/eye/image_raw")
+        (image,) = await last_messages(server, graph, "/sensor/image_raw")
         assert (image.encoding, image.step, len(image.data)) == (encoding, step, 48 * step)
 
 
 @pytest.mark.parametrize("library", ["libgazebo_ros_camera.so", "libgazebo_ros_openni_kinect.so"])
 async def test_depth_camera_measures_along_optical_axis(library: str):
     element = plugin(library, "<camera_name>depth</camera_name><max_depth>3</max_depth>")
-    near = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
-    async with running_server(WALL, near, robot_with(sensor("depth", CAMERA + element))) as (server, graph, _):
+    near_block = block("near", "0.35 0.2 0 0 0 0", "0.1 0.1 0.1")
+    async with running_server(WALL, near_block, robot_with(sensor("depth", CAMERA + element))) as (server, graph, _):
         depth, cloud = await last_messages(server, graph, "/depth/depth/image_raw", "/depth/points")
         meters = np.frombuffer(bytes(depth.data), np.float32).reshape(48, 64)
         assert (depth.encoding, depth.step) == ("32FC1", 256)
@@ -433,29 +433,29 @@ async def test_depth_camera_measures_along_optical_axis(library: str):
 async def test_triggered_camera_waits_for_trigger():
     element = plugin("libgazebo_ros_camera.so", "<triggered>true</triggered>")
     async with running_server(WALL, robot_with(sensor("camera", CAMERA + element))) as (server, graph, _):
-        recording = Recording(graph, server.node, "/eye/image_raw")
-        server.advance(SECOND)
+        recording = Recording(graph, server.node, "/sensor/image_raw")
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 0
-        trigger = server.node.create_publisher("std_msgs/msg/Empty", "/eye/image_trigger", 1)
+        trigger = server.node.create_publisher("std_msgs/msg/Empty", "/sensor/image_trigger", 1)
         trigger.publish(get_message("std_msgs/msg/Empty")())
         await graph.settle()
-        server.advance(SECOND)
+        server.advance(SECOND_NS)
         await graph.settle()
         assert len(recording) == 1
 
 
 async def test_multicamera_has_topic_per_camera():
-    eyes = CAMERA.replace("<camera>", '<camera name="left">') + CAMERA.replace("<camera>", '<camera name="right">')
+    cameras = CAMERA.replace("<camera>", '<camera name="left">') + CAMERA.replace("<camera>", '<camera name="right">')
     element = plugin("libgazebo_ros_camera.so", "<camera_name>stereo</camera_name>")
-    async with running_server(WALL, robot_with(sensor("multicamera", eyes + element))) as (server, graph, _):
+    async with running_server(WALL, robot_with(sensor("multicamera", cameras + element))) as (server, graph, _):
         left, right = await last_messages(server, graph, "/stereo/left/image_raw", "/stereo/right/camera_info")
         assert (left.width, right.width) == (64, 64)
 
 
 async def test_gz_camera_publishes_camera_info_beside_image():
-    eye = CAMERA.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
-    async with running_server(WALL, robot_with(sensor("camera", f"<topic>front/image</topic>{eye}"))) as (
+    camera = CAMERA.replace("</camera>", "<optical_frame_id>optical</optical_frame_id></camera>")
+    async with running_server(WALL, robot_with(sensor("camera", f"<topic>front/image</topic>{camera}"))) as (
         server,
         graph,
         _,
@@ -489,9 +489,9 @@ async def test_segmentation_camera_shows_labels_and_background():
     text = robot_with(sensor("segmentation_camera", f"<topic>seg</topic>{CAMERA}"))
     async with running_server(*world, text) as (server, graph, _):
         maps, colored = await last_messages(server, graph, "/seg/labels_map", "/seg/colored_map")
-        assert set(pixels_of(maps).reshape(-1).tolist()) == {0, 7}
-        assert pixels_of(colored)[24, 24].any()
-        assert not pixels_of(colored)[0, 0].any()
+        assert set(image_pixels(maps).reshape(-1).tolist()) == {0, 7}
+        assert image_pixels(colored)[24, 24].any()
+        assert not image_pixels(colored)[0, 0].any()
 
 
 async def test_bounding_boxes_enclose_labeled_models():
@@ -506,7 +506,7 @@ async def test_bounding_boxes_enclose_labeled_models():
         left, right = bounding_boxes["7"], bounding_boxes["9"]
         assert (left.center.position.x, left.size_x) == (pytest.approx(21.3, abs=1), pytest.approx(8.5, abs=1))
         assert (right.center.position.x, right.size_y) == (pytest.approx(42.7, abs=1), pytest.approx(8.5, abs=1))
-        assert ((pixels_of(image) == (0, 255, 0)).all(axis=-1)).sum() > 20
+        assert ((image_pixels(image) == (0, 255, 0)).all(axis=-1)).sum() > 20
 
 
 async def test_image_noise_is_reproducible_for_same_seed():
@@ -517,8 +517,8 @@ async def test_image_noise_is_reproducible_for_same_seed():
     images = []
     for _ in range(2):
         async with running_server(WALL, text) as (server, graph, _log):
-            (image,) = await last_messages(server, graph, "/eye/image_raw")
-            images.append(pixels_of(image).astype(float))
+            (image,) = await last_messages(server, graph, "/sensor/image_raw")
+            images.append(image_pixels(image).astype(float))
     assert (images[0] == images[1]).all()
     assert np.std(images[0][:, :, 0]) == pytest.approx(0.02 * 255, rel=0.2)
 
@@ -546,5 +546,5 @@ async def test_logical_camera_lists_models_in_view():
         assert image_model.name == "ahead"
         assert (image_model.pose.position.x, image_model.pose.position.y) == pytest.approx((2.0, -0.5))
         assert image.pose.position.z == pytest.approx(1.0)
-        assert image.header.frame_id == "robot/head/eye"
+        assert image.header.frame_id == "robot/head/sensor"
         assert not log

@@ -1,4 +1,7 @@
-"""The command file: the meaning of utterances with the built-in one, and the positions of mistakes in others."""
+"""The command file.
+
+The tests cover the meaning of utterances with the built-in one, and the positions of mistakes in others.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +15,7 @@ from linkwright.speech.commands.actions import Drive, Publish, Slot, fill_templa
 from linkwright.speech.commands.command_file import DEFAULT_FILE, parse_commands, read_command_file
 from linkwright.speech.commands.command_set import CommandSet
 
-UNDERSTOOD = [
+UNDERSTOOD_TEXTS = [
     ("forward", "forward", {}),
     ("Go forward!", "forward", {}),
     ("前进", "forward", {}),
@@ -51,7 +54,7 @@ UNDERSTOOD = [
     ("你看见什么", "describe_in_chinese", {}),
 ]
 
-NO_COMMAND = [
+OTHER_TEXTS = [
     "",
     "[unk]",
     "[unk] forward",
@@ -70,14 +73,14 @@ def commands() -> CommandSet:
     return read_command_file(DEFAULT_FILE)
 
 
-@pytest.mark.parametrize(("text", "intent", "values"), UNDERSTOOD)
+@pytest.mark.parametrize(("text", "intent", "values"), UNDERSTOOD_TEXTS)
 def test_text_matches_command(commands: CommandSet, text: str, intent: str, values: dict[str, object]) -> None:
     match = commands.match_command(text)
     assert match is not None
     assert (match.command.intent, match.values) == (intent, pytest.approx(values) if "angle" in values else values)
 
 
-@pytest.mark.parametrize("text", NO_COMMAND)
+@pytest.mark.parametrize("text", OTHER_TEXTS)
 def test_unknown_text_matches_no_command(commands: CommandSet, text: str) -> None:
     assert commands.match_command(text) is None
 
@@ -107,19 +110,19 @@ def test_yes_and_no_answers_are_recognized(commands: CommandSet) -> None:
     ]
 
 
-def read(text: str) -> CommandSet:
+def read_commands(text: str) -> CommandSet:
     return parse_commands(SourceText("commands.yaml", text))
 
 
 def test_action_values_are_numbers_or_slots() -> None:
     phrases = '["go {distance}", "{distance} ahead"]'
-    commands_read = read(COMMANDS.format(phrases=phrases, action='drive: {x: 0.5, distance: "{distance}"}'))
+    commands_read = read_commands(COMMANDS.format(phrases=phrases, action='drive: {x: 0.5, distance: "{distance}"}'))
     assert commands_read.commands[0].action == Drive(x=0.5, distance=Slot("distance"))
 
 
 def test_message_template_is_filled_with_slot_values() -> None:
     text = 'publish: {topic: /n, type: std_msgs/msg/String, message: {data: "{number} times"}}'
-    action = read(COMMANDS.format(phrases='"ring {number}"', action=text)).commands[0].action
+    action = read_commands(COMMANDS.format(phrases='"ring {number}"', action=text)).commands[0].action
     assert isinstance(action, Publish)
     assert fill_template(action.message, {"number": 3.0}) == {"data": "3 times"}
     assert fill_template({"a": ["{number}", 1]}, {"number": 3.0}) == {"a": [3.0, 1]}
@@ -128,7 +131,7 @@ def test_message_template_is_filled_with_slot_values() -> None:
 def test_more_specific_phrase_takes_precedence() -> None:
     text = "places: {hall: {x: 1, y: 2, names: [hall, big hall]}}\ncommands:\n"
     text += "  a: {phrases: 'go {place}', go_to: '{place}'}\n"
-    commands_read = read(text + "  b: {phrases: go big hall, stop: true}\n")
+    commands_read = read_commands(text + "  b: {phrases: go big hall, stop: true}\n")
     match = commands_read.match_command("go big hall")
     assert match is not None
     assert match.command.intent == "b"
@@ -189,7 +192,7 @@ def test_error_in_command_file_is_reported_with_position(
     text: str, code: str, line: int, column: int, message: str
 ) -> None:
     with pytest.raises(LinkwrightError) as error:
-        read(text)
+        read_commands(text)
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.span is not None
     assert (diagnostic.code, diagnostic.span.line, diagnostic.span.column) == (code, line, column)

@@ -33,8 +33,8 @@ class WhisperModel:
         assert (self.model, language, sound.dtype) == ("tiny", "en", np.float32)
         self.sounds.append(sound)
         text = self.texts.pop(0)
-        half = len(text) // 2
-        return (SimpleNamespace(text=half_text, avg_logprob=-0.1) for half_text in (text[:half], text[half:])), None
+        middle = len(text) // 2
+        return (SimpleNamespace(text=half_text, avg_logprob=-0.1) for half_text in (text[:middle], text[middle:])), None
 
 
 @pytest.fixture(params=PAGES)
@@ -58,8 +58,8 @@ def test_engine_recognizes_utterances(engine):
     results = []
     for phones in (WORDS["turn left"], "mumi", WORDS["stop"]):
         sound = say(phones, silence=0.8)
-        for at in range(0, len(sound), BLOCK):
-            results += engine.hear(sound[at : at + BLOCK])
+        for start in range(0, len(sound), BLOCK):
+            results += engine.hear(sound[start : start + BLOCK])
     assert [(result.text, result.final) for result in results] == [("turn left", True), ("", True), ("stop", True)]
     assert results[0].confidence == pytest.approx(np.exp(-0.1))
     assert all(result.start < result.end for result in results)

@@ -18,14 +18,14 @@ from tests.speech.voices import WORDS, say
 
 pocketsphinx = pytest.importorskip("pocketsphinx", reason="pocketsphinx is not installed")
 
-FRAME = 480
-SPEECH, QUIET = np.full(FRAME, 1_000, np.int16), np.zeros(FRAME, np.int16)
+FRAME_SAMPLES = 480
+SPEECH_FRAME, QUIET_FRAME = np.full(FRAME_SAMPLES, 1_000, np.int16), np.zeros(FRAME_SAMPLES, np.int16)
 
 
 class Endpointer:
     """A fake that takes loud frames for speech; one quiet frame ends it."""
 
-    frame_bytes = 2 * FRAME
+    frame_bytes = 2 * FRAME_SAMPLES
 
     def __init__(self, sample_rate):
         assert sample_rate == 16_000
@@ -102,7 +102,7 @@ def fake_decoder(monkeypatch):
     monkeypatch.setattr(Decoder, "decoders", [])
 
 
-def rejection(*arguments):
+def engine_rejection(*arguments):
     with pytest.raises(LinkwrightError) as error:
         PocketsphinxEngine(EngineOptions(*arguments))
     (diagnostic,) = error.value.diagnostics
@@ -116,8 +116,8 @@ def test_vosk_and_pocketsphinx_are_registered():
 def test_utterance_is_recognized_in_blocks_of_any_length(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go to the kitchen", "Stop")))
     assert "public <said> = go to the kitchen | stop;" in Decoder.decoders[0].grammar
-    sound = np.concatenate([QUIET, QUIET, *[SPEECH] * 5, QUIET, QUIET])
-    results = [result for at in range(0, len(sound), 700) for result in engine.hear(sound[at : at + 700])]
+    sound = np.concatenate([QUIET_FRAME, QUIET_FRAME, *[SPEECH_FRAME] * 5, QUIET_FRAME, QUIET_FRAME])
+    results = [result for start in range(0, len(sound), 700) for result in engine.hear(sound[start : start + 700])]
     assert [(result.text, result.final) for result in results] == [
         ("go to the kitchen", False),
         ("go to the kitchen", True),
@@ -130,24 +130,24 @@ def test_utterance_is_recognized_in_blocks_of_any_length(fake_decoder):
 def test_acoustic_fit_sets_confidence(fake_decoder, monkeypatch, fit, confidence):
     monkeypatch.setattr(Decoder, "fit", fit)
     engine = PocketsphinxEngine(EngineOptions(("go to",)))
-    (result,) = [*engine.hear(SPEECH), *engine.finish()]
+    (result,) = [*engine.hear(SPEECH_FRAME), *engine.finish()]
     assert (result.text, result.final) == ("go to", True)
     assert result.confidence == pytest.approx(confidence, abs=1e-3)
 
 
 def test_unknown_words_give_empty_text(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("stop",)))
-    (result,) = engine.hear(np.concatenate([SPEECH, SPEECH, QUIET]))
+    (result,) = engine.hear(np.concatenate([SPEECH_FRAME, SPEECH_FRAME, QUIET_FRAME]))
     assert (result.text, result.final) == ("", True)
 
 
 def test_finish_ends_utterance(fake_decoder):
     engine = PocketsphinxEngine(EngineOptions(("go", "stop")))
-    assert [result.text for result in engine.hear(np.concatenate([SPEECH, SPEECH[:100]]))] == ["go"]
+    assert [result.text for result in engine.hear(np.concatenate([SPEECH_FRAME, SPEECH_FRAME[:100]]))] == ["go"]
     (final_result,) = engine.finish()
     assert final_result.final
     assert list(engine.finish()) == []
-    assert [result.text for result in engine.hear(SPEECH)] == ["go"]
+    assert [result.text for result in engine.hear(SPEECH_FRAME)] == ["go"]
     engine.close()
 
 
@@ -161,29 +161,29 @@ def test_silence_and_noise_are_not_recognized_by_real_library():
 def test_finish_at_frame_end_works_with_real_library():
     engine = PocketsphinxEngine(EngineOptions(("forward", "stop")))
     sound = say(WORDS["forward"], silence=0.6)
-    loud = 480 * (int(np.flatnonzero(np.abs(sound.astype(int)) > 500)[-1]) // 480)
-    list(engine.hear(sound[:loud]))
+    speech_end = 480 * (int(np.flatnonzero(np.abs(sound.astype(int)) > 500)[-1]) // 480)
+    list(engine.hear(sound[:speech_end]))
     (result,) = engine.finish()
     assert result.final
     assert 0.0 <= result.confidence <= 1.0
 
 
 def test_words_missing_from_real_dictionary_are_reported():
-    diagnostic = rejection(("go forward", "engage the frobnicator", "前进"))
+    diagnostic = engine_rejection(("go forward", "engage the frobnicator", "前进"))
     assert diagnostic.code == "VOICE103"
     assert "'frobnicator', '前进'" in str(diagnostic.message)
 
 
 def test_unsupported_language_is_rejected():
-    assert rejection(("前进",), "zh").code == "VOICE105"
+    assert engine_rejection(("前进",), "zh").code == "VOICE105"
 
 
 def test_folder_without_model_is_rejected(tmp_path):
-    assert rejection(("stop",), "en", tmp_path).code == "VOICE104"
+    assert engine_rejection(("stop",), "en", tmp_path).code == "VOICE104"
     (tmp_path / "mdef").write_text("nothing")
     (tmp_path / "words.dict").write_text("stop S T AA P\n")
-    assert rejection(("stop",), "en", tmp_path).code == "VOICE104"
-    assert rejection(("stop",), "en", tmp_path / "nowhere").code == "VOICE104"
+    assert engine_rejection(("stop",), "en", tmp_path).code == "VOICE104"
+    assert engine_rejection(("stop",), "en", tmp_path / "nowhere").code == "VOICE104"
 
 
 @pytest.mark.parametrize(
@@ -197,7 +197,7 @@ def test_damaged_model_is_reported_without_crash(tmp_path, file_name, content):
     shutil.copytree(model / "en-us", folder)
     shutil.copy(model / "cmudict-en-us.dict", folder)
     (folder / file_name).write_bytes(content)
-    diagnostic = rejection(("stop",), "en", folder)
+    diagnostic = engine_rejection(("stop",), "en", folder)
     assert diagnostic.code == "VOICE104"
     assert str(folder) in str(diagnostic.message)
 
@@ -211,6 +211,6 @@ def test_user_model_is_loaded(tmp_path):
 
 def test_missing_pocketsphinx_is_reported(monkeypatch):
     monkeypatch.setitem(sys.modules, "pocketsphinx", None)
-    diagnostic = rejection(("stop",))
+    diagnostic = engine_rejection(("stop",))
     assert diagnostic.code == "VOICE102"
     assert diagnostic.hint == install_hint("voice")

@@ -1,4 +1,7 @@
-"""The engine vosk with a scripted fake recognizer, because tests cannot have a model of Vosk."""
+"""The engine vosk with a scripted fake recognizer.
+
+Tests cannot have a model of Vosk.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +15,8 @@ from linkwright.speech.engine import EngineOptions, Heard
 from linkwright.speech.engines.vosk_engine import MIN_CONFIDENCE, VoskEngine
 from tests.speech.engines import fake_vosk
 
-BLOCK = np.zeros(1_600, np.int16)
-ENGLISH = ("forward", "turn left", "stop", "turn left now")
+SILENT_BLOCK = np.zeros(1_600, np.int16)
+ENGLISH_WORDS = ("forward", "turn left", "stop", "turn left now")
 
 
 @pytest.fixture(autouse=True)
@@ -33,39 +36,39 @@ def model(tmp_path):
     return tmp_path / "model"
 
 
-def engine(model, phrases=ENGLISH, language="en"):
+def make_engine(model, phrases=ENGLISH_WORDS, language="en"):
     return VoskEngine(EngineOptions(phrases, language, model))
 
 
-def results_for(engine, *script):
+def recognize_script(engine, *script):
     """Return the results of as many blocks as the script has items."""
     fake_vosk.SCRIPT[:] = script
-    return [result for _ in script for result in engine.hear(BLOCK)]
+    return [result for _ in script for result in engine.hear(SILENT_BLOCK)]
 
 
-def rejection(*arguments, **options):
+def engine_rejection(*arguments, **options):
     with pytest.raises(LinkwrightError) as error:
-        engine(*arguments, **options)
+        make_engine(*arguments, **options)
     (diagnostic,) = error.value.diagnostics
     return diagnostic
 
 
 def test_grammar_has_phrases_and_unknown_token(model, vosk):
-    engine(model)
+    make_engine(model)
     (recognizer,) = vosk.MADE
-    assert recognizer.grammar == [*ENGLISH, "[unk]"]
+    assert recognizer.grammar == [*ENGLISH_WORDS, "[unk]"]
     assert recognizer.rate == 16_000
     assert vosk.LEVELS == [-1]  # quiet
 
 
 def test_phrase_has_lowest_word_confidence_and_times(model):
-    recognizer = engine(model)
-    results = results_for(recognizer, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
+    recognizer = make_engine(model)
+    results = recognize_script(recognizer, "", "", "", "", "", "", "", [("turn", 0.8), ("left", 0.95)])
     assert results == [Heard("turn left", 0.8, True, pytest.approx(0.2), pytest.approx(0.8))]
 
 
 def test_silence_gives_no_result(model):
-    assert results_for(engine(model), "", [], "") == []
+    assert recognize_script(make_engine(model), "", [], "") == []
 
 
 @pytest.mark.parametrize(
@@ -82,32 +85,32 @@ def test_silence_gives_no_result(model):
     ],
 )
 def test_unknown_speech_gives_empty_text_and_nearest_phrase(words, nearest, model):
-    (result,) = results_for(engine(model), "", words)
+    (result,) = recognize_script(make_engine(model), "", words)
     assert (result.text, result.final, result.nearest) == ("", True, nearest)
 
 
 def test_consecutive_phrases_are_separated(model):
-    results = results_for(engine(model), [("turn", 1.0), ("left", 0.9), ("now", 0.7), ("stop", 1.0)])
+    results = recognize_script(make_engine(model), [("turn", 1.0), ("left", 0.9), ("now", 0.7), ("stop", 1.0)])
     assert [(result.text, result.confidence) for result in results] == [("turn left now", 0.7), ("stop", 1.0)]
 
 
 def test_partials_are_reported_on_change_if_they_are_phrases(model):
-    recognizer = engine(model)
-    results = results_for(recognizer, "", "turn", "turn left", "turn left", "turn left now")
+    recognizer = make_engine(model)
+    results = recognize_script(recognizer, "", "turn", "turn left", "turn left", "turn left now")
     assert [(result.text, result.final) for result in results] == [("turn left", False), ("turn left now", False)]
     assert results[0].start == pytest.approx(0.2)
     assert results[0].end == pytest.approx(0.3)
-    assert [result.text for result in results_for(recognizer, [("stop", 1.0)], "stop")] == ["stop", "stop"]
+    assert [result.text for result in recognize_script(recognizer, [("stop", 1.0)], "stop")] == ["stop", "stop"]
 
 
 def test_stop_within_other_speech_is_reported_as_partial(model):
-    results = results_for(engine(model), "[unk]", "[unk] stop", [("[unk]", 1.0), ("stop", 1.0)])
+    results = recognize_script(make_engine(model), "[unk]", "[unk] stop", [("[unk]", 1.0), ("stop", 1.0)])
     assert [(result.text, result.final) for result in results] == [("stop", False), ("", True)]
 
 
 def test_finish_ends_utterance(model):
-    recognizer = engine(model)
-    results_for(recognizer, "forward")
+    recognizer = make_engine(model)
+    recognize_script(recognizer, "forward")
     assert [(result.text, result.final) for result in recognizer.finish()] == [("forward", True)]
     assert list(recognizer.finish()) == []
     assert list(recognizer.hear(np.zeros(0, np.int16))) == []
@@ -115,39 +118,39 @@ def test_finish_ends_utterance(model):
 
 def test_chinese_phrases_are_segmented_into_model_words(model, vosk, monkeypatch):
     monkeypatch.setattr(vosk, "WORDS", {"前进", "向", "左", "转", "左转", "停"})
-    recognizer = engine(model, ("前进", "向左", "向左转", "停"), "zh")
+    recognizer = make_engine(model, ("前进", "向左", "向左转", "停"), "zh")
     assert vosk.MADE[0].grammar == ["前进", "向 左", "向 左转", "停", "[unk]"]
-    results = results_for(recognizer, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
+    results = recognize_script(recognizer, [("向", 1.0), ("左", 1.0)], [("向", 1.0), ("左转", 1.0)])
     assert [result.text for result in results] == ["向左", "向左转"]
 
 
 def test_phrase_matching_ignores_case(model):
-    recognizer = engine(model, ("Turn Left",))
-    assert [result.text for result in results_for(recognizer, [("turn", 1.0), ("left", 1.0)])] == ["Turn Left"]
+    recognizer = make_engine(model, ("Turn Left",))
+    assert [result.text for result in recognize_script(recognizer, [("turn", 1.0), ("left", 1.0)])] == ["Turn Left"]
 
 
 def test_words_missing_from_model_are_reported_together(model, vosk, monkeypatch):
-    diagnostic = rejection(model, ("forward", "engage hyperdrive", "stop", "hyperdrive off"))
+    diagnostic = engine_rejection(model, ("forward", "engage hyperdrive", "stop", "hyperdrive off"))
     assert diagnostic.code == "VOICE103"
     assert "'engage', 'hyperdrive', 'off'" in str(diagnostic.message)
     monkeypatch.setattr(vosk, "WORDS", {"向"})
-    assert "'向龘'" in str(rejection(model, ("向龘",), "zh").message)
+    assert "'向龘'" in str(engine_rejection(model, ("向龘",), "zh").message)
 
 
 def test_default_model_of_language_is_used(tmp_path, monkeypatch):
-    diagnostic = rejection(None, language="zh-CN")
+    diagnostic = engine_rejection(None, language="zh-CN")
     assert diagnostic.code == "MODEL102"
     assert "linkwright models get vosk-zh" in str(diagnostic.hint)
     folder = tmp_path / "data" / "linkwright" / "models" / "vosk-model-small-en-us-0.15" / "am"
     folder.mkdir(parents=True)
     (folder / "final.mdl").write_bytes(b"model")
-    assert engine(None, language="en-US")
+    assert make_engine(None, language="en-US")
 
 
 def test_language_without_default_model_is_rejected(model):
-    diagnostic = rejection(None, language="de")
+    diagnostic = engine_rejection(None, language="de")
     assert diagnostic.code == "VOICE105"
-    assert engine(model, language="de")
+    assert make_engine(model, language="de")
 
 
 @pytest.mark.parametrize("content", [None, b"broken"])
@@ -155,13 +158,13 @@ def test_folder_without_model_is_rejected(content, tmp_path):
     if content is not None:
         (tmp_path / "am").mkdir()
         (tmp_path / "am" / "final.mdl").write_bytes(content)
-    diagnostic = rejection(tmp_path)
+    diagnostic = engine_rejection(tmp_path)
     assert diagnostic.code == "VOICE104"
     assert str(tmp_path) in str(diagnostic.message)
 
 
 def test_missing_vosk_is_reported(model, monkeypatch):
     monkeypatch.setitem(sys.modules, "vosk", None)
-    diagnostic = rejection(model)
+    diagnostic = engine_rejection(model)
     assert diagnostic.code == "VOICE102"
     assert diagnostic.hint == install_hint("voice")

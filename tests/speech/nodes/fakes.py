@@ -16,12 +16,12 @@ from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
 from linkwright.speech.nodes.audio_messages import AUDIO_STAMPED, audio_stamped
 from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.speech.sound.samples import BLOCK
-from tests.nodes.stage import Stage
+from tests.nodes.harness import NodeHarness
 from tests.waiting import eventually
 
 STRING, BOOL = get_message("std_msgs/msg/String"), get_message("std_msgs/msg/Bool")
 TWIST = get_message("geometry_msgs/msg/Twist")
-ENTRY = extensions.EntryPoint("told", f"{__name__}:ScriptedEngine", "tests")
+ENGINE_ENTRY = extensions.EntryPoint("told", f"{__name__}:ScriptedEngine", "tests")
 
 
 class ScriptedEngine(SpeechEngine):
@@ -56,31 +56,33 @@ class ScriptedEngine(SpeechEngine):
         return tuple(self.results_at_end)
 
 
-def final(text: str, confidence: float = 1.0, start: float = 0.0, nearest: str = "") -> Heard:
+def final_result(text: str, confidence: float = 1.0, start: float = 0.0, nearest: str = "") -> Heard:
     return Heard(text, confidence, True, start, start + 1.0, nearest)
 
 
-def partial(text: str, start: float = 0.0) -> Heard:
+def partial_result(text: str, start: float = 0.0) -> Heard:
     return Heard(text, 0.0, False, start, start + 0.5)
 
 
 class CommanderHarness:
     """A voice_commander with publishers of its inputs, and the messages that it publishes."""
 
-    def __init__(self, stage: Stage, **parameters: Any) -> None:
-        self.stage = stage
+    def __init__(self, harness: NodeHarness, **parameters: Any) -> None:
+        self.harness = harness
         self.velocities: list[Any] = []
         self.texts_by_topic: dict[str, list[str]] = {}
-        node = stage.node
+        node = harness.node
         node.create_subscription(TWIST, "/cmd_vel", self.velocities.append, 100)
         for name in ("text", "partial_text", "command", "response"):
             texts = self.texts_by_topic[name] = []
-            node.create_subscription(STRING, f"/voice/{name}", lambda message, to=texts: to.append(message.data), 100)
+            node.create_subscription(
+                STRING, f"/voice/{name}", lambda message, target=texts: target.append(message.data), 100
+            )
         self.text = node.create_publisher(STRING, "/voice/text_input", 10)
         self.button = node.create_publisher(BOOL, "/voice/listen", 10)
-        self.microphone_node = stage.graph.create_node("mouth")
+        self.microphone_node = harness.graph.create_node("mouth")
         self.sound = self.microphone_node.create_publisher(AUDIO_STAMPED, "/audio/audio_stamped", 10)
-        self.commander = VoiceCommander(stage.graph, NodeOptions(parameters={"engine": "", **parameters}))
+        self.commander = VoiceCommander(harness.graph, NodeOptions(parameters={"engine": "", **parameters}))
 
     @property
     def speed(self) -> tuple[float, float, float]:
@@ -91,25 +93,27 @@ class CommanderHarness:
     async def send_text(self, text: str) -> str:
         """Publish a command as text, and return the last response."""
         self.text.publish(STRING(data=text))
-        await self.stage.graph.settle()
+        await self.harness.graph.settle()
         return self.texts_by_topic["response"][-1]
 
     async def hold(self, is_pressed: bool) -> None:
         self.button.publish(BOOL(data=is_pressed))
-        await self.stage.graph.settle()
+        await self.harness.graph.settle()
 
     async def finish_results(self) -> None:
         """Press the button once more, and wait until all results are processed."""
-        ScriptedEngine.results_at_end[:] = [partial("the end")]
+        ScriptedEngine.results_at_end[:] = [partial_result("the end")]
         count = len(self.texts_by_topic["partial_text"])
         await self.hold(True)
         await self.hold(False)
         await eventually(lambda: len(self.texts_by_topic["partial_text"]) > count)
         ScriptedEngine.results_at_end.clear()
-        await self.stage.graph.settle()
+        await self.harness.graph.settle()
 
     async def process(self, *results: Heard, stamp: float | None = None) -> None:
-        """Let the engine return some results for a block of sound, and wait until they are processed in its thread.
+        """Let the engine return some results for a block of sound.
+
+        Wait until they are processed in its thread.
 
         Args:
             results: the engine's results for a tenth of a second of sound.
@@ -118,12 +122,12 @@ class CommanderHarness:
         ScriptedEngine.results_by_value[len(ScriptedEngine.results_by_value) + 1] = list(results)
         block = np.full(BLOCK, len(ScriptedEngine.results_by_value), np.int16)
         count_before = len(self.texts_by_topic["text"]) + len(self.texts_by_topic["partial_text"])
-        sound_time = self.stage.node.get_clock().now() if stamp is None else Time(nanoseconds=round(stamp * 1e9))
+        sound_time = self.harness.node.get_clock().now() if stamp is None else Time(nanoseconds=round(stamp * 1e9))
         self.sound.publish(audio_stamped(block.tobytes(), sound_time.to_msg()))
-        await self.stage.graph.settle()
+        await self.harness.graph.settle()
         if results:
             expected_count = len(results) + count_before
             await eventually(
                 lambda: len(self.texts_by_topic["text"]) + len(self.texts_by_topic["partial_text"]) >= expected_count
             )
-        await self.stage.graph.settle()
+        await self.harness.graph.settle()

@@ -37,43 +37,45 @@ def sounddevice(monkeypatch):
     assert fake_sounddevice.open_streams == []
 
 
-def start(test, node_type=AudioCapture, namespace="/", **parameters):
+def start_capture(test, node_type=AudioCapture, namespace="/", **parameters):
     return node_type(test.graph, NodeOptions(namespace=namespace, parameters=parameters))
 
 
-def samples(messages):
+def received_samples(messages):
     return np.concatenate([np.frombuffer(bytes(message), "<i2") for message in messages])
 
 
 async def test_file_is_published_at_clock_rate(test, wav):
-    start(test, file=wav)
+    start_capture(test, file=wav)
     await test.advance(1.0)  # sound without subscriptions is not stored
     info, audio, audio_stamped = (test.record(f"/{name}") for name in ("audio_info", "audio", "audio_stamped"))
     await test.advance(0.5)
     assert len(audio) == len(audio_stamped) == 5
-    assert np.array_equal(samples([message.data for message in audio])[:4_000], TONE)
-    assert not samples([message.data for message in audio])[4_000:].any()  # silence follows
-    assert np.array_equal(samples([message.audio.data for message in audio_stamped])[:4_000], TONE)
+    assert np.array_equal(received_samples([message.data for message in audio])[:4_000], TONE)
+    assert not received_samples([message.data for message in audio])[4_000:].any()  # silence follows
+    assert np.array_equal(received_samples([message.audio.data for message in audio_stamped])[:4_000], TONE)
     assert len({(message.header.stamp.sec, message.header.stamp.nanosec) for message in audio_stamped}) == 5
     assert (info.last.channels, info.last.sample_rate, info.last.sample_format) == (1, 16_000, "S16LE")
 
 
 async def test_file_is_repeated_with_loop(test, wav):
-    start(test, RobotAudioCapture, file=wav, loop=True, chunk=2_000)
+    start_capture(test, RobotAudioCapture, file=wav, loop=True, chunk=2_000)
     recording = test.record("/audio/audio")
     await test.advance(0.6)
-    assert np.array_equal(samples([message.data for message in recording])[:8_000], np.concatenate((TONE, TONE)))
+    assert np.array_equal(
+        received_samples([message.data for message in recording])[:8_000], np.concatenate((TONE, TONE))
+    )
 
 
 async def test_topics_are_in_node_namespace(test, wav):
-    start(test, RobotAudioCapture, namespace="/ears", file=wav)
+    start_capture(test, RobotAudioCapture, namespace="/ears", file=wav)
     recording = test.record("/ears/audio_stamped")
     await test.advance(0.2)
     assert len(recording) == 2
 
 
 async def test_unsupported_audio_parameters_are_reported(test, wav):
-    start(test, file=wav, format="mp3", sample_rate=44_100)
+    start_capture(test, file=wav, format="mp3", sample_rate=44_100)
     await test.settle()
     warnings = [record.text for record in test.log if record.level is LogLevel.WARN]
     assert warnings == [
@@ -83,7 +85,7 @@ async def test_unsupported_audio_parameters_are_reported(test, wav):
 
 
 async def test_microphone_is_published(test, sounddevice):
-    node = start(test)
+    node = start_capture(test)
     recording = test.record("/audio_stamped")
     await test.settle()
     (stream,) = sounddevice.open_streams
@@ -91,20 +93,20 @@ async def test_microphone_is_published(test, sounddevice):
     for first in (0, 1_600):
         stream.deliver(TONE[first : first + 1_600])
     await test.settle()
-    assert np.array_equal(samples([message.audio.data for message in recording]), TONE[:3_200])
+    assert np.array_equal(received_samples([message.audio.data for message in recording]), TONE[:3_200])
     node.close()
 
 
 async def test_microphone_with_other_rate_is_resampled(test, sounddevice, monkeypatch):
     monkeypatch.setattr(sounddevice, "RATES", {48_000})
-    node = start(test, device="microphone")
+    node = start_capture(test, device="microphone")
     recording = test.record("/audio")
     await test.settle()
     (stream,) = sounddevice.open_streams
     assert (stream.rate, stream.block) == (48_000, 4_800)
     stream.deliver(np.full(9_600, 1_000))
     await test.settle()
-    sound = samples([message.data for message in recording])
+    sound = received_samples([message.data for message in recording])
     assert 3_100 < len(sound) <= 3_200
     assert np.abs(sound[200:-200] - 1_000).max() <= 1
     node.close()
@@ -116,7 +118,7 @@ async def test_microphone_with_other_rate_is_resampled(test, sounddevice, monkey
 )
 async def test_invalid_parameters_are_rejected(parameters, code, test, sounddevice):
     with pytest.raises(LinkwrightError) as error:
-        start(test, **parameters)
+        start_capture(test, **parameters)
     assert error.value.diagnostics[0].code == code
 
 
@@ -125,7 +127,7 @@ async def test_missing_portaudio_suggests_browser_microphone(test, tmp_path, mon
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "sounddevice", raising=False)
     with pytest.raises(LinkwrightError) as error:
-        start(test)
+        start_capture(test)
     (diagnostic,) = error.value.diagnostics
     assert diagnostic.code == "VOICE412"
     assert "PortAudio library not found" in str(diagnostic.message)

@@ -12,7 +12,7 @@ from linkwright.speech.nodes.audio_messages import AudioFormat, AudioReader, aud
 TONE = np.sin(np.arange(1_600) * 2 * np.pi * 440 / 16_000) * 0.5
 
 
-def encoded(values, sample_format):
+def encode_samples(values, sample_format):
     """Return values with full scale 1 in one of GStreamer's formats."""
     number_kind, order = sample_format[0], ">" if sample_format.endswith("BE") else "<"
     bits = int(sample_format[1:].rstrip("LBE"))
@@ -31,21 +31,21 @@ WHOLE = [f"{kind}{bits}{order}" for kind in "SU" for bits in (16, 24, 32) for or
 
 @pytest.mark.parametrize("name", ["S8", "U8", "F32LE", "F32BE", "F64LE", "F64BE", *WHOLE])
 def test_sample_formats_are_converted(name):
-    samples = AudioReader(AudioFormat(sample_format=name)).read(encoded(TONE, name))
+    samples = AudioReader(AudioFormat(sample_format=name)).read(encode_samples(TONE, name))
     assert samples.dtype == np.int16
     assert np.abs(samples - TONE * 32_768).max() <= (256 if name.endswith("8") else 1)
 
 
 def test_channels_are_averaged():
     stereo = np.column_stack((TONE, -TONE / 2)).reshape(-1)
-    samples = AudioReader(AudioFormat(channels=2)).read(encoded(stereo, "S16LE"))
+    samples = AudioReader(AudioFormat(channels=2)).read(encode_samples(stereo, "S16LE"))
     assert np.abs(samples - TONE / 4 * 32_768).max() <= 1
 
 
 @pytest.mark.parametrize("rate", [8_000, 44_100, 48_000])
 def test_sample_rates_are_converted_to_engine_rate(rate):
     tone = np.sin(np.arange(rate) * 2 * np.pi * 440 / rate) * 0.5
-    samples = AudioReader(AudioFormat(rate=rate)).read(encoded(tone, "S16LE"))
+    samples = AudioReader(AudioFormat(rate=rate)).read(encode_samples(tone, "S16LE"))
     expected = np.sin(np.arange(len(samples)) * 2 * np.pi * 440 / 16_000) * 0.5 * 32_768
     assert 15_900 < len(samples) <= 16_000
     assert np.abs(samples - expected)[200:-200].max() < 100
@@ -53,7 +53,7 @@ def test_sample_rates_are_converted_to_engine_rate(rate):
 
 @pytest.mark.parametrize("channels", [1, 2])
 def test_samples_can_be_split_between_messages(channels):
-    data = encoded(np.column_stack((TONE,) * channels).reshape(-1), "S16LE")
+    data = encode_samples(np.column_stack((TONE,) * channels).reshape(-1), "S16LE")
     reader = AudioReader(AudioFormat(channels=channels))
     pieces = [reader.read(data[offset : offset + 33]) for offset in range(0, len(data), 33)]
     assert np.array_equal(np.concatenate(pieces), AudioReader(AudioFormat(channels=channels)).read(data))
@@ -61,7 +61,7 @@ def test_samples_can_be_split_between_messages(channels):
 
 
 def test_published_audio_messages_are_read():
-    data = encoded(TONE, "S16LE")
+    data = encode_samples(TONE, "S16LE")
     reader = AudioReader(AudioFormat.of(audio_info(AudioFormat())))
     message = audio_stamped(data, Time(sec=3))
     assert message.header.stamp.sec == 3

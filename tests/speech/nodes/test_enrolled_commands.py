@@ -13,7 +13,7 @@ from tests.speech.nodes.fakes import CommanderHarness
 from tests.speech.voices import WORDS, say
 from tests.waiting import eventually
 
-AFTER = 0.8
+PAUSE_S = 0.8
 """The seconds of silence before and after a word."""
 
 
@@ -30,31 +30,31 @@ def words_file(tmp_path_factory):
 
 
 @pytest.fixture
-async def robot(stage, words_file):
-    talk = CommanderHarness(stage, engine="enrolled", words_file=str(words_file), open_listening=True)
-    yield talk
-    talk.commander.close()
-    await stage.graph.settle()
+async def robot(harness, words_file):
+    commander_harness = CommanderHarness(harness, engine="enrolled", words_file=str(words_file), open_listening=True)
+    yield commander_harness
+    commander_harness.commander.close()
+    await harness.graph.settle()
 
 
-async def play(robot, samples):
+async def publish_sound(robot, samples):
     """Publish sound in blocks of 100 ms, as a microphone does."""
-    for at in range(0, len(samples), BLOCK):
+    for start in range(0, len(samples), BLOCK):
         robot.sound.publish(
-            audio_stamped(samples[at : at + BLOCK].tobytes(), robot.stage.node.get_clock().now().to_msg())
+            audio_stamped(samples[start : start + BLOCK].tobytes(), robot.harness.node.get_clock().now().to_msg())
         )
-        await robot.stage.graph.settle()
+        await robot.harness.graph.settle()
 
 
 async def wait_for_commands(robot, *commands):
     """Wait until exactly these commands were executed; the engine works in its own thread."""
     await eventually(lambda: len(robot.texts_by_topic["command"]) >= len(commands), what=lambda: robot.texts_by_topic)
     assert robot.texts_by_topic["command"] == list(commands)
-    await robot.stage.graph.settle()
+    await robot.harness.graph.settle()
 
 
 def spoken_word(name):
-    return say(WORDS[name], speed=1.04, pitch=122, level=2000, silence=AFTER, seed=21)
+    return say(WORDS[name], speed=1.04, pitch=122, level=2000, silence=PAUSE_S, seed=21)
 
 
 @pytest.mark.parametrize(
@@ -67,32 +67,32 @@ def spoken_word(name):
     ],
 )
 async def test_enrolled_word_drives_robot(robot, name, speed):
-    await play(robot, spoken_word(name))
+    await publish_sound(robot, spoken_word(name))
     await eventually(lambda: robot.velocities)
     assert robot.speed == speed
     assert robot.texts_by_topic["text"] == [name]
 
 
 async def test_stop_is_executed_within_300_ms_of_word(robot):
-    await play(robot, spoken_word("forward"))
+    await publish_sound(robot, spoken_word("forward"))
     await wait_for_commands(robot, "forward")
     sound = spoken_word("stop")
-    end = len(sound) - int(AFTER * RATE)
-    await play(robot, sound[: end + int(0.3 * RATE)])  # the word is recognized before its silence ends
+    end = len(sound) - int(PAUSE_S * RATE)
+    await publish_sound(robot, sound[: end + int(0.3 * RATE)])  # the word is recognized before its silence ends
     await wait_for_commands(robot, "forward", "stop")
     assert robot.speed == (0.0, 0.0, 0.0)
 
 
 async def test_noise_and_unknown_words_do_not_drive_robot(robot):
     noise = 300 * np.random.default_rng(22).normal(size=2 * RATE)
-    await play(robot, np.concatenate((noise.astype(np.int16), np.zeros(RATE, np.int16))))
+    await publish_sound(robot, np.concatenate((noise.astype(np.int16), np.zeros(RATE, np.int16))))
     for phones in ("mumi", "se.pifu", "moramifu"):
         before = len(robot.texts_by_topic["text"])
-        await play(robot, say(phones, silence=AFTER, seed=23))
+        await publish_sound(robot, say(phones, silence=PAUSE_S, seed=23))
         await eventually(
             lambda count=before: len(robot.texts_by_topic["text"]) > count, what=lambda: robot.texts_by_topic
         )
     # Commands are executed in the order of the sound, so the earlier words were not commands.
-    await play(robot, spoken_word("back"))
+    await publish_sound(robot, spoken_word("back"))
     await wait_for_commands(robot, "backward")
     assert set(robot.texts_by_topic["text"]) == {"", "back"}

@@ -258,7 +258,7 @@ async def test_enrolling_proposal_is_withdrawn_with_its_node():
 
 
 @pytest.mark.parametrize(
-    "bad",
+    "invalid_frame",
     [
         b"",
         b"\5",
@@ -269,5 +269,5 @@ async def test_enrolling_proposal_is_withdrawn_with_its_node():
         frame(BLOCK, lost_samples=2**32 - 1),
     ],
 )
-def test_other_binary_frames_are_not_sound(bad):
-    assert unpack_sound(bad) is None
+def test_other_binary_frames_are_not_sound(invalid_frame):
+    assert unpack_sound(invalid_frame) is None

@@ -38,8 +38,8 @@ async def open_pages() -> AsyncIterator[tuple[Client, Client]]:
 
 async def record(client: Client, name: str, samples: np.ndarray, *, has_gaps: bool = False) -> dict:
     await client.send("begin_take", name=name)
-    for at in range(0, samples.size, 1600):
-        await client.socket.send_bytes(frame(samples[at : at + 1600]))
+    for start in range(0, samples.size, 1600):
+        await client.socket.send_bytes(frame(samples[start : start + 1600]))
     await client.send("end_take", has_gaps=has_gaps)
     return await client.until("take_judged", name=name)
 

@@ -16,7 +16,7 @@ DRUMS = """<model name="drums"><static>true</static><link name="link">
     <geometry><cylinder><radius>0.2</radius><length>0.02</length></cylinder></geometry></visual>
   <visual name="green"><pose>-2 1 0.4 0 0 0</pose>
     <geometry><cylinder><radius>0.2</radius><length>0.8</length></cylinder></geometry></visual></link></model>"""
-SIGN = """<model name="sign"><link name="link">
+SIGN_MODEL = """<model name="sign"><link name="link">
   <visual name="pole"><pose>0 0 0.8 0 0 0</pose>
     <geometry><cylinder><radius>0.1</radius><length>1.6</length></cylinder></geometry></visual>
   <visual name="plate"><pose>-0.15 0 1.6 0 0 0</pose>
@@ -32,7 +32,7 @@ def world_text(*models: str) -> str:
     return f'<sdf version="1.7"><world name="yard">{"".join(models)}</world></sdf>'
 
 
-def yard(folder: Path) -> Path:
+def write_yard(folder: Path) -> Path:
     """Write a world with two balls, a crate, drums, a wall and a ground."""
     path = folder / "yard.world"
     balls = BALL.format(name="red_ball", pose="1 0 0.2 0 0 0"), BALL.format(name="ball_2", pose="1 1 0.2 0 0 0")

@@ -7,7 +7,7 @@ import pytest
 from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.datasets.classes import ClassRules, default_class, default_rules, find_objects, read_classes
 from tests.simulation.worlds import load_simulation
-from tests.vision.datasets.places import yard
+from tests.vision.datasets.places import write_yard
 
 
 @pytest.mark.parametrize(
@@ -20,7 +20,7 @@ def test_default_class_omits_numbers_and_colors(name, expected):
 
 
 def test_walls_and_ground_are_not_objects(tmp_path):
-    simulation = load_simulation(yard(tmp_path))
+    simulation = load_simulation(write_yard(tmp_path))
     rules = default_rules([simulation])
     assert list(rules.patterns) == ["ball", "crate", "drums"]
     objects = find_objects(simulation, rules)
@@ -33,7 +33,7 @@ def test_walls_and_ground_are_not_objects(tmp_path):
 
 
 def test_touching_visuals_are_one_object(tmp_path):
-    simulation = load_simulation(yard(tmp_path))
+    simulation = load_simulation(write_yard(tmp_path))
     objects = find_objects(simulation, ClassRules({"drum": ("drums::*",), "ball": ("*ball*",)}))
     assert [(scene_object.name, scene_object.label, len(scene_object.geoms)) for scene_object in objects] == [
         ("red_ball", 1, 1),

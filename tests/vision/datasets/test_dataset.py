@@ -19,53 +19,53 @@ from linkwright.vision.datasets.labels import box_of
 from linkwright.vision.datasets.options import SPLITS, Options
 from linkwright.vision.datasets.rendering import DatasetInput, DatasetRenderer, split_of
 from tests.vision.datasets.masks import color_mask
-from tests.vision.datasets.places import BALL, GROUND, WALL, world_text, yard
+from tests.vision.datasets.places import BALL, GROUND, WALL, world_text, write_yard
 
 OPTIONS = Options(width=160, height=120, seed=3, copies=2, distractors=4)
 
 
 @pytest.fixture
 def source(tmp_path):
-    return DatasetInput((str(yard(tmp_path)),), (), None, OPTIONS)
+    return DatasetInput((str(write_yard(tmp_path)),), (), None, OPTIONS)
 
 
-def make(source, path, images, **options):
-    given = {
+def make_small_dataset(source, path, images, **options):
+    parameters = {
         "options": source.options,
         "models": source.added_models,
         "classes": source.classes,
         "workers": 1,
         **options,
     }
-    return make_dataset(source.worlds, path, images, **given)
+    return make_dataset(source.worlds, path, images, **parameters)
 
 
 def test_dataset_requires_only_world_and_folder(tmp_path):
-    dataset = make_dataset(yard(tmp_path), str(tmp_path / "made"), 2)
+    dataset = make_dataset(write_yard(tmp_path), str(tmp_path / "made"), 2)
     assert (dataset.added, dataset.folder.count) == (2, 2)
     assert {"annotations", "labels"} <= {path.name for path in (tmp_path / "made").iterdir()}
 
 
-def files(folder: Path) -> dict[str, bytes]:
+def file_contents(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-def code_of(caught) -> str:
+def diagnostic_code(caught) -> str:
     return caught.value.diagnostics[0].code
 
 
-def lists_of(folder: Path):
+def split_lists(folder: Path):
     return {split: json.loads((folder / f"annotations/instances_{split}.json").read_text()) for split in SPLITS}
 
 
-LIT = """<scene><ambient>0.2 0.2 0.2 1</ambient><background>0 1 1 1</background></scene>
+BRIGHT_SCENE = """<scene><ambient>0.2 0.2 0.2 1</ambient><background>0 1 1 1</background></scene>
 <light name="red" type="directional"><pose>0 0 8 0 0 0</pose><diffuse>1 0 0 1</diffuse><specular>0 0 0 1</specular>
   <direction>0 0.3 -1</direction></light>"""
 
 
 def test_lights_option_keeps_lights_and_background(tmp_path):
     path = tmp_path / "lit.world"
-    path.write_text(world_text(LIT, GROUND, BALL.format(name="ball", pose="1 0 0.2 0 0 0")))
+    path.write_text(world_text(BRIGHT_SCENE, GROUND, BALL.format(name="ball", pose="1 0 0.2 0 0 0")))
     pixels = {}
     for properties in ((), ("lights",)):
         source = DatasetInput(
@@ -92,7 +92,7 @@ def test_lights_option_keeps_lights_and_background(tmp_path):
 
 def test_all_label_formats_agree(source, tmp_path):
     folder = tmp_path / "set"
-    make(source, folder, 20)
+    make_small_dataset(source, folder, 20)
     assert yaml.safe_load((folder / "data.yaml").read_text()) == {
         "train": "images/train",
         "val": "images/val",
@@ -100,20 +100,20 @@ def test_all_label_formats_agree(source, tmp_path):
         "names": {0: "ball", 1: "crate", 2: "drums"},
     }
     objects = 0
-    for split, text in lists_of(folder).items():
+    for split, text in split_lists(folder).items():
         assert [category["name"] for category in text["categories"]] == ["ball", "crate", "drums"]
         assert len({annotation["id"] for annotation in text["annotations"]}) == len(text["annotations"])
         for image in text["images"]:
             with Image.open(folder / "images" / split / image["file_name"]) as opened:
                 assert opened.size == (160, 120) == (image["width"], image["height"])
             lines = (folder / "labels" / split / f"{Path(image['file_name']).stem}.txt").read_text().splitlines()
-            known = [
+            expected_labels = [
                 annotation
                 for annotation in text["annotations"]
                 if annotation["image_id"] == image["id"] and not annotation["iscrowd"]
             ]
-            assert len(lines) == len(known)
-            for line, annotation in zip(lines, known, strict=True):
+            assert len(lines) == len(expected_labels)
+            for line, annotation in zip(lines, expected_labels, strict=True):
                 number, *shares = line.split()
                 x, y, width, height = np.array(shares, float) * [160, 120, 160, 120]
                 assert int(number) + 1 == annotation["category_id"]
@@ -132,11 +132,11 @@ def test_all_label_formats_agree(source, tmp_path):
 
 
 def test_same_seed_gives_identical_files(source, tmp_path):
-    make(source, tmp_path / "a", 4)
-    make(source, tmp_path / "b", 4)
-    assert files(tmp_path / "a") == files(tmp_path / "b")
-    make(replace(source, options=replace(OPTIONS, seed=4)), tmp_path / "c", 4)
-    assert files(tmp_path / "a") != files(tmp_path / "c")
+    make_small_dataset(source, tmp_path / "a", 4)
+    make_small_dataset(source, tmp_path / "b", 4)
+    assert file_contents(tmp_path / "a") == file_contents(tmp_path / "b")
+    make_small_dataset(replace(source, options=replace(OPTIONS, seed=4)), tmp_path / "c", 4)
+    assert file_contents(tmp_path / "a") != file_contents(tmp_path / "c")
 
 
 @pytest.mark.parametrize("way", ["OpenGL", "Embree", "MuJoCo"])
@@ -159,9 +159,9 @@ def test_image_does_not_depend_on_previous_images(source, monkeypatch, way):
 
 
 def test_worker_processes_give_identical_files(source, tmp_path):
-    make(source, tmp_path / "a", 52)
-    make(source, tmp_path / "b", 52, workers=2)
-    assert files(tmp_path / "a") == files(tmp_path / "b")
+    make_small_dataset(source, tmp_path / "a", 52)
+    make_small_dataset(source, tmp_path / "b", 52, workers=2)
+    assert file_contents(tmp_path / "a") == file_contents(tmp_path / "b")
 
 
 def test_splits_have_requested_shares():
@@ -174,15 +174,15 @@ def test_splits_have_requested_shares():
 
 def test_append_adds_images(source, tmp_path):
     folder = tmp_path / "set"
-    make(source, folder, 3)
-    dataset = make(source, folder, 4, append=True)
+    make_small_dataset(source, folder, 3)
+    dataset = make_small_dataset(source, folder, 4, append=True)
     assert (dataset.added, dataset.folder.count) == (4, 7)
-    numbers = sorted(image["id"] for text in lists_of(folder).values() for image in text["images"])
+    numbers = sorted(image["id"] for text in split_lists(folder).values() for image in text["images"])
     assert numbers == list(range(7))
-    make(source, tmp_path / "whole", 7)
+    make_small_dataset(source, tmp_path / "whole", 7)
     assert {
-        name: data for name, data in files(tmp_path / "whole").items() if name.startswith(("images", "labels"))
-    } == {name: data for name, data in files(folder).items() if name.startswith(("images", "labels"))}
+        name: data for name, data in file_contents(tmp_path / "whole").items() if name.startswith(("images", "labels"))
+    } == {name: data for name, data in file_contents(folder).items() if name.startswith(("images", "labels"))}
 
 
 def test_other_files_are_not_overwritten(source, tmp_path):
@@ -191,43 +191,43 @@ def test_other_files_are_not_overwritten(source, tmp_path):
     (folder / "diary.txt").write_text("dear diary")
     for words in ({}, {"force": True}):
         with pytest.raises(LinkwrightError) as caught:
-            make(source, folder, 1, **words)
-        assert code_of(caught) == "VISION205"
+            make_small_dataset(source, folder, 1, **words)
+        assert diagnostic_code(caught) == "VISION205"
     with pytest.raises(LinkwrightError) as caught:
-        make(source, folder, 1, append=True)
-    assert code_of(caught) == "VISION206"
-    assert files(folder) == {"diary.txt": b"dear diary"}
+        make_small_dataset(source, folder, 1, append=True)
+    assert diagnostic_code(caught) == "VISION206"
+    assert file_contents(folder) == {"diary.txt": b"dear diary"}
 
 
 def test_dataset_is_replaced_only_on_request(source, tmp_path):
     folder = tmp_path / "set"
-    make(source, folder, 3)
+    make_small_dataset(source, folder, 3)
     with pytest.raises(LinkwrightError) as caught:
-        make(source, folder, 1)
-    assert code_of(caught) == "VISION205"
+        make_small_dataset(source, folder, 1)
+    assert diagnostic_code(caught) == "VISION205"
     (folder / "notes.txt").write_text("kept")
-    assert make(source, folder, 1, force=True).folder.count == 1
-    assert len([name for name in files(folder) if name.startswith("images")]) == 1
+    assert make_small_dataset(source, folder, 1, force=True).folder.count == 1
+    assert len([name for name in file_contents(folder) if name.startswith("images")]) == 1
     assert (folder / "notes.txt").read_text() == "kept"
 
 
 def test_append_with_other_classes_is_rejected(source, tmp_path):
     folder = tmp_path / "set"
-    make(source, folder, 1)
+    make_small_dataset(source, folder, 1)
     (tmp_path / "classes.yaml").write_text("ball: '*ball*'\n")
     with pytest.raises(LinkwrightError) as caught:
-        make(replace(source, classes=str(tmp_path / "classes.yaml")), folder, 1, append=True)
-    assert code_of(caught) == "VISION206"
+        make_small_dataset(replace(source, classes=str(tmp_path / "classes.yaml")), folder, 1, append=True)
+    assert diagnostic_code(caught) == "VISION206"
 
 
 def test_append_to_dataset_of_other_version_is_rejected(source, tmp_path):
     folder = tmp_path / "set"
-    make(source, folder, 1)
+    make_small_dataset(source, folder, 1)
     card = folder / "dataset.json"
     card.write_text(card.read_text().replace('"form": 2', '"form": 1'))
     with pytest.raises(LinkwrightError) as caught:
-        make(source, folder, 1, append=True)
-    assert code_of(caught) == "VISION206"
+        make_small_dataset(source, folder, 1, append=True)
+    assert diagnostic_code(caught) == "VISION206"
 
 
 def test_interrupted_dataset_is_consistent(source, tmp_path):
@@ -237,12 +237,12 @@ def test_interrupted_dataset_is_consistent(source, tmp_path):
         if count == 3:
             raise KeyboardInterrupt
 
-    dataset = make(source, folder, 9, progress=stop)
+    dataset = make_small_dataset(source, folder, 9, progress=stop)
     assert dataset.was_interrupted
     assert dataset.folder.count == 3
     assert json.loads((folder / "dataset.json").read_text())["images"] == 3
-    assert len([name for name in files(folder) if name.startswith("images")]) == 3
-    assert make(source, folder, 2, append=True).folder.count == 5
+    assert len([name for name in file_contents(folder) if name.startswith("images")]) == 3
+    assert make_small_dataset(source, folder, 2, append=True).folder.count == 5
 
 
 def test_world_without_objects_is_an_error(tmp_path):
@@ -250,7 +250,7 @@ def test_world_without_objects_is_an_error(tmp_path):
     path.write_text(world_text(GROUND, WALL))
     with pytest.raises(LinkwrightError) as caught:
         DatasetRenderer(DatasetInput((str(path),), (), None, OPTIONS))
-    assert code_of(caught) == "VISION202"
+    assert diagnostic_code(caught) == "VISION202"
 
 
 def test_objects_of_one_world_are_added_to_others(source, tmp_path):
@@ -270,4 +270,4 @@ def test_added_object_without_visuals_is_an_error(source, tmp_path):
     path.write_text('<robot name="bare"><link name="base"/></robot>')
     with pytest.raises(LinkwrightError) as caught:
         DatasetRenderer(replace(source, added_models=(str(path),)))
-    assert code_of(caught) == "VISION203"
+    assert diagnostic_code(caught) == "VISION203"

@@ -16,27 +16,27 @@ from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.randomized_world import RandomizedWorld
 from tests.simulation.worlds import load_simulation
 from tests.vision.datasets.masks import color_mask
-from tests.vision.datasets.places import SIGN, world_text, yard
+from tests.vision.datasets.places import SIGN_MODEL, world_text, write_yard
 
 OPTIONS = Options(width=320, height=240)
 
 
 @pytest.fixture
 def world(tmp_path):
-    simulation = load_simulation(yard(tmp_path))
+    simulation = load_simulation(write_yard(tmp_path))
     world = RandomizedWorld(simulation, find_objects(simulation, default_rules([simulation])), 2, 4)
     world.set_patterns(np.random.default_rng(0))
     yield world
     world.close()
 
 
-def shots(world, count):
+def take_shots(world, count):
     for number in range(count):
         world.reset()
         yield arrange(world, OPTIONS, np.random.default_rng(number))
 
 
-def labeled(world, arrangement):
+def label_arrangement(world, arrangement):
     geoms = world.renderer.render(arrangement.optics, arrangement.pose, Channels.GEOMS).geoms
     return label_image(world, arrangement, geoms, OPTIONS.min_size, OPTIONS.min_visible), geoms
 
@@ -64,15 +64,15 @@ def test_box_of_mask_is_computed():
 def test_full_boxes_of_balls_match_projected_outlines(world):
     """The cone of tangent rays gives the exact outline of a ball."""
     compared = 0
-    for arrangement in shots(world, 12):
-        labels, _ = labeled(world, arrangement)
+    for arrangement in take_shots(world, 12):
+        labels, _ = label_arrangement(world, arrangement)
         label_by_box = {label.full_box: label for label in labels}
         axes = axes_of(arrangement.pose)
         for movable in (placed_object for placed_object in arrangement.placed_objects if placed_object.label == 0):
             center = (world.simulation.data.geom_xpos[movable.geoms[0]] - np.array(arrangement.pose[:3])) @ axes
             if center[2] < 0.5:
                 continue
-            ends = [outline(center[axis], center[2], 0.2) for axis in (0, 1)]
+            ends = [projected_outline(center[axis], center[2], 0.2) for axis in (0, 1)]
             expected = np.array(
                 [
                     arrangement.optics.cx + arrangement.optics.fx * ends[0][0],
@@ -83,10 +83,10 @@ def test_full_boxes_of_balls_match_projected_outlines(world):
             )
             if not ((expected > -100) & (expected < 340)).all():
                 continue
-            near = [box for box in label_by_box if np.abs(np.array(box) - expected).max() <= 2.0]
+            matching_boxes = [box for box in label_by_box if np.abs(np.array(box) - expected).max() <= 2.0]
             hidden = not any(label.label == 0 for label in labels)
-            assert near or hidden or is_covered(world, arrangement, movable)
-            compared += bool(near)
+            assert matching_boxes or hidden or is_covered(world, arrangement, movable)
+            compared += bool(matching_boxes)
     assert compared >= 5
 
 
@@ -95,18 +95,18 @@ def is_covered(world, arrangement, movable):
     return not np.isin(geoms, movable.geoms).any()
 
 
-def outline(across, ahead, radius):
+def projected_outline(sideways, forward, radius):
     """Return the minimum and maximum slope of the rays in a plane that touch a circle."""
-    distance = np.hypot(across, ahead)
-    middle, half = np.arctan2(across, ahead), np.arcsin(min(radius / distance, 1.0))
-    return np.tan(middle - half), np.tan(middle + half)
+    distance = np.hypot(sideways, forward)
+    center_angle, half_angle = np.arctan2(sideways, forward), np.arcsin(min(radius / distance, 1.0))
+    return np.tan(center_angle - half_angle), np.tan(center_angle + half_angle)
 
 
 def test_labels_match_mujoco_renderer(world):
     other = make_renderer(world.simulation, "mujoco")
     compared = 0
-    for arrangement in shots(world, 8):
-        labels, _ = labeled(world, arrangement)
+    for arrangement in take_shots(world, 8):
+        labels, _ = label_arrangement(world, arrangement)
         geoms = other.render(arrangement.optics, arrangement.pose, Channels.GEOMS).geoms
         boxes = [box_of(np.isin(geoms, movable.geoms)) for movable in arrangement.placed_objects]
         for label in labels:
@@ -117,8 +117,8 @@ def test_labels_match_mujoco_renderer(world):
 
 
 def test_visible_box_and_full_box_are_consistent(world):
-    for arrangement in shots(world, 8):
-        labels, geoms = labeled(world, arrangement)
+    for arrangement in take_shots(world, 8):
+        labels, geoms = label_arrangement(world, arrangement)
         for label in labels:
             left, top, right, bottom = label.box
             assert color_mask(label.run_lengths, *geoms.shape).sum() == label.area
@@ -138,7 +138,7 @@ def test_visible_box_and_full_box_are_consistent(world):
 
 
 def test_unoccluded_objects_are_fully_visible(world):
-    for arrangement in shots(world, 4):
+    for arrangement in take_shots(world, 4):
         for movable in arrangement.placed_objects:
             for geoms in world.structures.values():
                 world.hide(geoms)
@@ -146,13 +146,13 @@ def test_unoccluded_objects_are_fully_visible(world):
             for other in arrangement.placed_objects:
                 if other is not movable:
                     world.hide(other.geoms)
-            labels, _ = labeled(world, arrange_alone(arrangement, movable))
+            labels, _ = label_arrangement(world, arrange_alone(arrangement, movable))
             assert all(label.visibility > 0.97 or label.is_truncated for label in labels)
             break
 
 
 def test_placed_objects_do_not_overlap(world):
-    for arrangement in shots(world, 12):
+    for arrangement in take_shots(world, 12):
         places = [
             (world.simulation.data.geom_xpos[movable.geoms, :2].mean(axis=0), movable.radius)
             for movable in arrangement.placed_objects
@@ -166,7 +166,7 @@ def test_placed_objects_do_not_overlap(world):
 @pytest.mark.parametrize(("height", "focal", "ignored"), [(0.7, 414.0, True), (1.0, 180.0, False)])
 def test_sign_is_ignored_unless_its_plate_is_visible(tmp_path, height, focal, ignored):
     path = tmp_path / "signs.world"
-    path.write_text(world_text(SIGN))
+    path.write_text(world_text(SIGN_MODEL))
     simulation = load_simulation(path)
     world = RandomizedWorld(simulation, find_objects(simulation, default_rules([simulation])), 1, 0)
     try:
@@ -187,22 +187,27 @@ def test_distractors_do_not_resemble_balls_and_drums(world):
     for number in range(20):
         for geom in world.distractors:
             world.shape_distractor(geom, np.random.default_rng(number))
-            half = model.geom_aabb[geom, 3:]
-            assert half.max() >= 2.4 * half.min()
+            half_extents = model.geom_aabb[geom, 3:]
+            assert half_extents.max() >= 2.4 * half_extents.min()
             if model.geom_type[geom] == kinds.mjGEOM_CAPSULE:
                 assert model.geom_size[geom, 1] >= 1.5 * model.geom_size[geom, 0]
 
 
 def test_few_objects_are_placed_behind_walls(world):
     """The wall of the yard is 6 m long, and 3 m from the center of the yard."""
-    behind = objects = 0
-    for arrangement in shots(world, 40):
+    hidden_count = objects = 0
+    for arrangement in take_shots(world, 40):
         for movable in arrangement.placed_objects:
-            there = world.simulation.data.geom_xpos[movable.geoms, :2].mean(axis=0)
-            here = np.array(arrangement.pose[:2])
+            object_position = world.simulation.data.geom_xpos[movable.geoms, :2].mean(axis=0)
+            camera_position = np.array(arrangement.pose[:2])
             objects += 1
-            if min(here[1], there[1]) < 2.95 and max(here[1], there[1]) > 3.05:
-                crossing = here[0] + (there[0] - here[0]) * (3.0 - here[1]) / (there[1] - here[1])
-                behind += bool(arrangement.structures) and abs(crossing) < 3.0
+            if (
+                min(camera_position[1], object_position[1]) < 2.95
+                and max(camera_position[1], object_position[1]) > 3.05
+            ):
+                crossing = camera_position[0] + (object_position[0] - camera_position[0]) * (
+                    3.0 - camera_position[1]
+                ) / (object_position[1] - camera_position[1])
+                hidden_count += bool(arrangement.structures) and abs(crossing) < 3.0
     assert objects > 50
-    assert behind < 0.2 * objects
+    assert hidden_count < 0.2 * objects

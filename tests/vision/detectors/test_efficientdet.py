@@ -79,7 +79,7 @@ def file(tmp_path):
     return path
 
 
-def refused(path, **options):
+def refusal(path, **options):
     with pytest.raises(LinkwrightError) as raised:
         make_detector(str(path), DetectorOptions(**options))
     return raised.value.diagnostics[0].code
@@ -103,9 +103,9 @@ def test_labels_file_overrides_names_of_model(litert, file, tmp_path):
 
 def test_malformed_model_files_are_rejected(litert, file):
     file.write_bytes(b"TFL3 without names")
-    assert refused(file) == "VISION108"
+    assert refusal(file) == "VISION108"
     file.write_bytes(b"no network")
-    assert refused(file) == "VISION103"
+    assert refusal(file) == "VISION103"
 
 
 @pytest.mark.parametrize(
@@ -119,15 +119,15 @@ def test_malformed_model_files_are_rejected(litert, file):
 def test_unsupported_networks_are_rejected(litert, file, changes, code):
     for name, value in changes.items():
         setattr(litert, name, value)
-    assert refused(file) == code
+    assert refusal(file) == code
 
 
 def test_missing_litert_is_an_error(monkeypatch, file):
     monkeypatch.setitem(sys.modules, "ai_edge_litert", None)
     load_litert.cache_clear()
-    assert refused(file) == "VISION101"
+    assert refusal(file) == "VISION101"
 
 
 def test_model_not_downloaded_is_an_error(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
-    assert refused("efficientdet-lite0") == "MODEL102"
+    assert refusal("efficientdet-lite0") == "MODEL102"

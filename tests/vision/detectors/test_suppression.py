@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from linkwright.vision.detectors.suppression import non_maximum_suppression
 
 
-def slow_suppression(boxes, scores, classes, iou, most):
+def suppress_slowly(boxes, scores, classes, iou, max_count):
     selected = []
     for index in sorted(range(len(scores)), key=lambda index: -scores[index]):
         left, top, right, bottom = boxes[index]
@@ -23,7 +23,7 @@ def slow_suppression(boxes, scores, classes, iou, most):
                 break
         else:
             selected.append(index)
-    return selected[:most]
+    return selected[:max_count]
 
 
 corner = st.integers(0, 12)
@@ -31,9 +31,9 @@ box = st.tuples(st.tuples(corner, corner, corner, corner), st.integers(1, 8), st
 
 
 @given(st.lists(box, max_size=25), st.sampled_from([0.0, 0.25, 0.5, 1.0]), st.integers(1, 30))
-def test_suppression_matches_slow_reference(rows, iou, most):
+def test_suppression_matches_slow_reference(rows, iou, max_detections):
     boxes = np.array([row[0] for row in rows], np.float32).reshape(-1, 4)
     scores = np.array([row[1] / 8 for row in rows], np.float32)
     classes = np.array([row[2] for row in rows], np.int32)
-    expected = slow_suppression(boxes.tolist(), scores.tolist(), classes.tolist(), iou, most)
-    assert non_maximum_suppression(boxes, scores, classes, iou, most).tolist() == expected
+    expected = suppress_slowly(boxes.tolist(), scores.tolist(), classes.tolist(), iou, max_detections)
+    assert non_maximum_suppression(boxes, scores, classes, iou, max_detections).tolist() == expected

@@ -1,4 +1,7 @@
-"""A detector for tests without a network or library: one box around all pixels of one color."""
+"""A detector for tests without a network or library.
+
+It returns one box around all pixels of one color.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from linkwright.images import RangeFinder, decode_image
 from linkwright.messages import get_message
 from linkwright.vision.places.object_colors import COLORS, classify_colors
 
-_LEAST_PIXELS = 60
+_MIN_PIXELS = 60
 
 
 class ColorDetector:
@@ -38,7 +41,7 @@ class ColorDetector:
         names = classify_colors(pixels.reshape(-1, 3)).reshape(pixels.shape[:2])
         rows, columns = np.nonzero(names == self._color)
         array = self._array(header=image.header)
-        if len(rows) >= _LEAST_PIXELS:
+        if len(rows) >= _MIN_PIXELS:
             left, right = np.percentile(columns, [1, 99])
             top, bottom = np.percentile(rows, [1, 99])
             array.detections.append(detection(image.header, left, top, right + 1, bottom + 1, self._name))

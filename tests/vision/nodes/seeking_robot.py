@@ -1,4 +1,7 @@
-"""mbot in an empty world with red balls, and the nodes that find them, in one thread and in lock-step."""
+"""mbot in an empty world with red balls, and the nodes that find them.
+
+All run in one thread and in lock-step.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ if TYPE_CHECKING:
     from typing_extensions import Self
 
 ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
-RADIUS = 0.15
+BALL_RADIUS_M = 0.15
 _BALL = """<sdf version="1.6"><model name="ball"><link name="link">
   <inertial><mass>0.5</mass><inertia><ixx>0.0075</ixx><iyy>0.0075</iyy><izz>0.0075</izz></inertia></inertial>
   <collision name="ball"><geometry><sphere><radius>0.15</radius></sphere></geometry></collision>
@@ -32,7 +35,7 @@ _BALL = """<sdf version="1.6"><model name="ball"><link name="link">
 </link></model></sdf>"""
 _SIMULATED = {"use_sim_time": True}
 _FOCAL, _WIDTH, _HEIGHT = 381.36, 640, 480
-_IMAGE_PERIOD = 0.1
+_IMAGE_PERIOD_S = 0.1
 
 
 class SeekingRobot(SteppedSimulation):
@@ -69,10 +72,10 @@ class SeekingRobot(SteppedSimulation):
     def __enter__(self) -> Self:
         super().__enter__()
         self.put_ball(*self._ball)
-        where = {"target_frame": "odom", "ground_frame": "base_footprint", **_SIMULATED}
+        frame_parameters = {"target_frame": "odom", "ground_frame": "base_footprint", **_SIMULATED}
         names = [("detections", "tracking"), ("camera_info", "/camera/camera_info")]
         TrackingNode(self.graph, NodeOptions(namespace="/yolo", parameters=_SIMULATED))
-        Detect3DNode(self.graph, NodeOptions(namespace="/yolo", parameters=where, remappings=names))
+        Detect3DNode(self.graph, NodeOptions(namespace="/yolo", parameters=frame_parameters, remappings=names))
         self.seeker = ObjectSeeker(
             self.graph,
             NodeOptions(
@@ -90,7 +93,7 @@ class SeekingRobot(SteppedSimulation):
         if self._images:
             ColorDetector(self.graph)
         else:
-            self.detector = self.node.create_timer(_IMAGE_PERIOD, self._detect)
+            self.detector = self.node.create_timer(_IMAGE_PERIOD_S, self._detect)
             self._detections = self.node.create_publisher(
                 get_message("vision_msgs/msg/Detection2DArray"), "/yolo/detections", 10
             )
@@ -103,7 +106,7 @@ class SeekingRobot(SteppedSimulation):
 
     def put_ball(self, x: float, y: float) -> None:
         """Put a ball into the world."""
-        self.spawn(self._model, "ball", pose=(x, y, RADIUS, 0.0, 0.0, 0.0))
+        self.spawn(self._model, "ball", pose=(x, y, BALL_RADIUS_M, 0.0, 0.0, 0.0))
 
     def hide(self) -> None:
         """Stop the detections of the ball."""
@@ -144,10 +147,12 @@ class SeekingRobot(SteppedSimulation):
         info.k = [_FOCAL, 0.0, 319.5, 0.0, _FOCAL, 239.5, 0.0, 0.0, 1.0]
         self._info.publish(info)
         array = get_message("vision_msgs/msg/Detection2DArray")(header=header)
-        x, y, z, *_ = compose(invert(compose(self.robot_pose(), _CAMERA)), self.simulation.model_pose("ball"))
+        x, y, z, *_ = compose(invert(compose(self.robot_pose(), _CAMERA_POSE)), self.simulation.model_pose("ball"))
         camera = make_camera_model(_WIDTH, _HEIGHT, info.k)
-        if self._visible and x > RADIUS:
-            corners = np.array([[-y - RADIUS, -z - RADIUS, x], [-y + RADIUS, -z + RADIUS, x]])
+        if self._visible and x > BALL_RADIUS_M:
+            corners = np.array(
+                [[-y - BALL_RADIUS_M, -z - BALL_RADIUS_M, x], [-y + BALL_RADIUS_M, -z + BALL_RADIUS_M, x]]
+            )
             pixels = camera.pixels(corners).ravel() + self._rng.normal(0, 0.7, 4)
             left, top, right, bottom = np.clip(pixels, 0, [_WIDTH, _HEIGHT] * 2)
             if right - left > 5 and bottom - top > 5:
@@ -155,4 +160,4 @@ class SeekingRobot(SteppedSimulation):
         self._detections.publish(array)
 
 
-_CAMERA = (0.17, 0.0, 0.21, 0.0, 0.0, 0.0, 1.0)
+_CAMERA_POSE = (0.17, 0.0, 0.21, 0.0, 0.0, 0.0, 1.0)

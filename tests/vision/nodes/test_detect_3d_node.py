@@ -21,7 +21,7 @@ def test():
         yield graph
 
 
-def start(test, kind=Detect3DNode, **parameters):
+def start_node(test, kind=Detect3DNode, **parameters):
     node = kind(test.graph, NodeOptions(parameters=parameters))
     recording = test.record("/detections_3d")
     markers = test.record("/markers")
@@ -33,29 +33,29 @@ def start(test, kind=Detect3DNode, **parameters):
     return node, recording, markers
 
 
-def header(frame="camera", stamp=NOW):
+def make_header(frame="camera", stamp=NOW):
     return get_message("std_msgs/msg/Header")(frame_id=frame, stamp=stamp)
 
 
-def camera(test, topic, width=640, height=480, **more):
-    info = get_message("sensor_msgs/msg/CameraInfo")(header=header(), width=width, height=height, **more)
+def publish_camera(test, topic, width=640, height=480, **fields):
+    info = get_message("sensor_msgs/msg/CameraInfo")(header=make_header(), width=width, height=height, **fields)
     info.k = [500.0, 0.0, width / 2 - 0.5, 0.0, 500.0, height / 2 - 0.5, 0.0, 0.0, 1.0]
     test.publish(topic, info)
     test.settle()
 
 
-def depth(test, values, encoding="32FC1", **more):
+def publish_depth(test, values, encoding="32FC1", **fields):
     rows = np.ascontiguousarray(values, "<f4" if encoding == "32FC1" else "<u2")
-    image = get_message("sensor_msgs/msg/Image")(header=header(**more), encoding=encoding)
+    image = get_message("sensor_msgs/msg/Image")(header=make_header(**fields), encoding=encoding)
     image.height, image.width = rows.shape
     image.step, image.data = rows.strides[0], np.frombuffer(rows.tobytes(), np.uint8)
     test.publish("/depth_image", image)
     test.settle()
 
 
-def boxes(test, *given, frame="camera"):
-    array = get_message("vision_msgs/msg/Detection2DArray")(header=header(frame))
-    array.detections = [detection(array.header, *box, "ball") for box in given]
+def publish_boxes(test, *detections, frame="camera"):
+    array = get_message("vision_msgs/msg/Detection2DArray")(header=make_header(frame))
+    array.detections = [detection(array.header, *box, "ball") for box in detections]
     for number, array_detection in enumerate(array.detections):
         array_detection.id = str(number + 7)
     test.publish("/detections", array)
@@ -67,7 +67,7 @@ WALL[220:260, 300:340] = 2.0
 BOX = (300.0, 220.0, 340.0, 260.0)
 
 
-def warnings(test):
+def logged_warnings(test):
     return [record.text for record in test.log if record.level.name == "WARN"]
 
 
@@ -75,18 +75,18 @@ def warnings(test):
     ("encoding", "factor", "divisor"), [("32FC1", 1.0, 1000), ("16UC1", 1000.0, 1000), ("16UC1", 5000.0, 5000)]
 )
 def test_depth_image_gives_positions_in_target_frame(test, encoding, factor, divisor):
-    _, recording, markers = start(test, depth_image_units_divisor=divisor)
-    camera(test, "/depth_info")
-    depth(test, WALL * factor, encoding)
-    boxes(test, BOX)
+    _, recording, markers = start_node(test, depth_image_units_divisor=divisor)
+    publish_camera(test, "/depth_info")
+    publish_depth(test, WALL * factor, encoding)
+    publish_boxes(test, BOX)
     (detection,) = recording.last.detections
-    at, size = detection.bbox.center.position, detection.bbox.size
-    assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
+    position, size = detection.bbox.center.position, detection.bbox.size
+    assert (position.x, position.y, position.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
     assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
     assert recording.last.header.frame_id == detection.header.frame_id == "base_link"
     assert detection.id == "7"
     assert detection.results[0].hypothesis.class_id == "ball"
-    assert detection.results[0].pose.pose.position.x == at.x
+    assert detection.results[0].pose.pose.position.x == position.x
     turn = detection.bbox.center.orientation
     assert abs(turn.w) == pytest.approx(1.0), "the box's x axis is along the view, and its z axis is up"
     _, box, label = markers.last.markers
@@ -95,81 +95,81 @@ def test_depth_image_gives_positions_in_target_frame(test, encoding, factor, div
 
 
 def test_depth_image_may_have_half_size(test):
-    _, recording, _ = start(test)
-    camera(test, "/camera_info")
-    camera(test, "/depth_info", 320, 240)
-    depth(test, WALL[::2, ::2])
-    boxes(test, BOX)
+    _, recording, _ = start_node(test)
+    publish_camera(test, "/camera_info")
+    publish_camera(test, "/depth_info", 320, 240)
+    publish_depth(test, WALL[::2, ::2])
+    publish_boxes(test, BOX)
     assert recording.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
 
 
 def test_objects_are_placed_on_ground_without_depth(test):
-    _, recording, _ = start(test, ground_frame="base_link")
-    camera(test, "/camera_info")
-    boxes(test, (295.0, 320.0, 345.0, 365.0), (300.0, 100.0, 340.0, 140.0))
+    _, recording, _ = start_node(test, ground_frame="base_link")
+    publish_camera(test, "/camera_info")
+    publish_boxes(test, (295.0, 320.0, 345.0, 365.0), (300.0, 100.0, 340.0, 140.0))
     (detection,) = recording.last.detections
     assert detection.id == "7", "the other object is above the horizon"
     assert detection.bbox.center.position.x == pytest.approx(2.1, abs=0.02)
     assert detection.bbox.center.position.z == pytest.approx(0.09, abs=0.02)
-    assert warnings(test) == []
+    assert logged_warnings(test) == []
 
 
 def test_ground_is_used_for_box_without_depths(test):
-    _, recording, _ = start(test, ground_frame="base_link")
-    camera(test, "/camera_info")
-    depth(test, np.full((480, 640), np.nan))
-    boxes(test, (295.0, 320.0, 345.0, 365.0))
+    _, recording, _ = start_node(test, ground_frame="base_link")
+    publish_camera(test, "/camera_info")
+    publish_depth(test, np.full((480, 640), np.nan))
+    publish_boxes(test, (295.0, 320.0, 345.0, 365.0))
     assert recording.last.detections[0].bbox.center.position.x == pytest.approx(2.1, abs=0.02)
 
 
 def test_empty_detections_are_published_and_delete_markers(test):
-    _, recording, markers = start(test)
-    boxes(test)
+    _, recording, markers = start_node(test)
+    publish_boxes(test)
     assert recording.last.detections == []
     assert [marker.action for marker in markers.last.markers] == [markers.last.markers[0].DELETEALL]
 
 
 def test_missing_inputs_are_reported(test):
-    _, recording, _ = start(test)
-    boxes(test, BOX)
-    assert warnings(test) == ["the positions of detections are unknown: no camera_info has arrived"]
-    camera(test, "/camera_info")
+    _, recording, _ = start_node(test)
+    publish_boxes(test, BOX)
+    assert logged_warnings(test) == ["the positions of detections are unknown: no camera_info has arrived"]
+    publish_camera(test, "/camera_info")
     test.advance(6.0)
-    boxes(test, BOX)
-    assert warnings(test)[-1].endswith("no depth image has arrived with a stamp near that of the detections")
-    depth(test, WALL, frame="elsewhere")
+    publish_boxes(test, BOX)
+    assert logged_warnings(test)[-1].endswith("no depth image has arrived with a stamp near that of the detections")
+    publish_depth(test, WALL, frame="elsewhere")
     test.advance(6.0)
-    boxes(test, BOX)
-    assert "must be registered" in warnings(test)[-1]
+    publish_boxes(test, BOX)
+    assert "must be registered" in logged_warnings(test)[-1]
     test.advance(6.0)
-    boxes(test, BOX, frame="nowhere")
-    assert "nowhere" in warnings(test)[-1]
+    publish_boxes(test, BOX, frame="nowhere")
+    assert "nowhere" in logged_warnings(test)[-1]
     test.advance(6.0)
-    depth(test, WALL, frame="camera", stamp=Time.from_nanoseconds(5 * 10**9))
-    boxes(test, BOX)
+    publish_depth(test, WALL, frame="camera", stamp=Time.from_nanoseconds(5 * 10**9))
+    publish_boxes(test, BOX)
     assert len(recording) == 5
     assert all(message.detections == [] for message in recording)
 
 
 def test_unsupported_distortion_model_is_reported(test):
-    start(test)
-    camera(test, "/camera_info", distortion_model="equidistant", d=[0.1, 0.0, 0.0, 0.0])
-    assert "equidistant" in warnings(test)[-1]
+    start_node(test)
+    publish_camera(test, "/camera_info", distortion_model="equidistant", d=[0.1, 0.0, 0.0, 0.0])
+    assert "equidistant" in logged_warnings(test)[-1]
 
 
 def test_yolo_ros_messages_and_parameters_are_supported(test):
     parameters = {"maximum_detection_threshold": 0.3, "depth_image_reliability": 2, "depth_info_reliability": 2}
-    _, recording, markers = start(test, YoloDetect3DNode, **parameters)
-    camera(test, "/depth_info")
-    depth(test, WALL)
-    array = get_message("yolo_msgs/msg/DetectionArray")(header=header())
+    _, recording, markers = start_node(test, YoloDetect3DNode, **parameters)
+    publish_camera(test, "/depth_info")
+    publish_depth(test, WALL)
+    array = get_message("yolo_msgs/msg/DetectionArray")(header=make_header())
     array.detections = [yolo_detection(*BOX, "ball", 0.9)]
     array.detections[0].id = "7"
     test.publish("/detections", array)
     test.settle()
     (detection,) = recording.last.detections
-    at, size = detection.bbox3d.center.position, detection.bbox3d.size
-    assert (at.x, at.y, at.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
+    position, size = detection.bbox3d.center.position, detection.bbox3d.size
+    assert (position.x, position.y, position.z) == pytest.approx((2.1, 0.0, 0.5), abs=0.02)
     assert (size.y, size.z) == pytest.approx((0.16, 0.16), abs=0.01)
     assert recording.last.header.frame_id == detection.bbox3d.frame_id == "base_link"
     assert (detection.id, detection.class_name, detection.bbox.center.position.x) == ("7", "ball", 320.0)

@@ -23,8 +23,8 @@ from linkwright.vision.nodes.detector import (
     Yolov5Ros2Node,
     Yolov5RosNode,
 )
-from tests.vision.detectors.networks import columns
-from tests.waiting import SECONDS, eventually, is_waiting, wait_until
+from tests.vision.detectors.networks import write_column_network
+from tests.waiting import TIMEOUT_S, eventually, is_waiting, wait_until
 
 
 @pytest.fixture
@@ -49,30 +49,30 @@ def start(test):
         node.close()
 
 
-def scene(encoding="rgb8"):
+def make_scene(encoding="rgb8"):
     pixels = np.full((120, 160, 3), 150, np.uint8)
     pixels[40:80, 100:130] = (20, 60, 200)
     pixels[40:80, 20:60] = (200, 20, 30)
     return np.ascontiguousarray(pixels[:, :, ::-1]) if encoding == "bgr8" else pixels
 
 
-def image(encoding="rgb8", seconds=7):
-    pixels = scene(encoding)
+def make_image(encoding="rgb8", seconds=7):
+    pixels = make_scene(encoding)
     message = get_message("sensor_msgs/msg/Image")(height=120, width=160, encoding=encoding, step=480)
     message.header.stamp, message.header.frame_id = Time.from_nanoseconds(seconds * 10**9), "camera"
     message.data = pixels.reshape(-1)
     return message
 
 
-def compressed():
+def make_compressed_image():
     file = BytesIO()
-    Image.fromarray(scene()).save(file, "PNG")
+    Image.fromarray(make_scene()).save(file, "PNG")
     message = get_message("sensor_msgs/msg/CompressedImage")(format="rgb8; png compressed rgb8", data=file.getvalue())
     message.header.frame_id = "camera"
     return message
 
 
-async def detections_of(test, recording, topic, message):
+async def detect_in_image(test, recording, topic, message):
     """Publish an image, and return the published detections."""
     before = len(recording)
     test.publish(topic, message)
@@ -85,7 +85,7 @@ async def detections_of(test, recording, topic, message):
     return recording.last
 
 
-def classes(message):
+def detected_classes(message):
     return sorted(detection.results[0].hypothesis.class_id for detection in message.detections)
 
 
@@ -94,9 +94,9 @@ async def test_detections_have_class_center_size_and_image_header(test, start, e
     await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
-    message = await detections_of(test, recording, "/yolo/image_raw", image(encoding))
+    message = await detect_in_image(test, recording, "/yolo/image_raw", make_image(encoding))
     assert (message.header.stamp.sec, message.header.frame_id) == (7, "camera")
-    assert classes(message) == ["blue", "red"]
+    assert detected_classes(message) == ["blue", "red"]
     (blue,) = [detection for detection in message.detections if detection.results[0].hypothesis.class_id == "blue"]
     assert (blue.bbox.center.position.x, blue.bbox.center.position.y) == (115.0, 60.0)
     assert (blue.bbox.size_x, blue.bbox.size_y, blue.bbox.center.theta) == (30.0, 40.0, 0.0)
@@ -108,28 +108,28 @@ async def test_compressed_images_are_detected(test, start):
     await start(model="colors", input_image_topic="/camera/image_raw/compressed")
     recording = test.record("/yolo/detections")
     await test.settle()
-    message = await detections_of(test, recording, "/camera/image_raw/compressed", compressed())
-    assert classes(message) == ["blue", "red"]
+    message = await detect_in_image(test, recording, "/camera/image_raw/compressed", make_compressed_image())
+    assert detected_classes(message) == ["blue", "red"]
 
 
 async def test_onnx_network_is_used(test, start, tmp_path):
     names = {"names": "{0: 'ball', 1: 'box', 2: 'cat'}"}
-    await start(model=str(columns(tmp_path / "v8.onnx", metadata=names)), threshold=0.6, max_det=5)
+    await start(model=str(write_column_network(tmp_path / "v8.onnx", metadata=names)), threshold=0.6, max_det=5)
     recording = test.record("/yolo/detections")
     await test.settle()
-    message = await detections_of(test, recording, "/yolo/image_raw", image())
+    message = await detect_in_image(test, recording, "/yolo/image_raw", make_image())
     assert len(message.detections) == 5
-    assert set(classes(message)) <= {"ball", "box", "cat"}
+    assert set(detected_classes(message)) <= {"ball", "box", "cat"}
 
 
 async def test_debug_image_is_published_if_subscribed(test, start):
     await start(model="colors")
     recording = test.record("/yolo/debug_image")
     await test.settle()
-    message = await detections_of(test, recording, "/yolo/image_raw", image())
+    message = await detect_in_image(test, recording, "/yolo/image_raw", make_image())
     assert (message.encoding, message.width, message.height, message.step) == ("rgb8", 160, 120, 480)
     assert message.header.frame_id == "camera"
-    assert (np.frombuffer(bytes(message.data), np.uint8) != scene().reshape(-1)).any()
+    assert (np.frombuffer(bytes(message.data), np.uint8) != make_scene().reshape(-1)).any()
 
 
 async def test_images_are_subscribed_only_while_outputs_are_subscribed(test, start):
@@ -152,7 +152,7 @@ async def test_limits_can_change_at_runtime(test, start):
     ]:
         (result,) = node.set_parameters([Parameter(name, value=value)])
         assert result.successful, result.reason
-        assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == expected
+        assert detected_classes(await detect_in_image(test, recording, "/yolo/image_raw", make_image())) == expected
 
 
 @pytest.mark.parametrize(
@@ -177,15 +177,15 @@ async def test_services_enable_and_set_classes(test, start):
     await test.settle()
     switch, choose = get_service("std_srvs/srv/SetBool"), get_service("yolo_msgs/srv/SetClasses")
     assert (await test.call("/yolo/set_classes", choose.Request(classes=["red"]))).success
-    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["red"]
+    assert detected_classes(await detect_in_image(test, recording, "/yolo/image_raw", make_image())) == ["red"]
     assert "did you mean 'red'?" in (await test.call("/yolo/set_classes", choose.Request(classes=["rd"]))).message
     assert (await test.call("/yolo/set_classes", choose.Request(classes=[]))).success
     assert (await test.call("/yolo/enable", switch.Request(data=False))).success
     before = len(recording)
-    test.publish("/yolo/image_raw", image(seconds=8))
+    test.publish("/yolo/image_raw", make_image(seconds=8))
     await test.settle()
     assert (await test.call("/yolo/enable", switch.Request(data=True))).success
-    message = await detections_of(test, recording, "/yolo/image_raw", image(seconds=9))
+    message = await detect_in_image(test, recording, "/yolo/image_raw", make_image(seconds=9))
     assert (message.header.stamp.sec, len(recording) - before) == (9, 1)
 
 
@@ -193,12 +193,12 @@ async def test_max_rate_limits_images_per_second(test, start):
     await start(model="colors", max_rate=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
-    await detections_of(test, recording, "/yolo/image_raw", image(seconds=1))
+    await detect_in_image(test, recording, "/yolo/image_raw", make_image(seconds=1))
     await test.advance(0.05)
-    test.publish("/yolo/image_raw", image(seconds=2))
+    test.publish("/yolo/image_raw", make_image(seconds=2))
     await test.settle()
     await test.advance(0.05)
-    message = await detections_of(test, recording, "/yolo/image_raw", image(seconds=3))
+    message = await detect_in_image(test, recording, "/yolo/image_raw", make_image(seconds=3))
     assert (message.header.stamp.sec, len(recording)) == (3, 2)
 
 
@@ -206,26 +206,26 @@ async def test_malformed_image_is_reported_and_next_one_is_processed(test, start
     await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
-    broken = image()
+    broken = make_image()
     broken.encoding = "rainbow8"
     test.publish("/yolo/image_raw", broken)
     await test.settle()
     await eventually(lambda: any("rainbow8" in record.text for record in test.log))
-    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
+    assert detected_classes(await detect_in_image(test, recording, "/yolo/image_raw", make_image())) == ["blue", "red"]
 
 
 async def test_custom_colors_are_detected(test, start):
     await start(model="colors", colors={"sky": [95, 110, 50, 130, 255, 255]}, least_area=10.0)
     recording = test.record("/yolo/detections")
     await test.settle()
-    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["sky"]
+    assert detected_classes(await detect_in_image(test, recording, "/yolo/image_raw", make_image())) == ["sky"]
 
 
 async def test_yolo_ros_messages_and_older_topic_are_supported(test, start):
     await start(YoloRosNode, model="colors", remappings=[("image_raw", "/camera/rgb/image_raw")])
     recording, debug_images = test.record("/yolo/detections"), test.record("/yolo/dbg_image")
     await test.settle()
-    message = await detections_of(test, recording, "/camera/rgb/image_raw", image())
+    message = await detect_in_image(test, recording, "/camera/rgb/image_raw", make_image())
     (blue,) = [detection for detection in message.detections if detection.class_name == "blue"]
     assert (blue.class_id, blue.score) == (4, pytest.approx(1.0))
     assert (blue.bbox.center.position.x, blue.bbox.size.y) == (115.0, 40.0)
@@ -254,7 +254,7 @@ async def test_topics_and_parameters_of_other_packages_are_supported(test, start
     await start(kind, namespace="/", **parameters)
     recording = test.record(output)
     await test.settle()
-    assert classes(await detections_of(test, recording, topic, image())) == ["blue", "red"]
+    assert detected_classes(await detect_in_image(test, recording, topic, make_image())) == ["blue", "red"]
     assert not any("no parameter" in record.text or "not read" in record.text for record in test.log)
 
 
@@ -333,8 +333,8 @@ async def test_topic_type_mismatch_is_reported(test, start, warnings):
 async def test_incompatible_qos_is_reported(test, start, warnings):
     await start(model="colors", image_reliability=1)
     test.record("/yolo/detections")
-    offered = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
-    test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", offered)
+    best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+    test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", best_effort)
     await test.advance(11.0)
     assert warnings()[-2:] == [
         (
@@ -350,12 +350,12 @@ async def test_stopped_camera_is_reported_and_later_each_time(test, start, warni
     recording = test.record("/yolo/detections")
     await test.settle()
     stopped = "no image has arrived on '/yolo/image_raw' for {} s".format
-    await detections_of(test, recording, "/yolo/image_raw", image())
+    await detect_in_image(test, recording, "/yolo/image_raw", make_image())
     await test.advance(9.0)
     assert warnings() == []
     await test.advance(3.0)
     assert warnings() == [stopped(5)]
-    await detections_of(test, recording, "/yolo/image_raw", image())
+    await detect_in_image(test, recording, "/yolo/image_raw", make_image())
     await test.advance(5.0)
     assert [record.text for record in test.log][-1] == "images are arriving"
     await test.advance(7.0)
@@ -373,7 +373,7 @@ async def test_missing_images_are_not_reported_without_subscribers(test, start, 
 # --- loading of the detector ----------------------------------------------------------------------------------------
 
 
-class Slow:
+class SlowDetectorFactory:
     """A detector class whose loading the test delays."""
 
     def __init__(self, make):
@@ -381,22 +381,22 @@ class Slow:
 
     def __call__(self, model, options):
         self.begun.set()
-        assert self.proceed.wait(SECONDS)
+        assert self.proceed.wait(TIMEOUT_S)
         return self._make(model, options)
 
 
 @pytest.fixture
-def slow(monkeypatch):
-    factory = Slow(detector.make_detector)
+def slow_factory(monkeypatch):
+    factory = SlowDetectorFactory(detector.make_detector)
     monkeypatch.setattr(detector, "make_detector", factory)
     yield factory
     factory.proceed.set()
 
 
-async def test_node_answers_services_while_detector_loads(test, start, slow):
+async def test_node_answers_services_while_detector_loads(test, start, slow_factory):
     running = await start(model="colors", loads=False)
     recording = test.record("/yolo/detections")
-    await eventually(slow.begun.is_set)
+    await eventually(slow_factory.begun.is_set)
     switch = get_service("std_srvs/srv/SetBool")
     assert (await test.call("/yolo/enable", switch.Request(data=False))).success
     assert (await test.call("/yolo/enable", switch.Request(data=True))).success
@@ -405,46 +405,46 @@ async def test_node_answers_services_while_detector_loads(test, start, slow):
     (result,) = running.node.set_parameters([Parameter("classes", value=["red"])])
     assert (result.successful, "cannot be set until the detector is loaded" in result.reason) == (False, True)
     assert test.graph.count_subscribers("/yolo/image_raw") == 0
-    slow.proceed.set()
+    slow_factory.proceed.set()
     await eventually(running.loaded.done)
     await test.settle()
-    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["blue", "red"]
+    assert detected_classes(await detect_in_image(test, recording, "/yolo/image_raw", make_image())) == ["blue", "red"]
 
 
-async def test_classes_set_during_loading_apply_after_loading(test, start, slow):
+async def test_classes_set_during_loading_apply_after_loading(test, start, slow_factory):
     await start(model="colors", loads=False)
     recording = test.record("/yolo/detections")
-    await eventually(slow.begun.is_set)
+    await eventually(slow_factory.begun.is_set)
     choose = get_service("yolo_msgs/srv/SetClasses")
     client = test.node.create_client(choose, "/yolo/set_classes")
-    answers = [client.call_async(choose.Request(classes=[name])) for name in ("rd", "red")]
+    responses = [client.call_async(choose.Request(classes=[name])) for name in ("rd", "red")]
     await test.settle()
-    assert not any(answer.done() for answer in answers)
-    slow.proceed.set()
-    await eventually(lambda: all(answer.done() for answer in answers))
-    assert [answer.result().success for answer in answers] == [False, True]
-    assert "did you mean 'red'?" in answers[0].result().message
-    assert classes(await detections_of(test, recording, "/yolo/image_raw", image())) == ["red"]
+    assert not any(response.done() for response in responses)
+    slow_factory.proceed.set()
+    await eventually(lambda: all(response.done() for response in responses))
+    assert [response.result().success for response in responses] == [False, True]
+    assert "did you mean 'red'?" in responses[0].result().message
+    assert detected_classes(await detect_in_image(test, recording, "/yolo/image_raw", make_image())) == ["red"]
 
 
 async def test_closing_node_waits_silently_for_loading_detector(test, start, monkeypatch):
-    main, begun = threading.current_thread(), threading.Event()
+    main, has_begun = threading.current_thread(), threading.Event()
 
     def load(model, options):
-        begun.set()
+        has_begun.set()
         wait_until(lambda: is_waiting(main))
         raise LinkwrightError(Diagnostic("VISION102", phrase("gone")))
 
     monkeypatch.setattr(detector, "make_detector", load)
     running = await start(model="colors", loads=False)
-    await eventually(begun.is_set)
+    await eventually(has_begun.is_set)
     running.close()
     await test.settle()
     assert not running.finished.done()
     assert [record.text for record in test.log if record.level >= LogLevel.ERROR] == []
 
 
-class Odd(Detector):
+class FailingDetector(Detector):
     """A user's detector, which raises an unexpected error."""
 
     @property
@@ -456,11 +456,11 @@ class Odd(Detector):
 
 
 async def test_exception_of_third_party_detector_is_reported(test, start, monkeypatch):
-    monkeypatch.setattr(detector, "make_detector", lambda model, options: Odd())
+    monkeypatch.setattr(detector, "make_detector", lambda model, options: FailingDetector())
     await start(model="odd")
     test.record("/yolo/detections")
     await test.settle()
-    test.publish("/yolo/image_raw", image())
+    test.publish("/yolo/image_raw", make_image())
     await eventually(lambda: any("the detector failed: KeyError: 'odd'" in record.text for record in test.log))
     monkeypatch.setattr(detector, "make_detector", lambda model, options: {}["odder"])
     running = await start(model="odder", namespace="/other")

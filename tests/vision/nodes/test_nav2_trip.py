@@ -1,4 +1,7 @@
-"""object_seeker with nav2: it sends goals to detected objects if this is enabled and nav2 runs."""
+"""object_seeker with nav2.
+
+It sends goals to detected objects if this is enabled and nav2 runs.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ import pytest
 
 from linkwright.graph import ActionServer, CancelResponse
 from linkwright.messages import get_action
-from tests.vision.nodes.seeking_robot import RADIUS, SeekingRobot
+from tests.vision.nodes.seeking_robot import BALL_RADIUS_M, SeekingRobot
 
 pytest.importorskip("mujoco")
 
@@ -51,7 +54,7 @@ def test_seeker_sends_nav2_to_object(tmp_path, reached, message):
         (goal,) = navigator.goals
         pose = goal.request.pose
         assert pose.header.frame_id == "odom"
-        assert pose.pose.position.x == pytest.approx(2.0 - RADIUS - 0.5, abs=0.1)
+        assert pose.pose.position.x == pytest.approx(2.0 - BALL_RADIUS_M - 0.5, abs=0.1)
         assert pose.pose.orientation.w == pytest.approx(1.0, abs=0.01)
         assert test.commands.last.linear.x == 0.0, "nav2 drives the robot"
         navigator.end(reached)

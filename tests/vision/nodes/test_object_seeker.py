@@ -1,11 +1,14 @@
-"""mbot drives to a ball in a simulated world, in lock-step: the same test twice gives the same bits."""
+"""mbot drives to a ball in a simulated world, in lock-step.
+
+The same test twice gives the same bits.
+"""
 
 from __future__ import annotations
 
 import pytest
 
 from linkwright.messages import get_service
-from tests.vision.nodes.seeking_robot import RADIUS, SeekingRobot
+from tests.vision.nodes.seeking_robot import BALL_RADIUS_M, SeekingRobot
 
 pytest.importorskip("mujoco")
 
@@ -22,14 +25,16 @@ def test_seeker_goes_to_ball(tmp_path, ball):
             "I see the ball and am driving to it.",
             "I am at the ball.",
         ]
-        assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
+        assert test.distance() - BALL_RADIUS_M == pytest.approx(0.5, abs=0.08)
         place = test.robot_pose()
         test.advance(2.0)
         assert test.robot_pose()[:2] == pytest.approx(place[:2], abs=0.02), "the robot stands still"
-        answers = {name: test.call(f"/vision/describe{name}", TRIGGER.Request()).message for name in ("", "/en", "/zh")}
-        assert answers[""] == answers["/en"]
-        assert answers["/en"].startswith("I see a ball 0.")
-        assert "球" in answers["/zh"]
+        responses = {
+            name: test.call(f"/vision/describe{name}", TRIGGER.Request()).message for name in ("", "/en", "/zh")
+        }
+        assert responses[""] == responses["/en"]
+        assert responses["/en"].startswith("I see a ball 0.")
+        assert "球" in responses["/zh"]
 
 
 @pytest.mark.slow
@@ -37,7 +42,7 @@ def test_seeker_goes_to_red_ball_seen_by_camera(tmp_path):
     with SeekingRobot(tmp_path, (1.6, -0.9), images=True, laser=True) as test:
         test.tell("/vision/go_to", "红色的球")
         assert test.advance_until_said("我到红色的球这里了")
-        assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.08)
+        assert test.distance() - BALL_RADIUS_M == pytest.approx(0.5, abs=0.08)
         describe_sightings = test.call("/vision/describe", TRIGGER.Request())
         assert describe_sightings.message.startswith("I see a red ball 0.")
         assert describe_sightings.message.endswith(" m ahead.")
@@ -59,19 +64,19 @@ def test_answers_are_in_language_of_request(tmp_path, language):
         test.tell_to_stop()
         test.settle()
         usual = "我在找球。" if language == "zh" else "I am looking for the ball."
-        answers = ["我在找球。", "I am looking for the ball."]
-        assert test.spoken() == [*answers, *answers, usual, "我在找球。", "我停下了。"]
+        responses = ["我在找球。", "I am looking for the ball."]
+        assert test.spoken() == [*responses, *responses, usual, "我在找球。", "我停下了。"]
 
 
 def test_seeker_follows_moving_ball_until_stopped(tmp_path):
     with SeekingRobot(tmp_path, (1.5, 0.0)) as test:
         test.tell("/vision/follow", "ball")
         test.advance(5.0)
-        assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.1)
+        assert test.distance() - BALL_RADIUS_M == pytest.approx(0.5, abs=0.1)
         test.delete("ball")
         test.put_ball(2.0, 0.3)
         test.advance(5.0)
-        assert test.distance() - RADIUS == pytest.approx(0.5, abs=0.1)
+        assert test.distance() - BALL_RADIUS_M == pytest.approx(0.5, abs=0.1)
         test.tell_to_stop()
         test.advance(0.5)
         assert test.spoken()[-1] == "I am stopping."

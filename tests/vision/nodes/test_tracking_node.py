@@ -52,10 +52,12 @@ def test_parameters_match_bytetrack():
         assert [detection.id for detection in tracked.last.detections] == ["1"]
 
 
-@pytest.mark.parametrize("given", [{"match_thresh": 1.5}, {"track_buffer": 0}, {"track_low_thresh": "low"}])
-def test_invalid_parameters_are_rejected(given):
+@pytest.mark.parametrize(
+    "invalid_parameters", [{"match_thresh": 1.5}, {"track_buffer": 0}, {"track_low_thresh": "low"}]
+)
+def test_invalid_parameters_are_rejected(invalid_parameters):
     with SteppedGraph() as stepped, pytest.raises(LinkwrightError):
-        TrackingNode(stepped.graph, NodeOptions(parameters=given))
+        TrackingNode(stepped.graph, NodeOptions(parameters=invalid_parameters))
 
 
 def test_yolo_ros_messages_and_parameters_are_supported():

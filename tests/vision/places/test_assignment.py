@@ -10,11 +10,14 @@ import pytest
 from linkwright.vision.places.assignment import assign
 
 
-def lowest_cost(costs, most):
-    """Return the cost of the best assignment by exhaustive search; an unassigned element costs `most`."""
+def find_lowest_cost(costs, max_cost):
+    """Return the cost of the best assignment by exhaustive search.
+
+    An unassigned element costs `max_cost`.
+    """
     rows, columns = costs.shape
-    padded = np.full((rows, columns + rows), most)
-    padded[:, :columns] = np.where(costs <= most, costs, np.inf)
+    padded = np.full((rows, columns + rows), max_cost)
+    padded[:, :columns] = np.where(costs <= max_cost, costs, np.inf)
     return min(padded[range(rows), order].sum() for order in permutations(range(columns + rows), rows))
 
 
@@ -26,8 +29,8 @@ def test_assignment_has_minimum_cost(seed):
     pairs = assign(costs, 0.8)
     assert len({row for row, _ in pairs}) == len({column for _, column in pairs}) == len(pairs)
     assert all(costs[pair] <= 0.8 for pair in pairs)
-    alone = len(costs) - len(pairs)
-    assert sum(costs[pair] for pair in pairs) + 0.8 * alone == pytest.approx(lowest_cost(costs, 0.8))
+    unassigned_count = len(costs) - len(pairs)
+    assert sum(costs[pair] for pair in pairs) + 0.8 * unassigned_count == pytest.approx(find_lowest_cost(costs, 0.8))
 
 
 def test_empty_or_impossible_assignment_is_empty():

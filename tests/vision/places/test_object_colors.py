@@ -29,7 +29,7 @@ def test_colors_have_common_names(name):
     assert [COLORS[named_color] for named_color in classify_colors(pixels)] == [name] * len(pixels)
 
 
-def disc(color, ground=(180, 180, 180), shade=1.0):
+def disc_image(color, ground=(180, 180, 180), shade=1.0):
     image = np.full((120, 160, 3), ground, np.uint8)
     rows, columns = np.mgrid[:120, :160]
     inside = (rows - 60) ** 2 + (columns - 80) ** 2 <= 30**2
@@ -40,18 +40,18 @@ def disc(color, ground=(180, 180, 180), shade=1.0):
 
 @pytest.mark.parametrize("shade", [1.0, 0.4])
 def test_color_of_shaded_ball_on_gray_ground_is_found(shade):
-    assert object_color(*disc((200, 20, 20), shade=shade)) == "red"
-    assert object_color(*disc((30, 60, 180), shade=shade)) == "blue"
+    assert object_color(*disc_image((200, 20, 20), shade=shade)) == "red"
+    assert object_color(*disc_image((30, 60, 180), shade=shade)) == "blue"
 
 
 def test_white_ball_with_black_spots_is_white():
-    image, box = disc((245, 245, 245))
+    image, box = disc_image((245, 245, 245))
     image[50:60, 70:80] = 5
     assert object_color(image, box) == "white"
 
 
 def test_ambiguous_color_is_none():
-    image, box = disc((200, 20, 20))
+    image, box = disc_image((200, 20, 20))
     assert object_color(image, box + 500) is None
     stripes = np.zeros((60, 60, 3), np.uint8)
     for row, color in enumerate([(200, 10, 10), (20, 150, 30), (20, 40, 190), (240, 200, 20)] * 15):

@@ -104,17 +104,20 @@ def test_answer_names_object_in_requested_language():
 
 
 def test_sightings_are_described_in_sentence():
-    seen = [
+    sightings = [
         Sighting("crate", None, 3.0, 2.0),
         Sighting("crate", None, 3.2, 2.2),
         Sighting("ball", "red", 1.2, -0.1),
         Sighting("orange", None, 0.5, 1.5),
     ]
     assert (
-        describe_sightings(seen, "en")
+        describe_sightings(sightings, "en")
         == "I see a red ball 1.2 m ahead, an orange thing 1.6 m to the left and two crates."
     )
-    assert describe_sightings(seen, "zh") == "我看到前方1.2米处有一个红色的球，左边1.6米处有一个橙色的东西和两个箱子。"
+    assert (
+        describe_sightings(sightings, "zh")
+        == "我看到前方1.2米处有一个红色的球，左边1.6米处有一个橙色的东西和两个箱子。"
+    )
     assert describe_sightings([], "en") == "I see no objects."
     assert describe_sightings([], "zh") == "我什么也没看到。"
     assert describe_sightings([Sighting("person", None, -1.0, 0.0)], "en") == "I see a person 1.0 m behind me."

@@ -9,11 +9,14 @@ import pytest
 from linkwright.vision.places.object_requests import Answer
 from linkwright.vision.places.seeking import Observation, Phase, Seeker, SeekSettings
 
-PERIOD = 0.1
+PERIOD_S = 0.1
 
 
 class Robot:
-    """A robot that follows its commands in a plane with one object; its field of view is 40 degrees to either side."""
+    """A robot that follows its commands in a plane with one object.
+
+    Its field of view is 40 degrees to either side.
+    """
 
     def __init__(self, seeker, target=None, radius=0.15):
         self.seeker, self.target, self.radius = seeker, target, radius
@@ -44,16 +47,16 @@ class Robot:
                     self.free_distance,
                 )
         move = self.seeker.step(view)
-        self.heading += move.angular * PERIOD
-        self.x += move.linear * cos(self.heading) * PERIOD
-        self.y += move.linear * sin(self.heading) * PERIOD
-        self.way += abs(move.linear) * PERIOD
-        self.time += PERIOD
+        self.heading += move.angular * PERIOD_S
+        self.x += move.linear * cos(self.heading) * PERIOD_S
+        self.y += move.linear * sin(self.heading) * PERIOD_S
+        self.way += abs(move.linear) * PERIOD_S
+        self.time += PERIOD_S
         return move
 
     def advance(self, seconds):
         """Return the events of the next seconds, and the maximum speeds."""
-        moves = [self.step() for _ in range(round(seconds / PERIOD))]
+        moves = [self.step() for _ in range(round(seconds / PERIOD_S))]
         return [move.event for move in moves if move.event is not None]
 
 

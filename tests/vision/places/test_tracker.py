@@ -9,10 +9,10 @@ from linkwright.vision.detections import Detections
 from linkwright.vision.places.tracker import Tracker, TrackerSettings
 
 NAMES = ("ball", "crate")
-PERIOD = 1 / 30
+PERIOD_S = 1 / 30
 
 
-def detections_of(*objects):
+def make_detections(*objects):
     """Return detections of (center x, center y, size, score, class)."""
     if not objects:
         return Detections.empty(NAMES)
@@ -24,7 +24,7 @@ def detections_of(*objects):
 
 def test_moving_object_keeps_id_from_second_detection():
     tracker = Tracker()
-    ids = [tracker.update(detections_of((100 + 4 * step, 200, 40)), step * PERIOD)[0] for step in range(60)]
+    ids = [tracker.update(make_detections((100 + 4 * step, 200, 40)), step * PERIOD_S)[0] for step in range(60)]
     assert ids[0] == 0
     assert set(ids[1:]) == {1}
 
@@ -39,7 +39,7 @@ def test_crossing_objects_keep_ids(seed):
         right = (100 + 3 * step + noise[0], 200 + noise[1], 40)
         left = (460 - 3 * step + noise[2], 212 + noise[3], 40)
         is_occluded = abs(right[0] - left[0]) < 20  # the nearer object covers the other
-        ids = tracker.update(detections_of(right) if is_occluded else detections_of(right, left), step * PERIOD)
+        ids = tracker.update(make_detections(right) if is_occluded else make_detections(right, left), step * PERIOD_S)
         if step > 2 and not is_occluded:
             ids_by_object["right"].add(ids[0])
             ids_by_object["left"].add(ids[1])
@@ -51,8 +51,10 @@ def test_briefly_missing_object_keeps_id_and_long_missing_gets_new():
     tracker = Tracker()
     ids = []
     for step in range(200):
-        gone = 30 <= step < 50 or 90 <= step < 150
-        result = tracker.update(detections_of() if gone else detections_of((100 + step, 200, 40)), step * PERIOD)
+        is_hidden = 30 <= step < 50 or 90 <= step < 150
+        result = tracker.update(
+            make_detections() if is_hidden else make_detections((100 + step, 200, 40)), step * PERIOD_S
+        )
         ids += result
     assert [key for key in dict.fromkeys(ids) if key] == [1, 2], "IDs are not reused"
     assert ids[28:32] == [1, 1, 1, 1]
@@ -61,32 +63,33 @@ def test_briefly_missing_object_keeps_id_and_long_missing_gets_new():
 def test_low_score_detection_keeps_track_and_starts_none():
     tracker = Tracker(TrackerSettings(high_threshold=0.5, low_threshold=0.1, new_track_score=0.6))
     for step in range(5):
-        tracker.update(detections_of((100, 100, 40)), step * PERIOD)
+        tracker.update(make_detections((100, 100, 40)), step * PERIOD_S)
     weak = [
-        tracker.update(detections_of((100, 100, 40, 0.2), (300, 300, 40, 0.2)), step * PERIOD) for step in range(5, 60)
+        tracker.update(make_detections((100, 100, 40, 0.2), (300, 300, 40, 0.2)), step * PERIOD_S)
+        for step in range(5, 60)
     ]
     assert all(ids == [1, 0] for ids in weak)
-    assert tracker.update(detections_of((100, 100, 40, 0.05)), 2.0) == [0]
+    assert tracker.update(make_detections((100, 100, 40, 0.05)), 2.0) == [0]
 
 
 def test_single_detection_gets_no_id_and_classes_are_separate():
     tracker = Tracker()
-    assert tracker.update(detections_of((100, 100, 40)), 0.0) == [0]
-    assert tracker.update(detections_of((100, 100, 40, 0.9, 1)), PERIOD) == [0]
-    assert tracker.update(detections_of((100, 100, 40, 0.9, 1)), 2 * PERIOD) == [1]
+    assert tracker.update(make_detections((100, 100, 40)), 0.0) == [0]
+    assert tracker.update(make_detections((100, 100, 40, 0.9, 1)), PERIOD_S) == [0]
+    assert tracker.update(make_detections((100, 100, 40, 0.9, 1)), 2 * PERIOD_S) == [1]
 
 
 def test_time_jump_back_restarts_tracks_with_new_ids():
     tracker = Tracker()
     for step in range(3):
-        tracker.update(detections_of((100, 100, 40)), 10 + step * PERIOD)
-    assert tracker.update(detections_of((100, 100, 40)), 0.0) == [0]
-    assert tracker.update(detections_of((100, 100, 40)), PERIOD) == [2]
+        tracker.update(make_detections((100, 100, 40)), 10 + step * PERIOD_S)
+    assert tracker.update(make_detections((100, 100, 40)), 0.0) == [0]
+    assert tracker.update(make_detections((100, 100, 40)), PERIOD_S) == [2]
 
 
 def test_low_frame_rate_keeps_ids():
     tracker = Tracker()
-    ids = [tracker.update(detections_of((100 + 10 * step, 200, 60)), step * 0.2)[0] for step in range(20)]
+    ids = [tracker.update(make_detections((100 + 10 * step, 200, 60)), step * 0.2)[0] for step in range(20)]
     assert set(ids[1:]) == {1}
 
 
@@ -95,8 +98,8 @@ def test_thirty_crossing_objects_keep_ids():
     start, speed = rng.uniform(0, 2000, (30, 2)), rng.uniform(-60, 60, (30, 2))
     tracker, switches, before = Tracker(), 0, None
     for step in range(90):
-        positions = start + speed * step * PERIOD + rng.normal(0, 0.5, (30, 2))
-        ids = np.array(tracker.update(detections_of(*[(x, y, 40) for x, y in positions]), step * PERIOD))
+        positions = start + speed * step * PERIOD_S + rng.normal(0, 0.5, (30, 2))
+        ids = np.array(tracker.update(make_detections(*[(x, y, 40) for x, y in positions]), step * PERIOD_S))
         if before is not None and step > 2:
             switches += int((ids != before).sum())
         before = ids

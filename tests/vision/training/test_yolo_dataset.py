@@ -1,3 +1,5 @@
+"""Data sets in the formats of YOLO and COCO."""
+
 from __future__ import annotations
 
 import json
@@ -18,7 +20,7 @@ from linkwright.vision.training.options import CropSettings, Options
 from linkwright.vision.training.yolo_dataset import open_dataset
 from tests.vision.training.images_of_shapes import NAMES, write_shapes
 
-VIEW = CropSettings((64, 64), (0.42, 1.1))
+CROP_SETTINGS = CropSettings((64, 64), (0.42, 1.1))
 
 
 @pytest.fixture
@@ -26,7 +28,7 @@ def shapes(tmp_path):
     return write_shapes(tmp_path / "shapes", 3)
 
 
-def problem(function, *words):
+def problem_text(function, *words):
     with pytest.raises(LinkwrightError) as caught:
         function(*words)
     return caught.value.diagnostics[0]
@@ -92,18 +94,18 @@ def test_yaml_file_is_accepted_as_dataset_path(shapes):
 )
 def test_malformed_dataset_is_reported(tmp_path, content, message):
     (tmp_path / "data.yaml").write_text(content)
-    diagnostic = problem(open_dataset, tmp_path)
+    diagnostic = problem_text(open_dataset, tmp_path)
     assert diagnostic.code == "VISION302"
     assert message in str(diagnostic.message)
 
 
 def test_missing_and_empty_folders_are_rejected(tmp_path):
-    assert "does not exist" in str(problem(open_dataset, tmp_path / "none").message)
-    assert "it contains no YAML file" in str(problem(open_dataset, tmp_path).message)
+    assert "does not exist" in str(problem_text(open_dataset, tmp_path / "none").message)
+    assert "it contains no YAML file" in str(problem_text(open_dataset, tmp_path).message)
 
 
 def test_missing_split_is_reported(shapes):
-    diagnostic = problem(open_dataset(shapes).read, "test")
+    diagnostic = problem_text(open_dataset(shapes).read, "test")
     assert diagnostic.code == "VISION303"
     assert "'train' and 'val'" in str(diagnostic.hint)
 
@@ -111,7 +113,7 @@ def test_missing_split_is_reported(shapes):
 def test_split_without_images_is_reported(shapes):
     for path in (shapes / "images" / "train").iterdir():
         path.unlink()
-    assert problem(open_dataset(shapes).read, "train").code == "VISION303"
+    assert problem_text(open_dataset(shapes).read, "train").code == "VISION303"
 
 
 @pytest.mark.parametrize(
@@ -128,7 +130,7 @@ def test_split_without_images_is_reported(shapes):
 def test_invalid_label_is_reported_with_location(shapes, line, message):
     text = shapes / "labels" / "train" / "001.txt"
     text.write_text(f"0 0.5 0.5 0.1 0.1\n{line}\n")
-    diagnostic = problem(open_dataset(shapes).read, "train")
+    diagnostic = problem_text(open_dataset(shapes).read, "train")
     assert diagnostic.code == "VISION304"
     assert message in str(diagnostic.message)
     assert diagnostic.span is not None
@@ -138,7 +140,7 @@ def test_invalid_label_is_reported_with_location(shapes, line, message):
 def test_unreadable_image_is_reported(shapes):
     dataset = open_dataset(shapes)
     (shapes / "images" / "train" / "001.png").write_bytes(b"none")
-    diagnostic = problem(read_labeled_images, dataset.read("train"), 96, 96)
+    diagnostic = problem_text(read_labeled_images, dataset.read("train"), 96, 96)
     assert (diagnostic.code, "001.png" in str(diagnostic.message)) == ("VISION305", True)
 
 
@@ -152,23 +154,23 @@ def test_images_are_letterboxed_with_gray(shapes):
 
 def test_augmentation_keeps_boxes_around_objects(shapes):
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
-    seen = 0
+    object_count = 0
     for seed in range(40):
-        image, objects = augment(labeled_images, seed % 3, VIEW, np.random.default_rng(seed))
+        image, objects = augment(labeled_images, seed % 3, CROP_SETTINGS, np.random.default_rng(seed))
         assert image.shape == (64, 64, 3)
         for kind, left, top, right, bottom in objects:
             assert 0 <= left < right <= 64
             assert 0 <= top < bottom <= 64
             if kind == 0 and min(right - left, bottom - top) > 8:
-                middle = image[int((top + bottom) / 2), int((left + right) / 2)].astype(int)
-                seen += 1
-                assert middle[0] > middle[2]  # discs are red
-    assert seen > 10
+                center_color = image[int((top + bottom) / 2), int((left + right) / 2)].astype(int)
+                object_count += 1
+                assert center_color[0] > center_color[2]  # discs are red
+    assert object_count > 10
 
 
 def test_augmentation_is_deterministic_for_seed(shapes):
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
-    first, second = (augment(labeled_images, 0, VIEW, np.random.default_rng(5)) for _ in range(2))
+    first, second = (augment(labeled_images, 0, CROP_SETTINGS, np.random.default_rng(5)) for _ in range(2))
     assert (first[0] == second[0]).all()
     assert (first[1] == second[1]).all()
 
@@ -178,11 +180,11 @@ def test_last_epochs_use_whole_images(shapes):
     assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
     assert options.view(4).scales[0] > options.view(0).scales[0]
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
-    same = CropSettings((96, 96), (1.0, 1.0))
-    (_, objects) = augment(labeled_images, 0, same, np.random.default_rng(5))
-    here = labeled_images.objects[0]
-    sides = (objects[:, 3:] - objects[:, 1:3]) / (here[:, 3:] - here[:, 1:3])
-    assert (objects[:, 0] == here[:, 0]).all()
+    whole_image_settings = CropSettings((96, 96), (1.0, 1.0))
+    (_, objects) = augment(labeled_images, 0, whole_image_settings, np.random.default_rng(5))
+    first_objects = labeled_images.objects[0]
+    sides = (objects[:, 3:] - objects[:, 1:3]) / (first_objects[:, 3:] - first_objects[:, 1:3])
+    assert (objects[:, 0] == first_objects[:, 0]).all()
     assert np.median(sides) == pytest.approx(1, abs=0.12)  # the objects are complete, and keep their sizes
 
 

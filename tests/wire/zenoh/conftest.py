@@ -1,3 +1,5 @@
+"""Fixtures of the Zenoh tests: settings, routers and processes."""
+
 from __future__ import annotations
 
 import os

@@ -1,4 +1,6 @@
-"""Hosts on one machine: network namespaces, connected by virtual cables, one of them through NAT.
+"""Hosts on one machine.
+
+They are network namespaces, connected by virtual cables, one of them through NAT.
 
     robot 192.168.7.2 -- gateway (NAT) -- cloud 10.99.7.1 -- desk 10.99.8.2
 
@@ -28,7 +30,7 @@ def unsupported_reason() -> str:
     probe = f"lwp{os.getpid()}"
     if _run("ip", "netns", "add", probe, check=False):
         return "creating network namespaces requires root"
-    translated = _run(*_within(probe), "iptables", *_MASQUERADE, "lo", check=False)
+    translated = _run(*_namespace_prefix(probe), "iptables", *_MASQUERADE, "lo", check=False)
     _run("ip", "netns", "delete", probe)
     return "iptables cannot do NAT here" if translated else ""
 
@@ -46,7 +48,7 @@ class Hosts:
         for namespace in self.namespaces.values():
             _run("ip", "netns", "add", namespace)
             self._namespaces_to_delete.append(namespace)
-            _run(*_within(namespace), "ip", "link", "set", "lo", "up")
+            _run(*_namespace_prefix(namespace), "ip", "link", "set", "lo", "up")
         self._cable(ROBOT, "192.168.7.2", GATEWAY, "192.168.7.1")
         self._cable(GATEWAY, "10.99.7.2", CLOUD, CLOUD_ADDRESS)
         self._cable(DESK, "10.99.8.2", CLOUD, DESKS_CLOUD_ADDRESS)
@@ -56,7 +58,7 @@ class Hosts:
 
     def within(self, host: str) -> tuple[str, ...]:
         """Return the words before a command that run it on a host."""
-        return _within(self.namespaces[host])
+        return _namespace_prefix(self.namespaces[host])
 
     def run(self, host: str, *command: str, check: bool = True) -> int:
         """Run a command on a host, and return its exit status."""
@@ -84,7 +86,7 @@ class Hosts:
             self.run(host, "ip", "link", "set", f"to{other}", "up")
 
 
-def _within(namespace: str) -> tuple[str, ...]:
+def _namespace_prefix(namespace: str) -> tuple[str, ...]:
     return ("ip", "netns", "exec", namespace)
 
 

@@ -1,4 +1,7 @@
-"""Clients of a router: they receive only the announcements that their own endpoints need, and the rest on request."""
+"""Clients of a router.
+
+They receive only the announcements that their own endpoints need, and the rest on request.
+"""
 
 from __future__ import annotations
 
@@ -63,14 +66,14 @@ def test_first_graph_query_is_answered_completely(processes, monkeypatch):
     monkeypatch.setattr(transport, "_QUIET", 1.0)
     talker, asks = processes("talker"), processes("asks")
     talker.node.create_publisher(String, "chatter", 10)
-    hears = talker.node.create_subscription(String, "said_late", print, 10)
-    late = processes("late")
-    late.node.create_publisher(String, "chatter", 10)
-    late.node.create_publisher(String, "said_late", 10)
-    talker.spin_until(lambda: hears.get_publisher_count() == 1)  # the router then knows all endpoints
+    subscription = talker.node.create_subscription(String, "said_late", print, 10)
+    late_process = processes("late")
+    late_process.node.create_publisher(String, "chatter", 10)
+    late_process.node.create_publisher(String, "said_late", 10)
+    talker.spin_until(lambda: subscription.get_publisher_count() == 1)  # the router then knows all endpoints
     assert asks.node.count_publishers("chatter") == 2
     assert sorted(asks.node.get_node_names()) == ["asks", "late", "talker"]
-    late.close()
+    late_process.close()
     asks.spin_until(lambda: asks.node.count_publishers("chatter") == 1)
     assert sorted(asks.node.get_node_names()) == ["asks", "talker"]
 
@@ -141,7 +144,7 @@ def test_killed_publisher_is_lost_and_closed_one_is_not(processes, programs, its
     other = processes("other")
     left = other.graph.create_node("left")
     left.create_publisher(Int32, "flood", 10)
-    victim = programs("our_program", "victim")
+    victim = programs("linkwright_program", "victim")
     ours.spin_until(lambda: subscription.get_publisher_count() == 2)
     ours.spin_until(lambda: live_session_count(ours) == 2)  # before that, the way a session ends is unknown
     if its_process_goes_on:

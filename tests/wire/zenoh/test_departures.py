@@ -1,4 +1,7 @@
-"""How publishers of other sessions left, judged by the order of events, some of which may be missing."""
+"""How publishers of other sessions left.
+
+This follows from the order of events, some of which may be missing.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Hosts in several networks, joined as `docs/beyond-one-machine.md` says, with the files on that page."""
+"""Hosts in several networks, joined as `docs/beyond-one-machine.md` says.
+
+They use the files on that page.
+"""
 
 from __future__ import annotations
 
@@ -26,13 +29,16 @@ from tests.wire.zenoh.hosts import (
 )
 
 NAME = "cloud.example.com"
-COUNT = 400
+MESSAGE_COUNT = 400
 
 pytestmark = pytest.mark.slow
 
 
 class Site:
-    """A robot behind a gateway, a cloud and a desk, each with its program; certificates and files are in a folder."""
+    """A robot behind a gateway, a cloud and a desk, each with its program.
+
+    Certificates and files are in a folder.
+    """
 
     def __init__(self, folder: Path) -> None:
         page = (DOCS / "beyond-one-machine.md").read_text(encoding="utf-8")
@@ -64,7 +70,7 @@ class Site:
 
     def program(self, host: str, name: str, **environment: str) -> Program:
         """Start a program with a graph."""
-        program = Program("far_program", name, within=self.hosts.within(host), folder=self._folder, **environment)
+        program = Program("far_program", name, prefix_words=self.hosts.within(host), folder=self._folder, **environment)
         self._started.append(program)
         return program
 
@@ -118,27 +124,29 @@ def start_publishing(robot: Program, desk: Program, topic: str, qos: str, **opti
 def test_reliable_topics_survive_link_failure_and_packet_loss(site, robot, desk):
     topics = {"/robot1/everything": "everything", "/robot1/lasting": "lasting"}
     for topic, qos in topics.items():
-        start_publishing(robot, desk, topic, qos, count=COUNT, rate=40.0, size=100)
-    desk.ask_until(lambda numbers: len(numbers) > COUNT // 10, "received", "/robot1/everything")
+        start_publishing(robot, desk, topic, qos, count=MESSAGE_COUNT, rate=40.0, size=100)
+    desk.ask_until(lambda numbers: len(numbers) > MESSAGE_COUNT // 10, "received", "/robot1/everything")
     site.hosts.link(is_up=False)
-    count = robot.ask_until(lambda count: count > COUNT // 2, "published_count", "/robot1/lasting")
+    count = robot.ask_until(lambda count: count > MESSAGE_COUNT // 2, "published_count", "/robot1/lasting")
     assert len(desk.ask("received", "/robot1/lasting")) < count
     site.hosts.link(is_up=True)
     lossy = ("-m", "statistic", "--mode", "random", "--probability", "0.05", "-j", "DROP")
     site.hosts.run(GATEWAY, "iptables", "-A", "FORWARD", *lossy)
     for topic in topics:
-        numbers = desk.ask_until(lambda numbers: len(numbers) >= COUNT, "received", topic, seconds=180)
-        assert numbers == list(range(COUNT))
+        numbers = desk.ask_until(lambda numbers: len(numbers) >= MESSAGE_COUNT, "received", topic, seconds=180)
+        assert numbers == list(range(MESSAGE_COUNT))
 
 
 def test_latched_topic_catches_up_after_reconnect(site, robot, desk):
-    start_publishing(robot, desk, "/robot1/lasting", "lasting", count=COUNT, rate=40.0, size=100)
-    desk.ask_until(lambda numbers: len(numbers) > COUNT // 10, "received", "/robot1/lasting")
+    start_publishing(robot, desk, "/robot1/lasting", "lasting", count=MESSAGE_COUNT, rate=40.0, size=100)
+    desk.ask_until(lambda numbers: len(numbers) > MESSAGE_COUNT // 10, "received", "/robot1/lasting")
     site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "down")  # the gateway then drops its NAT table
-    robot.ask_until(lambda count: count > COUNT // 2, "published_count", "/robot1/lasting")
+    robot.ask_until(lambda count: count > MESSAGE_COUNT // 2, "published_count", "/robot1/lasting")
     site.hosts.run(GATEWAY, "ip", "link", "set", f"to{CLOUD}", "up")
-    numbers = desk.ask_until(lambda numbers: len(set(numbers)) >= COUNT, "received", "/robot1/lasting", seconds=180)
-    assert sorted(set(numbers)) == list(range(COUNT))
+    numbers = desk.ask_until(
+        lambda numbers: len(set(numbers)) >= MESSAGE_COUNT, "received", "/robot1/lasting", seconds=180
+    )
+    assert sorted(set(numbers)) == list(range(MESSAGE_COUNT))
 
 
 def test_desk_receives_only_subscribed_and_publishes_only_allowed_topics(site, robot, desk):
@@ -164,8 +172,10 @@ def test_desk_receives_only_subscribed_and_publishes_only_allowed_topics(site, r
 
 
 def test_host_without_valid_certificate_is_rejected(site, robot, tmp_path):
-    stranger = "openssl req -x509 -newkey rsa:2048 -nodes -keyout desk-key.pem -out desk.pem -days 1 -subj /CN=desk"
-    subprocess.run(stranger.split(), cwd=tmp_path, check=True, capture_output=True)
+    certificate_command = (
+        "openssl req -x509 -newkey rsa:2048 -nodes -keyout desk-key.pem -out desk.pem -days 1 -subj /CN=desk"
+    )
+    subprocess.run(certificate_command.split(), cwd=tmp_path, check=True, capture_output=True)
     outsider = site.program(DESK, "outsider", ZENOH_SESSION_CONFIG_URI="desk.json5")
     assert outsider.ask("nodes") == ["outsider"]
     assert "outsider" not in robot.ask("nodes")

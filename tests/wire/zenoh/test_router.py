@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.messages import String, get_interface
 from linkwright.wire.zenoh.settings import ATTEMPTS, OVERRIDES
-from tests.wire.test_topics import EVERYTHING, LASTING
+from tests.wire.test_topics import KEEP_ALL, TRANSIENT_LOCAL
 from tests.wire.zenoh.conftest import ROUTER
 
 AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
@@ -40,16 +40,19 @@ def test_processes_discover_by_router_and_continue_without_it(processes, start_r
 
 
 def test_graph_is_restored_after_router_restart(processes, start_router, monkeypatch, router_port):
-    """Clients are connected only to their router, so they lose the graph with it, and regain it later."""
+    """The graph is restored after a restart of the router.
+
+    Clients are connected only to their router, so they lose the graph with it, and regain it later.
+    """
     monkeypatch.setenv(OVERRIDES, f'mode="client";connect/endpoints=["tcp/localhost:{router_port}"]')
     router = start_router()
     a, b = processes("a"), processes("b")
     chatter_texts: list[str] = []
     described: list[str] = []
-    chatter = a.node.create_publisher(String, "chatter", EVERYTHING)
-    a.node.create_publisher(String, "described", LASTING).publish(String(data="robot"))
-    b.node.create_subscription(String, "chatter", lambda message: chatter_texts.append(message.data), EVERYTHING)
-    b.node.create_subscription(String, "described", lambda message: described.append(message.data), LASTING)
+    chatter = a.node.create_publisher(String, "chatter", KEEP_ALL)
+    a.node.create_publisher(String, "described", TRANSIENT_LOCAL).publish(String(data="robot"))
+    b.node.create_subscription(String, "chatter", lambda message: chatter_texts.append(message.data), KEEP_ALL)
+    b.node.create_subscription(String, "described", lambda message: described.append(message.data), TRANSIENT_LOCAL)
 
     def add(request, response):
         response.sum = request.a + request.b
@@ -82,14 +85,14 @@ def test_graph_is_restored_after_router_restart(processes, start_router, monkeyp
         future = client.call_async(AddTwoInts.Request(a=first, b=10))
         spin_both(future.done)
         assert future.result().sum == first + 10
-        late = processes(f"late{number}")
+        late_process = processes(f"late{number}")
         texts: list[str] = []
-        late.node.create_subscription(
-            String, "described", lambda message, texts=texts: texts.append(message.data), LASTING
+        late_process.node.create_subscription(
+            String, "described", lambda message, texts=texts: texts.append(message.data), TRANSIENT_LOCAL
         )
-        late.spin_until(lambda texts=texts: texts)
+        late_process.spin_until(lambda texts=texts: texts)
         assert texts == ["robot"]
-        late.close()
+        late_process.close()
     assert chatter_texts == ["before", "after", "and again"]
     assert described == ["robot"]
 

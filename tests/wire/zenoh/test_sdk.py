@@ -1,4 +1,6 @@
-"""Nodes of zenoh-ros2-sdk, another implementation of ROS 2's keys, tokens and hashes over Zenoh.
+"""Nodes of zenoh-ros2-sdk.
+
+It is another implementation of ROS 2's keys, tokens and hashes over Zenoh.
 
 The tests run where LINKWRIGHT_ZENOH_SDK_PYTHON names an interpreter with it; see ``make test-zenoh-sdk``.
 """
@@ -15,9 +17,9 @@ from linkwright.messages import String, get_service
 from linkwright.wire.zenoh.settings import OVERRIDES
 
 PYTHON = os.environ.get("LINKWRIGHT_ZENOH_SDK_PYTHON", "")
-CALLS = 1000
-CLIENTS = 4
-EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+CALL_COUNT = 1000
+CLIENT_COUNT = 4
+KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 SetBool = get_service("std_srvs/srv/SetBool")
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ZENOH_SDK_PYTHON names no interpreter with the SDK")
@@ -25,7 +27,10 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ZENOH_SDK_PYTHON 
 
 @pytest.fixture
 def peer(programs, router_port, monkeypatch):
-    """Start a program with the SDK that connects to a session of ours, because there is no router."""
+    """Start a program with the SDK that connects to a session of Linkwright.
+
+    There is no router.
+    """
     settings = os.environ[OVERRIDES]
     monkeypatch.setenv(OVERRIDES, f'connect/endpoints=[];listen/endpoints=["tcp/127.0.0.1:{router_port}"]')
     return lambda: programs(
@@ -49,8 +54,8 @@ def ask_while_spinning(process, question):
 def test_messages_work_in_both_directions(processes, peer):
     process = processes("ours")
     texts = []
-    process.node.create_subscription(String, "from_sdk", lambda message: texts.append(message.data), EVERYTHING)
-    publisher = process.node.create_publisher(String, "to_sdk", EVERYTHING)
+    process.node.create_subscription(String, "from_sdk", lambda message: texts.append(message.data), KEEP_ALL)
+    publisher = process.node.create_publisher(String, "to_sdk", KEEP_ALL)
     sdk_peer = peer()
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     sdk_peer.ask_until(bool, "has_subscription")
@@ -85,14 +90,14 @@ def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, peer):
 
     process.node.create_service(SetBool, "flip", flip)
     sdk_peer = peer()
-    message = ask_while_spinning(process, lambda: sdk_peer.ask("call", CLIENTS, CALLS // CLIENTS))
-    assert message == [[f"{number % 2 == 0} flipped" for number in range(CALLS // CLIENTS)]] * CLIENTS
-    assert len(served) == CALLS
+    message = ask_while_spinning(process, lambda: sdk_peer.ask("call", CLIENT_COUNT, CALL_COUNT // CLIENT_COUNT))
+    assert message == [[f"{number % 2 == 0} flipped" for number in range(CALL_COUNT // CLIENT_COUNT)]] * CLIENT_COUNT
+    assert len(served) == CALL_COUNT
 
 
 def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes, peer):
     process = processes("ours")
-    clients = [process.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENTS)]
+    clients = [process.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENT_COUNT)]
     sdk_peer = peer()
     process.spin_until(lambda: all(client.service_is_ready() for client in clients))
     answers = [[] for _ in clients]
@@ -103,10 +108,10 @@ def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes,
             if waiting[which] is not None and waiting[which].done():
                 answers[which].append(waiting[which].result().success)
                 waiting[which] = None
-            if waiting[which] is None and len(answers[which]) < CALLS // CLIENTS:
+            if waiting[which] is None and len(answers[which]) < CALL_COUNT // CLIENT_COUNT:
                 waiting[which] = client.call_async(SetBool.Request(data=len(answers[which]) % 2 == 1))
-        return all(len(answer) == CALLS // CLIENTS for answer in answers)
+        return all(len(answer) == CALL_COUNT // CLIENT_COUNT for answer in answers)
 
     process.spin_until(all_answered, 300)
-    assert answers == [[number % 2 == 0 for number in range(CALLS // CLIENTS)]] * CLIENTS
-    assert sdk_peer.ask("request_count") == CALLS
+    assert answers == [[number % 2 == 0 for number in range(CALL_COUNT // CLIENT_COUNT)]] * CLIENT_COUNT
+    assert sdk_peer.ask("request_count") == CALL_COUNT

@@ -1,3 +1,5 @@
+"""Services between processes over Zenoh."""
+
 from __future__ import annotations
 
 import threading
@@ -16,8 +18,8 @@ from tests.wire.test_services import flip
 
 AddTwoInts = get_service("example_interfaces/srv/AddTwoInts")
 SetBool = get_service("std_srvs/srv/SetBool")
-CALLS = 1000
-AT_ONCE = 3
+CALL_COUNT = 1000
+MAX_PENDING_CALLS = 3
 """The simultaneous requests of each client; their total is below the queue size of a service."""
 
 
@@ -39,16 +41,16 @@ def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
     thread.start()
     callers = [process.node.create_client(AddTwoInts, "add") for process in clients]
     assert all(caller.wait_for_service(60) for caller in callers)
-    wrong = []
+    wrong_responses = []
 
     def call(process, caller, offset):
-        for first in range(0, CALLS, AT_ONCE):
-            numbers = range(first, min(first + AT_ONCE, CALLS))
+        for first in range(0, CALL_COUNT, MAX_PENDING_CALLS):
+            numbers = range(first, min(first + MAX_PENDING_CALLS, CALL_COUNT))
             futures = [caller.call_async(AddTwoInts.Request(a=offset, b=number)) for number in numbers]
             process.spin_until(lambda futures=futures: all(future.done() for future in futures))
             sums = [future.result().sum for future in futures]
             if sums != [offset + number for number in numbers]:
-                wrong.append((offset, sums))
+                wrong_responses.append((offset, sums))
 
     threads = [
         threading.Thread(target=call, args=(process, caller, 10_000 * number))
@@ -63,7 +65,7 @@ def test_thousand_calls_of_three_clients_get_their_own_responses(processes):
     finally:
         stop.set()
         thread.join()
-    assert wrong == []
+    assert wrong_responses == []
 
 
 def test_failed_request_is_reported_once(processes):
@@ -81,7 +83,10 @@ def test_failed_request_is_reported_once(processes):
 
 
 class LateQuery:
-    """A request that Zenoh delivers after the service was closed, with the attributes that are read."""
+    """A request that Zenoh delivers after the service was closed.
+
+    It has the attributes that are read.
+    """
 
     payload = zenoh.ZBytes(b"\0\1\0\0\1")
     attachment = zenoh.ZBytes(attachment.write(1, 2, bytes(16)))
@@ -103,7 +108,10 @@ class DeclaredSession:
 
 
 def test_request_in_transit_ends_when_service_closes(processes):
-    """Undeclaring a service does not wait for such a request, and its client waited for ten minutes."""
+    """A request in transit ends when its service closes.
+
+    Undeclaring a service does not wait for such a request, and its client waited for ten minutes.
+    """
     node = processes("ours", join_now=False).node
     service = node.create_service(SetBool, "flip", flip)
     names = (EndpointKind.SERVICE, "/flip", "std_srvs::srv::dds_::SetBool_", "RIHS01_00")

@@ -22,11 +22,11 @@ from linkwright.wire.zenoh.reaching import connection_problem, connection_proble
 from linkwright.wire.zenoh.settings import OVERRIDES
 from tests.wire.zenoh.conftest import ROUTER
 
-AT_ONCE = 5.0
+AT_ONCE_S = 5.0
 """A limit in seconds for a busy machine; without an immediate answer, opening takes ten and more."""
 
 
-def client_of(port: int, timeout_ms: int = -1) -> str:
+def client_config(port: int, timeout_ms: int = -1) -> str:
     return f'mode="client";connect/endpoints=["tcp/localhost:{port}"];connect/timeout_ms={timeout_ms}'
 
 
@@ -38,7 +38,7 @@ def silent_port() -> Iterator[int]:
 
 
 def test_client_reports_missing_router_and_joins_when_it_starts(processes, start_router, monkeypatch, router_port):
-    monkeypatch.setenv(OVERRIDES, client_of(router_port))
+    monkeypatch.setenv(OVERRIDES, client_config(router_port))
     process = processes("ours", join_now=False)
     joining = threading.Thread(target=process.join)
     joining.start()
@@ -54,7 +54,7 @@ def test_client_reports_missing_router_and_joins_when_it_starts(processes, start
 
 
 def test_wait_for_router_ends_after_timeout(processes, monkeypatch, router_port):
-    monkeypatch.setenv(OVERRIDES, client_of(router_port, 1500))
+    monkeypatch.setenv(OVERRIDES, client_config(router_port, 1500))
     process = processes("ours", join_now=False)
     with pytest.raises(AssertionError):
         process.join()
@@ -65,7 +65,7 @@ def test_wait_for_router_ends_after_timeout(processes, monkeypatch, router_port)
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one process")
 @pytest.mark.parametrize("words", [("topic", "list"), ("node", "list"), ("doctor",), ("bridge", "zenoh", "zenoh:7")])
 def test_ctrl_c_ends_wait_for_router(monkeypatch, silent_port, words):
-    monkeypatch.setenv(OVERRIDES, client_of(silent_port))
+    monkeypatch.setenv(OVERRIDES, client_config(silent_port))
     verb = subprocess.Popen(
         [sys.executable, "-m", "linkwright", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -74,7 +74,7 @@ def test_ctrl_c_ends_wait_for_router(monkeypatch, silent_port, words):
     begin = time.monotonic()
     verb.send_signal(signal.SIGINT)
     verb.communicate(timeout=60)
-    assert time.monotonic() - begin < AT_ONCE
+    assert time.monotonic() - begin < AT_ONCE_S
     assert verb.returncode == 130
 
 
@@ -134,7 +134,10 @@ class Certificates:
         }
 
     def serve(self) -> int:
-        """Start a server that accepts only the authority's certificates, one client at a time, and return its port."""
+        """Start a server that accepts only the authority's certificates.
+
+        It serves one client at a time. Return its port.
+        """
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
         context.load_cert_chain(self.folder / "cloud.pem", self.folder / "cloud-key.pem")
         context.load_verify_locations(self.folder / "ca.pem")

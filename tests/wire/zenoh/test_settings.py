@@ -1,3 +1,5 @@
+"""Settings of Zenoh sessions: waits, failures and exits."""
+
 from __future__ import annotations
 
 import json
@@ -11,22 +13,25 @@ from linkwright.diagnostics import LinkwrightError, render
 from linkwright.wire.zenoh.session import build_config, close_session, open_session
 from linkwright.wire.zenoh.settings import OVERRIDES, read_router_settings, read_settings
 
-DROPPING = "transport/link/tx/queue/congestion_control/drop"
+DROP_SETTING = "transport/link/tx/queue/congestion_control/drop"
 
 
-def dropping(settings):
-    return json.loads(build_config(settings).get_json(DROPPING))
+def drop_settings(settings):
+    return json.loads(build_config(settings).get_json(DROP_SETTING))
 
 
 def test_sessions_wait_longer_before_drop_than_routers():
-    assert dropping(read_settings({})) == {"wait_before_drop": 50_000, "max_wait_before_drop_fragments": 200_000}
-    assert dropping(read_router_settings({})) == {"wait_before_drop": 1_000, "max_wait_before_drop_fragments": 50_000}
+    assert drop_settings(read_settings({})) == {"wait_before_drop": 50_000, "max_wait_before_drop_fragments": 200_000}
+    assert drop_settings(read_router_settings({})) == {
+        "wait_before_drop": 1_000,
+        "max_wait_before_drop_fragments": 50_000,
+    }
 
 
 @pytest.mark.parametrize("wait", [0, 1_000_000])
 def test_wait_before_drop_can_be_configured(wait):
-    settings = read_settings({OVERRIDES: f"{DROPPING}/wait_before_drop={wait}"})
-    assert dropping(settings)["wait_before_drop"] == wait
+    settings = read_settings({OVERRIDES: f"{DROP_SETTING}/wait_before_drop={wait}"})
+    assert drop_settings(settings)["wait_before_drop"] == wait
 
 
 @pytest.mark.parametrize(

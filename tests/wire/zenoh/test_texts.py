@@ -58,13 +58,13 @@ def test_malformed_qos_text_is_rejected(text):
 def test_tokens_match_rmw_zenoh():
     node = NodeIdentity("talker", "/")
     assert Token(2, SESSION, "0", "0", node).key == f"@ros2_lv/2/{SESSION}/0/0/NN/%/%/talker"
-    far = NodeIdentity("talker", "/far/away", "/safe")
+    far_node = NodeIdentity("talker", "/far/away", "/safe")
     token = Token(
         2,
         SESSION,
         "0",
         "11",
-        far,
+        far_node,
         EndpointKind.PUBLISHER,
         "/far/chatter",
         "std_msgs::msg::dds_::String_",

@@ -1,3 +1,5 @@
+"""Topics between processes over Zenoh: discovery, domains and QoS."""
+
 from __future__ import annotations
 
 import signal
@@ -22,9 +24,9 @@ from linkwright.wire.zenoh.session import build_config, open_session
 from linkwright.wire.zenoh.settings import read_settings
 from linkwright.wire.zenoh.tokens import Token
 from linkwright.wire.zenoh.topics import OutgoingTopic
-from tests.waiting import SECONDS, wait_until
+from tests.waiting import TIMEOUT_S, wait_until
 from tests.wire.programs import linkwright
-from tests.wire.test_topics import LASTING
+from tests.wire.test_topics import TRANSIENT_LOCAL
 
 
 def test_qos_of_remote_endpoints_is_available_and_always_matches(processes):
@@ -50,7 +52,10 @@ def test_qos_of_remote_endpoints_is_available_and_always_matches(processes):
 
 
 def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
-    """A thread with Python's lock must not wait for a Zenoh callback that needs the lock, which took 10 s."""
+    """Closing a latched publisher does not wait for callbacks.
+
+    A thread with Python's lock must not wait for a Zenoh callback that needs the lock, which took 10 s.
+    """
     node = processes("ours", join_now=False).node
     result = threading.Event()
 
@@ -66,11 +71,11 @@ def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
             token = Token(0, str(ours.zid()), "0", number, NodeIdentity("ours", "/"), *names)
             return OutgoingTopic(publisher, token, ours, changed)
 
-        latched, other = announce("/kept", "1", LASTING), announce("/other", "2", QoSProfile(10))
+        latched, other = announce("/kept", "1", TRANSIENT_LOCAL), announce("/other", "2", QoSProfile(10))
         history_key = f"{latched.token.data_key}/@adv/**"
         wait_until(lambda: list(theirs.liveliness().get(history_key)))
         listener = theirs.declare_subscriber(other.token.data_key)
-        assert result.wait(SECONDS)
+        assert result.wait(TIMEOUT_S)
         start = time.monotonic()
         latched.close()
         assert time.monotonic() - start < 5.0
@@ -96,7 +101,7 @@ def test_discovery_does_not_settle_before_first_link(processes, monkeypatch):
     a = processes("a")
     assert not a.transport.wait_for_discovery(2 * transport.SETTLE_TIME_S)
     processes("b")
-    assert a.transport.wait_for_discovery(SECONDS)
+    assert a.transport.wait_for_discovery(TIMEOUT_S)
     assert "b" in a.node.get_node_names()
 
 
@@ -133,10 +138,10 @@ def test_sample_without_attachment_is_dropped_and_reported_once(processes):
     process.node.create_subscription(String, "chatter", lambda message: texts.append(message.data), 10)
     with open_session(build_config(read_settings())) as session:
         key = f"{read_settings().domain_id}/chatter/std_msgs::msg::dds_::String_/{type_hash(String)}"
-        stranger = session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
-        process.spin_until(lambda: stranger.matching_status.matching)
+        raw_publisher = session.declare_publisher(key, congestion_control=zenoh.CongestionControl.BLOCK)
+        process.spin_until(lambda: raw_publisher.matching_status.matching)
         for _ in range(3):
-            stranger.put(serialize(String(data="who am I")))
+            raw_publisher.put(serialize(String(data="who am I")))
         process.spin_until(process.warnings)
     assert not texts
     (text,) = process.warnings()
@@ -150,9 +155,11 @@ def test_raw_subscription_accepts_unknown_type(processes):
     with open_session(build_config(read_settings())) as session:
         from linkwright.wire.zenoh import attachment
 
-        stranger = session.declare_publisher(f"{read_settings().domain_id}/odd/strange_msgs::msg::dds_::Odd_/RIHS01_00")
-        process.spin_until(lambda: stranger.matching_status.matching)
-        stranger.put(b"\0\1\0\0abcd", attachment=attachment.write(1, 2, bytes(16)))
+        raw_publisher = session.declare_publisher(
+            f"{read_settings().domain_id}/odd/strange_msgs::msg::dds_::Odd_/RIHS01_00"
+        )
+        process.spin_until(lambda: raw_publisher.matching_status.matching)
+        raw_publisher.put(b"\0\1\0\0abcd", attachment=attachment.write(1, 2, bytes(16)))
         process.spin_until(lambda: payloads)
     assert payloads == [b"\0\1\0\0abcd"]
 
@@ -161,7 +168,7 @@ def test_closed_publisher_is_not_lost_and_killed_one_is(processes, programs):
     process = processes("ours")
     lost: list[EndpointInfo] = []
     process.node.create_subscription(String, "/other", lambda _: None, 10).watch_lost(lost.append)
-    peer, marker = processes("theirs"), programs("our_program", "marker")
+    peer, marker = processes("theirs"), programs("linkwright_program", "marker")
     publisher = peer.node.create_publisher(String, "/other", 10)
     peer.node.create_publisher(String, "/other", 10)
     process.spin_until(lambda: process.node.count_publishers("/other") == 2)
@@ -175,9 +182,11 @@ def test_closed_publisher_is_not_lost_and_killed_one_is(processes, programs):
     marker.kill()
     process.spin_until(lambda: lost)  # reports about publishers that left would have come first
     assert {endpoint.node.name for endpoint in lost} == {"marker"}, lost
-    again = programs("our_program", "marker")
+    restarted_program = programs("linkwright_program", "marker")
     process.spin_until(lambda: process.node.get_node_names().count("marker") == 1)
-    again.ask_until(lambda nodes: nodes == ["marker", "ours"], "nodes")  # the discovery must work in both directions
+    restarted_program.ask_until(
+        lambda nodes: nodes == ["marker", "ours"], "nodes"
+    )  # the discovery must work in both directions
 
 
 LAUNCH_FILE = """
@@ -191,7 +200,10 @@ def generate_launch_description():
 
 
 def test_verb_receives_messages_of_launched_node(tmp_path):
-    """The launch sets Humble, whose types have no hash on the wire, for its nodes; the verb does not know that."""
+    """The launch sets Humble, whose types have no hash on the wire, for its nodes.
+
+    The verb does not know that.
+    """
     (tmp_path / "talk.launch.py").write_text(LAUNCH_FILE)
     words = [sys.executable, "-m", "linkwright", "launch", str(tmp_path / "talk.launch.py")]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=tmp_path) as launch:

@@ -35,7 +35,7 @@ RobotState = get_message("moveit_msgs/msg/RobotState")
 RobotTrajectory = get_message("moveit_msgs/msg/RobotTrajectory")
 
 
-def config(cls: str, extra: str = "") -> RvizConfig:
+def make_config(cls: str, extra: str = "") -> RvizConfig:
     """Return a file with one display of moveit_rviz_plugin."""
     return RvizConfig.parse(
         "Visualization Manager:\n  Global Options: {Fixed Frame: base}\n  Displays:\n"
@@ -43,13 +43,13 @@ def config(cls: str, extra: str = "") -> RvizConfig:
     )
 
 
-def pose(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Any:
+def make_pose(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Any:
     message = Pose()
     message.position.x, message.position.y, message.position.z = x, y, z
     return message
 
 
-def state(**positions: float) -> Any:
+def make_robot_state(**positions: float) -> Any:
     """Return a RobotState; without joints it is a diff."""
     message = RobotState(is_diff=not positions)
     message.joint_state.name = list(positions)
@@ -57,33 +57,36 @@ def state(**positions: float) -> Any:
     return message
 
 
-def primitive(kind: int, *dimensions: float) -> Any:
+def make_primitive(kind: int, *dimensions: float) -> Any:
     return SolidPrimitive(type=kind, dimensions=[float(dimension) for dimension in dimensions])
 
 
-def collision_object(
-    name: str, *primitives: Any, frame: str = "base", at: Any = None, operation: bytes = b"\x00"
+def make_collision_object(
+    name: str, *primitives: Any, frame: str = "base", object_pose: Any = None, operation: bytes = b"\x00"
 ) -> Any:
     """Return a CollisionObject, by default a box of one meter."""
-    message = CollisionObject(id=name, operation=operation, pose=at or pose())
+    message = CollisionObject(id=name, operation=operation, pose=object_pose or make_pose())
     message.header.frame_id = frame
     if operation in (b"\x00", b"\x02"):
-        message.primitives = list(primitives) or [primitive(SolidPrimitive.BOX, 1, 1, 1)]
+        message.primitives = list(primitives) or [make_primitive(SolidPrimitive.BOX, 1, 1, 1)]
     return message
 
 
-def scene(*objects: Any, robot: Any = None, diff: bool = False, **fields: Any) -> Any:
-    message = PlanningScene(is_diff=diff, robot_state=robot or state(), **fields)
+def make_scene(*objects: Any, robot: Any = None, diff: bool = False, **fields: Any) -> Any:
+    message = PlanningScene(is_diff=diff, robot_state=robot or make_robot_state(), **fields)
     message.world.collision_objects = list(objects)
     return message
 
 
-def attached(link: str, held: Any) -> Any:
+def make_attached_object(link: str, held: Any) -> Any:
     return AttachedCollisionObject(link_name=link, object=held)
 
 
-def trajectory(*angles: float, seconds: float = 0.1) -> Any:
-    """Return a DisplayTrajectory of the shoulder; the wrist is off by half a meter from the start."""
+def make_trajectory(*angles: float, seconds: float = 0.1) -> Any:
+    """Return a DisplayTrajectory of the shoulder.
+
+    The wrist is off by half a meter from the start.
+    """
     part = RobotTrajectory()
     part.joint_trajectory.joint_names = ["shoulder"]
     for number, angle in enumerate(angles, start=1):
@@ -91,9 +94,9 @@ def trajectory(*angles: float, seconds: float = 0.1) -> Any:
         nanoseconds = round(number * seconds * 1e9)
         point.time_from_start.sec, point.time_from_start.nanosec = divmod(nanoseconds, 1_000_000_000)
         part.joint_trajectory.points.append(point)
-    return DisplayTrajectory(trajectory=[part], trajectory_start=state(shoulder=0.0, wrist=0.5))
+    return DisplayTrajectory(trajectory=[part], trajectory_start=make_robot_state(shoulder=0.0, wrist=0.5))
 
 
-def signed(data: bytes) -> list[int]:
+def as_signed_bytes(data: bytes) -> list[int]:
     """Return bytes in the form of an Octomap."""
     return [byte - 256 if byte > 127 else byte for byte in data]

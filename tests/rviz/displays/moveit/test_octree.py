@@ -12,11 +12,11 @@ from hypothesis import strategies as st
 from linkwright.rviz.displays.moveit.octree import BadOctreeError, read_octree
 from linkwright.rviz.displays.moveit.voxels import octomap_markers
 
-HERE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+IDENTITY = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 FREE, OCCUPIED, INNER = 1, 2, 3
 
 
-def node(**children: int) -> bytes:
+def tree_node(**children: int) -> bytes:
     """Return an inner node of the binary form with children c0 to c7."""
     bits = sum(state << 2 * int(name[1:]) for name, state in children.items())
     return struct.pack("<H", bits)
@@ -28,7 +28,7 @@ def read(data: bytes, *, binary: bool = True, kind: str = "OcTree", resolution: 
 
 def test_smallest_cells_have_resolution_and_are_next_to_origin():
     # Child 7 of the root, then child 0 at each level: the corner of the first octant that is nearest to the origin.
-    data = node(c7=INNER) + node(c0=INNER) * 14 + node(c0=OCCUPIED, c1=FREE)
+    data = tree_node(c7=INNER) + tree_node(c0=INNER) * 14 + tree_node(c0=OCCUPIED, c1=FREE)
     cells = read(data)
     assert cells.sizes.tolist() == [0.5, 0.5]
     by_place = dict(zip(map(tuple, cells.centers.tolist()), cells.probabilities.tolist(), strict=True))
@@ -36,15 +36,15 @@ def test_smallest_cells_have_resolution_and_are_next_to_origin():
 
 
 def test_leaf_near_root_is_a_large_cell():
-    cells = read(node(c0=OCCUPIED))
+    cells = read(tree_node(c0=OCCUPIED))
     assert cells.sizes.tolist() == [0.5 * 2**15]
     assert cells.centers.tolist() == [[-0.5 * 2**14] * 3]
 
 
 def test_full_octree_has_probability_of_each_leaf():
-    inner, leaf = struct.pack("<fB", 0.0, 0b0000_0011), struct.pack("<fB", 0.0, 0)
-    sure = struct.pack("<fB", 2.0, 0)
-    cells = read(inner + leaf + sure, binary=False)
+    inner_node, leaf_node = struct.pack("<fB", 0.0, 0b0000_0011), struct.pack("<fB", 0.0, 0)
+    certain_leaf = struct.pack("<fB", 2.0, 0)
+    cells = read(inner_node + leaf_node + certain_leaf, binary=False)
     assert cells.probabilities.tolist() == pytest.approx([0.5, 0.8808], abs=1e-4)
     assert cells.centers[:, 0].tolist() == [-0.5 * 2**14, 0.5 * 2**14]
 
@@ -62,9 +62,9 @@ def test_empty_data_is_an_empty_tree():
     ("data", "options", "text"),
     [
         (b"\x03", {}, "ends too early"),
-        (node(c0=INNER), {}, "ends too early"),
-        (node(c0=OCCUPIED) + b"rest", {}, "ends after 2 of 6 bytes"),
-        (node(c0=INNER) * 17, {}, "has more than 16 levels"),
+        (tree_node(c0=INNER), {}, "ends too early"),
+        (tree_node(c0=OCCUPIED) + b"rest", {}, "ends after 2 of 6 bytes"),
+        (tree_node(c0=INNER) * 17, {}, "has more than 16 levels"),
         (b"\x00" * 5, {"binary": False, "kind": "MyTree"}, "Octomaps of type 'MyTree' are not supported"),
         (b"\x00", {"resolution": 0.0}, "Invalid resolution"),
         (b"\x00", {"resolution": float("nan")}, "Invalid resolution"),
@@ -86,12 +86,12 @@ def test_arbitrary_bytes_are_read_or_rejected(data, binary):
 
 
 def test_hidden_cells_are_not_drawn():
-    solid = node(**{f"c{child}": OCCUPIED for child in range(8)})
-    whole = node(**{f"c{child}": INNER for child in range(8)})
-    data = node(c7=INNER) + node(c0=INNER) * 12 + whole + (whole + solid * 8) * 8
+    solid = tree_node(**{f"c{child}": OCCUPIED for child in range(8)})
+    full_tree = tree_node(**{f"c{child}": INNER for child in range(8)})
+    data = tree_node(c7=INNER) + tree_node(c0=INNER) * 12 + full_tree + (full_tree + solid * 8) * 8
     cells = read(data)
     assert len(cells.sizes) == 512
-    (marker,) = octomap_markers(cells, "map", frame="base", base=HERE, alpha=0.5, by_probability=False)
+    (marker,) = octomap_markers(cells, "map", frame="base", base=IDENTITY, alpha=0.5, by_probability=False)
     assert len(marker.points) == 512 - 6**3
     assert marker.scale == [0.5, 0.5, 0.5]
     low = marker.colors[marker.points[:, 2].argmin()]
@@ -101,6 +101,6 @@ def test_hidden_cells_are_not_drawn():
 
 
 def test_colors_can_show_cell_probability():
-    cells = read(node(c0=OCCUPIED))
-    (marker,) = octomap_markers(cells, "map", frame="base", base=HERE, alpha=1.0, by_probability=True)
+    cells = read(tree_node(c0=OCCUPIED))
+    (marker,) = octomap_markers(cells, "map", frame="base", base=IDENTITY, alpha=1.0, by_probability=True)
     assert marker.colors[0].tolist() == pytest.approx([0.029, 0.971, 0, 1])

@@ -16,14 +16,14 @@ from tests.rviz.displays.moveit.arm import (
     ARM,
     ObjectColor,
     SolidPrimitive,
-    attached,
-    collision_object,
-    config,
-    pose,
-    primitive,
-    scene,
-    signed,
-    state,
+    as_signed_bytes,
+    make_attached_object,
+    make_collision_object,
+    make_config,
+    make_pose,
+    make_primitive,
+    make_robot_state,
+    make_scene,
 )
 from tests.viewer.contents import shown_markers
 from tests.viewer.scene import open_world
@@ -53,7 +53,7 @@ class SceneSource:
 
 @asynccontextmanager
 async def planning_scene_world(extra: str = FAST, cls: str = "PlanningScene", text: str = ARM):
-    async with open_world(config(cls, extra)) as world:
+    async with open_world(make_config(cls, extra)) as world:
         if text:
             world.describe(text)
         source = SceneSource(world)
@@ -90,7 +90,7 @@ async def test_planning_scene_properties_match_rviz():
 
 async def test_robot_state_of_scene_overrides_tf():
     async with planning_scene_world() as (_, source):
-        shown = await source.publish_scene(scene(robot=state(shoulder=math.pi / 2, wrist=0.5)))
+        shown = await source.publish_scene(make_scene(robot=make_robot_state(shoulder=math.pi / 2, wrist=0.5)))
         hand = shown["Scene Robot/hand"]
         assert hand["frame"] == "base"
         np.testing.assert_allclose(hand["pose"][:3], [1.5, 0, 0], atol=1e-9)
@@ -100,15 +100,15 @@ async def test_robot_state_of_scene_overrides_tf():
 
 async def test_primitives_planes_and_meshes_are_drawn():
     async with planning_scene_world() as (world, source):
-        many = collision_object(
+        many = make_collision_object(
             "many",
-            primitive(SolidPrimitive.BOX, 1, 2, 3),
-            primitive(SolidPrimitive.SPHERE, 0.5),
-            primitive(SolidPrimitive.CYLINDER, 2, 0.5),
-            primitive(SolidPrimitive.CONE, 2, 0.5),
-            at=pose(x=5.0),
+            make_primitive(SolidPrimitive.BOX, 1, 2, 3),
+            make_primitive(SolidPrimitive.SPHERE, 0.5),
+            make_primitive(SolidPrimitive.CYLINDER, 2, 0.5),
+            make_primitive(SolidPrimitive.CONE, 2, 0.5),
+            object_pose=make_pose(x=5.0),
         )
-        many.primitive_poses = [pose(), pose(y=1.0), pose(y=2.0), pose(y=3.0)]
+        many.primitive_poses = [make_pose(), make_pose(y=1.0), make_pose(y=2.0), make_pose(y=3.0)]
         mesh = get_message("shape_msgs/msg/Mesh")()
         mesh.vertices = [
             get_message("geometry_msgs/msg/Point")(x=float(x), y=float(y)) for x, y in ((0, 0), (1, 0), (0, 1))
@@ -116,7 +116,7 @@ async def test_primitives_planes_and_meshes_are_drawn():
         mesh.triangles = [get_message("shape_msgs/msg/MeshTriangle")(vertex_indices=[0, 1, 2])]
         many.meshes = [mesh]
         many.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 2.0, -2.0])]
-        shown = await source.publish_scene(scene(many))
+        shown = await source.publish_scene(make_scene(many))
         kinds = {name: marker["shape"] for name, marker in shown.items()}
         assert kinds == {
             "Scene Geometry/many": "cube",
@@ -139,57 +139,67 @@ async def test_primitives_planes_and_meshes_are_drawn():
 
 async def test_objects_are_added_moved_appended_and_removed():
     async with planning_scene_world() as (world, source):
-        assert list(await source.publish_scene(scene(collision_object("a"), collision_object("b")))) == [
+        assert list(await source.publish_scene(make_scene(make_collision_object("a"), make_collision_object("b")))) == [
             "Scene Geometry/a",
             "Scene Geometry/b",
         ]
-        moved = await source.publish_scene(scene(collision_object("a", at=pose(z=2.0), operation=MOVE), diff=True))
+        moved = await source.publish_scene(
+            make_scene(make_collision_object("a", object_pose=make_pose(z=2.0), operation=MOVE), diff=True)
+        )
         assert moved["Scene Geometry/a"]["pose"][:3] == [0, 0, 2]
-        grown = await source.publish_scene(scene(collision_object("b", primitive(2, 1), operation=APPEND), diff=True))
+        grown = await source.publish_scene(
+            make_scene(make_collision_object("b", make_primitive(2, 1), operation=APPEND), diff=True)
+        )
         assert "Scene Geometry/b primitive 1" in grown
-        left = await source.publish_scene(scene(collision_object("b", operation=REMOVE), diff=True))
+        left = await source.publish_scene(make_scene(make_collision_object("b", operation=REMOVE), diff=True))
         assert list(left) == ["Scene Geometry/a"]
-        await source.publish_scene(scene(collision_object("missing", operation=MOVE), diff=True))
+        await source.publish_scene(make_scene(make_collision_object("missing", operation=MOVE), diff=True))
         assert world.status("PlanningScene")["missing"] == (
             "error",
             "Object 'missing' cannot be moved, because it does not exist",
         )
-        assert await source.publish_scene(scene(collision_object("", operation=REMOVE), diff=True)) == {}
-        assert list(await source.publish_scene(scene(collision_object("c")))) == ["Scene Geometry/c"]
+        assert await source.publish_scene(make_scene(make_collision_object("", operation=REMOVE), diff=True)) == {}
+        assert list(await source.publish_scene(make_scene(make_collision_object("c")))) == ["Scene Geometry/c"]
         assert "missing" not in world.status("PlanningScene")
 
 
 async def test_attached_object_moves_with_its_link():
     async with planning_scene_world() as (_, source):
-        robot = state(shoulder=0.0, wrist=0.0)
-        robot.attached_collision_objects = [attached("hand", collision_object("cup", frame="hand", at=pose(x=0.1)))]
-        shown = await source.publish_scene(scene(collision_object("cup"), robot=robot))
+        robot = make_robot_state(shoulder=0.0, wrist=0.0)
+        robot.attached_collision_objects = [
+            make_attached_object("hand", make_collision_object("cup", frame="hand", object_pose=make_pose(x=0.1)))
+        ]
+        shown = await source.publish_scene(make_scene(make_collision_object("cup"), robot=robot))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 1])
         assert shown["Scene Robot holds/cup"]["color"] == pytest.approx([150 / 255, 50 / 255, 150 / 255, 1])
         assert "Scene Geometry/cup" not in shown
-        shown = await source.publish_scene(scene(robot=state(shoulder=0.0, wrist=1.0), diff=True))
+        shown = await source.publish_scene(make_scene(robot=make_robot_state(shoulder=0.0, wrist=1.0), diff=True))
         assert shown["Scene Robot holds/cup"]["pose"][:3] == pytest.approx([0.1, 0, 2])
-        released = state()
-        released.attached_collision_objects = [attached("hand", collision_object("cup", operation=REMOVE))]
-        assert "Scene Robot holds/cup" not in await source.publish_scene(scene(robot=released, diff=True))
+        released = make_robot_state()
+        released.attached_collision_objects = [
+            make_attached_object("hand", make_collision_object("cup", operation=REMOVE))
+        ]
+        assert "Scene Robot holds/cup" not in await source.publish_scene(make_scene(robot=released, diff=True))
 
 
 async def test_objects_have_colors_of_scene():
     async with planning_scene_world() as (_, source):
         color = ObjectColor(id="a")
         color.color.b, color.color.a = 1.0, 0.25
-        shown = await source.publish_scene(scene(collision_object("a"), collision_object("b"), object_colors=[color]))
+        shown = await source.publish_scene(
+            make_scene(make_collision_object("a"), make_collision_object("b"), object_colors=[color])
+        )
         assert shown["Scene Geometry/a"]["color"] == [0, 0, 1, 0.25]
         assert shown["Scene Geometry/b"]["color"][3] == 0.9
 
 
 async def test_octomap_cells_follow_render_properties():
     async with planning_scene_world() as (world, source):
-        message = scene()
+        message = make_scene()
         octomap = message.world.octomap
-        octomap.header.frame_id, octomap.origin = "base", pose(z=1.0)
+        octomap.header.frame_id, octomap.origin = "base", make_pose(z=1.0)
         octomap.octomap.id, octomap.octomap.binary, octomap.octomap.resolution = "OcTree", True, 0.1
-        octomap.octomap.data = signed(struct.pack("<H", 0b10_01_00_00_00_00_00_00))
+        octomap.octomap.data = as_signed_bytes(struct.pack("<H", 0b10_01_00_00_00_00_00_00))
         shown = await source.publish_scene(message)
         (name,) = shown
         assert (shown[name]["shape"], len(shown[name]["points"]) // 3) == ("cube_list", 1)
@@ -210,7 +220,7 @@ async def test_octomap_cells_follow_render_properties():
 
 async def test_changed_properties_take_effect_at_once():
     async with planning_scene_world() as (world, source):
-        await source.publish_scene(scene(collision_object("a"), robot=state(shoulder=0.0)))
+        await source.publish_scene(make_scene(make_collision_object("a"), robot=make_robot_state(shoulder=0.0)))
         display = world.display("PlanningScene")
         display.set_property(("Scene Geometry", "Scene Color"), "#ff0000")
         display.set_property(("Scene Robot", "Robot Alpha"), 0.5)
@@ -228,7 +238,7 @@ async def test_changed_properties_take_effect_at_once():
 
 
 async def test_full_scene_is_requested_when_move_group_appears():
-    async with open_world(config("PlanningScene", FAST)) as world:
+    async with open_world(make_config("PlanningScene", FAST)) as world:
         world.describe(ARM)
         await world.settle()
         node = world.graph.create_node("move_group")
@@ -236,7 +246,9 @@ async def test_full_scene_is_requested_when_move_group_appears():
 
         def respond(request, response):
             requests.append(request.components.components)
-            response.scene = scene(collision_object("shelf"), robot=state(shoulder=1.0), name="kitchen")
+            response.scene = make_scene(
+                make_collision_object("shelf"), robot=make_robot_state(shoulder=1.0), name="kitchen"
+            )
             return response
 
         node.create_service(get_service("moveit_msgs/srv/GetPlanningScene"), "/get_planning_scene", respond)
@@ -251,7 +263,7 @@ async def test_full_scene_is_requested_when_move_group_appears():
 
 async def test_move_group_namespace_selects_service_and_description():
     extra = ", Move Group Namespace: left, Planning Scene Topic: /left/scene"
-    async with open_world(config("PlanningScene", extra)) as world:
+    async with open_world(make_config("PlanningScene", extra)) as world:
         node = world.graph.create_node("left")
         node.create_publisher("std_msgs/msg/String", "/left/robot_description", DESCRIPTION_QOS).publish(
             get_message("std_msgs/msg/String")(data=ARM)
@@ -268,24 +280,24 @@ async def test_move_group_namespace_selects_service_and_description():
 
 async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
     async with planning_scene_world() as (world, source):
-        nan = collision_object("nan", at=pose(x=math.nan))
-        short = collision_object("short", primitive(SolidPrimitive.BOX, 1, 1))
-        kind = collision_object("kind", primitive(9, 1, 1, 1))
-        poses = collision_object("poses")
-        poses.primitive_poses = [pose(), pose()]
-        mesh = collision_object("mesh")
+        nan = make_collision_object("nan", object_pose=make_pose(x=math.nan))
+        short = make_collision_object("short", make_primitive(SolidPrimitive.BOX, 1, 1))
+        kind = make_collision_object("kind", make_primitive(9, 1, 1, 1))
+        poses = make_collision_object("poses")
+        poses.primitive_poses = [make_pose(), make_pose()]
+        mesh = make_collision_object("mesh")
         mesh.meshes = [get_message("shape_msgs/msg/Mesh")()]
         mesh.meshes[0].triangles = [get_message("shape_msgs/msg/MeshTriangle")(vertex_indices=[0, 1, 7])]
-        plane = collision_object("plane")
+        plane = make_collision_object("plane")
         plane.planes = [get_message("shape_msgs/msg/Plane")(coef=[0.0, 0.0, 0.0, 1.0])]
-        robot = state(shoulder=0.0, elbow=1.0)
+        robot = make_robot_state(shoulder=0.0, elbow=1.0)
         robot.attached_collision_objects = [
-            attached("foot", collision_object("ball", frame="foot")),
-            attached("hand", collision_object("e")),
+            make_attached_object("foot", make_collision_object("ball", frame="foot")),
+            make_attached_object("hand", make_collision_object("e")),
         ]
         robot.attached_collision_objects[1].object.primitives = []
         shown = await source.publish_scene(
-            scene(nan, short, kind, poses, mesh, plane, collision_object("good"), robot=robot)
+            make_scene(nan, short, kind, poses, mesh, plane, make_collision_object("good"), robot=robot)
         )
         assert [name for name in shown if name.startswith("Scene Geometry")] == ["Scene Geometry/good"]
         status = world.status("PlanningScene")
@@ -301,21 +313,23 @@ async def test_invalid_scenes_are_reported_and_next_valid_one_is_drawn():
         assert status["ball"] == ("error", "The robot has no link 'foot' for the attached object 'ball'")
         assert status["e"] == ("error", "The attached object 'e' has no shapes")
         assert status["Joints"] == ("warn", "The robot has no joint 'elbow'")
-        await source.publish_scene(scene(collision_object("good", frame="nowhere"), robot=state(shoulder=math.inf)))
+        await source.publish_scene(
+            make_scene(make_collision_object("good", frame="nowhere"), robot=make_robot_state(shoulder=math.inf))
+        )
         status = world.status("PlanningScene")
         assert status["State"] == ("error", "The position of joint 'shoulder' must be finite, but is inf")
         assert status["Transform"] == ("error", "No transform from [nowhere] to [base]")
-        uneven = state(shoulder=0.0)
+        uneven = make_robot_state(shoulder=0.0)
         uneven.joint_state.position = []
-        await source.publish_scene(scene(robot=uneven))
+        await source.publish_scene(make_scene(robot=uneven))
         assert world.status("PlanningScene")["State"] == ("error", "The state has 1 joints, but 0 positions")
-        await source.publish_scene(scene(collision_object("good"), robot=state(shoulder=0.5)))
+        await source.publish_scene(make_scene(make_collision_object("good"), robot=make_robot_state(shoulder=0.5)))
         assert set(world.status("PlanningScene")) == {"Topic", "URDF", "Transform"}
 
 
 async def test_objects_are_drawn_before_robot_description_arrives():
     async with planning_scene_world(text="") as (world, source):
-        shown = await source.publish_scene(scene(collision_object("a"), robot=state(shoulder=1.0)))
+        shown = await source.publish_scene(make_scene(make_collision_object("a"), robot=make_robot_state(shoulder=1.0)))
         assert list(shown) == ["Scene Geometry/a"]
         assert world.status("PlanningScene")["URDF"] == (
             "warn",
@@ -332,23 +346,27 @@ async def test_objects_are_drawn_before_robot_description_arrives():
 async def test_virtual_joint_places_root_link():
     async with planning_scene_world() as (world, source):
         world.move({("map", "base"): (1, 0, 0, 0, 0, 0, 1)}, static=True)
-        robot = state(shoulder=0.0)
+        robot = make_robot_state(shoulder=0.0)
         robot.multi_dof_joint_state.header.frame_id = "map"
         robot.multi_dof_joint_state.joint_names = ["virtual_joint"]
         transform = get_message("geometry_msgs/msg/Transform")()
         transform.translation.y = 3.0
         robot.multi_dof_joint_state.transforms = [transform]
-        shown = await source.publish_scene(scene(robot=robot))
+        shown = await source.publish_scene(make_scene(robot=robot))
         assert (shown["Scene Robot/base"]["frame"], shown["Scene Robot/base"]["pose"][:3]) == ("map", [0, 3, 0])
 
 
 async def test_page_receives_only_changed_objects():
     async with planning_scene_world() as (world, source):
-        await source.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
+        await source.publish_scene(
+            make_scene(make_collision_object("a"), make_collision_object("b"), robot=make_robot_state(shoulder=0.0))
+        )
         (store,) = world.display("PlanningScene").data()
-        _, seen = store.since(0)
-        await source.publish_scene(scene(collision_object("a"), collision_object("b"), robot=state(shoulder=0.0)))
-        assert store.since(seen)[0] is None
+        _, revision = store.since(0)
+        await source.publish_scene(
+            make_scene(make_collision_object("a"), make_collision_object("b"), robot=make_robot_state(shoulder=0.0))
+        )
+        assert store.since(revision)[0] is None
 
 
 @pytest.mark.parametrize("cls", ["PlanningScene", "Trajectory", "RobotState", "MotionPlanning"])
@@ -374,7 +392,7 @@ async def test_planning_scene_file_is_saved_unchanged(cls):
             }
         }
     )
-    async with open_world(type(config(cls)).parse(text)) as world:
+    async with open_world(type(make_config(cls)).parse(text)) as world:
         world.describe(ARM)
         await world.settle()
         display = world.viewer.displays[0]

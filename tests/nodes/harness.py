@@ -31,7 +31,7 @@ def joint(
     parent: str = "base",
     child: str | None = None,
     limit: str | None = "lower='-1' upper='2'",
-    more: str = "",
+    content: str = "",
     xyz: str = "0 0 0",
     axis: str = "0 0 1",
 ) -> str:
@@ -42,7 +42,7 @@ def joint(
         f"<link name='{child}'/><joint name='{name}' type='{kind}'><parent link='{parent}'/><child link='{child}'/>"
         f"<origin xyz='{xyz}'/><axis xyz='{axis}'/>"
         + (f"<limit {limit} effort='1' velocity='1'/>" if needs_limit else "")
-        + f"{more}</joint>"
+        + f"{content}</joint>"
     )
 
 
@@ -51,16 +51,16 @@ def robot(*joints: str) -> str:
     return f"<robot name='test'><link name='base'/>{''.join(joints)}</robot>"
 
 
-def mimic(master: str, rest: str = "") -> str:
+def mimic(master: str, attributes: str = "") -> str:
     """Return a mimic tag."""
-    return f"<mimic joint='{master}' {rest}/>"
+    return f"<mimic joint='{master}' {attributes}/>"
 
 
-class Stage:
+class NodeHarness:
     def __init__(self, graph: Graph, clock: JumpClock, log: list[LogRecord]) -> None:
         self.graph, self.clock, self.log = graph, clock, log
         self.library = DescriptionLibrary()
-        self.node = graph.create_node("audience")
+        self.node = graph.create_node("test_node")
         self.tf: list[TFMessage] = []
         self.tf_static: list[TFMessage] = []
         self.descriptions: list[str] = []
@@ -76,8 +76,8 @@ class Stage:
         self._joint_states = self.node.create_publisher(JointState, "joint_states", 100)
         self._descriptions = self.node.create_publisher(String, "robot_description", DESCRIPTION_QOS)
 
-    def options(self, parameters: dict[str, Any], **rest: Any) -> NodeOptions:
-        return NodeOptions(parameters=parameters, library=self.library, **rest)
+    def options(self, parameters: dict[str, Any], **options: Any) -> NodeOptions:
+        return NodeOptions(parameters=parameters, library=self.library, **options)
 
     def robot_state_publisher(self, text: str, **parameters: Any) -> RobotStatePublisher:
         return RobotStatePublisher(self.graph, self.options({"robot_description": text, **parameters}))

@@ -16,7 +16,7 @@ class TestBench:
 
     def __init__(self, graph: Graph, log: list[LogRecord]) -> None:
         self.graph, self.log = graph, log
-        self.node = graph.create_node("audience")
+        self.node = graph.create_node("test_node")
         self.exchange = Exchange()
         self.states: dict[str, StateInterface] = {}
         self.commands: dict[str, CommandInterface] = {}
@@ -32,7 +32,10 @@ class TestBench:
     def make(
         self, controller: type[Controller[Any]], name: str = "controller", *, description: str = "", **parameters: Any
     ) -> Any:
-        """Create an unconfigured controller; its name may have a namespace, its parameters nested mappings."""
+        """Create an unconfigured controller.
+
+        Its name may have a namespace, its parameters nested mappings.
+        """
         namespace, _, name = name.rpartition("/")
         node = self.graph.create_node(name, namespace=namespace or "/", parameters=parameters)
         context = ControllerContext(name, ControllerNode(node, self.exchange), 100.0, description)
@@ -42,8 +45,8 @@ class TestBench:
         """Configure and activate a controller with the interfaces that it requests."""
         if configure:
             controller.on_configure()
-        controller.commands = _chosen(self.commands, controller.command_interfaces())
-        controller.states = _chosen(self.states, controller.state_interfaces())
+        controller.commands = _select_interfaces(self.commands, controller.command_interfaces())
+        controller.states = _select_interfaces(self.states, controller.state_interfaces())
         controller.references = [
             CommandInterface(controller.name, reference_interface)
             for reference_interface in controller.reference_interfaces()
@@ -59,7 +62,10 @@ class TestBench:
         return self.activate(self.make(controller, name, **parameters))
 
     async def step(self, controller: Controller[Any], period_s: float = 0.01, count: int = 1) -> None:
-        """Update the controller several times; received messages are processed before, publications are sent after."""
+        """Update the controller several times.
+
+        Received messages are processed before, publications are sent after.
+        """
         for _ in range(count):
             await self.graph.settle()
             self.exchange.run_commands()
@@ -79,10 +85,10 @@ class TestBench:
         self.node.create_publisher(type_name, topic, 10).publish(message)
 
 
-def _chosen(interfaces: dict[str, Any], names: Any) -> list[Any]:
+def _select_interfaces(interfaces: dict[str, Any], names: Any) -> list[Any]:
     return list(interfaces.values()) if names is Interfaces.ALL else [interfaces[name] for name in names]
 
 
-def values(interfaces: list[Interface]) -> list[float]:
+def interface_values(interfaces: list[Interface]) -> list[float]:
     """Return the values of interfaces."""
     return [interface.value for interface in interfaces]

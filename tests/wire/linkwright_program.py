@@ -1,4 +1,7 @@
-"""A process with a graph of Linkwright: ``python -m tests.wire.our_program NODE_NAME``."""
+"""A process with a graph of Linkwright.
+
+Run it with ``python -m tests.wire.linkwright_program NODE_NAME``.
+"""
 
 from __future__ import annotations
 
@@ -16,15 +19,15 @@ from tests.wire.programs import serve
 
 Int32 = get_message("std_msgs/msg/Int32")
 SetBool = get_service("std_srvs/srv/SetBool")
-EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 
 
-class OurProgram:
+class LinkwrightProgram:
     def __init__(self, name: str) -> None:
         self.graph = Graph(threads=True)
         self.node = self.graph.create_node(name)
         self.transport = join(self.graph)
-        self.publisher = self.node.create_publisher(Int32, "/flood", EVERYTHING)
+        self.publisher = self.node.create_publisher(Int32, "/flood", KEEP_ALL)
         self.node.create_service(SetBool, "/flip", self._flip)
         self.executor = SingleThreadedExecutor()
         self.executor.add_node(self.node)
@@ -57,7 +60,7 @@ class OurProgram:
 
 
 if __name__ == "__main__":
-    program = OurProgram(sys.argv[1])
+    program = LinkwrightProgram(sys.argv[1])
     serve(
         {
             "subscribers": program.subscribers,
