@@ -63,7 +63,7 @@ def test_path_determines_package(package: Path, tmp_path: Path, monkeypatch: pyt
     elsewhere.mkdir()
     monkeypatch.chdir(elsewhere)
     target = LaunchTarget(str(package / "launch" / "display.launch.py"))
-    assert target.finder().share("arm") == package
+    assert target.create_finder().share("arm") == package
 
 
 class TestWords:

@@ -16,7 +16,7 @@ from launch_ros.utilities import evaluate_parameters, normalize_parameters
 from launch import LaunchContext
 from launch.frontend import Parser
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.ros.parameters import own_parameters
+from linkwright.launch.ros.parameters import evaluate_own_parameters
 
 Write = Callable[[str, str], Path]
 
@@ -31,7 +31,7 @@ def context() -> LaunchContext:
 
 
 def values(context: LaunchContext, *parameters: Any, node: str = "/talker") -> dict[str, Any]:
-    return own_parameters(normalize_parameters(list(parameters)), context).values(context, node)
+    return evaluate_own_parameters(normalize_parameters(list(parameters)), context).values(context, node)
 
 
 def message_of(error: BaseException) -> str:
