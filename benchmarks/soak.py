@@ -126,10 +126,10 @@ class Soak:
     """
 
     def __init__(self, seconds: float, warm_up: float, domain: str) -> None:
-        from linkwright.standins.process import environment
+        from linkwright.standins.process import create_environment
 
         self._seconds, self._warm_up = seconds, warm_up
-        self._environment = {**environment(os.environ), "ROS_DOMAIN_ID": domain}
+        self._environment = {**create_environment(os.environ), "ROS_DOMAIN_ID": domain}
         self._watched: list[Watched] = []
         self.faults: list[str] = []
         self._kills = self._commands = 0
@@ -175,11 +175,11 @@ class Soak:
                     time.sleep(4.0)
 
     def _start(self, name: str, words: list[str], more: Mapping[str, str]) -> None:
-        environment = {**self._environment, **more}
+        create_environment = {**self._environment, **more}
         errors = Path(more["ROS_LOG_DIR"], f"{name}-errors")
         with errors.open("w") as stream:
             process = subprocess.Popen(
-                words, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=stream, text=True
+                words, cwd=ROOT, env=create_environment, stdout=subprocess.PIPE, stderr=stream, text=True
             )
         watched = Watched(name, process, errors)
         threading.Thread(target=watched.listen, daemon=True).start()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.cli.topic.rates import BandwidthWindow, DelayWindow, RateWindow, Spread, rate_table, rate_text
+from linkwright.cli.topic.rates import BandwidthWindow, DelayWindow, RateWindow, Spread, format_rate, format_rate_table
 
 MS = 1_000_000
 
@@ -15,7 +15,7 @@ def test_rate_window_measures_steady_rate():
         assert not window.add(tick * 100 * MS)
     spread = window.spread()
     assert spread is not None
-    assert rate_text(spread) == "average rate: 10.000\n\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 10"
+    assert format_rate(spread) == "average rate: 10.000\n\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 10"
 
 
 def test_rate_window_returns_spread_once():
@@ -45,7 +45,9 @@ def test_rate_window_restarts_when_time_jumps_back():
 
 
 def test_rate_table_lists_several_topics():
-    table = rate_table({"/a": Spread(100 * MS, 90 * MS, 110 * MS, MS, 7), "/longer": Spread(MS, MS, MS, 0, 1000)})
+    table = format_rate_table(
+        {"/a": Spread(100 * MS, 90 * MS, 110 * MS, MS, 7), "/longer": Spread(MS, MS, MS, 0, 1000)}
+    )
     assert table.splitlines() == [
         "  topic        rate       min_delta     max_delta      stddev     window ",
         "=" * 61,
@@ -56,11 +58,11 @@ def test_rate_table_lists_several_topics():
 
 def test_delay_window_prints_average():
     window = DelayWindow(10)
-    assert window.text() is None
+    assert window.format_report() is None
     window.add(1000 * MS, 900 * MS)
     window.add(2000 * MS, 1700 * MS)
-    assert window.text() == "average delay: 0.200\n\tmin: 0.100s max: 0.300s std dev: 0.10000s window: 2"
-    assert window.text() == "no new messages"
+    assert window.format_report() == "average delay: 0.200\n\tmin: 0.100s max: 0.300s std dev: 0.10000s window: 2"
+    assert window.format_report() == "no new messages"
 
 
 @pytest.mark.parametrize(
@@ -74,6 +76,6 @@ def test_delay_window_prints_average():
 def test_bandwidth_window_prints_rate(size, printed):
     window = BandwidthWindow(10)
     window.add(0, size)
-    assert window.text(500 * MS) is None
+    assert window.format_report(500 * MS) is None
     window.add(500 * MS, size)
-    assert window.text(1000 * MS) == printed
+    assert window.format_report(1000 * MS) == printed

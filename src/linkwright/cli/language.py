@@ -29,9 +29,9 @@ def take_language(words: Sequence[str]) -> list[str]:
     requested: str | None = None
     argument_iterator = iter(words)
     for argument in argument_iterator:
-        name, sign, value = argument.partition("=")
+        name, separator, value = argument.partition("=")
         if name == _OPTION:
-            requested = _parse_language(value if sign else next(argument_iterator, ""))
+            requested = _parse_language(value if separator else next(argument_iterator, ""))
         else:
             remaining_arguments.append(argument)
         if argument == "--":
