@@ -283,11 +283,11 @@ def _view(folder: Path, count: int) -> list[str]:
         "from linkwright.cli.exit_status import run_command\n"
         "from linkwright.descriptions import DescriptionLibrary, examine\n"
         "from linkwright.packages import PackageFinder\n"
-        "from linkwright.viewer.model_snapshot import snapshot_of_model\n"
+        "from linkwright.viewer.model_snapshot import take_model_snapshot\n"
         "finder, library = PackageFinder(), DescriptionLibrary()\n"
         "def load():\n"
         "    made = examine('made.urdf', packages=finder, xacro=True)\n"
-        "    snapshot_of_model(library.store(made), made.robot, library, finder)\n"
+        "    take_model_snapshot(library.store(made), made.robot, library, finder)\n"
         "    return 0\n"
         "raise SystemExit(run_command(load))"
     )

@@ -175,11 +175,11 @@ class Soak:
                     time.sleep(4.0)
 
     def _start(self, name: str, words: list[str], more: Mapping[str, str]) -> None:
-        create_environment = {**self._environment, **more}
+        environment = {**self._environment, **more}
         errors = Path(more["ROS_LOG_DIR"], f"{name}-errors")
         with errors.open("w") as stream:
             process = subprocess.Popen(
-                words, cwd=ROOT, env=create_environment, stdout=subprocess.PIPE, stderr=stream, text=True
+                words, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=stream, text=True
             )
         watched = Watched(name, process, errors)
         threading.Thread(target=watched.listen, daemon=True).start()

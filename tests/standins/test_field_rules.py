@@ -20,7 +20,7 @@ BASE = {"PATH": os.environ["PATH"], "LINKWRIGHT_DDS": "0"}
 
 def outcomes(python=sys.executable, command=(PROGRAM,), **variables):
     """Return the result of each assignment: an AssertionError's text, another error's name, or type and values."""
-    environment = {**BASE, **variables} if python == PYTHON else process.environment({**BASE, **variables})
+    environment = {**BASE, **variables} if python == PYTHON else process.create_environment({**BASE, **variables})
     result = subprocess.run(
         [python, *command], env=environment, check=False, capture_output=True, text=True, timeout=120
     )
