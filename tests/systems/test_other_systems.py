@@ -150,7 +150,7 @@ def test_signal_again_does_not_end_process_on_windows(monkeypatch):
     came = []
     before = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
     try:
-        interruption.signal_again(signal.SIGINT)
+        interruption.resend_signal(signal.SIGINT)
         wait_until(lambda: came)
     finally:
         signal.signal(signal.SIGINT, before)

@@ -71,7 +71,7 @@ def _export(arguments: argparse.Namespace, pair: Pair | None) -> int:
     from linkwright.descriptions.pairs import old_description_key
     from linkwright.packages import PackageFinder
     from linkwright.panels.export.feature import export_snapshot
-    from linkwright.viewer.model_snapshot import OldDescription, snapshot_of_model
+    from linkwright.viewer.model_snapshot import OldDescription, take_model_snapshot
 
     library = DescriptionLibrary()
     old = None
@@ -88,7 +88,7 @@ def _export(arguments: argparse.Namespace, pair: Pair | None) -> int:
     print_diagnostics(description.diagnostics, sys.stderr)
     if description.robot is None or not description.robot.root:
         return 1  # without a root link, no link has a pose
-    snapshot = snapshot_of_model(text, description.robot, library, finder, old)
+    snapshot = take_model_snapshot(text, description.robot, library, finder, old)
     print_diagnostics(snapshot.problems, sys.stderr)
     data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())
     write_output(Path(arguments.out), data)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from linkwright.diagnostics.phrase import TERMS
 from linkwright.diagnostics.translation import LANGUAGES, language, language_of, set_language
-from linkwright.diagnostics.translation.translate import wording
+from linkwright.diagnostics.translation.translate import load_catalog
 
 LANGUAGE_HELP = "the language of messages: zh for Chinese, en for English (default: the language of the environment)"
 
@@ -53,6 +53,6 @@ def translate_help(text: str) -> str:
     lang = language()
     if lang == "en" or not text:
         return text
-    catalog = wording(lang)
+    catalog = load_catalog(lang)
     translation = catalog.gettext(text)
     return catalog.pgettext(TERMS, text) if translation == text else translation

@@ -108,7 +108,7 @@ def create_fitting_profile(node: Node, topic: str, arguments: argparse.Namespace
 
     If the options set a policy, the result is the profile of the options. If they set none, each policy is the
     strictest that all publishers offer. As in ros2cli, the subscription is reliable and transient local if all
-    publishers are, and then also receives a message that was published once. The default queue is longer than in
+    publishers are, so that it also receives a message that was published before. The default queue is longer than in
     ros2, so that bursts of messages are not dropped.
     """
     from linkwright.graph.qos.compatibility import fit

@@ -22,10 +22,10 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.cli.completion.scripts import startup_script
     from linkwright.shell import run_shell
     from linkwright.shell.instead import HINTS
-    from linkwright.shell.session import MARK
+    from linkwright.shell.session import MARK_VARIABLE
 
     command = arguments.command
     return run_shell(
         command[1:] if command[:1] == ["--"] else command,
-        additions=lambda kind: startup_script(kind, sys.executable, MARK, list(HINTS)),
+        additions=lambda kind: startup_script(kind, sys.executable, MARK_VARIABLE, list(HINTS)),
     )

@@ -129,7 +129,7 @@ def _rerun(scenario: Scenario, row: int) -> int:
         print(f"{name}: {value}", flush=True)
     try:
         results = run_scenario(scenario, scenario_run).results
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise any exception
         traceback.print_exception(error)
         return FINDINGS
     for name, result in results.items():

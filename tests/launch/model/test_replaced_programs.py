@@ -28,9 +28,9 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]
         f"[linkwright.replaced_programs]\nsea = {__name__}:sail\nsunk = my_sea_that_is_not_there:sail\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     yield
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
 
 
 @pytest.mark.parametrize("name", [*replaced_programs()])

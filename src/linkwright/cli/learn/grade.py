@@ -11,7 +11,7 @@ from linkwright.cli.exit_status import FINDINGS, FINE, print_message
 from linkwright.cli.numbers import positive_float, positive_int
 from linkwright.cli.progress import ProgressLine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
-from linkwright.diagnostics.render import shown_width
+from linkwright.diagnostics.render import compute_width
 from linkwright.diagnostics.translation import language, localized
 from linkwright.process.processors import usable_processors
 
@@ -227,11 +227,11 @@ def _write_outputs(
 
 def _print_table(students: Sequence[StudentMarks]) -> None:
     lang = language()
-    width = max(shown_width(student.submission.student) for student in students)
+    width = max(compute_width(student.submission.student) for student in students)
     for student in students:
         name = student.submission.student
         signs = "".join(_format_sign(mark) for mark in student.marks.values())
-        padding = " " * (width - shown_width(name))
+        padding = " " * (width - compute_width(name))
         points = f"{student.total:g}/{student.possible:g}" if student.submission.is_readable else "–"
         print(f"{name}{padding}  {points:>9}  {signs}".rstrip())
         for note in student.submission.notes:

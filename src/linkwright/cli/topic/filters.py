@@ -66,7 +66,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
             # `eval` is safe here, because the syntax tree was checked above: it contains no private names and only the
             # listed functions.
             return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
-        except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
+        except Exception as error:  # noqa: BLE001 - the user's expression may raise any exception
             raise create_error(
                 phrase("the filter cannot be evaluated for a message: {error}", error=foreign(error))
             ) from None

@@ -181,7 +181,7 @@ class RunningProcess:
             elif transport.get_returncode() is None:
                 transport.terminate()
 
-    # --- the start ------------------------------------------------------------------------------------------
+    # --- start ------------------------------------------------------------------------------------------
 
     async def _start(self) -> None:
         plan = self.plan

@@ -71,7 +71,7 @@ class _TextParser:
     """A parser of one text into substitutions.
 
     Args:
-        text: the text.
+        text: the text, which may contain ``$(...)``.
         location: the location of the text, or None.
     """
 

@@ -21,7 +21,7 @@ class LaunchDescription(LaunchDescriptionEntity):
     """A list of entities in the order of their visits.
 
     Args:
-        initial_entities: the entities.
+        initial_entities: the entities in the order of their visits.
         deprecated_reason: the reason why the description is deprecated, logged on a visit; None if it is not
             deprecated.
     """

@@ -216,7 +216,7 @@ class SignalProcess(ProcessTargetedEvent):
     """A request to send a signal to the processes that the matcher accepts.
 
     Attributes:
-        signal: the signal.
+        signal: the signal to send.
         signal_name: the name of the signal, such as ``SIGINT``.
     """
 

@@ -156,7 +156,7 @@ def _replace_values(content: Any, values: Mapping[str, Any], path: tuple[str, ..
     """Return nested dictionaries and lists with some values replaced.
 
     Args:
-        content: the content.
+        content: the nested dictionaries and lists of a YAML file.
         values: maps a key, or a full path with dots, to a new value.
         path: the keys that lead to the content.
     """

@@ -38,7 +38,7 @@ class LaunchTestService:
 
         Args:
             launch_description: the description to which the action is added.
-            action: the action.
+            action: the action that the tests need.
             exit_allowed: the statuses with which the process may exit before the tests end. True allows any status,
                 and False allows none.
         """

@@ -136,7 +136,7 @@ class MessagePump:
     """A thread that runs the callbacks of a node.
 
     Args:
-        node: the node.
+        node: the node whose callbacks are run.
         context: the rclpy context of the node.
     """
 
