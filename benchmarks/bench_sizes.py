@@ -280,16 +280,16 @@ def _configuration(folder: Path, count: int) -> list[str]:
 def _view(folder: Path, count: int) -> list[str]:
     (folder / "made.urdf").write_text(_robot(count, chain=False), encoding="utf-8")
     return _program(
-        "from linkwright.cli.exit_status import status_of\n"
+        "from linkwright.cli.exit_status import run_command\n"
         "from linkwright.descriptions import DescriptionLibrary, examine\n"
         "from linkwright.packages import PackageFinder\n"
-        "from linkwright.viewer.model_snapshot import snapshot_of_model\n"
+        "from linkwright.viewer.model_snapshot import take_model_snapshot\n"
         "finder, library = PackageFinder(), DescriptionLibrary()\n"
         "def load():\n"
         "    made = examine('made.urdf', packages=finder, xacro=True)\n"
-        "    snapshot_of_model(library.store(made), made.robot, library, finder)\n"
+        "    take_model_snapshot(library.store(made), made.robot, library, finder)\n"
         "    return 0\n"
-        "raise SystemExit(status_of(load))"
+        "raise SystemExit(run_command(load))"
     )
 
 

@@ -90,10 +90,10 @@ def program(side: str, *words: str) -> subprocess.Popen[str]:
     """Start one side of a pair."""
     variables = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     if side == "linkwright":
-        from linkwright.standins.process import environment
+        from linkwright.standins.process import create_environment
 
         python = sys.executable
-        variables |= {"PYTHONPATH": environment()["PYTHONPATH"], "ROS_DISTRO": "jazzy"}
+        variables |= {"PYTHONPATH": create_environment()["PYTHONPATH"], "ROS_DISTRO": "jazzy"}
     else:
         folder = Path(".build/ros" if side == "jazzy" else ".build/ros-kilted").absolute()
         python = str(folder / "bin/python")

@@ -126,10 +126,10 @@ class Soak:
     """
 
     def __init__(self, seconds: float, warm_up: float, domain: str) -> None:
-        from linkwright.standins.process import environment
+        from linkwright.standins.process import create_environment
 
         self._seconds, self._warm_up = seconds, warm_up
-        self._environment = {**environment(os.environ), "ROS_DOMAIN_ID": domain}
+        self._environment = {**create_environment(os.environ), "ROS_DOMAIN_ID": domain}
         self._watched: list[Watched] = []
         self.faults: list[str] = []
         self._kills = self._commands = 0

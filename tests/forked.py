@@ -82,7 +82,7 @@ class Program:
 
 def start_process(words: list[str], *, cwd: Path, env: Mapping[str, str]) -> Program:
     """Start a program that imports everything itself."""
-    return _start(partial(forked.start_fresh, [sys.executable]), words, cwd, env)
+    return _start(partial(forked.start_new_process, [sys.executable]), words, cwd, env)
 
 
 class ForkServer:

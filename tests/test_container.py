@@ -10,7 +10,7 @@ import re
 
 import pytest
 
-from linkwright.cli.command import parser_for
+from linkwright.cli.command import create_parser
 from tests.places import REPOSITORY
 from tests.toml_files import PROJECT, PYPROJECT
 
@@ -30,7 +30,7 @@ def test_container_python_and_extras_are_declared_in_project(container):
 def test_container_runs_makefile_demo_as_non_root(container):
     (command,) = re.findall(r"^CMD (.+)$", container, re.MULTILINE)
     words = json.loads(command)
-    arguments = parser_for(words[0]).parse_intermixed_args(words[1:])
+    arguments = create_parser(words[0]).parse_intermixed_args(words[1:])
     assert (arguments.host, arguments.no_open) == ("0.0.0.0", True)  # a container is reachable only through its port
     assert f"EXPOSE {arguments.port}\n" in container
     robot = words[2].removeprefix("/opt/linkwright/robots/")

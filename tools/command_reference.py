@@ -17,8 +17,8 @@ from importlib import import_module, metadata
 from pathlib import Path
 from typing import Any
 
-from linkwright.cli.command import help_texts, parser_for
-from linkwright.cli.completion.candidates import TABLE
+from linkwright.cli.command import collect_help_texts, create_parser
+from linkwright.cli.completion.candidates import TABLE_PATH
 from linkwright.cli.tools.ros2 import COMMANDS
 from linkwright.launch.ros.executables import hosted_executables
 from linkwright.messages import catalog
@@ -54,8 +54,8 @@ Words in capitals are placeholders for your values. Brackets mark optional argum
 def generate() -> str:
     """Return the text of the page."""
     sections = [INTRODUCTION]
-    for name, text in help_texts().items():
-        sections += describe(parser_for(name), text)
+    for name, text in collect_help_texts().items():
+        sections += describe(create_parser(name), text)
     return "\n".join(sections)
 
 
@@ -66,7 +66,7 @@ def completion_table() -> str:
         executables.setdefault(package, []).append(name)
     names = [f"{package}/{name}" for package in catalog.packages() for name in catalog.texts(package)]
     types = {kind: sorted(name for name in names if f"/{kind}/" in name) for kind in ("msg", "srv", "action")}
-    verbs = {name: _completed(parser_for(name)) for name in help_texts()}
+    verbs = {name: _completed(create_parser(name)) for name in collect_help_texts()}
     table = {"verbs": verbs, "ros2": list(COMMANDS), "executables": executables, "types": types}
     return json.dumps(table, indent=1) + "\n"  # one line for each entry, so that changes merge
 
@@ -198,7 +198,7 @@ def main(words: Sequence[str]) -> int:
             f"installed with other entry points ({', '.join(sorted(differing))}): run make .venv/.dev", file=sys.stderr
         )
         return 1
-    for path, text in ((TARGET, generate()), (TABLE, completion_table())):
+    for path, text in ((TARGET, generate()), (TABLE_PATH, completion_table())):
         if "--check" not in words:
             path.write_text(text, encoding="utf-8", newline="\n")
         elif not path.exists() or path.read_text(encoding="utf-8") != text:

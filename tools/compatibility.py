@@ -113,7 +113,7 @@ def generate() -> dict[Path, str]:
 
 
 def _page(words: Words) -> str:
-    tables = {package: table.read(package) for package in table.packages()}
+    tables = {package: table.read(package) for package in table.list_packages()}
     parts = [words.head.format(mark=_MARK), words.packages]
     parts += [_counts(package, modules) for package, modules in tables.items()]
     for package, modules in tables.items():

@@ -131,7 +131,7 @@ def _recording(declarations: Declarations, given: Mapping[str, Any]) -> Iterator
         return declare(store, name, default, descriptor, **options)
 
     def reading(reader: Any, table: Any, prefix: str = "", defaults: Any = None) -> Any:
-        for entry in parameter_tables.entries(table, prefix):
+        for entry in parameter_tables.list_entries(table, prefix):
             tables.setdefault((reader._node.get_name(), entry.name), entry)
         return read(reader, table, prefix, defaults)
 

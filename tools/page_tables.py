@@ -18,7 +18,7 @@ from typing import Any
 
 from packaging.requirements import Requirement
 
-from linkwright.cli.command import groups, help_texts, parser_for
+from linkwright.cli.command import find_command_groups, collect_help_texts, create_parser
 from linkwright.cli.language import translate_help
 from linkwright.descriptions import load
 from linkwright.diagnostics.translation import set_language, translate_phrase
@@ -158,7 +158,7 @@ def commands(chinese: bool) -> str:
         title = "用途" if chinese else "what it does"
         return "\n\n".join(
             "\n".join([f"| {_capital(translate_help(group))} | {title} |", "| --- | --- |", *map(_command, verbs)])
-            for group, verbs in groups().items()
+            for group, verbs in find_command_groups().items()
         )
     finally:
         set_language(None)
@@ -234,8 +234,8 @@ TABLES: dict[str, Callable[[bool], str]] = {
 
 
 def _command(name: str) -> str:
-    first = next(describe(parser_for(name), "")).partition("\n")[0].removeprefix("## ").strip()
-    return f"| [`linkwright {name}`](commands.md#{first.replace(' ', '-')}) | {translate_help(help_texts()[name])} |"
+    first = next(describe(create_parser(name), "")).partition("\n")[0].removeprefix("## ").strip()
+    return f"| [`linkwright {name}`](commands.md#{first.replace(' ', '-')}) | {translate_help(collect_help_texts()[name])} |"
 
 
 def _row(cells: Sequence[str]) -> str:

@@ -29,7 +29,7 @@ def stubs() -> dict[str, str]:
     texts: dict[str, str] = {}
     for package in catalog.packages():
         texts |= package_stubs(package, [f"{package}/{name}" for name in catalog.texts(package)], LIBRARY)
-    for package in table.packages():
+    for package in table.list_packages():
         for module in table.read(package).values():
             path = module.name.replace(".", "/")
             path += "/__init__.pyi" if module.submodules or path == package else ".pyi"

@@ -27,7 +27,7 @@ _LINTER_MARKERS = {
 
 
 def offer_stand_ins() -> None:
-    """Make ``rclpy``, messages and so on importable, as ``PYTHONPATH`` does in a shell of Linkwright."""
+    """Make ``rclpy``, messages and other stand-ins importable, as in a shell of Linkwright."""
     if str(_STARTUP) in sys.path:
         return
     sys.path.append(str(_STARTUP))

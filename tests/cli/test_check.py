@@ -7,8 +7,8 @@ import subprocess
 import sys
 
 from linkwright.cli import main
-from linkwright.cli.check import without_options
-from linkwright.cli.command import parser_for
+from linkwright.cli.check import parse_without_options
+from linkwright.cli.command import create_parser
 from tests.geometry.test_mesh_faults import COLLADA
 from tests.imports import loaded_by
 from tests.places import PACKAGE
@@ -82,8 +82,8 @@ def test_checking_plain_urdf_imports_neither_xacro_nor_argparse():
 
 def test_arguments_without_options_match_full_parser():
     words = ["robot.urdf", "a:=1"]
-    assert vars(without_options(words)) == vars(parser_for("check").parse_args(words))
-    assert without_options([]) is None
+    assert vars(parse_without_options(words)) == vars(create_parser("check").parse_args(words))
+    assert parse_without_options([]) is None
 
 
 def test_xacro_is_expanded_before_check(capsys):

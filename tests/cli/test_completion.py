@@ -17,10 +17,10 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.command import help_texts
+from linkwright.cli.command import collect_help_texts
 from linkwright.cli.completion import graph_names
 from linkwright.cli.completion.candidates import complete, split_line
-from linkwright.cli.completion.scripts import FILES, script, shell_script
+from linkwright.cli.completion.scripts import FILES, completion_script, startup_script
 from linkwright.graph import Graph
 from linkwright.messages import get_message
 
@@ -57,7 +57,7 @@ def complete_line(line: str) -> list[str]:
 
 
 def test_command_names_are_completed() -> None:
-    assert complete_line("linkwright ")[: len(help_texts())] == list(help_texts())
+    assert complete_line("linkwright ")[: len(collect_help_texts())] == list(collect_help_texts())
     assert complete_line("linkwright la") == ["launch"]
     assert "launch" in complete_line("/some/bin/ros2 ")
     assert "view" not in complete_line("ros2 ")
@@ -110,7 +110,7 @@ def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -
     assert len(started) == 1
     assert complete_line("linkwright topic echo /") == []
     assert len(started) == 1  # the first process still runs
-    path = graph_names._path()
+    path = graph_names._cache_path()
     path.write_text(json.dumps({"topics": ["/tf"], "nodes": ["/talker"], "services": ["/go"], "actions": ["/turn"]}))
     assert complete_line("ros2 topic echo /t") == ["/tf"]
     assert complete_line("ros2 node info ") == ["/talker"]
@@ -130,10 +130,10 @@ def test_graph_discovery_stores_names_of_running_nodes(in_graph: Callable[[Calla
 
     in_graph(make)
     assert graph_names.discover() == 0
-    assert "/left/talker" in graph_names.names_of("nodes")
-    assert "/left/chatter" in graph_names.names_of("topics")
-    assert "/left/talker/get_parameters" in graph_names.names_of("services")
-    assert graph_names.names_of("actions") == []
+    assert "/left/talker" in graph_names.read_names("nodes")
+    assert "/left/chatter" in graph_names.read_names("topics")
+    assert "/left/talker/get_parameters" in graph_names.read_names("services")
+    assert graph_names.read_names("actions") == []
 
 
 def test_completion_imports_no_slow_modules() -> None:
@@ -168,7 +168,7 @@ def test_completion_imports_no_slow_modules() -> None:
 )
 def test_completion_in_bash(line: str, candidates: list[str]) -> None:
     program = (
-        script("bash", sys.executable, ["linkwright"])
+        completion_script("bash", sys.executable, ["linkwright"])
         + f'COMP_LINE="{line}"; COMP_POINT=${{#COMP_LINE}}; _linkwright_complete 2>/dev/null\n'
         + "printf '%s\\n' \"${COMPREPLY[@]}\"; complete -p linkwright >&2"
     )
@@ -213,7 +213,7 @@ def test_completion_in_zsh(words: list[str], candidates: list[str]) -> None:
     typed = " ".join(f"'{word}'" for word in [*words[:-1], words[-1] + "after-the-cursor"])
     program = (
         ZSH_WITHOUT_ITS_COMPLETION
-        + script("zsh", sys.executable, ["linkwright"])
+        + completion_script("zsh", sys.executable, ["linkwright"])
         + f"words=({typed}); CURRENT=$#words\n"
         + f"PREFIX={shlex.quote(words[-1])}; _linkwright_complete"
     )
@@ -227,7 +227,7 @@ def test_completion_in_zsh(words: list[str], candidates: list[str]) -> None:
     ("words", "candidates"), [*SHELL_LINES, (["linkwright", "check", "arm/a"], ["arm/arm.urdf.xacro"])]
 )
 def test_completion_in_fish(words: list[str], candidates: list[str], tmp_path: Path) -> None:
-    program = script("fish", sys.executable, ["linkwright"]) + f"complete -C {shlex.quote(' '.join(words))}"
+    program = completion_script("fish", sys.executable, ["linkwright"]) + f"complete -C {shlex.quote(' '.join(words))}"
     environment = {**os.environ, "HOME": str(tmp_path)}
     result = subprocess.run(
         ["fish", "--no-config", "-c", program], capture_output=True, text=True, check=True, env=environment
@@ -239,16 +239,16 @@ def test_completion_in_fish(words: list[str], candidates: list[str], tmp_path: P
 def test_shell_accepts_generated_script(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["completion", shell]) == 0
     text = capsys.readouterr().out
-    assert text == script(shell, sys.executable, ["linkwright"])
+    assert text == completion_script(shell, sys.executable, ["linkwright"])
     if shutil.which(shell):
-        generated = shell_script(shell, sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "rqt"])
+        generated = startup_script(shell, sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "rqt"])
         subprocess.run([shell, "-n"], input=text + generated, text=True, check=True)
 
 
 @pytest.mark.skipif(shutil.which("bash") is None, reason="bash is not installed")
 def test_missing_ros_programs_print_alternatives() -> None:
     program = "command_not_found_handle() { echo other $1; return 9; }\n"
-    program += shell_script("bash", sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "gazebo"])
+    program += startup_script("bash", sys.executable, "LINKWRIGHT_SHELL", ["rosdep", "gazebo"])
     program += "rosdep install; echo $?; gazebo --verbose; no_such_program; echo $?"
     environment = {**os.environ, "LINKWRIGHT_SHELL": "/nowhere", "LINKWRIGHT_LANG": "en"}
     result = subprocess.run(["bash", "-c", program], capture_output=True, text=True, check=False, env=environment)

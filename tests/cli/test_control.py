@@ -144,7 +144,7 @@ def test_view_controller_chains_writes_diagram(manager, capsys, tmp_path, monkey
 
 
 def test_list_controllers_waits_for_late_controller_manager(in_graph, capsys, monkeypatch):
-    monkeypatch.setattr(calls, "APPEARS_TIMEOUT_S", 0.0)
+    monkeypatch.setattr(calls, "SERVICE_TIMEOUT_S", 0.0)
 
     def later(graph: Graph) -> None:
         parameters = {"robot_description": robot(joint("hip"))}
@@ -155,7 +155,7 @@ def test_list_controllers_waits_for_late_controller_manager(in_graph, capsys, mo
 
 
 def test_controller_manager_option_selects_manager(manager, capsys, monkeypatch):
-    monkeypatch.setattr(calls, "APPEARS_TIMEOUT_S", 0.3)
+    monkeypatch.setattr(calls, "SERVICE_TIMEOUT_S", 0.3)
     monkeypatch.setattr(control, "MANAGER_EXTRA_WAIT_S", 0.2)
     manager()
     output = run_command(capsys, "list_controllers", "-c", "/robot/controller_manager", status=1)

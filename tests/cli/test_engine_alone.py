@@ -45,7 +45,7 @@ def alone(monkeypatch):
         for loaded in [module for module in sys.modules if f"{module}.".startswith(f"linkwright.{name}.")]:
             monkeypatch.delitem(sys.modules, loaded)
         monkeypatch.setitem(sys.modules, f"linkwright.{name}", None)
-    monkeypatch.setattr("linkwright.loading.extensions._all_groups", dict)
+    monkeypatch.setattr("linkwright.loading.extensions._read_all_groups", dict)
 
 
 def test_help_lists_engine_commands(alone, capsys):

@@ -16,7 +16,7 @@ import pytest
 
 from linkwright.bag import STORAGES, BagReader, BagWriter
 from linkwright.cli import main
-from linkwright.cli.command import help_texts
+from linkwright.cli.command import collect_help_texts
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph
 from linkwright.messages import String, serialize
@@ -164,7 +164,7 @@ def test_bag_record_reports_full_disk_once(
 QUICK_COMMANDS = {
     "version": ["--version"],
     "help": ["--help"],
-    **{f"{verb} --help": [verb, "--help"] for verb in help_texts()},
+    **{f"{verb} --help": [verb, "--help"] for verb in collect_help_texts()},
     "check": ["check", "r.urdf"],
     "check json": ["check", "r.urdf", "--format", "json"],
     "xacro": ["xacro", "r.urdf"],
@@ -178,9 +178,9 @@ QUICK_COMMANDS = {
 _RUN_MANY = """
 import os, sys
 from linkwright.cli import main
-from linkwright.cli.command import help_texts, parser_for
-for name in help_texts():
-    parser_for(name)  # what verbs import is imported once, not by each process
+from linkwright.cli.command import collect_help_texts, create_parser
+for name in collect_help_texts():
+    create_parser(name)  # what verbs import is imported once, not by each process
 failed = []
 for words in {commands!r}:
     child = os.fork()

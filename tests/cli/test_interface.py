@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.interface import definition_lines, nested_type
+from linkwright.cli.interface import find_nested_type, format_definition
 
 DEFINITIONS = {
     "p/msg/Short": "# A short type\n# A constant\nbool BOOL_CONST=true # one\n\nbool value\nbool[<=3] values # two\n",
@@ -19,7 +19,7 @@ DEFINITIONS = {
 
 
 def interface_lines(name: str, **options: bool) -> list[str]:
-    return list(definition_lines(name, DEFINITIONS.__getitem__, **options))
+    return list(format_definition(name, DEFINITIONS.__getitem__, **options))
 
 
 def test_nested_definitions_are_indented_without_comments():
@@ -88,7 +88,7 @@ def test_service_definition_expands_arrays_and_headers():
     ],
 )
 def test_nested_type_is_found_in_definition_line(line, found):
-    assert nested_type(line, "p") == found
+    assert find_nested_type(line, "p") == found
 
 
 def run_command(capsys, *words: str, status: int = 0) -> tuple[str, str]:

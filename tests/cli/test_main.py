@@ -11,20 +11,20 @@ import pytest
 
 from linkwright import __version__
 from linkwright.cli import main
-from linkwright.cli.command import help_texts, parser_for
+from linkwright.cli.command import collect_help_texts, create_parser
 from linkwright.diagnostics.translation import set_language
 
 
 def test_missing_arguments_print_overview_as_usage(capsys):
     assert main([]) == 2
     printed = capsys.readouterr().out
-    assert all(verb in printed for verb in help_texts())
+    assert all(verb in printed for verb in collect_help_texts())
 
 
 def test_help_lists_every_command(capsys):
     assert main(["--help"]) == 0
     printed = capsys.readouterr().out
-    assert all(f"  {verb} " in printed for verb in help_texts())
+    assert all(f"  {verb} " in printed for verb in collect_help_texts())
 
 
 def test_version_is_printed(capsys):
@@ -52,7 +52,7 @@ def test_misspelled_option_suggests_nearest(words, suggestion, capsys):
     assert suggestion in capsys.readouterr().err.splitlines()[-1].rpartition(";")[2]
 
 
-@pytest.mark.parametrize("verb", help_texts())
+@pytest.mark.parametrize("verb", collect_help_texts())
 def test_every_command_has_help(verb, capsys):
     assert main([verb, "--help"]) == 0
     assert f"usage: linkwright {verb}" in capsys.readouterr().out
@@ -66,7 +66,7 @@ def test_unknown_option_is_usage_error(capsys):
 @pytest.mark.parametrize("verb", ["check", "view", "xacro", "inertia", "diagram"])
 def test_missing_file_argument_is_named(verb, capsys):
     with pytest.raises(SystemExit):
-        parser_for(verb).parse_args([])
+        create_parser(verb).parse_args([])
     assert "the following arguments are required: FILE" in (printed := capsys.readouterr().err)
     assert printed.rstrip().endswith(("FILE", "FILE|FOLDER|NAME:=VALUE"))
 
@@ -129,14 +129,14 @@ def texts_in(parser: argparse.ArgumentParser) -> Iterator[str]:
                 yield from texts_in(below)
 
 
-@pytest.mark.parametrize("verb", help_texts())
+@pytest.mark.parametrize("verb", collect_help_texts())
 def test_command_help_is_fully_translated(verb):
     set_language("en")
     try:
-        english = list(texts_in(parser_for(verb)))
+        english = list(texts_in(create_parser(verb)))
         set_language("zh")
-        chinese = list(texts_in(parser_for(verb)))
+        chinese = list(texts_in(create_parser(verb)))
     finally:
         set_language(None)
-        parser_for(verb)  # restore argparse's English texts
+        create_parser(verb)  # restore argparse's English texts
     assert [text for text, translation in zip(english, chinese, strict=True) if text == translation] == []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.cli.topic.rates import BandwidthWindow, DelayWindow, RateWindow, Spread, rate_table, rate_text
+from linkwright.cli.topic.rates import BandwidthWindow, DelayWindow, RateWindow, Spread, format_rate, format_rate_table
 
 MILLISECOND_NS = 1_000_000
 
@@ -15,7 +15,7 @@ def test_rate_window_measures_steady_rate():
         assert not window.add(tick * 100 * MILLISECOND_NS)
     spread = window.spread()
     assert spread is not None
-    assert rate_text(spread) == "average rate: 10.000\n\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 10"
+    assert format_rate(spread) == "average rate: 10.000\n\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 10"
 
 
 def test_rate_window_returns_spread_once():
@@ -45,7 +45,7 @@ def test_rate_window_restarts_when_time_jumps_back():
 
 
 def test_rate_table_lists_several_topics():
-    table = rate_table(
+    table = format_rate_table(
         {
             "/a": Spread(100 * MILLISECOND_NS, 90 * MILLISECOND_NS, 110 * MILLISECOND_NS, MILLISECOND_NS, 7),
             "/longer": Spread(MILLISECOND_NS, MILLISECOND_NS, MILLISECOND_NS, 0, 1000),
@@ -61,11 +61,11 @@ def test_rate_table_lists_several_topics():
 
 def test_delay_window_prints_average():
     window = DelayWindow(10)
-    assert window.text() is None
+    assert window.format_report() is None
     window.add(1000 * MILLISECOND_NS, 900 * MILLISECOND_NS)
     window.add(2000 * MILLISECOND_NS, 1700 * MILLISECOND_NS)
-    assert window.text() == "average delay: 0.200\n\tmin: 0.100s max: 0.300s std dev: 0.10000s window: 2"
-    assert window.text() == "no new messages"
+    assert window.format_report() == "average delay: 0.200\n\tmin: 0.100s max: 0.300s std dev: 0.10000s window: 2"
+    assert window.format_report() == "no new messages"
 
 
 @pytest.mark.parametrize(
@@ -79,6 +79,6 @@ def test_delay_window_prints_average():
 def test_bandwidth_window_prints_rate(size, printed):
     window = BandwidthWindow(10)
     window.add(0, size)
-    assert window.text(500 * MILLISECOND_NS) is None
+    assert window.format_report(500 * MILLISECOND_NS) is None
     window.add(500 * MILLISECOND_NS, size)
-    assert window.text(1000 * MILLISECOND_NS) == printed
+    assert window.format_report(1000 * MILLISECOND_NS) == printed

@@ -70,7 +70,7 @@ def test_simulation_rejection_is_one_error(spawn_requests, tmp_path, capsys):
 
 def test_missing_simulation_is_reported_with_hint(in_graph, tmp_path, capsys, monkeypatch):
     in_graph(lambda graph: None)
-    monkeypatch.setattr(calls, "APPEARS_TIMEOUT_S", 0.0)
+    monkeypatch.setattr(calls, "SERVICE_TIMEOUT_S", 0.0)
     assert main(["spawn", robot(tmp_path)]) == 1
     output = capsys.readouterr().err
     assert output.count("error[") == 1

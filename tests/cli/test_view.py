@@ -97,4 +97,4 @@ def test_displays_of_rviz_file_are_used(folder: Path, file: str, monkeypatch: py
     monkeypatch.setattr(view, "run_view", show)
     assert main(["view", file, "-d", "v.rviz"]) == 0
     assert [options.rviz for options in host_options] == [folder / "v.rviz"]
-    assert view._config_of(folder / "v.rviz").options.text("Fixed Frame") == "odom"
+    assert view._load_config(folder / "v.rviz").options.text("Fixed Frame") == "odom"

@@ -7,8 +7,8 @@ import io
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.command import parser_for
-from linkwright.cli.xacro import without_options
+from linkwright.cli.command import create_parser
+from linkwright.cli.xacro import parse_without_options
 from tests.imports import loaded_by
 
 ROBOT = """<?xml version="1.0"?>
@@ -84,8 +84,8 @@ def test_unwritable_output_is_reported(model, tmp_path, capsys):
 
 def test_arguments_without_options_match_full_parser():
     words = ["robot.xacro", "a:=1", "b:="]
-    assert vars(without_options(words)) == vars(parser_for("xacro").parse_args(words))
-    assert without_options([]) is None
+    assert vars(parse_without_options(words)) == vars(create_parser("xacro").parse_args(words))
+    assert parse_without_options([]) is None
 
 
 def test_plain_command_does_not_import_argparse(tmp_path):

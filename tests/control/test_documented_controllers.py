@@ -87,10 +87,10 @@ def installed_package(tmp_path, monkeypatch):
     lines = [f"[{GROUP}]", *read_pyproject_group(entry_point, GROUP), "my/Broken = nowhere:None"]
     (facts / "entry_points.txt").write_text("\n".join(lines))
     monkeypatch.syspath_prepend(str(tmp_path))
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     yield
     monkeypatch.undo()
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     for name in ("my_controllers.swing", "my_controllers"):
         sys.modules.pop(name, None)
 

@@ -104,7 +104,7 @@ def test_image_decoder_names_missing_image_extra(without):
     ],
 )
 def test_missing_wheel_for_new_python_is_reported(monkeypatch, version, module, hint):
-    monkeypatch.setattr("linkwright.diagnostics.extras._VERSION", version)
+    monkeypatch.setattr("linkwright.diagnostics.extras._PYTHON_VERSION", version)
     error = missing_extra("BAG107", ModuleNotFoundError(module, name=module))
     assert str(error.diagnostics[0].hint).count(hint) == 1
 

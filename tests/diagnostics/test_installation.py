@@ -9,7 +9,13 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import install_hint
-from linkwright.diagnostics.installation import Installation, Origin, find_installation, installation_in, origin_of
+from linkwright.diagnostics.installation import (
+    Installation,
+    Origin,
+    find_installation,
+    find_installation_in,
+    parse_origin,
+)
 
 PIP = ("pip", "install")
 
@@ -31,25 +37,25 @@ def test_index_installation_is_extended_by_name() -> None:
 
 
 def test_checkout_installation_is_extended_by_path(checkout: Path) -> None:
-    installation = Installation(origin_of(direct_url(checkout)), PIP)
+    installation = Installation(parse_origin(direct_url(checkout)), PIP)
     assert installation.command_for_extras("sim", "dds") == f"pip install '{checkout}[dds,sim]'"
 
 
 def test_checkout_in_current_folder_is_a_dot(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(checkout)
-    installation = Installation(origin_of(direct_url(checkout)), PIP)
+    installation = Installation(parse_origin(direct_url(checkout)), PIP)
     assert installation.command_for_extras("sim") == "pip install '.[sim]'"
 
 
 def test_editable_checkout_stays_editable(checkout: Path) -> None:
-    installation = Installation(origin_of(direct_url(checkout, dir_info={"editable": True})), PIP)
+    installation = Installation(parse_origin(direct_url(checkout, dir_info={"editable": True})), PIP)
     assert installation.command_for_extras("sim") == f"pip install -e '{checkout}[sim]'"
 
 
 def test_wheel_is_referenced_by_path(tmp_path: Path) -> None:
     wheel = tmp_path / "linkwright-0.1.0-py3-none-any.whl"
     wheel.touch()
-    origin = origin_of({"url": wheel.as_uri(), "archive_info": {"hash": "sha256=0"}})
+    origin = parse_origin({"url": wheel.as_uri(), "archive_info": {"hash": "sha256=0"}})
     assert Installation(origin, PIP).command_for_extras("mesh") == f"pip install '{wheel}[mesh]'"
 
 
@@ -75,7 +81,7 @@ def test_wheel_is_referenced_by_path(tmp_path: Path) -> None:
     ],
 )
 def test_url_installation_is_extended_from_its_url(recorded: dict[str, object], requirement: str) -> None:
-    assert Installation(origin_of(recorded), PIP).command_for_extras("mesh") == f"pip install '{requirement}'"
+    assert Installation(parse_origin(recorded), PIP).command_for_extras("mesh") == f"pip install '{requirement}'"
 
 
 def test_missing_install_source_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -90,7 +96,7 @@ def test_missing_install_source_is_reported(tmp_path: Path, monkeypatch: pytest.
 def test_pipx_reinstalls_with_previous_extras(tmp_path: Path) -> None:
     main = {"package": "linkwright", "package_or_url": "/home/me/linkwright[image, dds]"}
     (tmp_path / "pipx_metadata.json").write_text(json.dumps({"main_package": main}))
-    installation = installation_in(tmp_path, Origin())
+    installation = find_installation_in(tmp_path, Origin())
     assert installation.command_for_extras("sim") == "pipx install --force 'linkwright[dds,image,sim]'"
     assert installation.command_for_packages("pyserial") == "pipx inject linkwright pyserial"
 
@@ -99,7 +105,7 @@ def test_uv_tool_reinstalls_with_previous_requirements(tmp_path: Path) -> None:
     (tmp_path / "uv-receipt.toml").write_text(
         '[tool]\nrequirements = [{ name = "linkwright", extras = ["image"], directory = "/x" }, { name = "jinja2" }]\n'
     )
-    installation = installation_in(tmp_path, Origin())
+    installation = find_installation_in(tmp_path, Origin())
     assert installation.command_for_extras("sim") == "uv tool install --with jinja2 'linkwright[image,sim]'"
     assert installation.command_for_packages("pyserial") == (
         "uv tool install --with jinja2 --with pyserial 'linkwright[image]'"
@@ -107,7 +113,7 @@ def test_uv_tool_reinstalls_with_previous_requirements(tmp_path: Path) -> None:
 
 
 def test_uvx_environment_is_installed_as_tool(tmp_path: Path) -> None:
-    installation = installation_in(tmp_path / "archive-v0" / "x", Origin())
+    installation = find_installation_in(tmp_path / "archive-v0" / "x", Origin())
     assert installation.command_for_extras("sim") == "uv tool install 'linkwright[sim]'"
 
 
@@ -123,12 +129,12 @@ def pip_there(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Path:
 
 def test_pip_on_path_is_used_if_it_belongs_to_environment(pip_there: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.which", lambda _name: str(pip_there / "pip"))
-    assert installation_in(pip_there, Origin()).command_for_packages("jinja2") == "pip install jinja2"
+    assert find_installation_in(pip_there, Origin()).command_for_packages("jinja2") == "pip install jinja2"
 
 
 def test_inactive_environment_is_addressed_by_its_python(pip_there: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("shutil.which", lambda _name: "/usr/bin/pip")
-    command = installation_in(pip_there, Origin()).command_for_packages("jinja2")
+    command = find_installation_in(pip_there, Origin()).command_for_packages("jinja2")
     assert command == f"{pip_there / 'python'} -m pip install jinja2"
 
 
@@ -136,10 +142,10 @@ def test_uv_is_used_without_pip(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("linkwright.diagnostics.installation.find_spec", lambda _name: None)
     monkeypatch.setattr("shutil.which", lambda _name: "/usr/bin/uv")
     monkeypatch.delenv("VIRTUAL_ENV", raising=False)
-    installed = installation_in(tmp_path, Origin())
+    installed = find_installation_in(tmp_path, Origin())
     assert installed.command_for_packages("jinja2") == f"uv pip install --python {tmp_path} jinja2"
     monkeypatch.setenv("VIRTUAL_ENV", str(tmp_path))
-    assert installation_in(tmp_path, Origin()).command_for_packages("jinja2") == "uv pip install jinja2"
+    assert find_installation_in(tmp_path, Origin()).command_for_packages("jinja2") == "uv pip install jinja2"
 
 
 def test_uv_of_checkout_is_used_without_other_uv(checkout: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -148,7 +154,7 @@ def test_uv_of_checkout_is_used_without_other_uv(checkout: Path, monkeypatch: py
     checkout_uv.touch()
     monkeypatch.setattr("linkwright.diagnostics.installation.find_spec", lambda _name: None)
     monkeypatch.setattr("shutil.which", lambda _name: None)
-    command = installation_in(checkout / ".venv", Origin(str(checkout), editable=True)).command_for_extras("train")
+    command = find_installation_in(checkout / ".venv", Origin(str(checkout), editable=True)).command_for_extras("train")
     assert command.startswith(f"'{checkout_uv}' pip install --python ")
 
 

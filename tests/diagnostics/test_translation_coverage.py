@@ -14,7 +14,7 @@ import pytest
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, term
 from linkwright.diagnostics.phrase import FOREIGN
 from linkwright.diagnostics.translation import LANGUAGES
-from linkwright.diagnostics.translation.translate import wording
+from linkwright.diagnostics.translation.translate import load_catalog
 from linkwright.lint.engine import examine
 from linkwright.lint.explain import find_page, known_codes
 from linkwright.lint.settings import Settings
@@ -32,7 +32,7 @@ _MISTAKE = re.compile(r"^```xml\n(.*?)\n```$", re.MULTILINE | re.DOTALL)
 
 @pytest.fixture(params=sorted(set(LANGUAGES) - {"en"}))
 def words(request: pytest.FixtureRequest) -> Recording:
-    return Recording(wording(request.param))
+    return Recording(load_catalog(request.param))
 
 
 class Recording:

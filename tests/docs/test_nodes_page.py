@@ -35,7 +35,7 @@ def sources(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_tests_of_page_pass(sources: Path) -> None:
-    environment = process.environment({**os.environ, "LINKWRIGHT_DDS": "0"})
+    environment = process.create_environment({**os.environ, "LINKWRIGHT_DDS": "0"})
     result = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:asyncio", "test/test_robot.py"],
         cwd=sources / "my_nodes",

@@ -51,13 +51,13 @@ def installed_display(request, tmp_path, monkeypatch):
     (facts / "entry_points.txt").write_text("\n".join(lines))
     monkeypatch.syspath_prepend(str(tmp_path / "street_displays"))
     monkeypatch.chdir(tmp_path)
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     catalog._display_class.cache_clear()
     yield
     monkeypatch.undo()
     sys.modules.pop("street_displays", None)
     sys.modules.pop("object_points", None)
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     catalog._display_class.cache_clear()
 
 

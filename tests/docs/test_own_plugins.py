@@ -42,7 +42,7 @@ def installed_plugin(request, tmp_path, monkeypatch):
 
 def _forget() -> None:
     sys.modules.pop("my_wind", None)
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     registry._load.cache_clear()
 
 

@@ -7,7 +7,7 @@ import re
 import pytest
 
 from linkwright.cli import main
-from linkwright.cli.command import help_texts
+from linkwright.cli.command import collect_help_texts
 from tests.docs.pages import DOCS
 from tests.repository_tools import load_tool
 from tests.toml_files import EXTRAS, TOGETHER
@@ -38,7 +38,7 @@ def test_stale_table_is_found_and_fixed(tool, tmp_path, monkeypatch) -> None:
 @pytest.mark.parametrize("folder", ["", "zh"])
 def test_index_lists_all_commands(folder) -> None:
     page = (DOCS / folder / "index.md").read_text(encoding="utf-8")
-    assert re.findall(r"^\| \[`linkwright (\w+)`\]", page, re.MULTILINE) == list(help_texts())
+    assert re.findall(r"^\| \[`linkwright (\w+)`\]", page, re.MULTILINE) == list(collect_help_texts())
 
 
 def test_extras_have_purpose_and_packages(tool) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.cli.command import help_texts, parser_for
+from linkwright.cli.command import collect_help_texts, create_parser
 from tests.docs.pages import DOCS, READMES, Block, find_pages, read_blocks, read_commands
 from tests.places import REPOSITORY
 from tests.repository_tools import load_tool
@@ -47,10 +47,10 @@ def test_stale_command_reference_is_found_and_fixed(tmp_path: Path, monkeypatch:
 
 
 @pytest.mark.parametrize("page", [DOCS / "commands.md", DOCS / "zh" / "commands.md"], ids=page_name)
-@pytest.mark.parametrize("verb", help_texts())
+@pytest.mark.parametrize("verb", collect_help_texts())
 def test_all_options_are_documented(page: Path, verb: str) -> None:
     sections = dict(re.findall(r"^## (.+?)\n(.*?)(?=^## |\Z)", page.read_text("utf-8"), re.MULTILINE | re.DOTALL))
-    for parser in find_leaf_parsers(parser_for(verb)):
+    for parser in find_leaf_parsers(create_parser(verb)):
         section = sections[parser.prog]
         for action in parser._actions:
             if action.dest != "help":
@@ -62,8 +62,8 @@ def test_all_options_are_documented(page: Path, verb: str) -> None:
 def test_documented_commands_are_accepted(page: Path) -> None:
     for line in read_commands(page):
         arguments = shlex.split(line)
-        assert arguments[1] in help_texts(), line
-        parser_for(arguments[1]).parse_args(arguments[2:])
+        assert arguments[1] in collect_help_texts(), line
+        create_parser(arguments[1]).parse_args(arguments[2:])
 
 
 @pytest.mark.parametrize("page", find_pages(), ids=page_name)

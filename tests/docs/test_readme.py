@@ -11,7 +11,7 @@ import sys
 import pytest
 from PIL import Image
 
-from linkwright.cli.command import SUMMARY_HELP, parser_for
+from linkwright.cli.command import SUMMARY_HELP, create_parser
 from linkwright.cli.language import translate_help
 from linkwright.diagnostics.translation import set_language
 from tests.docs.pages import DOCS, READMES
@@ -128,7 +128,7 @@ def test_make_demo_runs_playground_with_laser_and_camera(tmp_path):
     result = make_demo(tmp_path, *pretend_installed(tmp_path, "echo $@"), "ARGS=--no-open")
     command, *words = result.stdout.split()
     assert command == "sim"
-    arguments = parser_for("sim").parse_args(words)
+    arguments = create_parser("sim").parse_args(words)
     assert (arguments.world, arguments.values) == ("playground", ["laser:=true", "camera:=true"])
     assert (REPOSITORY / arguments.robot).is_file()
     assert arguments.no_open

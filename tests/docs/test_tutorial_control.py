@@ -122,7 +122,7 @@ def test_launch_file_includes_simulation(package: Path, capsys: pytest.CaptureFi
 
 
 def test_tests_of_page_pass(package: Path) -> None:
-    environment = process.environment({**os.environ, "LINKWRIGHT_DDS": "0"})
+    environment = process.create_environment({**os.environ, "LINKWRIGHT_DDS": "0"})
     result = subprocess.run(
         [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:asyncio", "test/test_nodes.py"],
         cwd=package,

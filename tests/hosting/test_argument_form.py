@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.hosting.argument_form import argument_form
+from linkwright.hosting.argument_form import create_argument_form
 from linkwright.hosting.xacro_calls import DescriptionError, Descriptions, XacroCall
 from linkwright.packages import PackageFinder
 
@@ -45,7 +45,7 @@ def form_of(path: Path, **arguments: str):
     call = XacroCall(path, tuple(arguments.items()))
     with pytest.raises(DescriptionError) as caught:
         Descriptions(finder).read(call)
-    return argument_form(call, finder, caught.value.diagnostics)
+    return create_argument_form(call, finder, caught.value.diagnostics)
 
 
 def test_argument_form_offers_values_of_launch_files(box: Path) -> None:

@@ -7,8 +7,8 @@ import pytest
 from linkwright.graph import Graph
 from linkwright.hosting.panel_node import PanelNode
 from linkwright.hosting.plans import HostedPlan, opens_page
-from linkwright.hosting.rqt_arguments import read_rqt_arguments, usage
-from linkwright.hosting.rqt_programs import PANEL_PROGRAMS, instead_of_program, panel_program
+from linkwright.hosting.rqt_arguments import format_usage, read_rqt_arguments
+from linkwright.hosting.rqt_programs import PANEL_PROGRAMS, find_panel_program, find_replacement
 from linkwright.nodes import NodeOptions
 from linkwright.panels.panel_request import PanelRequest
 
@@ -93,19 +93,19 @@ def test_misspelled_option_has_a_suggestion() -> None:
 
 
 def test_missing_programs_have_a_replacement() -> None:
-    assert "ros2 topic pub" in (instead_of_program("rqt_publisher") or "")
-    assert "ros2 control list_controllers" in (instead_of_program("rqt_controller_manager") or "")
-    assert "Panels" in (instead_of_program("rqt_something_else") or "")
-    assert instead_of_program("plotjuggler") is None
+    assert "ros2 topic pub" in (find_replacement("rqt_publisher") or "")
+    assert "ros2 control list_controllers" in (find_replacement("rqt_controller_manager") or "")
+    assert "Panels" in (find_replacement("rqt_something_else") or "")
+    assert find_replacement("plotjuggler") is None
 
 
 def test_page_replaces_rviz_and_the_programs_of_the_table() -> None:
     assert opens_page("rviz2", "rviz2")
     assert all(opens_page(*program) for program in PANEL_PROGRAMS)
     assert not opens_page("rqt_publisher", "rqt_publisher")
-    assert panel_program(None, "rqt") is None
+    assert find_panel_program(None, "rqt") is None
 
 
 def test_usage_names_the_arguments() -> None:
-    assert "rqt_plot [TOPIC/FIELD" in usage("rqt_plot", PANEL_PROGRAMS["rqt_plot", "rqt_plot"])
-    assert "[-s PLUGIN]" in usage("rqt", PANEL_PROGRAMS["rqt", "rqt"])
+    assert "rqt_plot [TOPIC/FIELD" in format_usage("rqt_plot", PANEL_PROGRAMS["rqt_plot", "rqt_plot"])
+    assert "[-s PLUGIN]" in format_usage("rqt", PANEL_PROGRAMS["rqt", "rqt"])

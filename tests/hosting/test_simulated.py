@@ -13,7 +13,7 @@ from linkwright.cli.command import main
 from linkwright.descriptions import examine
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
-from linkwright.hosting.sensor_topics import image_topics, scan_topics
+from linkwright.hosting.sensor_topics import find_image_topics, find_scan_topics
 from linkwright.hosting.simulated import SimulatedView, SimulatedWorld
 from linkwright.messages import get_service
 from linkwright.packages import PackageFinder
@@ -59,7 +59,7 @@ async def test_viewer_uses_world_frame_and_simulated_time():
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
     running = asyncio.create_task(view.run(None))
     await eventually(lambda: "gzserver-2]: started" in err.getvalue() or running.done(), what=err.getvalue)
-    config = view._viewer_config()
+    config = view._create_viewer_config()
     assert config.options.text("Fixed Frame") == "world"
     displays = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
     assert displays == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "Odometry": False}
@@ -119,8 +119,8 @@ def test_scan_topics_are_read_from_description():
     classic = "<sensor name='a' type='ray'><plugin><ros><remapping>~/out:=scan</remapping></ros></plugin></sensor>"
     newer = '<sensor name="b" type="gpu_lidar"><topic>/front/scan</topic></sensor>'
     camera = '<sensor name="c" type="camera"><topic>image</topic></sensor>'
-    assert scan_topics(classic + newer + camera + newer) == ["/scan", "/front/scan"]
-    assert scan_topics("") == []
+    assert find_scan_topics(classic + newer + camera + newer) == ["/scan", "/front/scan"]
+    assert find_scan_topics("") == []
 
 
 async def test_scans_and_first_camera_are_shown():
@@ -131,7 +131,7 @@ async def test_scans_and_first_camera_are_shown():
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), io.StringIO()))
     topics = [
         (display.name, display.section.text("Topic", "Value"), display.checked)
-        for display in view._viewer_config().displays
+        for display in view._create_viewer_config().displays
     ]
     assert topics[4:] == [("LaserScan", "/scan", True), ("Image", "/left", True), ("Image", "/right", False)]
     await view.host.close()
@@ -139,14 +139,16 @@ async def test_scans_and_first_camera_are_shown():
 
 def test_image_topics_are_read_from_description():
     classic = "<sensor name='camera' type='camera'><plugin filename='libgazebo_ros_camera.so'>{}</plugin></sensor>"
-    assert image_topics(classic.format("")) == ["/camera/image_raw"]
-    assert image_topics(classic.format("<cameraName>left</cameraName><imageTopicName>rgb</imageTopicName>")) == [
+    assert find_image_topics(classic.format("")) == ["/camera/image_raw"]
+    assert find_image_topics(classic.format("<cameraName>left</cameraName><imageTopicName>rgb</imageTopicName>")) == [
         "/left/rgb"
     ]
     remapping = "<ros><namespace>mbot</namespace><remapping>camera/image_raw:={}</remapping></ros>"
-    assert image_topics(classic.format(remapping.format("seen"))) == ["/mbot/seen"]
-    assert image_topics(classic.format(remapping.format("/seen"))) == ["/seen"]
+    assert find_image_topics(classic.format(remapping.format("seen"))) == ["/mbot/seen"]
+    assert find_image_topics(classic.format(remapping.format("/seen"))) == ["/seen"]
     newer = '<sensor type="{}" name="b">{}</sensor>'
-    assert image_topics(newer.format("camera", "") + newer.format("gpu_lidar", "<topic>scan</topic>")) == ["/image"]
-    assert image_topics(newer.format("rgbd_camera", "<topic>front</topic>")) == ["/front/image"]
-    assert image_topics(newer.format("depth_camera", "")) == ["/depth_image"]
+    assert find_image_topics(newer.format("camera", "") + newer.format("gpu_lidar", "<topic>scan</topic>")) == [
+        "/image"
+    ]
+    assert find_image_topics(newer.format("rgbd_camera", "<topic>front</topic>")) == ["/front/image"]
+    assert find_image_topics(newer.format("depth_camera", "")) == ["/depth_image"]

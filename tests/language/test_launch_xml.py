@@ -8,7 +8,7 @@ import pytest
 
 import linkwright.launch.model.actions.testing  # noqa: F401 - its tag exists once it has been imported
 from linkwright.language.launch_schema import LAUNCH
-from linkwright.launch.frontend.extensions import ACTIONS, load
+from linkwright.launch.frontend.extensions import ACTION_GROUP, load
 from linkwright.launch.frontend.xml import Entity, Parser
 from linkwright.launch.model.markup.expose import action_parse_methods
 from linkwright.schema import ElementRule
@@ -23,7 +23,7 @@ def position_at(tmp_path: Path):
 
 
 def test_table_contains_all_action_tags():
-    assert list(load(ACTIONS))
+    assert list(load(ACTION_GROUP))
     assert "ready_to_test" in action_parse_methods
     assert {*action_parse_methods} - {"push-ros-namespace"} <= {*LAUNCH.child_rules}
 
@@ -51,7 +51,7 @@ def test_table_contains_attributes_read_by_actions(tag, monkeypatch):
         return read(entity, name, **options)
 
     monkeypatch.setattr(Entity, "get_attr", recording)
-    assert list(load(ACTIONS))
+    assert list(load(ACTION_GROUP))
     rule = LAUNCH.child_rules[tag]
     children = "".join(map(element_text, rule.children)) if tag in ("load_composable_node", "rep_env") else ""
     text = element_text(rule).replace("/>", f">{children}</{tag}>")

@@ -35,9 +35,9 @@ def test_bridge_is_not_added_without_option(monkeypatch):
 
 @pytest.mark.parametrize("words", [["view", "robot.urdf"], ["launch", "a.launch.py"], ["run", "package", "talker"]])
 def test_launching_commands_accept_foxglove_option(words):
-    from linkwright.cli.command import parser_for
+    from linkwright.cli.command import create_parser
 
-    arguments = parser_for(words[0]).parse_args(["--foxglove", "9000", *words[1:]])
+    arguments = create_parser(words[0]).parse_args(["--foxglove", "9000", *words[1:]])
     assert arguments.foxglove == 9000
     with pytest.raises(SystemExit):
-        parser_for(words[0]).parse_args(["--foxglove", "0", *words[1:]])
+        create_parser(words[0]).parse_args(["--foxglove", "0", *words[1:]])

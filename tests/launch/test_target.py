@@ -65,7 +65,7 @@ def test_path_determines_package(package: Path, tmp_path: Path, monkeypatch: pyt
     other_folder.mkdir()
     monkeypatch.chdir(other_folder)
     target = LaunchTarget(str(package / "launch" / "display.launch.py"))
-    assert target.finder().share("arm") == package
+    assert target.create_finder().share("arm") == package
 
 
 class TestWords:

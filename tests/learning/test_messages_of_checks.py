@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from linkwright.diagnostics.lookalikes import lookalike_hint, plain_text
+from linkwright.diagnostics.lookalikes import lookalike_hint, to_ascii_text
 from linkwright.learning import NotYet, Work, expect_published
 from linkwright.learning.checks.programs import describe_failure
 from linkwright.testing import SteppedGraph
@@ -220,7 +220,7 @@ def test_topic_without_messages_is_explained(package, body, message):
 
 
 def test_full_width_characters_are_replaced_or_reported():
-    assert plain_text("０.２０ –１") == "0.20 -1"
+    assert to_ascii_text("０.２０ –１") == "0.20 -1"
     assert "'('" in lookalike_hint("init（）")
     assert lookalike_hint("init()") is None
 

@@ -47,7 +47,7 @@ def installed(tmp_path, monkeypatch):
 
     def remove_module() -> None:
         sys.modules.pop("team_rules", None)
-        for cached in (extensions._all_groups, registry._all_rules, registry._index):
+        for cached in (extensions._read_all_groups, registry._all_rules, registry._index):
             cached.cache_clear()
 
     yield install

@@ -19,12 +19,12 @@ def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
             facts = tmp_path / f"{name}-1.0.dist-info"
             facts.mkdir()
             (facts / "entry_points.txt").write_text("\n".join(["[linkwright.things]", *lines, ""]))
-        extensions._all_groups.cache_clear()
+        extensions._read_all_groups.cache_clear()
 
     monkeypatch.setattr(sys, "path", [str(tmp_path)])
     yield install
     monkeypatch.undo()
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
 
 
 def names() -> list[str]:

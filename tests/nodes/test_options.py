@@ -7,7 +7,7 @@ import pytest
 
 from linkwright.graph import LogLevel
 from linkwright.nodes import EXECUTABLES, NodeOptions
-from linkwright.nodes.options import create_node, default_name
+from linkwright.nodes.options import create_node, find_default_name
 from tests.nodes.harness import joint, robot
 from tests.speech.nodes import fake_sounddevice
 
@@ -103,7 +103,7 @@ async def test_default_name_matches_started_node(harness, executable, terminal):
     if executable[0] in NEED_A_TERMINAL and terminal is None:
         pytest.skip("Windows has no pseudo-terminals")
     running = EXECUTABLES[executable](harness.graph, options)
-    name = default_name(*executable)
+    name = find_default_name(*executable)
     assert running.node.get_name() == name or (name is None and executable[1] in NAMED_BY_THEMSELVES)
     running.close()
 

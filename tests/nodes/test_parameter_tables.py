@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import Graph, Parameter, ParameterType
-from linkwright.nodes.parameter_tables import declare_table, entries, for_each, one_of, parameter
+from linkwright.nodes.parameter_tables import declare_table, for_each, list_entries, one_of, parameter
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +74,7 @@ class Drive:
 
 
 def test_entries_describe_parameters_without_node():
-    wheels, kind, radius = entries(Drive)
+    wheels, kind, radius = list_entries(Drive)
     assert (wheels.name, wheels.kind, wheels.description) == ("wheels", ParameterType.STRING_ARRAY, "the joints")
     assert (kind.default, kind.choices) == ("front", ("front", "rear"))
     assert (radius.name, radius.keys, radius.description) == (

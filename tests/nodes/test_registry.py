@@ -37,9 +37,9 @@ def installed(tmp_path, monkeypatch: pytest.MonkeyPatch) -> Iterator[NodeRegistr
         "robot_state_publisher/robot_state_publisher = my_robot_that_is_not_there:Node\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     yield NodeRegistry("linkwright.nodes")
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
 
 
 def test_builtin_nodes_are_declared_as_entry_points() -> None:

@@ -15,7 +15,7 @@ SQRT_HALF = sqrt(0.5)
 
 
 @pytest.mark.parametrize(
-    ("arguments", "translation", "rotation", "old_style"),
+    ("arguments", "translation", "rotation", "is_old_style"),
     [
         ("--frame-id map --child-frame-id odom", (0, 0, 0), (0, 0, 0, 1), False),
         (
@@ -31,11 +31,11 @@ SQRT_HALF = sqrt(0.5)
         ("1 2 3 0 0 1 0 map odom", (1, 2, 3), (0, 0, 1, 0), True),
     ],
 )  # fmt: skip
-def test_new_and_old_style_arguments_are_parsed(arguments, translation, rotation, old_style):
+def test_new_and_old_style_arguments_are_parsed(arguments, translation, rotation, is_old_style):
     parsed = parse_arguments(arguments.split())
     assert parsed.translation == translation
     assert parsed.rotation == pytest.approx(rotation)
-    assert (parsed.frame_id, parsed.child_frame_id, parsed.old_style) == ("map", "odom", old_style)
+    assert (parsed.frame_id, parsed.child_frame_id, parsed.is_old_style) == ("map", "odom", is_old_style)
 
 
 @pytest.mark.parametrize(

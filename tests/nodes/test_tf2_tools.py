@@ -15,7 +15,7 @@ from linkwright.graph.actions.goal import GoalStatus
 from linkwright.messages import TFMessage, TransformBatch, get_action
 from linkwright.nodes import NodeOptions
 from linkwright.nodes.tf2_buffer_server import Tf2BufferServer
-from linkwright.nodes.tf2_echo import Tf2Echo, describe
+from linkwright.nodes.tf2_echo import Tf2Echo, format_transform
 from linkwright.nodes.tf2_monitor import Tf2Monitor
 from linkwright.nodes.view_frames import ViewFrames
 
@@ -171,7 +171,7 @@ async def test_view_frames_rejects_invalid_arguments(harness, logged, tmp_path):
 async def test_describe_keeps_negative_zeros_like_tf2(harness, send):
     await send("a", "b")
     await harness.graph.settle()
-    assert "[0.000, -0.000, 0.000]" in describe(harness.tf[0].transforms[0])
+    assert "[0.000, -0.000, 0.000]" in format_transform(harness.tf[0].transforms[0])
 
 
 @pytest.fixture

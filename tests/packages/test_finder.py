@@ -325,7 +325,7 @@ def test_entry_points_provide_substitutes_for_packages(tmp_path: Path, monkeypat
         "[linkwright.package_substitutes]\nsea_ros = my_sea_substitutes\nlost_ros = my_sea_that_is_not_there\n"
     )
     monkeypatch.syspath_prepend(tmp_path / "site")
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     try:
         package_finder = finder(tmp_path / "ws")
         assert package_finder.share("sea_ros") == module / "share" / "sea_ros"
@@ -334,7 +334,7 @@ def test_entry_points_provide_substitutes_for_packages(tmp_path: Path, monkeypat
         with pytest.warns(UserWarning, match="'my_sea' provides no substitute for 'lost_ros'"):
             assert "sea_ros" in package_finder.packages()
     finally:
-        extensions._all_groups.cache_clear()
+        extensions._read_all_groups.cache_clear()
 
 
 def test_searched_locations_are_described_once_for_a_missing_package(

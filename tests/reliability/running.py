@@ -18,7 +18,7 @@ from pathlib import Path
 
 import psutil
 
-from linkwright.standins.process import environment
+from linkwright.standins.process import create_environment
 from tests.begun import BEGUN, command_that_reports
 from tests.waiting import TIMEOUT_S, wait_until
 
@@ -176,7 +176,7 @@ class Machine:
     def program(self, text: str, *words: object, **variables: str) -> Running:
         """Start a user's program: a class ``Program`` derived from ``Node``."""
         path = self.write(f"program_{len(self._started)}.py", program(text))
-        return self._start([sys.executable, str(path), *map(str, words)], {**environment({}), **variables})
+        return self._start([sys.executable, str(path), *map(str, words)], {**create_environment({}), **variables})
 
     def python(self, *words: object) -> Running:
         """Start a module or script of the tests."""

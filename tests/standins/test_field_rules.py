@@ -23,7 +23,7 @@ def run_assignments(python=sys.executable, command=(PROGRAM,), **variables):
 
     It is an AssertionError's text, another error's name, or type and values.
     """
-    environment = {**BASE, **variables} if python == PYTHON else process.environment({**BASE, **variables})
+    environment = {**BASE, **variables} if python == PYTHON else process.create_environment({**BASE, **variables})
     result = subprocess.run(
         [python, *command], env=environment, check=False, capture_output=True, text=True, timeout=120
     )

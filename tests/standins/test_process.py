@@ -19,7 +19,7 @@ def run_python(*arguments, cwd=None, env=None, **variables):
     base = {"PATH": os.environ["PATH"], "HOME": str(cwd or "/"), "LINKWRIGHT_DDS": "0", **variables}
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
-        env=env or process.environment(base),
+        env=env or process.create_environment(base),
         cwd=cwd,
         check=False,
         capture_output=True,
@@ -98,7 +98,7 @@ class TestRunning:
         subprocess.run([sys.executable, "-m", "venv", "--without-pip", tmp_path / "venv"], check=True, timeout=60)
         (tmp_path / "my_node.py").write_text(NODE)
         python = tmp_path / "venv" / "bin" / "python"
-        environment = process.environment({"PATH": os.environ["PATH"], "LINKWRIGHT_DDS": "0"})
+        environment = process.create_environment({"PATH": os.environ["PATH"], "LINKWRIGHT_DDS": "0"})
         ended = subprocess.run(
             [python, "my_node.py"],
             cwd=tmp_path,
@@ -111,7 +111,7 @@ class TestRunning:
         assert (ended.stdout, ended.returncode) == ("hello\n", 0), ended.stderr
 
     def test_all_standins_can_be_imported(self):
-        names = table.packages()
+        names = table.list_packages()
         assert {"rclpy", "tf2_ros", "tf2_py", "tf2_geometry_msgs", "tf_transformations", "launch", "xacro"} <= set(
             names
         )
@@ -243,10 +243,10 @@ class TestProcessEffects:
         ]
 
     def test_environment_prepends_standin_path_once(self, tmp_path):
-        process_environment = process.environment({"PYTHONPATH": str(tmp_path), "OTHER": "kept"})
+        process_environment = process.create_environment({"PYTHONPATH": str(tmp_path), "OTHER": "kept"})
         assert process_environment["PYTHONPATH"] == os.pathsep.join([process.standin_path(), str(tmp_path)])
         assert process_environment["OTHER"] == "kept"
-        assert process.environment(process_environment) == process_environment
+        assert process.create_environment(process_environment) == process_environment
         modules = {path.name for path in Path(process.standin_path()).glob("*.py")}
         assert modules == {"linkwright_pytest.py", "sitecustomize.py"}
 

@@ -356,7 +356,7 @@ class TestServiceIntrospection:
 def test_exceptions_are_printed_with_rclpy_names():
     output = subprocess.run(
         [sys.executable, "-c", "import rclpy\nrclpy.init()\nrclpy.create_node('a b')"],
-        env=process.environment() | {"ROS_DOMAIN_ID": "142"},
+        env=process.create_environment() | {"ROS_DOMAIN_ID": "142"},
         capture_output=True,
         text=True,
         check=False,

@@ -122,7 +122,7 @@ CLIENT = """\
 @pytest.fixture
 def surroundings(tmp_path):
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("ROS_", "LINKWRIGHT_"))}
-    return process.environment(
+    return process.create_environment(
         {**environment, "ROS_DOMAIN_ID": str(own_domain()), "ROS_LOG_DIR": str(tmp_path / "log")}
     )
 

@@ -187,7 +187,7 @@ class TestSignals:
             """)
         )
         child = subprocess.Popen(
-            [sys.executable, program], env=process.environment(), stdout=subprocess.PIPE, text=True
+            [sys.executable, program], env=process.create_environment(), stdout=subprocess.PIPE, text=True
         )
         with child:
             assert child.stdout.readline() == "tick\n"
@@ -213,7 +213,7 @@ class TestSignals:
         )
         ended = subprocess.run(
             [sys.executable, program],
-            env=process.environment(),
+            env=process.create_environment(),
             check=False,
             capture_output=True,
             text=True,

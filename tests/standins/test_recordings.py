@@ -229,5 +229,5 @@ writer.open(StorageOptions(uri="bag", storage_id="sqlite3"), ConverterOptions(""
 writer.create_topic(TopicMetadata(name="chatter", type="std_msgs/msg/String", serialization_format="cdr"))
 writer.write("chatter", serialize_message(String(data="hello")), 5)
 """
-    subprocess.run([sys.executable, "-c", program], cwd=tmp_path, env=process.environment(), check=True)
+    subprocess.run([sys.executable, "-c", program], cwd=tmp_path, env=process.create_environment(), check=True)
     assert read_rest(open_reader(tmp_path / "bag")) == [("chatter", 5)]

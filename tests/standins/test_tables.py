@@ -16,9 +16,9 @@ import pytest
 
 from linkwright.standins import modules, table
 
-MODULES = {name: module for package in table.packages() for name, module in table.read(package).items()}
+MODULES = {name: module for package in table.list_packages() for name, module in table.read(package).items()}
 NAMES = {package: {name for module in table.read(package).values() for name in module.names}
-         for package in table.packages()}  # fmt: skip
+         for package in table.list_packages()}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -142,7 +142,7 @@ class TestReading:
         assert module.absent == {"G": table.Remark("why", "为什么")}
         assert module.differs == {"A": table.Remark("how", "如何")}
         assert (module.setup, module.submodules, read["one.two"].since) == ("here.begin", ["two"], "jazzy")
-        assert modules.value_of(module, "F") == ("x", 1)
+        assert modules.resolve_name(module, "F") == ("x", 1)
 
     @pytest.mark.parametrize("text", ["[one]\nno line\n", "here: A\n"])
     def test_malformed_line_is_rejected(self, text):

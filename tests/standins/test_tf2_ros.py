@@ -293,5 +293,5 @@ def test_importing_conversion_package_registers_types(package, type_name):
         f"import {package}, tf2_ros\nfrom {module} import {name}\nprint(tf2_ros.TransformRegistration().get({name}))"
     )
     command = process.python_command(["-c", program])
-    result = subprocess.run(command, env=process.environment(), capture_output=True, text=True, check=True)
+    result = subprocess.run(command, env=process.create_environment(), capture_output=True, text=True, check=True)
     assert "do_transform_" in result.stdout

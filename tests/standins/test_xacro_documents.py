@@ -193,13 +193,13 @@ def test_launch_maps_document_texts_to_their_files(write):
         file_document.documentElement.setAttribute("name", "changed")
         changed = file_document.toxml()
     for text in texts:
-        call = descriptions.call_of(text)
+        call = descriptions.find_call(text)
         assert call is not None
         assert (call.path, call.arguments) == (path, (("n", "2"),))
         assert descriptions.library.read(text).robot.links["l2"].element.span().file == str(path)
         assert [warning.code for warning in descriptions.warnings_of(call)] == ["XAC703"]
         assert descriptions.read_ns(call)
-    assert descriptions.call_of(changed) is None
+    assert descriptions.find_call(changed) is None
 
 
 def test_launch_error_names_malformed_file(write):

@@ -153,7 +153,7 @@ def test_signal_again_does_not_end_process_on_windows(monkeypatch):
     received = []
     before = signal.signal(signal.SIGINT, lambda number, _: received.append(number))
     try:
-        interruption.signal_again(signal.SIGINT)
+        interruption.resend_signal(signal.SIGINT)
         wait_until(lambda: received)
     finally:
         signal.signal(signal.SIGINT, before)

@@ -60,12 +60,12 @@ def extension_package(tmp_path, monkeypatch):
     (facts / "METADATA").write_text("Metadata-Version: 2.1\nName: brought-to-linkwright\nVersion: 1.0\n")
     (facts / "entry_points.txt").write_text(ENTRY_POINTS)
     monkeypatch.syspath_prepend(str(tmp_path))
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     catalog._display_class.cache_clear()
     yield
     monkeypatch.undo()
     sys.modules.pop("brought_to_linkwright", None)
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     catalog._display_class.cache_clear()
 
 
@@ -104,7 +104,7 @@ async def test_page_feature_of_another_package_receives_messages(extension_packa
 
 
 def test_extensions_match_installation_metadata():
-    for group, entries in extensions._all_groups().items():
+    for group, entries in extensions._read_all_groups().items():
         declared = {(entry.name, entry.value) for entry in entry_points(group=group)}
         assert {(entry.name, entry.value) for entry in entries.values()} == declared
 

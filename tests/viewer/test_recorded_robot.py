@@ -16,7 +16,7 @@ from linkwright.bag import BagReader, BagWriter, Playback
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, STATIC_TF_PUBLISHER_QOS, TF_QOS, Graph
 from linkwright.messages import JointState, String, TFMessage, TransformBatch, serialize
-from linkwright.viewer.recorded_robot import RecordingWithTransforms, publish_recording, robot_of
+from linkwright.viewer.recorded_robot import RecordingWithTransforms, publish_recording, read_robot
 
 START_S = 1_700_000_000
 SECOND_NS = 1_000_000_000
@@ -64,7 +64,7 @@ class Shown:
     def __init__(self, bag: BagReader) -> None:
         self.graph = Graph()
         player, listener = self.graph.create_node("player"), self.graph.create_node("listener")
-        self.output = publish_recording(bag, player, robot_of(bag, DescriptionLibrary()))
+        self.output = publish_recording(bag, player, read_robot(bag, DescriptionLibrary()))
         self.failures: list[Exception] = []
         self.playback = Playback(player.handle, bag, self.output, self.failures.append)
         self.places: dict[str, list[float]] = {}

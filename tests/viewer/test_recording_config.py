@@ -10,8 +10,8 @@ from linkwright.bag import STORAGES, BagReader, BagWriter
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DEFAULT_QOS, DESCRIPTION_QOS, SENSOR_DATA_QOS
 from linkwright.messages import String, TFMessage, get_message, serialize
-from linkwright.viewer.recorded_robot import robot_of
-from linkwright.viewer.recording_config import recording_config
+from linkwright.viewer.recorded_robot import read_robot
+from linkwright.viewer.recording_config import create_recording_config
 from tests.recordings import needs_rosbags
 
 pytestmark = needs_rosbags
@@ -38,7 +38,7 @@ def test_transforms_are_displayed_without_robot(tmp_path: Path, described: bool)
             writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
             writer.write("/robot_description", START_NS, serialize(String(data="<robot name='r'/>")))
     with BagReader(tmp_path / "bag") as bag:
-        config = recording_config(bag)
+        config = create_recording_config(bag)
     shown = {display.cls.rpartition("/")[2]: display.checked for display in config.displays}
     robot = {"RobotModel": True} if described else {}
     assert shown == {"Grid": True, **robot, "TF": not described, "LaserScan": True}
@@ -62,7 +62,7 @@ def test_recorded_simulation_opens_with_its_world(tmp_path: Path) -> None:
             writer.add_topic(name, "std_msgs/msg/String", [DESCRIPTION_QOS])
             writer.write(name, START_NS, serialize(String(data="")))
     with BagReader(tmp_path / "bag") as bag:
-        config = recording_config(bag)
+        config = create_recording_config(bag)
     shown = {display.name: display.checked for display in config.displays}
     assert shown == {"Grid": True, "RobotModel": False, "TF": False, "World": True, "scan": True}
     assert config.options.text("Fixed Frame") == "world"
@@ -76,7 +76,7 @@ def test_scan_without_transforms_uses_its_own_fixed_frame(tmp_path: Path) -> Non
         scan.header.frame_id = "laser_frame"
         writer.write("/scan", START_NS, serialize(scan))
     with BagReader(tmp_path / "bag") as bag:
-        assert recording_config(bag).options.text("Fixed Frame") == "laser_frame"
+        assert create_recording_config(bag).options.text("Fixed Frame") == "laser_frame"
 
 
 @pytest.mark.parametrize("storage", STORAGES)
@@ -92,7 +92,7 @@ def test_fixed_frame_is_found_in_late_transforms(tmp_path: Path, storage: str) -
             if tenth > 150:
                 writer.write("/tf", START_NS + tenth * second // 10, transform("map", "odom"))
     with BagReader(tmp_path / "bag") as bag:
-        assert recording_config(bag).options.text("Fixed Frame") == "map"
+        assert create_recording_config(bag).options.text("Fixed Frame") == "map"
 
 
 def test_first_namespaced_robot_with_description_is_shown(tmp_path: Path) -> None:
@@ -110,7 +110,7 @@ def test_first_namespaced_robot_with_description_is_shown(tmp_path: Path) -> Non
                 writer.add_topic(f"/robot{number}/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
                 writer.write(f"/robot{number}/robot_description", START_NS, serialize(String(data="<robot name='r'/>")))
     with BagReader(tmp_path / "bag") as bag:
-        config = recording_config(bag)
+        config = create_recording_config(bag)
     assert config.options.text("Fixed Frame") == "odom"
     assert {display.name: display.checked for display in config.displays} == {
         "Grid": True,
@@ -135,7 +135,7 @@ def test_view_follows_moving_robot_and_fits_unmoving_robot(tmp_path: Path, place
         writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
         writer.write("/robot_description", START_NS, serialize(String(data=text)))
     with BagReader(tmp_path / "bag") as bag:
-        config = recording_config(bag, robot_of(bag, DescriptionLibrary()))
+        config = create_recording_config(bag, read_robot(bag, DescriptionLibrary()))
     drives = place == "odom"
     view = config.views.current.values
     assert (view["Target Frame"], view["Distance"]) == (("base", 5.0) if drives else ("<Fixed Frame>", 3.0))

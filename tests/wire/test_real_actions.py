@@ -12,7 +12,7 @@ from itertools import pairwise
 
 import pytest
 
-from linkwright.standins.process import environment
+from linkwright.standins.process import create_environment
 from tests.waiting import wait_until
 from tests.wire.programs import linkwright
 
@@ -34,7 +34,7 @@ def peers(programs):
     def start(side):
         if side == "theirs":
             return programs("managed_peer", side, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp")
-        return programs("managed_peer", side, PYTHONPATH=environment()["PYTHONPATH"])
+        return programs("managed_peer", side, PYTHONPATH=create_environment()["PYTHONPATH"])
 
     return start
 

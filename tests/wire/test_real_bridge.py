@@ -13,7 +13,7 @@ import sys
 
 import pytest
 
-from linkwright.standins.process import environment
+from linkwright.standins.process import create_environment
 from linkwright.wire.zenoh.settings import OVERRIDES
 from tests.wire.programs import linkwright
 
@@ -77,7 +77,7 @@ def peer(programs):
                 rules += [rule for pair in pairs for rule in (pair, pair[::-1])]
             arguments = ["--ros-args", *(word for rule in rules for word in ("-r", ":=".join(rule)))]
         if side == "ours":
-            variables = {"PYTHONPATH": environment()["PYTHONPATH"]}
+            variables = {"PYTHONPATH": create_environment()["PYTHONPATH"]}
         else:
             variables = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"} if TYPES else {}
             variables["python"] = PYTHON

@@ -12,7 +12,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 
-from linkwright.standins.process import environment
+from linkwright.standins.process import create_environment
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 CALL_COUNT = 1000
@@ -30,7 +30,7 @@ def peers(programs):
     def start(name):
         if name.startswith("theirs"):
             return programs("load_peer", name, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp")
-        return programs("load_peer", name, PYTHONPATH=environment()["PYTHONPATH"])
+        return programs("load_peer", name, PYTHONPATH=create_environment()["PYTHONPATH"])
 
     return start
 

@@ -14,7 +14,7 @@ from itertools import product
 import pytest
 
 from linkwright.graph.qos.profile import QoSPolicyKind
-from linkwright.standins.process import environment
+from linkwright.standins.process import create_environment
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
@@ -58,7 +58,7 @@ def peers(programs, monkeypatch):
     def start(side):
         if side == "theirs":
             return programs("qos_peer", side, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp")
-        return programs("qos_peer", side, PYTHONPATH=environment()["PYTHONPATH"])
+        return programs("qos_peer", side, PYTHONPATH=create_environment()["PYTHONPATH"])
 
     return start
 

@@ -18,7 +18,7 @@ from linkwright.graph.transforms.broadcaster import StaticTransformBroadcaster, 
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.graph.transforms.waiting import Buffer
 from linkwright.messages import TransformStamped, type_hash
-from linkwright.standins.process import environment
+from linkwright.standins.process import create_environment
 from tests.wire.programs import linkwright
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
@@ -92,7 +92,7 @@ def test_messages_and_services_of_custom_package(programs, tmp_path, publisher_s
 
     def start(side):
         if side == "ours":
-            search = os.pathsep.join([environment()["PYTHONPATH"], str(Path(__file__).parents[2])])
+            search = os.pathsep.join([create_environment()["PYTHONPATH"], str(Path(__file__).parents[2])])
             return programs("typed_peer", side, folder=tmp_path, PYTHONPATH=search)
         variables = {"PYTHONPATH": f"{TYPES}/python", "LD_LIBRARY_PATH": f"{TYPES}/lib"}
         return programs("typed_peer", side, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **variables)

@@ -12,7 +12,7 @@ import os
 import pytest
 
 from linkwright.messages import interface_names, type_hash
-from linkwright.standins.process import environment
+from linkwright.standins.process import create_environment
 from tests.wire.values import make_bytes, sha256_of
 
 PYTHON = os.environ.get("LINKWRIGHT_ROS_PYTHON", "")
@@ -38,7 +38,7 @@ def peers(programs, monkeypatch):
     def start(side):
         if side == "theirs":
             return programs("typed_peer", side, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp")
-        return programs("typed_peer", side, PYTHONPATH=environment()["PYTHONPATH"])
+        return programs("typed_peer", side, PYTHONPATH=create_environment()["PYTHONPATH"])
 
     return start
 

@@ -1,4 +1,4 @@
-"""``linkwright action``: list and describe the actions of the running graph, and send goals."""
+"""``linkwright action``: list and describe actions of the running graph, and send goals."""
 
 from __future__ import annotations
 
@@ -8,20 +8,20 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.calls import node_names
-from linkwright.cli.lookup import absolute
+from linkwright.cli.calls import list_node_names
+from linkwright.cli.lookup import make_absolute
 from linkwright.cli.names_listing import Kind, add_count_argument, add_types_argument, print_names_and_types
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.numbers import positive_float
 from linkwright.cli.session import add_session_arguments, run_in_graph
-from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
+from linkwright.cli.values import add_values_arguments, fill_message, parse_values, read_values
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_STATUS = {1: "ACCEPTED", 2: "EXECUTING", 3: "CANCELING", 4: "SUCCEEDED", 5: "CANCELED", 6: "ABORTED"}
+_STATUS_NAMES = {1: "ACCEPTED", 2: "EXECUTING", 3: "CANCELING", 4: "SUCCEEDED", 5: "CANCELED", 6: "ABORTED"}
 _CANCEL_TIMEOUT_S = 3.0
 """Seconds to wait for the server's response when Ctrl-C cancels a goal."""
 
@@ -53,13 +53,13 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 def run_info(arguments: argparse.Namespace) -> int:
     """Print the nodes that use an action, as ros2 does."""
-    name = absolute(arguments.action_name)
+    name = make_absolute(arguments.action_name)
 
     async def job(session: Session) -> int:
         clients: list[tuple[str, Sequence[str]]] = []
         servers: list[tuple[str, Sequence[str]]] = []
         graph = session.graph
-        for full_name in dict.fromkeys(node_names(session, hidden=True)):
+        for full_name in dict.fromkeys(list_node_names(session, hidden=True)):
             namespace, _, base_name = full_name.rpartition("/")
             node_key = (base_name, namespace or "/")
             for endpoints, node_actions in (
@@ -119,11 +119,11 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
     """
     from linkwright.messages import get_action, to_yaml
 
-    name = absolute(arguments.action_name)
+    name = make_absolute(arguments.action_name)
     action_class = get_action(arguments.action_type)
     text = read_values(arguments)
     goal = action_class.Goal()
-    fill(goal, parse_values(text)[0], text)
+    fill_message(goal, parse_values(text)[0], text)
 
     async def job(session: Session) -> int:
         from linkwright.graph import ActionClient
@@ -158,7 +158,7 @@ def run_send_goal(arguments: argparse.Namespace) -> int:
         if result is None:
             return await session.wait_until_finished() or 0
         print(f"Result:\n    {to_yaml(result.result)}")
-        print(f"Goal finished with status: {_STATUS.get(result.status, 'UNKNOWN')}")
+        print(f"Goal finished with status: {_STATUS_NAMES.get(result.status, 'UNKNOWN')}")
         return 0
 
     return run_in_graph(arguments, job)

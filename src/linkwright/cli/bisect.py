@@ -1,4 +1,7 @@
-"""``linkwright bisect``: find the commit that changed a link or joint, or the result of a command."""
+"""``linkwright bisect``: find the commit that changed a part of a robot.
+
+It can also find the commit that changed the result of a command.
+"""
 
 from __future__ import annotations
 
@@ -74,11 +77,11 @@ def _search(history: History, check: PartCheck | CommandCheck, unchanged: Phrase
     if change is None:
         print(localized(unchanged))
         return FINDINGS
-    _print(check, change)
+    _print_change(check, change)
     return FINE
 
 
-def _print(check: PartCheck | CommandCheck, change: FoundCommit) -> None:
+def _print_change(check: PartCheck | CommandCheck, change: FoundCommit) -> None:
     from linkwright.review.bisecting import PartCheck, difference_text, undecided_text
 
     print(change.title)

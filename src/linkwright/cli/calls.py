@@ -5,17 +5,17 @@ from __future__ import annotations
 import sys
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.lookup import absolute_or_given, unknown_name_error
+from linkwright.cli.lookup import add_leading_slash, unknown_name_error
 from linkwright.diagnostics import Diagnostic, LinkwrightError, joined, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
-APPEARS_TIMEOUT_S = 5.0
+SERVICE_TIMEOUT_S = 5.0
 """Seconds to wait for a service that a node should have, as in ros2cli."""
 
 
-class NoAnswerError(LinkwrightError):
+class NoResponseError(LinkwrightError):
     """Raised when a service does not appear or does not respond in time."""
 
 
@@ -36,22 +36,22 @@ async def call(
         service_name: the absolute name.
         request: the request message.
         timeout: the time to wait for the response, in seconds; None for no limit.
-        extra_wait: the time to wait for the service in addition to `APPEARS_TIMEOUT_S`, in seconds; a line on standard
+        extra_wait: the time to wait for the service in addition to `SERVICE_TIMEOUT_S`, in seconds; a line on standard
             error announces this wait.
 
     Raises:
-        NoAnswerError: CLI421, the service does not exist; CLI422, it does not respond in time.
+        NoResponseError: CLI421, the service does not exist; CLI422, it does not respond in time.
     """
     from linkwright.messages import get_service
 
     client = session.node.create_client(get_service(service_type), service_name)
     try:
-        is_ready = await session.wait_until(client.service_is_ready, APPEARS_TIMEOUT_S)
+        is_ready = await session.wait_until(client.service_is_ready, SERVICE_TIMEOUT_S)
         if not is_ready and extra_wait > 0:
             print(f"waiting for service '{service_name}' to become available...", file=sys.stderr, flush=True)
             is_ready = await session.wait_until(client.service_is_ready, extra_wait)
         if not is_ready:
-            raise NoAnswerError(
+            raise NoResponseError(
                 Diagnostic(
                     "CLI421",
                     phrase(
@@ -65,7 +65,7 @@ async def call(
         future = client.call_async(request)
         response = await session.wait_for_result(future, timeout)
         if response is None:
-            raise NoAnswerError(
+            raise NoResponseError(
                 Diagnostic(
                     "CLI422",
                     phrase(
@@ -80,8 +80,8 @@ async def call(
         session.node.destroy_client(client)
 
 
-def node_names(session: Session, *, hidden: bool = False) -> list[str]:
-    """Return the sorted full names of the nodes, with repetitions if several nodes share a name."""
+def list_node_names(session: Session, *, hidden: bool = False) -> list[str]:
+    """Return the sorted full names of the nodes; a shared name occurs several times."""
     from linkwright.graph.names.rules import is_hidden, join
 
     full_names = (join(namespace, name) for name, namespace in session.node.get_node_names_and_namespaces())
@@ -100,9 +100,9 @@ async def find_node(session: Session, name: str, *, hidden: bool = False, timeou
     Raises:
         LinkwrightError: CLI423, there is no such node.
     """
-    full_name = absolute_or_given(name)
-    if not await session.wait_until(lambda: full_name in node_names(session, hidden=hidden), timeout):
-        existing_names = node_names(session, hidden=hidden)
+    full_name = add_leading_slash(name)
+    if not await session.wait_until(lambda: full_name in list_node_names(session, hidden=hidden), timeout):
+        existing_names = list_node_names(session, hidden=hidden)
         hint = (
             phrase("running nodes: {nodes}", nodes=joined(dict.fromkeys(existing_names)))
             if existing_names

@@ -1,4 +1,4 @@
-"""``linkwright check``: check robots and worlds, and print their structure and the findings."""
+"""``linkwright check``: check robots and worlds, and print their structure and findings."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(**_DEFAULTS)
 
 
-def without_options(words: list[str]) -> SimpleNamespace | None:
+def parse_without_options(words: list[str]) -> SimpleNamespace | None:
     """Return the parsed arguments of a command line without options.
 
     The result is None if the command line is empty.
@@ -116,7 +116,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
         return _report_usage_error("pass a file or folder to check")
     select = None if arguments.select is None else _split_selectors(arguments.select)
     ignore = _split_selectors(arguments.ignore or ())
-    usage_error = _unknown_selector((*(select or ()), *ignore))
+    usage_error = _unknown_selector_error((*(select or ()), *ignore))
     if usage_error:
         return _report_usage_error(usage_error)
     if arguments.config is not None and not Path(arguments.config).is_file():
@@ -131,9 +131,9 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
         None if arguments.config is None else Path(arguments.config),
         tuple(path.absolute() for path in paths if path.is_dir()),
     )
-    problem = _option_problem(arguments)
-    if problem is not None:
-        return _report_usage_error(problem)
+    conflict = _find_option_conflict(arguments)
+    if conflict is not None:
+        return _report_usage_error(conflict)
     fix_results: list[FixResult] = []
     if arguments.diff or arguments.fix or arguments.unsafe_fixes:
         fix_results = _apply_fixes(
@@ -152,11 +152,11 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     if arguments.baseline is not None:
         if arguments.write_baseline:
             return _write_baseline(arguments.baseline, diagnostics)
-        diagnostics = _without_baseline(arguments.baseline, diagnostics)
-    _print_findings(diagnostics, arguments.format, everything=arguments.all)
+        diagnostics = _remove_baseline_findings(arguments.baseline, diagnostics)
+    _print_findings(diagnostics, arguments.format, show_all=arguments.all)
     if arguments.format == "text":
         if checked_file is not None:
-            sys.stdout.write(_contents_text(checked_file))
+            sys.stdout.write(_format_contents(checked_file))
         _summarize(diagnostics, fix_results)
     if arguments.statistics:
         _print_statistics(diagnostics)
@@ -166,7 +166,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     return 1 if failed else 0
 
 
-def _contents_text(checked_file: Checked) -> str:
+def _format_contents(checked_file: Checked) -> str:
     """Return a robot's tree of links, a world's list of models, or an empty string."""
     if checked_file.robot is not None:
         from linkwright.urdf import tree_text
@@ -203,7 +203,7 @@ def _find_and_check(
     return diagnostics, checked_file if len(paths) == 1 and not paths[0].is_dir() else None
 
 
-def _option_problem(arguments: argparse.Namespace | SimpleNamespace) -> Phrase | None:
+def _find_option_conflict(arguments: argparse.Namespace | SimpleNamespace) -> Phrase | None:
     """Return why options contradict each other, or None if they do not."""
     if arguments.write_baseline and arguments.baseline is None:
         return phrase("'--write-baseline' needs the file: '--baseline FILE'")
@@ -227,12 +227,12 @@ def _check_changed(
     targets = changed.targets()
     if not targets.files and not targets.packages:
         return []
-    findings = checker.check(targets, paths)[0]
+    diagnostics = checker.check(targets, paths)[0]
     known_counts = changed.known_findings(lambda targets, paths: checker.for_folders(paths).check(targets, paths)[0])
-    return new_findings(findings, changed.root, known_counts)
+    return new_findings(diagnostics, changed.root, known_counts)
 
 
-def _without_baseline(file: str, diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
+def _remove_baseline_findings(file: str, diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
     """Return the findings that a baseline does not list.
 
     Raises:
@@ -249,20 +249,20 @@ def _write_baseline(file: str, diagnostics: Sequence[Diagnostic]) -> int:
     Raises:
         LinkwrightError: CLI201, the file cannot be written.
     """
-    from linkwright.cli.output import cannot_write
+    from linkwright.cli.output import write_error
     from linkwright.lint.known_findings import write_baseline
 
     path = Path(file)
     try:
         count = write_baseline(path, diagnostics, path.absolute().parent)
     except OSError as error:
-        raise cannot_write(path, error) from None
-    findings = counted("{count} finding", "{count} findings", count)
-    print_message(localized(phrase("wrote {findings} to {path}", findings=findings, path=file)))
+        raise write_error(path, error) from None
+    findings_text = counted("{count} finding", "{count} findings", count)
+    print_message(localized(phrase("wrote {findings} to {path}", findings=findings_text, path=file)))
     return 0
 
 
-def _unknown_selector(words: Iterable[str]) -> str | None:
+def _unknown_selector_error(words: Iterable[str]) -> str | None:
     """Return the usage error for the first selector that matches no rule, or None."""
     from linkwright.lint.selector_words import is_selector, selector_hint
 
@@ -303,12 +303,12 @@ def _print_diff(fix_results: Sequence[FixResult]) -> int:
     return 1 if printed_files else 0
 
 
-def _print_findings(diagnostics: Sequence[Diagnostic], form: str, *, everything: bool) -> None:
-    if form == "text":
+def _print_findings(diagnostics: Sequence[Diagnostic], format_name: str, *, show_all: bool) -> None:
+    if format_name == "text":
         with suppress(OSError):  # a failure to write must not change the exit status, as in `print_message`
-            print_diagnostics(diagnostics if everything else group_similar(diagnostics), sys.stderr)
+            print_diagnostics(diagnostics if show_all else group_similar(diagnostics), sys.stderr)
     else:
-        sys.stdout.write(format_diagnostics(diagnostics, form))
+        sys.stdout.write(format_diagnostics(diagnostics, format_name))
 
 
 def _summarize(diagnostics: Sequence[Diagnostic], fix_results: Sequence[FixResult]) -> None:

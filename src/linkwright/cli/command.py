@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 
 from linkwright._version import __version__
-from linkwright.cli.exit_status import FINE, USAGE, status_of
+from linkwright.cli.exit_status import FINE, USAGE, run_command
 from linkwright.cli.language import LANGUAGE_HELP, take_language, translate_help
 from linkwright.diagnostics import did_you_mean
 from linkwright.diagnostics.translation import set_language
@@ -88,7 +88,7 @@ def main(words: Sequence[str] | None = None, *, program: str = PROGRAM) -> int:
     if is_program:
         _reduce_garbage_collection()
     try:
-        return status_of(lambda: _dispatch(take_language(sys.argv[1:] if words is None else words), program))
+        return run_command(lambda: _dispatch(take_language(sys.argv[1:] if words is None else words), program))
     finally:
         set_language(None)
         if is_program:
@@ -105,9 +105,9 @@ def _reduce_garbage_collection() -> None:
     gc.callbacks.append(on_collection)
 
 
-def groups() -> dict[str, dict[str, str]]:
-    """Return the installed commands by group, each with its help text, in the order of the help."""
-    workbench = _workbench()
+def find_command_groups() -> dict[str, dict[str, str]]:
+    """Return the help texts of the installed commands, by group and name in help order."""
+    workbench = _import_workbench()
     workbench_groups: dict[str, dict[str, str]] = {} if workbench is None else workbench.GROUPS
     engine_commands = {**workbench_groups.get(_ENGINE_GROUP, {}), **COMMANDS}
     return {
@@ -116,12 +116,12 @@ def groups() -> dict[str, dict[str, str]]:
     }
 
 
-def help_texts() -> dict[str, str]:
+def collect_help_texts() -> dict[str, str]:
     """Return the help text of each installed command."""
-    return {name: text for verbs in groups().values() for name, text in verbs.items()}
+    return {name: text for verbs in find_command_groups().values() for name, text in verbs.items()}
 
 
-def _workbench() -> Any:
+def _import_workbench() -> Any:
     """Return the module that lists the commands of ``linkwright``.
 
     The result is None if only ``linkwright-core`` is installed.
@@ -132,12 +132,12 @@ def _workbench() -> Any:
         return None
 
 
-def verb(name: str) -> Verb:
+def import_command(name: str) -> Verb:
     """Return the module of a command."""
     return cast("Verb", import_module(f"linkwright.cli.{name}"))
 
 
-def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
+def create_parser(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
     """Return the argument parser of a command.
 
     Args:
@@ -146,9 +146,9 @@ def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
     """
     from linkwright.cli.parsers import make_parser  # importing argparse takes as long as expanding a small file
 
-    module = verb(name)
+    module = import_command(name)
     prog = f"{program} {name}".strip()
-    parser = make_parser(prog, COMMANDS.get(name) or help_texts()[name], module.configure)
+    parser = make_parser(prog, COMMANDS.get(name) or collect_help_texts()[name], module.configure)
     if parser.usage is not None:
         parser.usage = parser.usage.replace(f"{PROGRAM} {name}", prog, 1)
     return parser
@@ -156,18 +156,18 @@ def parser_for(name: str, *, program: str = PROGRAM) -> argparse.ArgumentParser:
 
 def _dispatch(words: list[str], program: str) -> int:
     if not words or words[0] in ("-h", "--help", "help"):
-        print(_overview())
+        print(_format_overview())
         return FINE if words else USAGE
     name = words[0]
     if name in ("-V", "--version"):
         print(f"linkwright {__version__}")
         return FINE
-    workbench = None if name in COMMANDS else _workbench()
+    workbench = None if name in COMMANDS else _import_workbench()
     if workbench is not None:
         name = workbench.OTHER_NAMES.get(name, name)
-    if name not in COMMANDS and name not in help_texts():
-        return _report_unknown(name, _OPTIONS if name.startswith("-") else help_texts(), program or PROGRAM)
-    module = verb(name)
+    if name not in COMMANDS and name not in collect_help_texts():
+        return _report_unknown(name, _OPTIONS if name.startswith("-") else collect_help_texts(), program or PROGRAM)
+    module = import_command(name)
     in_order = workbench is not None and name in workbench.ORDERED_COMMANDS
     parsed = _parse_without_options(module, words[1:]) or _parse(name, module, words, program, in_order=in_order)
     if isinstance(parsed, int):
@@ -183,7 +183,7 @@ def _parse_without_options(module: Verb, words: list[str]) -> argparse.Namespace
     Returns:
         The arguments, or None if the line contains options or the command needs argparse.
     """
-    parse_fast: Callable[[list[str]], argparse.Namespace | None] | None = getattr(module, "without_options", None)
+    parse_fast: Callable[[list[str]], argparse.Namespace | None] | None = getattr(module, "parse_without_options", None)
     return None if parse_fast is None or any(word.startswith("-") for word in words) else parse_fast(words)
 
 
@@ -192,7 +192,7 @@ def _parse(name: str, module: Verb, words: list[str], program: str, *, in_order:
 
     If the subcommand is unknown, report it and return the exit status instead.
     """
-    parser = parser_for(name, program=program)
+    parser = create_parser(name, program=program)
     sub_verbs: Mapping[str, SubVerb] = getattr(module, "VERBS", {})
     default_verb: str | None = getattr(module, "DEFAULT_VERB", None)
     if default_verb is not None and _begins_without_verb(words[1:], sub_verbs):
@@ -211,25 +211,25 @@ def _begins_without_verb(words: Sequence[str], verbs: Mapping[str, SubVerb]) -> 
 
     They are not if they begin with a subcommand, a misspelled one, or --help.
     """
-    first = next(iter(words), "")
-    if first in verbs or first in ("-h", "--help"):
+    first_word = next(iter(words), "")
+    if first_word in verbs or first_word in ("-h", "--help"):
         return False
-    is_folder = first.startswith("-") or "/" in first or os.path.isdir(first)  # noqa: PTH112 - importing pathlib is slow
-    return is_folder or did_you_mean(first, verbs) is None
+    is_folder = first_word.startswith("-") or "/" in first_word or os.path.isdir(first_word)  # noqa: PTH112 - importing pathlib is slow
+    return is_folder or did_you_mean(first_word, verbs) is None
 
 
 def _report_unknown(name: str, names: Iterable[str], prog: str) -> int:
     """Report an unknown command or option, and return the exit status for wrong usage."""
     hint = did_you_mean(name, names) or f"`{prog} --help` lists the commands"
-    if _workbench() is None:
+    if _import_workbench() is None:
         hint += "; only linkwright-core is installed, and linkwright has more commands"
-    noun = "option" if name.startswith("-") else "command"
-    print(f"{prog}: there is no {noun} '{name}'; {hint}", file=sys.stderr)
+    kind = "option" if name.startswith("-") else "command"
+    print(f"{prog}: there is no {kind} '{name}'; {hint}", file=sys.stderr)
     return USAGE
 
 
-def _overview() -> str:
-    command_groups = groups()
+def _format_overview() -> str:
+    command_groups = find_command_groups()
     width = max(len(name) for verbs in command_groups.values() for name in verbs)
     lines = ["usage: linkwright COMMAND ...", "", translate_help(SUMMARY_HELP)]
     for title, verbs in command_groups.items():

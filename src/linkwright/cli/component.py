@@ -11,8 +11,8 @@ from contextlib import asynccontextmanager
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.calls import call, node_names
-from linkwright.cli.lookup import absolute_or_given, unknown_name_error
+from linkwright.cli.calls import call, list_node_names
+from linkwright.cli.lookup import add_leading_slash, unknown_name_error
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.remote_parameters import parse_parameter
 from linkwright.cli.session import add_session_arguments, run_in_graph
@@ -46,12 +46,12 @@ def run_list(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         if arguments.container_node_name is not None:
             container = await find_container(session, arguments.container_node_name)
-            for uid, name in [] if arguments.containers_only else await loaded_nodes(session, container):
+            for uid, name in [] if arguments.containers_only else await list_loaded_nodes(session, container):
                 print(f"{uid}  {name}")
             return 0
-        for container in containers(session):
+        for container in find_containers(session):
             print(container)
-            for uid, name in [] if arguments.containers_only else await loaded_nodes(session, container):
+            for uid, name in [] if arguments.containers_only else await list_loaded_nodes(session, container):
                 print(f"  {uid}  {name}")
         return 0
 
@@ -182,7 +182,7 @@ async def _container_process(name: str) -> AsyncIterator[Process]:
             await process.wait()
 
 
-def containers(session: Session) -> list[str]:
+def find_containers(session: Session) -> list[str]:
     """Return the sorted full names of the component containers.
 
     A container is a node with the three services for loading, unloading and listing components.
@@ -190,7 +190,7 @@ def containers(session: Session) -> list[str]:
     services = dict(session.node.get_service_names_and_types())
     return [
         name
-        for name in dict.fromkeys(node_names(session))
+        for name in dict.fromkeys(list_node_names(session))
         if all(
             f"composition_interfaces/srv/{kind}" in services.get(f"{name}/_container/{service}", ())
             for service, kind in _SERVICES.items()
@@ -204,9 +204,9 @@ async def find_container(session: Session, name: str, timeout: float = _DISCOVER
     Raises:
         LinkwrightError: CLI432, there is no container with that name.
     """
-    full_name = absolute_or_given(name)
-    if not await session.wait_until(lambda: full_name in containers(session), timeout):
-        container_names = containers(session)
+    full_name = add_leading_slash(name)
+    if not await session.wait_until(lambda: full_name in find_containers(session), timeout):
+        container_names = find_containers(session)
         hint = (
             phrase("running nodes: {nodes}", nodes=joined(container_names))
             if container_names
@@ -218,19 +218,19 @@ async def find_container(session: Session, name: str, timeout: float = _DISCOVER
     return full_name
 
 
-async def loaded_nodes(session: Session, container: str) -> list[tuple[int, str]]:
+async def list_loaded_nodes(session: Session, container: str) -> list[tuple[int, str]]:
     """Return the unique ID and the full name of each node in a container."""
-    response = await _call(session, container, "list_nodes")
+    response = await _call_service(session, container, "list_nodes")
     return [(int(uid), str(name)) for uid, name in zip(response.unique_ids, response.full_node_names, strict=True)]
 
 
 async def _load_component(session: Session, container: str, arguments: argparse.Namespace) -> tuple[int, str]:
-    """Load a component into a container, and return the unique ID and the full name of its node.
+    """Load a component, and return the unique ID and the full name of its node.
 
     Raises:
         LinkwrightError: CLI433, the container could not load the component.
     """
-    response = await _call(
+    response = await _call_service(
         session,
         container,
         "load_node",
@@ -238,7 +238,7 @@ async def _load_component(session: Session, container: str, arguments: argparse.
         plugin_name=arguments.plugin_name,
         node_name=arguments.node_name or "",
         node_namespace=arguments.node_namespace or "",
-        log_level=_log_level(arguments.log_level),
+        log_level=_parse_log_level(arguments.log_level),
         remap_rules=arguments.remap_rules or [],
         parameters=_parse_parameters(arguments.parameters or []),
         extra_arguments=_parse_parameters(arguments.extra_arguments or []),
@@ -259,7 +259,7 @@ async def _unload_component(session: Session, container: str, uid: int) -> None:
     Raises:
         LinkwrightError: CLI434, the container could not unload the node.
     """
-    response = await _call(session, container, "unload_node", unique_id=uid)
+    response = await _call_service(session, container, "unload_node", unique_id=uid)
     if not response.success:
         message = phrase(
             "Failed to unload component {uid} from '{container}' container node: {error_message}",
@@ -267,7 +267,7 @@ async def _unload_component(session: Session, container: str, uid: int) -> None:
             container=container,
             error_message=foreign(response.error_message),
         )
-        nodes = ", ".join(f"{number} {name}" for number, name in await loaded_nodes(session, container))
+        nodes = ", ".join(f"{number} {name}" for number, name in await list_loaded_nodes(session, container))
         raise LinkwrightError(
             Diagnostic(
                 "CLI434",
@@ -308,7 +308,7 @@ def _parse_parameters(words: Sequence[str]) -> list[Any]:
     return [parse_parameter(name, value) for name, value in parse_assignments(words).items()]
 
 
-def _log_level(text: str | None) -> int:
+def _parse_log_level(text: str | None) -> int:
     if text is None:
         return 0
     from linkwright.graph import LogLevel
@@ -328,7 +328,7 @@ def _log_level(text: str | None) -> int:
         ) from None
 
 
-async def _call(session: Session, container: str, service: str, **fields: Any) -> Any:
+async def _call_service(session: Session, container: str, service: str, **fields: Any) -> Any:
     from linkwright.messages import get_service
 
     service_type = f"composition_interfaces/srv/{_SERVICES[service]}"

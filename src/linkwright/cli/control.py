@@ -20,7 +20,7 @@ from linkwright.cli.session import add_session_arguments, run_in_graph
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
-Ask = Callable[..., Coroutine[Any, Any, Any]]
+ManagerCall = Callable[..., Coroutine[Any, Any, Any]]
 """A function that calls a service of the manager, such as ``list_controllers``.
 
 Its keyword arguments are the fields of the request.
@@ -58,18 +58,20 @@ def _add_controller_argument(parser: argparse.ArgumentParser) -> None:
     _add_common_arguments(parser)
 
 
-def _run(job: Callable[[argparse.Namespace, Ask], Coroutine[Any, Any, int]], arguments: argparse.Namespace) -> int:
+def _run(
+    job: Callable[[argparse.Namespace, ManagerCall], Coroutine[Any, Any, int]], arguments: argparse.Namespace
+) -> int:
     async def run_job(session: Session) -> int:
         from linkwright.messages import get_service
 
         manager = f"/{arguments.controller_manager.strip('/')}"
 
-        async def ask(service: str, **fields: Any) -> Any:
+        async def call_manager(service: str, **fields: Any) -> Any:
             service_type = "controller_manager_msgs/srv/" + "".join(word.capitalize() for word in service.split("_"))
             name, request = f"{manager}/{service}", get_service(service_type).Request(**fields)
             return await call(session, service_type, name, request, extra_wait=MANAGER_EXTRA_WAIT_S)
 
-        return await job(arguments, ask)
+        return await job(arguments, call_manager)
 
     return run_in_graph(arguments, run_job)
 
@@ -89,8 +91,8 @@ def _configure_list_controllers(parser: argparse.ArgumentParser) -> None:
     _add_common_arguments(parser)
 
 
-async def _list_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
-    controllers = (await ask("list_controllers")).controller
+async def _list_controllers(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
+    controllers = (await call_manager("list_controllers")).controller
     if not controllers:
         print("No controllers are currently loaded!")
         return 0
@@ -102,20 +104,20 @@ async def _list_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
         for section, title in _INTERFACE_SECTIONS.items():
             if arguments.verbose or getattr(arguments, section):
                 print(f"\t{title}:")
-                for interface in _interfaces(controller, section):
+                for interface in _find_interfaces(controller, section):
                     print(f"\t\t{interface}")
     return 0
 
 
-def _interfaces(controller: Any, section: str) -> Sequence[str]:
+def _find_interfaces(controller: Any, section: str) -> Sequence[str]:
     if section != "chained_interfaces":
         names: Sequence[str] = getattr(controller, section)
         return names
     return [f"{name:20s}" for chain in controller.chain_connections for name in chain.reference_interfaces]
 
 
-async def _list_types(_: argparse.Namespace, ask: Ask) -> int:
-    response = await ask("list_controller_types")
+async def _list_types(_: argparse.Namespace, call_manager: ManagerCall) -> int:
+    response = await call_manager("list_controller_types")
     for name, base in zip(response.types, response.base_classes, strict=True):
         print(f"{name:70s} {base}")
     return 0
@@ -126,40 +128,41 @@ def _configure_list_hardware(parser: argparse.ArgumentParser) -> None:
     _add_common_arguments(parser)
 
 
-async def _list_components(arguments: argparse.Namespace, ask: Ask) -> int:
-    for number, component in enumerate((await ask("list_hardware_components")).component, start=1):
+async def _list_components(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
+    for number, component in enumerate((await call_manager("list_hardware_components")).component, start=1):
         print(f"Hardware Component {number}\n\tname: {component.name}\n\ttype: {component.type}")
         print(f"\tplugin name: {component.plugin_name}\n\tstate: id={component.state.id} label={component.state.label}")
         print("\tcommand interfaces")
         for command in component.command_interfaces:
-            print(f"\t\t{command.name} {_availability(command)} {_claim(command)}")
+            print(f"\t\t{command.name} {_format_availability(command)} {_format_claim(command)}")
         if arguments.verbose:
             print("\tstate interfaces")
             for state in component.state_interfaces:
-                print(f"\t\t{state.name} {_availability(state)}")
+                print(f"\t\t{state.name} {_format_availability(state)}")
     return 0
 
 
-async def _list_interfaces(arguments: argparse.Namespace, ask: Ask) -> int:
-    response = await ask("list_hardware_interfaces")
+async def _list_interfaces(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
+    response = await call_manager("list_hardware_interfaces")
     print("command interfaces")
     for command in sorted(response.command_interfaces, key=lambda interface: interface.name):
-        print(f"\t{command.name}{_data_type(command, arguments)} {_availability(command)} {_claim(command)}")
+        status = f"{_format_availability(command)} {_format_claim(command)}"
+        print(f"\t{command.name}{_format_data_type(command, arguments)} {status}")
     print("state interfaces")
     for state in sorted(response.state_interfaces, key=lambda interface: interface.name):
-        print(f"\t{state.name}{_data_type(state, arguments)}")
+        print(f"\t{state.name}{_format_data_type(state, arguments)}")
     return 0
 
 
-def _availability(interface: Any) -> str:
+def _format_availability(interface: Any) -> str:
     return "[available]" if interface.is_available else "[unavailable]"
 
 
-def _claim(interface: Any) -> str:
+def _format_claim(interface: Any) -> str:
     return "[claimed]" if interface.is_claimed else "[unclaimed]"
 
 
-def _data_type(interface: Any, arguments: argparse.Namespace) -> str:
+def _format_data_type(interface: Any, arguments: argparse.Namespace) -> str:
     return f" [{interface.data_type}]" if arguments.verbose else ""
 
 
@@ -170,8 +173,8 @@ def _configure_chains(parser: argparse.ArgumentParser) -> None:
     _add_common_arguments(parser)
 
 
-async def _view_chains(_: argparse.Namespace, ask: Ask) -> int:
-    text = _graphviz_text((await ask("list_controllers")).controller)
+async def _view_chains(_: argparse.Namespace, call_manager: ManagerCall) -> int:
+    text = _format_graphviz((await call_manager("list_controllers")).controller)
     _save_diagram(text)
     return 0
 
@@ -185,19 +188,23 @@ def _save_diagram(text: str) -> None:
     print(f"Saved controller diagram to {diagram.resolve()}")
 
 
-def _graphviz_text(controllers: Sequence[Any]) -> str:
+def _format_graphviz(controllers: Sequence[Any]) -> str:
     """Return a Graphviz diagram of controllers and hardware, connected by their interfaces."""
     names = {controller.name for controller in controllers}
     lines = ["digraph g {", "rankdir=LR;", "node [shape=box, style=rounded];"]
     lines += [f'"{name}";' for name in sorted(names)]
     for controller in controllers:
         for interface in controller.required_command_interfaces:
-            owner, _, kind = interface.partition("/")
-            target, label = (owner, kind) if owner in names else ("hw command_interfaces", interface)
+            component_name, _, interface_name = interface.partition("/")
+            target, label = (
+                (component_name, interface_name) if component_name in names else ("hw command_interfaces", interface)
+            )
             lines.append(f'"{controller.name}" -> "{target}" [label="{label}"];')
         for interface in controller.required_state_interfaces:
-            owner, _, kind = interface.partition("/")
-            source, label = (owner, kind) if owner in names else ("hw state_interfaces", interface)
+            component_name, _, interface_name = interface.partition("/")
+            source, label = (
+                (component_name, interface_name) if component_name in names else ("hw state_interfaces", interface)
+            )
             lines.append(f'"{source}" -> "{controller.name}" [label="{label}"];')
     return "\n".join([*lines, "}", ""])
 
@@ -209,7 +216,7 @@ _OLD_STATES = {"start": "active", "stop": "inactive", "configure": "inactive"}
 """Maps the names of states in launch files from before Humble to the current names."""
 
 
-def _current_state_name(state: str) -> str:
+def _to_current_state_name(state: str) -> str:
     return _OLD_STATES.get(state, state)
 
 
@@ -217,30 +224,32 @@ def _configure_load(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("controller_name", metavar="CONTROLLER", help="the name of the controller")
     parser.add_argument(
         "--set-state",
-        type=_current_state_name,
+        type=_to_current_state_name,
         choices=("unconfigured", "inactive", "active", "configured"),
         help="the state to switch the controller to after loading",
     )
     _add_common_arguments(parser)
 
 
-async def _load(arguments: argparse.Namespace, ask: Ask) -> int:
+async def _load_controller(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
     name, state = arguments.controller_name, arguments.set_state
-    if not (await ask("load_controller", name=name)).ok:
+    if not (await call_manager("load_controller", name=name)).ok:
         return _report_failure(f"Error loading controller, {_LOGS_HINT}")
     if state in (None, "unconfigured"):
         print(f"Successfully loaded controller {name}")
         return 0
-    if not (await ask("configure_controller", name=name)).ok:
+    if not (await call_manager("configure_controller", name=name)).ok:
         return _report_failure("Error configuring controller")
-    if state == "active" and not (await _switch(ask, [name], [])).ok:
+    if state == "active" and not (await _request_switch(call_manager, [name], [])).ok:
         return _report_failure(f"Error activating controller, {_LOGS_HINT}")
     print(f"Successfully loaded controller {name} into state {'active' if state == 'active' else 'inactive'}")
     return 0
 
 
-async def _switch(ask: Ask, activate: Sequence[str], deactivate: Sequence[str], strictness: int = 2) -> Any:
-    return await ask(
+async def _request_switch(
+    call_manager: ManagerCall, activate: Sequence[str], deactivate: Sequence[str], strictness: int = 2
+) -> Any:
+    return await call_manager(
         "switch_controller",
         activate_controllers=list(activate),
         deactivate_controllers=list(deactivate),
@@ -249,9 +258,9 @@ async def _switch(ask: Ask, activate: Sequence[str], deactivate: Sequence[str], 
     )
 
 
-async def _unload(arguments: argparse.Namespace, ask: Ask) -> int:
+async def _unload_controller(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
     name = arguments.controller_name
-    if not (await ask("unload_controller", name=name)).ok:
+    if not (await call_manager("unload_controller", name=name)).ok:
         return _report_failure(f"Error unloading controller {name}, {_LOGS_HINT}")
     print(f"Successfully unloaded controller {name}")
     return 0
@@ -260,23 +269,32 @@ async def _unload(arguments: argparse.Namespace, ask: Ask) -> int:
 def _configure_set_state(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("controller_name", metavar="CONTROLLER", help="the name of the controller")
     parser.add_argument(
-        "state", type=_current_state_name, choices=("unconfigured", "inactive", "active"), help="the target state"
+        "state", type=_to_current_state_name, choices=("unconfigured", "inactive", "active"), help="the target state"
     )
     _add_common_arguments(parser)
 
 
-async def _set_state(arguments: argparse.Namespace, ask: Ask) -> int:
+async def _set_state(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
     name, target_state = arguments.controller_name, arguments.state
     loaded_controller = next(
-        (controller for controller in (await ask("list_controllers")).controller if controller.name == name), None
+        (controller for controller in (await call_manager("list_controllers")).controller if controller.name == name),
+        None,
     )
     if loaded_controller is None:
         return _report_failure(f"controller {name} does not seem to be loaded")
     steps: dict[tuple[str, str], tuple[str, str, Callable[[], Coroutine[Any, Any, Any]]]] = {
-        ("inactive", "unconfigured"): ("cleaning up", "cleaned up", lambda: ask("cleanup_controller", name=name)),
-        ("unconfigured", "inactive"): ("configuring", "configured", lambda: ask("configure_controller", name=name)),
-        ("active", "inactive"): ("stopping", "deactivated", lambda: _switch(ask, [], [name])),
-        ("inactive", "active"): ("activating", "activated", lambda: _switch(ask, [name], [])),
+        ("inactive", "unconfigured"): (
+            "cleaning up",
+            "cleaned up",
+            lambda: call_manager("cleanup_controller", name=name),
+        ),
+        ("unconfigured", "inactive"): (
+            "configuring",
+            "configured",
+            lambda: call_manager("configure_controller", name=name),
+        ),
+        ("active", "inactive"): ("stopping", "deactivated", lambda: _request_switch(call_manager, [], [name])),
+        ("inactive", "active"): ("activating", "activated", lambda: _request_switch(call_manager, [name], [])),
     }
     step = steps.get((loaded_controller.state, target_state))
     if step is None:
@@ -305,8 +323,10 @@ def _configure_switch(parser: argparse.ArgumentParser) -> None:
     _add_common_arguments(parser)
 
 
-async def _switch_controllers(arguments: argparse.Namespace, ask: Ask) -> int:
-    response = await _switch(ask, arguments.activate, arguments.deactivate, 2 if arguments.strict else 1)
+async def _switch_controllers(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
+    response = await _request_switch(
+        call_manager, arguments.activate, arguments.deactivate, 2 if arguments.strict else 1
+    )
     if not response.ok:
         return _report_failure(f"Error switching controllers, {_LOGS_HINT}")
     print("Successfully switched controllers")
@@ -318,8 +338,8 @@ def _configure_reload(parser: argparse.ArgumentParser) -> None:
     _add_common_arguments(parser)
 
 
-async def _reload(arguments: argparse.Namespace, ask: Ask) -> int:
-    if not (await ask("reload_controller_libraries", force_kill=arguments.force_kill)).ok:
+async def _reload(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
+    if not (await call_manager("reload_controller_libraries", force_kill=arguments.force_kill)).ok:
         return _report_failure(f"Error reloading libraries, {_LOGS_HINT}")
     print("Reload successful")
     return 0
@@ -331,14 +351,14 @@ def _configure_set_hardware(parser: argparse.ArgumentParser) -> None:
     _add_common_arguments(parser)
 
 
-async def _set_hardware(arguments: argparse.Namespace, ask: Ask) -> int:
+async def _set_hardware(arguments: argparse.Namespace, call_manager: ManagerCall) -> int:
     from linkwright.messages import get_message
 
     name = arguments.hardware_component_name
-    if name not in [component.name for component in (await ask("list_hardware_components")).component]:
+    if name not in [component.name for component in (await call_manager("list_hardware_components")).component]:
         return _report_failure(f"component {name} does not seem to be loaded")
     target_state = get_message("lifecycle_msgs/msg/State")(label=arguments.state)
-    response = await ask("set_hardware_component_state", name=name, target_state=target_state)
+    response = await call_manager("set_hardware_component_state", name=name, target_state=target_state)
     if not response.ok:
         return _report_failure(f"Error setting hardware component to {arguments.state}, {_LOGS_HINT}")
     print(f"Successfully set {name} to state {response.state}")
@@ -348,7 +368,7 @@ async def _set_hardware(arguments: argparse.Namespace, ask: Ask) -> int:
 VERBS = {
     "cleanup_controller": SubVerb(
         _add_controller_argument,
-        partial(_run, lambda arguments, ask: _set_state(_with_state(arguments, "unconfigured"), ask)),
+        partial(_run, lambda arguments, call_manager: _set_state(_with_state(arguments, "unconfigured"), call_manager)),
         help="clean up an inactive controller, so that it is unconfigured",
     ),
     "list_controller_types": SubVerb(
@@ -363,7 +383,7 @@ VERBS = {
     "list_hardware_interfaces": SubVerb(
         _configure_list_hardware, partial(_run, _list_interfaces), help="list the interfaces of the hardware"
     ),
-    "load_controller": SubVerb(_configure_load, partial(_run, _load), help="load a controller"),
+    "load_controller": SubVerb(_configure_load, partial(_run, _load_controller), help="load a controller"),
     "reload_controller_libraries": SubVerb(
         _configure_reload, partial(_run, _reload), help="unload all controllers and reload the controller types"
     ),
@@ -377,7 +397,7 @@ VERBS = {
         _configure_switch, partial(_run, _switch_controllers), help="deactivate controllers and activate others"
     ),
     "unload_controller": SubVerb(
-        _add_controller_argument, partial(_run, _unload), help="unload a controller that is not active"
+        _add_controller_argument, partial(_run, _unload_controller), help="unload a controller that is not active"
     ),
     "view_controller_chains": SubVerb(
         _configure_chains, partial(_run, _view_chains), help="draw the controllers and the interfaces that they claim"

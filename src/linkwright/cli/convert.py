@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     Writer: TypeAlias = Callable[[Sdf, PackageFinder], tuple[str | None, Sequence[Diagnostic]]]
 
 _FORMATS = ("sdf", "urdf", "mjcf")
-_GROUP = "linkwright.model_formats"
+_ENTRY_POINT_GROUP = "linkwright.model_formats"
 """The group of entry points that provide file formats. Each entry point is a `Writer`."""
 
 
@@ -108,19 +108,19 @@ def _write_urdf(sdf: Sdf, _finder: PackageFinder) -> tuple[str | None, Sequence[
     return None if reading.robot is None else save(reading.robot), reading.diagnostics
 
 
-def _find_writer(form: str) -> Writer:
+def _find_writer(format_name: str) -> Writer:
     """Return the function that writes a file format.
 
     Raises:
         LinkwrightError: CLI323, the package that provides the format is not installed.
     """
-    if form in _WRITERS:
-        return _WRITERS[form]
+    if format_name in _WRITERS:
+        return _WRITERS[format_name]
     from linkwright.loading.extensions import extensions
 
-    entry_point = extensions(_GROUP).get(form)
+    entry_point = extensions(_ENTRY_POINT_GROUP).get(format_name)
     if entry_point is None:
-        message = phrase("cannot write '{format}': linkwright-core is installed without linkwright", format=form)
+        message = phrase("cannot write '{format}': linkwright-core is installed without linkwright", format=format_name)
         raise LinkwrightError(Diagnostic("CLI323", message, hint=phrase("install linkwright")))
     writer: Writer = entry_point.load()
     return writer

@@ -205,9 +205,9 @@ class _Progress:
 
 
 def _parse_size(text: str) -> tuple[int, int]:
-    width, mark, height = text.partition("x")
+    width, separator, height = text.partition("x")
     sides = [int(side) if side.isascii() and side.isdigit() and len(side) < 6 else 0 for side in (width, height)]
-    if not mark or not all(_MIN_SIDE <= side <= _MAX_SIDE for side in sides):
+    if not separator or not all(_MIN_SIDE <= side <= _MAX_SIDE for side in sides):
         raise argparse.ArgumentTypeError(
             f"'{text}' is not WIDTHxHEIGHT with sides from {_MIN_SIDE} to {_MAX_SIDE} pixels"
         )
@@ -231,20 +231,20 @@ def _parse_choices(text: str, choices: tuple[str, ...]) -> tuple[str, ...]:
 
 def _parse_fraction(text: str) -> float:
     try:
-        share = float(text)
+        fraction = float(text)
     except ValueError:
-        share = -1.0
-    if not 0.0 <= share <= 1.0:
+        fraction = -1.0
+    if not 0.0 <= fraction <= 1.0:
         raise argparse.ArgumentTypeError(f"'{text}' is not a number from 0 to 1")
-    return share
+    return fraction
 
 
 def _parse_splits(text: str) -> tuple[float, float, float]:
     try:
-        shares = [float(word) for word in text.split(",")]
+        fractions = [float(word) for word in text.split(",")]
     except ValueError:
-        shares = []
-    total = sum(shares)
-    if len(shares) != 3 or not all(0.0 <= share < 1e6 for share in shares) or not total > 0.0:
+        fractions = []
+    total = sum(fractions)
+    if len(fractions) != 3 or not all(0.0 <= fraction < 1e6 for fraction in fractions) or not total > 0.0:
         raise argparse.ArgumentTypeError(f"'{text}' is not three numbers, such as 0.8,0.1,0.1")
-    return shares[0] / total, shares[1] / total, shares[2] / total
+    return fractions[0] / total, fractions[1] / total, fractions[2] / total

@@ -7,7 +7,7 @@ import json
 import sys
 from contextlib import ExitStack
 
-from linkwright.cli.model_arguments import add_against, add_values, requested_pair
+from linkwright.cli.model_arguments import add_against, add_values, open_requested_pair
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
 
 SAME, DIFFERENT, FAILURE = 0, 1, 2
@@ -39,7 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     with ExitStack() as stack:
         try:
-            pair = requested_pair(arguments, stack)
+            pair = open_requested_pair(arguments, stack)
             if pair is None:
                 print("linkwright diff: pass two files, or one and --against COMMIT", file=sys.stderr)
                 return FAILURE

@@ -73,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.doctor import examine, examine_parameter_files, observe, report
     from linkwright.wire.unsupported_settings import new_unsupported_settings
 
-    frames = _fixed_frames(arguments)
+    frames = _parse_fixed_frames(arguments)
     settings = new_unsupported_settings()  # reported as findings, not when joining the graph
 
     async def job(session: Session) -> int:
@@ -89,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
             print(report(observation))
         if arguments.format == "text":
             print_diagnostics(diagnostics, sys.stderr)
-            print(_summary(observation, len(diagnostics)))
+            print(_format_summary(observation, len(diagnostics)))
         else:
             sys.stdout.write(format_diagnostics(diagnostics, arguments.format))
         return 1 if failed else 0
@@ -97,7 +97,7 @@ def run(arguments: argparse.Namespace) -> int:
     return run_in_graph(arguments, job)
 
 
-def _fixed_frames(arguments: argparse.Namespace) -> list[FixedFrame]:
+def _parse_fixed_frames(arguments: argparse.Namespace) -> list[FixedFrame]:
     from linkwright.doctor import FixedFrame
 
     frames = [FixedFrame(name, phrase("the command line")) for name in arguments.fixed_frame]
@@ -111,7 +111,7 @@ def _fixed_frames(arguments: argparse.Namespace) -> list[FixedFrame]:
     return frames
 
 
-def _summary(observation: Observation, finding_count: int) -> str:
+def _format_summary(observation: Observation, finding_count: int) -> str:
     frames = {name for transform in observation.transforms for name in (transform.parent, transform.child)}
     topics = {
         endpoint.name for endpoint in observation.endpoints if endpoint.kind.value in ("publisher", "subscription")

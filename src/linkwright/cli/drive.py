@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING
 
 from linkwright.cli.exit_status import print_message
 from linkwright.cli.model_arguments import add_model
-from linkwright.cli.simulation_options import add_simulation_options, recording, refuse_terminal_without_page
-from linkwright.cli.view import add_viewer_options, terminal_folder
+from linkwright.cli.simulation_options import add_simulation_options, open_recording, refuse_terminal_without_page
+from linkwright.cli.view import add_viewer_options, find_terminal_folder
 from linkwright.diagnostics import (
     Phrase,
     Severity,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from linkwright.inference import Inference
     from linkwright.urdf import Robot
 
-_KINDS = ("differential", "skid", "ackermann", "mecanum", "joints")
+_DRIVE_KINDS = ("differential", "skid", "ackermann", "mecanum", "joints")
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -44,7 +44,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--drive",
         metavar="KIND",
-        choices=_KINDS,
+        choices=_DRIVE_KINDS,
         help="the kind of drive, if the file does not specify it: %(choices)s",
     )
     parser.add_argument(
@@ -96,7 +96,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     inference = infer_drive(robot)
     if arguments.show:
-        sys.stdout.write(_inference_list(inference))
+        sys.stdout.write(_format_inferences(inference))
         return 0
     if arguments.write:
         result = write_inference(robot, inference)
@@ -109,7 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
     print_diagnostics(
         [diagnostic for diagnostic in inference.diagnostics if diagnostic.severity is not Severity.INFO], sys.stderr
     )
-    print_message(localized(_summary(robot, inference)))
+    print_message(localized(_summarize(robot, inference)))
     world = replace(
         SimulatedWorld.of(arguments.world, description, inference, infer_drive),
         arguments=tuple(values.items()),
@@ -122,14 +122,14 @@ def run(arguments: argparse.Namespace) -> int:
         arguments.port,
         not arguments.no_open,
         history=arguments.history,
-        terminal=terminal_folder(arguments),
+        terminal=find_terminal_folder(arguments),
     )
-    with recording(arguments) as writer:
+    with open_recording(arguments) as writer:
         status = run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)
     return status or int(has_errors(description.diagnostics))
 
 
-def _summary(robot: Robot, inference: Inference) -> Phrase:
+def _summarize(robot: Robot, inference: Inference) -> Phrase:
     """Return a one-line summary of the inferred elements."""
     drive = inference.drive
     parts: list[Phrase] = []
@@ -151,7 +151,7 @@ def _summary(robot: Robot, inference: Inference) -> Phrase:
     )
 
 
-def _inference_list(inference: Inference) -> str:
+def _format_inferences(inference: Inference) -> str:
     """Return a text that lists each inference with its file, line, message and added elements."""
     from linkwright.xmltree.patches import block
 

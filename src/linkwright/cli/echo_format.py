@@ -89,9 +89,9 @@ class EchoFormat:
         Raises:
             LinkwrightError: CLI414, the message has no such field.
         """
-        value = select(message, self.field)
+        value = select_field(message, self.field)
         if not hasattr(value, "get_fields_and_field_types"):
-            return f"{self._info_text(info)}{value}\n{SEPARATOR}"
+            return f"{self._format_info(info)}{value}\n{SEPARATOR}"
         from linkwright.messages import to_csv, to_yaml
 
         if self.csv:
@@ -105,15 +105,15 @@ class EchoFormat:
             no_str=self.no_str,
             flow_style=self.flow_style,
         )
-        return f"{self._info_text(info)}{text}{SEPARATOR}"
+        return f"{self._format_info(info)}{text}{SEPARATOR}"
 
-    def _info_text(self, info: MessageInfo | None) -> str:
+    def _format_info(self, info: MessageInfo | None) -> str:
         if not self.message_info or info is None:
             return ""
         return f"received_timestamp: {info.received_timestamp}\nsource_timestamp: {info.source_timestamp}\n{SEPARATOR}"
 
 
-def field_path(text: str | None) -> tuple[str, ...]:
+def parse_field_path(text: str | None) -> tuple[str, ...]:
     """Split the value of ``--field``, such as ``pose.pose.position``, into field names.
 
     Raises:
@@ -131,7 +131,7 @@ def field_path(text: str | None) -> tuple[str, ...]:
     return names
 
 
-def select(message: Any, path: Sequence[str]) -> Any:
+def select_field(message: Any, path: Sequence[str]) -> Any:
     """Return the value of a field by its path of names.
 
     Raises:

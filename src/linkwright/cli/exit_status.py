@@ -29,7 +29,7 @@ _SYSTEM_ERRORS = _OUTPUT_ERRORS | {
 """Numbers of operating-system errors that are not bugs in the program."""
 
 
-def status_of(command: Callable[[], int]) -> int:
+def run_command(command: Callable[[], int]) -> int:
     """Run a command, flush its output and return its exit status.
 
     Args:

@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.model_arguments import add_second_model, names_file, requested_pair
+from linkwright.cli.model_arguments import add_second_model, names_file, open_requested_pair
 from linkwright.cli.output import write_output
 from linkwright.diagnostics import (
     Diagnostic,
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     with ExitStack() as stack:
         pair = None
         if arguments.against or any(map(names_file, arguments.words)):
-            pair = requested_pair(arguments, stack)
+            pair = open_requested_pair(arguments, stack)
             if pair is None or not arguments.out.lower().endswith(".html"):
                 usage_error = "pass one file, two to compare, or one and --against COMMIT"
                 extension_error = f"'{arguments.out}' should end with .html, as two descriptions are compared"
@@ -71,7 +71,7 @@ def _export(arguments: argparse.Namespace, pair: Pair | None) -> int:
     from linkwright.descriptions.pairs import old_description_key
     from linkwright.packages import PackageFinder
     from linkwright.panels.export.feature import export_snapshot
-    from linkwright.viewer.model_snapshot import OldDescription, snapshot_of_model
+    from linkwright.viewer.model_snapshot import OldDescription, take_model_snapshot
 
     library = DescriptionLibrary()
     old = None
@@ -88,11 +88,11 @@ def _export(arguments: argparse.Namespace, pair: Pair | None) -> int:
     print_diagnostics(description.diagnostics, sys.stderr)
     if description.robot is None or not description.robot.root:
         return 1  # without a root link, no link has a pose
-    snapshot = snapshot_of_model(text, description.robot, library, finder, old)
+    snapshot = take_model_snapshot(text, description.robot, library, finder, old)
     print_diagnostics(snapshot.problems, sys.stderr)
     data = export_snapshot(snapshot, arguments.out.rpartition(".")[2].lower())
     write_output(Path(arguments.out), data)
-    print(f"Created file {arguments.out} ({_size_text(len(data))})")
+    print(f"Created file {arguments.out} ({_format_size(len(data))})")
     if snapshot.outside_files:
         print_diagnostics([_outside_files_warning(snapshot.outside_files)], sys.stderr)
     return 1 if snapshot.problems else 0
@@ -113,5 +113,5 @@ def _outside_files_warning(files: Sequence[Path]) -> Diagnostic:
     return Diagnostic("VIEW206", message, severity=Severity.WARNING, notes=names, hint=hint)
 
 
-def _size_text(count: int) -> str:
+def _format_size(count: int) -> str:
     return f"{count / 1e6:.1f} MB" if count >= 1e6 else f"{max(1, round(count / 1e3))} kB"

@@ -128,11 +128,11 @@ def _format_stdin(arguments: argparse.Namespace) -> int:
 def _format_text(text: str, file: Path, arguments: argparse.Namespace, name: str | None = None) -> str:
     from linkwright.xmltree.formatting import apply_edits, changes, format_text
 
-    new_text = format_text(text, name or str(file), _style(file, arguments))
+    new_text = format_text(text, name or str(file), _read_style(file, arguments))
     return apply_edits(text, changes(text, new_text, arguments.range)) if arguments.range else new_text
 
 
-def _style(file: Path, arguments: argparse.Namespace) -> Style:
+def _read_style(file: Path, arguments: argparse.Namespace) -> Style:
     """Return the formatting style from the settings file, overridden by the command line."""
     from linkwright.lint.configuration import settings_for
 
@@ -160,7 +160,7 @@ def _parse_line_range(text: str) -> tuple[int, int]:
     Raises:
         argparse.ArgumentTypeError: the text is not such a range.
     """
-    first, dash, last = text.partition("-")
-    if not dash or not first.isdigit() or not last.isdigit() or not 0 < int(first) <= int(last):
+    first, separator, last = text.partition("-")
+    if not separator or not first.isdigit() or not last.isdigit() or not 0 < int(first) <= int(last):
         raise argparse.ArgumentTypeError("value must be two line numbers such as 10-20")
     return int(first) - 1, int(last)

@@ -59,12 +59,12 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
     _warn_if_local_only()
     publisher = session.node.create_publisher(String, arguments.topic, 10)
     session.node.create_subscription(
-        String, arguments.topic, session.receiver(lambda message: counts.count_topic_greeting(message.data)), 10
+        String, arguments.topic, session.guard_receiver(lambda message: counts.count_topic_greeting(message.data)), 10
     )
     with multicast.open_receiver() as receiver, multicast.open_sender(arguments.ttl) as sender:
         transport, _ = await session.loop.create_datagram_endpoint(lambda: _Listener(counts), sock=receiver)
 
-        def emit() -> None:
+        def send_greetings() -> None:
             publisher.publish(String(data=greeting(host)))
             counts.published_count += 1
             multicast.send(sender, greeting(host).encode())
@@ -74,13 +74,13 @@ async def _greet(session: Session, arguments: argparse.Namespace) -> int:
             print(counts.pop_table(arguments.topic, arguments.print_period))
 
         try:
-            emit()
+            send_greetings()
             if arguments.once:
                 await session.wait_until_finished(arguments.emit_period)
                 print_table()
                 return 0
-            session.every(arguments.emit_period, emit)
-            session.every(arguments.print_period, print_table)
+            session.call_every(arguments.emit_period, send_greetings)
+            session.call_every(arguments.print_period, print_table)
             return await session.wait_until_finished() or 0
         finally:
             transport.close()

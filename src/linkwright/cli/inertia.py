@@ -72,14 +72,14 @@ def run(arguments: argparse.Namespace) -> int:
 
     folder = Path(arguments.file).absolute().parent
     finder = PackageFinder(start=[folder, Path.cwd()])
-    reading = examine(arguments.file, arguments=parse_assignments(arguments.values), packages=finder)
-    robot = reading.robot
-    if robot is None or has_errors(reading.diagnostics):
-        print_diagnostics(reading.diagnostics, sys.stderr)
+    description = examine(arguments.file, arguments=parse_assignments(arguments.values), packages=finder)
+    robot = description.robot
+    if robot is None or has_errors(description.diagnostics):
+        print_diagnostics(description.diagnostics, sys.stderr)
     if robot is None:
         return 1
     masses = _parse_masses(arguments.mass, robot)
-    link_names = _selected_links(arguments.link, robot)
+    link_names = _select_links(arguments.link, robot)
     meshes = MeshLibrary(finder, folder)
     estimates = [
         estimate(
@@ -108,7 +108,7 @@ def run(arguments: argparse.Namespace) -> int:
             )
     if result is not None:
         print_diagnostics(_refusal_findings(result.refusals, robot), sys.stderr)
-    return 1 if has_errors(reading.diagnostics) or (result is not None and result.refusals) else 0
+    return 1 if has_errors(description.diagnostics) or (result is not None and result.refusals) else 0
 
 
 def _parse_positive(text: str) -> float:
@@ -121,19 +121,19 @@ def _parse_positive(text: str) -> float:
     return value
 
 
-def _selected_links(names: Sequence[str], robot: Robot) -> list[str]:
+def _select_links(names: Sequence[str], robot: Robot) -> list[str]:
     """Return the selected links in file order, or all links if none is selected.
 
     Raises:
         LinkwrightError: CLI311, the robot does not have a selected link.
     """
-    diagnostics = [_unknown_link(name, robot) for name in names if name not in robot.links]
+    diagnostics = [_unknown_link_error(name, robot) for name in names if name not in robot.links]
     if diagnostics:
         raise LinkwrightError(*diagnostics)
     return [name for name in robot.links if not names or name in names]
 
 
-def _parse_masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
+def _parse_masses(assignments: Sequence[str], robot: Robot) -> dict[str, float]:
     """Parse arguments such as ``arm=1.5``, and return the mass in kg of each link.
 
     Raises:
@@ -141,7 +141,7 @@ def _parse_masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
     """
     masses: dict[str, float] = {}
     diagnostics = []
-    for assignment in words:
+    for assignment in assignments:
         name, _, value = assignment.rpartition("=")
         name = name.removesuffix(":")
         try:
@@ -154,13 +154,13 @@ def _parse_masses(words: Sequence[str], robot: Robot) -> dict[str, float]:
                 Diagnostic("CLI312", message, hint=phrase("write --mass LINK=KG, such as --mass arm_link=1.5"))
             )
         elif name not in robot.links:
-            diagnostics.append(_unknown_link(name, robot))
+            diagnostics.append(_unknown_link_error(name, robot))
     if diagnostics:
         raise LinkwrightError(*diagnostics)
     return masses
 
 
-def _unknown_link(name: str, robot: Robot) -> Diagnostic:
+def _unknown_link_error(name: str, robot: Robot) -> Diagnostic:
     return Diagnostic(
         "CLI311", phrase("the robot has no link '{name}'", name=name), hint=did_you_mean(name, robot.links)
     )

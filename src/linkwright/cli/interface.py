@@ -106,7 +106,7 @@ def run_show(arguments: argparse.Namespace) -> int:
         if not name:
             raise LinkwrightError(Diagnostic("CLI442", phrase("standard input does not contain a type")))
     name = get_interface(name).TYPE_NAME
-    lines = definition_lines(
+    lines = format_definition(
         name,
         definition_text,
         comments=not arguments.no_comments,
@@ -135,37 +135,37 @@ def run_proto(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def definition_lines(
-    name: str, source: Callable[[str], str], *, comments: bool = True, nested_comments: bool = False
+def format_definition(
+    name: str, read_definition: Callable[[str], str], *, comments: bool = True, nested_comments: bool = False
 ) -> Iterator[str]:
     """Yield the lines of an interface definition, with nested definitions indented.
 
     Args:
         name: the type, as ``package/kind/Name``.
-        source: returns the text of the interface file of a type.
+        read_definition: returns the text of the interface file of a type.
         comments: whether to include comments and blank lines.
         nested_comments: whether to include the comments and blank lines of nested definitions.
     """
-    yield from _definition_lines(name, source, comments, nested_comments, 0)
+    yield from _format_definition(name, read_definition, comments, nested_comments, 0)
 
 
-def _definition_lines(
-    name: str, source: Callable[[str], str], comments: bool, nested_comments: bool, level: int
+def _format_definition(
+    name: str, read_definition: Callable[[str], str], comments: bool, nested_comments: bool, level: int
 ) -> Iterator[str]:
     package = name.split("/", maxsplit=1)[0]
-    for line in source(name).splitlines():
+    for line in read_definition(name).splitlines():
         line = line.rstrip()
-        output_line = line if comments else _without_comment(line).rstrip()
+        output_line = line if comments else _strip_comment(line).rstrip()
         if output_line:
             yield "\t" * level + output_line
         elif comments:
             yield ""
-        nested_name = nested_type(line, package)
+        nested_name = find_nested_type(line, package)
         if nested_name is not None and level < _MAX_DEPTH:
-            yield from _definition_lines(nested_name, source, nested_comments, nested_comments, level + 1)
+            yield from _format_definition(nested_name, read_definition, nested_comments, nested_comments, level + 1)
 
 
-def nested_type(line: str, package: str) -> str | None:
+def find_nested_type(line: str, package: str) -> str | None:
     """Return the full name of the message type in a line that declares a field.
 
     The result is None if the line does not declare a field of a message type.
@@ -181,7 +181,7 @@ def nested_type(line: str, package: str) -> str | None:
     return f"{parts[0]}/msg/{parts[-1]}"
 
 
-def _without_comment(line: str) -> str:
+def _strip_comment(line: str) -> str:
     """Return a line without its comment.
 
     A ``#`` in a string does not start a comment.

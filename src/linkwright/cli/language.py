@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from linkwright.diagnostics.phrase import TERMS
 from linkwright.diagnostics.translation import LANGUAGES, language, language_of, set_language
-from linkwright.diagnostics.translation.translate import wording
+from linkwright.diagnostics.translation.translate import load_catalog
 
 LANGUAGE_HELP = "the language of messages: zh for Chinese, en for English (default: the language of the environment)"
 
@@ -29,9 +29,9 @@ def take_language(words: Sequence[str]) -> list[str]:
     requested: str | None = None
     argument_iterator = iter(words)
     for argument in argument_iterator:
-        name, sign, value = argument.partition("=")
+        name, separator, value = argument.partition("=")
         if name == _OPTION:
-            requested = _parse_language(value if sign else next(argument_iterator, ""))
+            requested = _parse_language(value if separator else next(argument_iterator, ""))
         else:
             remaining_arguments.append(argument)
         if argument == "--":
@@ -53,6 +53,6 @@ def translate_help(text: str) -> str:
     lang = language()
     if lang == "en" or not text:
         return text
-    catalog = wording(lang)
+    catalog = load_catalog(lang)
     translation = catalog.gettext(text)
     return catalog.pgettext(TERMS, text) if translation == text else translation

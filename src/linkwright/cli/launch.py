@@ -6,7 +6,7 @@ import argparse
 import os
 import shlex
 
-from linkwright.cli.view import add_viewer_options, terminal_folder
+from linkwright.cli.view import add_viewer_options, find_terminal_folder
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
         prefix_filter=arguments.launch_prefix_filter,
         foxglove=arguments.foxglove,
         history=arguments.history,
-        terminal=terminal_folder(arguments),
+        terminal=find_terminal_folder(arguments),
         skip_missing=arguments.skip_missing,
         command_to_skip_missing=shlex.join(["linkwright", "launch", "--skip-missing", *arguments.words]),
     )

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.calls import NoAnswerError, call, find_node, node_names
+from linkwright.cli.calls import NoResponseError, call, find_node, list_node_names
 from linkwright.cli.names_listing import add_count_argument, print_names
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.numbers import positive_float
@@ -47,7 +47,7 @@ def run_nodes(arguments: argparse.Namespace) -> int:
     """Print the full names of the managed nodes."""
 
     async def job(session: Session) -> int:
-        print_names(managed_nodes(session, hidden=arguments.all), arguments)
+        print_names(find_managed_nodes(session, hidden=arguments.all), arguments)
         return 0
 
     return run_in_graph(arguments, job, read_only=True)
@@ -66,14 +66,14 @@ def run_get(arguments: argparse.Namespace) -> int:
         hidden = arguments.include_hidden_nodes
         if arguments.node_name is not None:
             node = await find_node(session, arguments.node_name, hidden=hidden)
-            node_state = await state(session, node, arguments.timeout)
+            node_state = await request_state(session, node, arguments.timeout)
             print(f"{node_state.label} [{node_state.id}]")
             return 0
-        nodes = managed_nodes(session, hidden=hidden)
-        requests = [state(session, node, arguments.timeout or _RESPONSE_TIMEOUT_S) for node in nodes]
+        nodes = find_managed_nodes(session, hidden=hidden)
+        requests = [request_state(session, node, arguments.timeout or _RESPONSE_TIMEOUT_S) for node in nodes]
         status = 0
         for node, node_state in zip(nodes, await asyncio.gather(*requests, return_exceptions=True), strict=True):
-            if isinstance(node_state, NoAnswerError):
+            if isinstance(node_state, NoResponseError):
                 print(f"Exception while calling service of node '{node}': {node_state}", file=sys.stderr)
                 status = 1
             elif isinstance(node_state, BaseException):
@@ -98,7 +98,7 @@ def run_list(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
-        for line in transition_lines(await transitions(session, node, all_states=arguments.all)):
+        for line in format_transitions(await request_transitions(session, node, all_states=arguments.all)):
             print(line)
         return 0
 
@@ -118,7 +118,7 @@ def run_set(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         node = await find_node(session, arguments.node_name, hidden=arguments.include_hidden_nodes)
-        available = [transition.transition for transition in await transitions(session, node)]
+        available = [transition.transition for transition in await request_transitions(session, node)]
         requested_transition = next(
             (candidate for candidate in available if arguments.transition in (candidate.label, str(candidate.id))), None
         )
@@ -137,7 +137,7 @@ def run_set(arguments: argparse.Namespace) -> int:
                     hint=did_you_mean(arguments.transition, [candidate.label for candidate in available]),
                 )
             )
-        if await change(session, node, requested_transition):
+        if await trigger_transition(session, node, requested_transition):
             print("Transitioning successful")
             return 0
         print("Transitioning failed", file=sys.stderr)
@@ -146,21 +146,21 @@ def run_set(arguments: argparse.Namespace) -> int:
     return run_in_graph(arguments, job)
 
 
-def managed_nodes(session: Session, *, hidden: bool = False) -> list[str]:
+def find_managed_nodes(session: Session, *, hidden: bool = False) -> list[str]:
     """Return the sorted full names of the managed nodes.
 
     A managed node is a node with a ``get_state`` service.
     """
     services = dict(session.node.get_service_names_and_types())
-    names = dict.fromkeys(node_names(session, hidden=hidden))
+    names = dict.fromkeys(list_node_names(session, hidden=hidden))
     return [name for name in names if _GET_STATE in services.get(f"{name}/get_state", ())]
 
 
-async def state(session: Session, node: str, timeout: float | None = None) -> Any:
+async def request_state(session: Session, node: str, timeout: float | None = None) -> Any:
     """Return the current state of a managed node (lifecycle_msgs/msg/State).
 
     Raises:
-        NoAnswerError: the service does not exist, or does not respond within `timeout` seconds.
+        NoResponseError: the service does not exist, or does not respond within `timeout` seconds.
     """
     from linkwright.messages import get_service
 
@@ -168,7 +168,7 @@ async def state(session: Session, node: str, timeout: float | None = None) -> An
     return (await call(session, _GET_STATE, f"{node}/get_state", request, timeout=timeout)).current_state
 
 
-async def transitions(session: Session, node: str, *, all_states: bool = False) -> Sequence[Any]:
+async def request_transitions(session: Session, node: str, *, all_states: bool = False) -> Sequence[Any]:
     """Return a managed node's transitions, as lifecycle_msgs/msg/TransitionDescription.
 
     These are the transitions available in the current state or, if `all_states` is set, the transitions of all states.
@@ -182,7 +182,7 @@ async def transitions(session: Session, node: str, *, all_states: bool = False) 
     return descriptions
 
 
-async def change(session: Session, node: str, transition: Any) -> bool:
+async def trigger_transition(session: Session, node: str, transition: Any) -> bool:
     """Trigger a transition (lifecycle_msgs/msg/Transition), and return whether it succeeded."""
     from linkwright.messages import get_service
 
@@ -193,7 +193,7 @@ async def change(session: Session, node: str, transition: Any) -> bool:
     return bool((await call(session, service_type, f"{node}/change_state", request)).success)
 
 
-def transition_lines(descriptions: Sequence[Any]) -> list[str]:
+def format_transitions(descriptions: Sequence[Any]) -> list[str]:
     """Return the lines that ``lifecycle list`` prints for transitions."""
     lines = []
     for description in descriptions:

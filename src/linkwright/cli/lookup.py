@@ -17,14 +17,14 @@ NamesAndTypes = Sequence[tuple[str, Sequence[str]]]
 _POLL_INTERVAL_S = 0.1
 
 
-def visible(names_and_types: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
+def sort_visible_names(names_and_types: NamesAndTypes, *, hidden: bool) -> list[tuple[str, list[str]]]:
     """Return names and types, sorted by name, without hidden names unless `hidden` is set."""
     from linkwright.graph.names.rules import is_hidden
 
     return [(name, list(types)) for name, types in sorted(names_and_types) if hidden or not is_hidden(name)]
 
 
-def absolute(name: str) -> str:
+def make_absolute(name: str) -> str:
     """Return a graph name with a leading slash.
 
     Raises:
@@ -51,18 +51,18 @@ def unknown_name_error(
     same_base_names = [
         candidate for candidate in candidates if candidate.endswith("/" + name.strip("/").rpartition("/")[2])
     ]
-    hint = did_you_mean(absolute_or_given(name), candidates)
+    hint = did_you_mean(add_leading_slash(name), candidates)
     if hint is None and same_base_names:
         hint = phrase("did you mean {names}?", names=quoted(same_base_names[0]))
     return LinkwrightError(Diagnostic(code, message, hint=hint or fallback_hint))
 
 
-def absolute_or_given(name: str) -> str:
+def add_leading_slash(name: str) -> str:
     """Return a name with a leading slash, without checking whether the name is valid."""
     return name if name.startswith("/") else f"/{name}"
 
 
-async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
+async def find_topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
     """Return the types of a topic.
 
     Args:
@@ -73,7 +73,7 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
     Raises:
         LinkwrightError: CLI411, there is no such topic, and `wait` is not set.
     """
-    types = _types_of(session, name)
+    types = _list_types(session, name)
     if types:
         return types
     print(f"WARNING: topic [{name}] does not appear to be published yet", file=sys.stderr)
@@ -84,11 +84,11 @@ async def topic_types(session: Session, name: str, *, wait: bool) -> list[str]:
         raise unknown_name_error("CLI411", message, name, topic_names, hint)
     while not types:
         await asyncio.sleep(_POLL_INTERVAL_S)
-        types = _types_of(session, name)
+        types = _list_types(session, name)
     return types
 
 
-async def topic_type(
+async def find_message_class(
     session: Session, name: str, type_name: str | None = None, *, wait: bool = False, raw: bool = False
 ) -> Any:
     """Return the message class of a topic.
@@ -105,8 +105,8 @@ async def topic_type(
             the topic has several types.
     """
     if type_name is not None:
-        return _message_class(type_name, raw=raw)
-    types = await topic_types(session, name, wait=wait)
+        return _import_message_class(type_name, raw=raw)
+    types = await find_topic_types(session, name, wait=wait)
     if len(types) > 1:
         message = phrase(
             "Cannot echo topic '{name}', as it contains more than one type: [{types}]",
@@ -115,10 +115,10 @@ async def topic_type(
         )
         hint = phrase("pass the type after the topic; `linkwright doctor` shows the type that each node uses")
         raise LinkwrightError(Diagnostic("CLI412", message, hint=hint))
-    return _message_class(types[0], raw=raw)
+    return _import_message_class(types[0], raw=raw)
 
 
-def _message_class(name: str, *, raw: bool) -> Any:
+def _import_message_class(name: str, *, raw: bool) -> Any:
     from linkwright.messages import InterfaceNotFoundError, get_message
 
     try:
@@ -129,5 +129,5 @@ def _message_class(name: str, *, raw: bool) -> Any:
         raise
 
 
-def _types_of(session: Session, name: str) -> list[str]:
+def _list_types(session: Session, name: str) -> list[str]:
     return list(dict(session.node.get_topic_names_and_types()).get(name, ()))

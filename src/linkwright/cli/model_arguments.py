@@ -1,4 +1,4 @@
-"""The command-line arguments that select one or two descriptions, and their xacro arguments."""
+"""The command-line arguments for one or two descriptions and their xacro arguments."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def names_file(word: str) -> bool:
     return ":=" not in word and ("=" not in word or Path(word).exists())
 
 
-def requested_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
+def open_requested_pair(arguments: argparse.Namespace, stack: ExitStack) -> Pair | None:
     """Return the two descriptions to compare, or None if the command line does not specify two.
 
     Args:

@@ -78,7 +78,7 @@ def run_get(arguments: argparse.Namespace) -> int:
     folder: Path = arguments.to or models_folder()
     if is_installed(entry, folder):
         path = folder / entry.installed_name
-        if not _verification_problems(entry, path):
+        if not _verify_checksums(entry, path):
             print(path)
             return FINE
         print_message(localized(phrase("'{path}' is incomplete or modified, so it is downloaded again", path=path)))
@@ -99,7 +99,7 @@ def run_get(arguments: argparse.Namespace) -> int:
             entry,
             arguments.source,
             arguments.to,
-            lambda received_bytes, total: line.show(_progress_text(entry, received_bytes, total)),
+            lambda received_bytes, total: line.show(_format_progress(entry, received_bytes, total)),
         )
     finally:
         line.end()
@@ -107,7 +107,7 @@ def run_get(arguments: argparse.Namespace) -> int:
     return FINE
 
 
-def _progress_text(entry: ModelEntry, done_bytes: int, total_bytes: int | None) -> Phrase:
+def _format_progress(entry: ModelEntry, done_bytes: int, total_bytes: int | None) -> Phrase:
     size = total_bytes or entry.megabytes * _BYTES_PER_MB
     filled_width = min(_BAR_WIDTH, done_bytes * _BAR_WIDTH // max(size, 1))
     return phrase(
@@ -143,7 +143,7 @@ def run_check(arguments: argparse.Namespace) -> int:
     entries = [model_entry(name) for name in arguments.names]
     diagnostics: list[Diagnostic] = []
     for entry in entries or [entry for entry in model_table().values() if is_installed(entry)]:
-        problems = _verification_problems(entry, find_model(entry))
+        problems = _verify_checksums(entry, find_model(entry))
         diagnostics += problems
         if not problems:
             print(localized(phrase("{name}: verified", name=entry.name)))
@@ -152,7 +152,7 @@ def run_check(arguments: argparse.Namespace) -> int:
     return FINE
 
 
-def _verification_problems(entry: ModelEntry, path: Path) -> Sequence[Diagnostic]:
+def _verify_checksums(entry: ModelEntry, path: Path) -> Sequence[Diagnostic]:
     from linkwright.model_files import verify
 
     try:

@@ -1,4 +1,4 @@
-"""``linkwright multicast``: send and receive one datagram, to test multicast on the network."""
+"""``linkwright multicast``: test multicast on the network with one datagram."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
     return run_nested(arguments)
 
 
-def multicast_group(text: str) -> str:
+def parse_multicast_group(text: str) -> str:
     """Parse the IPv4 address of a multicast group.
 
     Raises:
@@ -48,7 +48,7 @@ def parse_port(text: str) -> int:
     return _parse_up_to(_MAX_PORT, text)
 
 
-def time_to_live(text: str) -> int:
+def parse_time_to_live(text: str) -> int:
     """Parse the time to live of IP packets.
 
     Raises:
@@ -67,14 +67,14 @@ def _parse_up_to(maximum: int, text: str) -> int:
 def add_ttl_argument(parser: argparse.ArgumentParser) -> None:
     """Declare the option ``--ttl``, the time to live of multicast packets."""
     parser.add_argument(
-        "--ttl", type=time_to_live, help="TTL of the datagrams (default: 1, which routers do not forward)"
+        "--ttl", type=parse_time_to_live, help="TTL of the datagrams (default: 1, which routers do not forward)"
     )
 
 
 def _configure_receive(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--group",
-        type=multicast_group,
+        type=parse_multicast_group,
         default=multicast.DEFAULT_GROUP,
         help="the multicast group (default: %(default)s)",
     )

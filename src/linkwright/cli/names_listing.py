@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from linkwright.cli.lookup import absolute, unknown_name_error, visible
+from linkwright.cli.lookup import make_absolute, sort_visible_names, unknown_name_error
 from linkwright.cli.session import run_in_graph
 
 if TYPE_CHECKING:
@@ -32,25 +32,25 @@ class Kind:
     missing_message: Callable[[str], Phrase]
     hint: Phrase
 
-    def types_of(self, session: Session, requested_name: str, *, hidden: bool = True) -> list[str]:
+    def find_types(self, session: Session, requested_name: str, *, hidden: bool = True) -> list[str]:
         """Return the types of a name from the command line.
 
         Raises:
             LinkwrightError: with `code`, the name does not exist.
             InvalidNameError: the name is not valid.
         """
-        name = absolute(requested_name)
-        types_by_name = dict(visible(self.find_names(session), hidden=hidden))
+        name = make_absolute(requested_name)
+        types_by_name = dict(sort_visible_names(self.find_names(session), hidden=hidden))
         if name not in types_by_name:
             raise unknown_name_error(self.code, self.missing_message(requested_name), name, types_by_name, self.hint)
         return types_by_name[name]
 
     def print_types(self, arguments: argparse.Namespace, requested_name: str, *, hidden: bool = True) -> int:
-        """Print the types of a name from the command line, one per line, and return the exit status."""
-        absolute(requested_name)  # reject an invalid name before joining the graph
+        """Print the types of a name, one per line, and return the exit status."""
+        make_absolute(requested_name)  # reject an invalid name before joining the graph
 
         async def job(session: Session) -> int:
-            print("\n".join(self.types_of(session, requested_name, hidden=hidden)))
+            print("\n".join(self.find_types(session, requested_name, hidden=hidden)))
             return 0
 
         return run_in_graph(arguments, job, read_only=True)
@@ -59,7 +59,7 @@ class Kind:
         """Print the names that have the type `type_name`, and return the exit status."""
 
         async def job(session: Session) -> int:
-            types_by_name = visible(self.find_names(session), hidden=hidden)
+            types_by_name = sort_visible_names(self.find_names(session), hidden=hidden)
             print_names([name for name, types in types_by_name if type_name in types], arguments)
             return 0
 

@@ -7,8 +7,8 @@ import sys
 from functools import partial
 from typing import TYPE_CHECKING
 
-from linkwright.cli.calls import node_names
-from linkwright.cli.lookup import NamesAndTypes, absolute_or_given, unknown_name_error, visible
+from linkwright.cli.calls import list_node_names
+from linkwright.cli.lookup import NamesAndTypes, add_leading_slash, sort_visible_names, unknown_name_error
 from linkwright.cli.names_listing import add_count_argument, print_names
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.session import add_session_arguments, run_in_graph
@@ -33,7 +33,7 @@ def run_list(arguments: argparse.Namespace) -> int:
     """Print the full names of the nodes."""
 
     async def job(session: Session) -> int:
-        names = node_names(session, hidden=arguments.all)
+        names = list_node_names(session, hidden=arguments.all)
         if len(set(names)) < len(names) and not arguments.count:
             print(
                 "WARNING: Be aware that there are nodes in the graph that share an exact name, which can have"
@@ -55,12 +55,12 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 def run_info(arguments: argparse.Namespace) -> int:
     """Print the topics, services and actions of a node, as ros2 does."""
-    full_name = absolute_or_given(arguments.node_name)
+    full_name = add_leading_slash(arguments.node_name)
     hidden = arguments.include_hidden
 
     async def job(session: Session) -> int:
-        await session.wait_until(lambda: full_name in node_names(session, hidden=hidden), _DISCOVERY_TIMEOUT_S)
-        names = node_names(session, hidden=hidden)
+        await session.wait_until(lambda: full_name in list_node_names(session, hidden=hidden), _DISCOVERY_TIMEOUT_S)
+        names = list_node_names(session, hidden=hidden)
         count = names.count(full_name)
         if not count:
             message = phrase("Unable to find node '{node_name}'", node_name=arguments.node_name)
@@ -94,7 +94,7 @@ def run_info(arguments: argparse.Namespace) -> int:
 
 def _print_section(title: str, names_and_types: NamesAndTypes, *, hidden: bool) -> None:
     print(f"  {title}:")
-    lines = [f"    {name}: {', '.join(types)}" for name, types in visible(names_and_types, hidden=hidden)]
+    lines = [f"    {name}: {', '.join(types)}" for name, types in sort_visible_names(names_and_types, hidden=hidden)]
     print("\n".join(lines))
 
 

@@ -22,10 +22,10 @@ def write_output(path: Path, content: str | bytes) -> None:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_whole_file(path, content.encode("utf-8", "backslashreplace") if isinstance(content, str) else content)
     except OSError as error:
-        raise cannot_write(path, error) from None
+        raise write_error(path, error) from None
 
 
-def cannot_write(path: Path, error: OSError) -> LinkwrightError:
+def write_error(path: Path, error: OSError) -> LinkwrightError:
     """Return the error for a result file that cannot be written (CLI201)."""
     message = phrase("cannot write '{path}': {reason}", path=path, reason=foreign(error.strerror or error))
     hint = phrase("choose a file in a writable folder")

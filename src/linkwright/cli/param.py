@@ -10,7 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.calls import NoAnswerError, find_node, node_names
+from linkwright.cli.calls import NoResponseError, find_node, list_node_names
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.output import write_output
 from linkwright.cli.remote_parameters import TYPE_NAMES, RemoteParameters, parse_parameter, print_result
@@ -92,21 +92,21 @@ def run_list(arguments: argparse.Namespace) -> int:
             node = await find_node(session, arguments.node_name, hidden=include_hidden, timeout=arguments.timeout)
             print(
                 "\n".join(
-                    await _list_lines(RemoteParameters(session, node, arguments.service_timeout), arguments, pattern)
+                    await _format_list(RemoteParameters(session, node, arguments.service_timeout), arguments, pattern)
                 )
             )
             return 0
         services = dict(session.node.get_service_names_and_types())
         nodes = [
             node
-            for node in dict.fromkeys(node_names(session, hidden=include_hidden))
+            for node in dict.fromkeys(list_node_names(session, hidden=include_hidden))
             if f"{node}/list_parameters" in services
         ]
         timeout = arguments.service_timeout or _RESPONSE_TIMEOUT_S
-        requests = [_list_lines(RemoteParameters(session, node, timeout), arguments, pattern) for node in nodes]
+        requests = [_format_list(RemoteParameters(session, node, timeout), arguments, pattern) for node in nodes]
         failed = False
         for node, lines in zip(nodes, await asyncio.gather(*requests, return_exceptions=True), strict=True):
-            if isinstance(lines, NoAnswerError):
+            if isinstance(lines, NoResponseError):
                 failed = True
                 print(f"Exception while calling service of node '{node}': {lines}", file=sys.stderr)
             elif isinstance(lines, BaseException):
@@ -118,7 +118,7 @@ def run_list(arguments: argparse.Namespace) -> int:
     return run_in_graph(arguments, job)
 
 
-async def _list_lines(
+async def _format_list(
     parameters: RemoteParameters, arguments: argparse.Namespace, pattern: re.Pattern[str]
 ) -> list[str]:
     names = [name for name in await parameters.names(arguments.param_prefixes) if pattern.search(name)]
@@ -166,13 +166,13 @@ def run_describe(arguments: argparse.Namespace) -> int:
         parameters = await RemoteParameters.of(session, arguments)
         await parameters.check_declared(arguments.parameter_names)
         for descriptor in await parameters.descriptors(arguments.parameter_names):
-            print("\n".join(_description_lines(descriptor)))
+            print("\n".join(_format_description(descriptor)))
         return 0
 
     return run_in_graph(arguments, job)
 
 
-def _description_lines(descriptor: Any) -> list[str]:
+def _format_description(descriptor: Any) -> list[str]:
     """Return the output lines of ``param describe`` for a ParameterDescriptor message."""
     lines = [f"Parameter name: {descriptor.name}", f"  Type: {TYPE_NAMES.get(descriptor.type, 'unknown')}"]
     if descriptor.description:
@@ -255,7 +255,7 @@ def configure_dump(parser: argparse.ArgumentParser) -> None:
 
 
 def run_dump(arguments: argparse.Namespace) -> int:
-    """Print the parameters of a node in the format of a parameter file, or write them to a file."""
+    """Print the parameters of a node as a parameter file, or write the file."""
 
     async def job(session: Session) -> int:
         from linkwright.graph.parameters.files import parameter_file_text, plain_value

@@ -43,7 +43,7 @@ class _Parser(argparse.ArgumentParser):
         unrecognized_prefix = translate_help("unrecognized arguments: %s").removesuffix("%s")
         if message.startswith(f"{unrecognized_prefix}-"):
             option = message.removeprefix(unrecognized_prefix).split()[0].partition("=")[0]
-            suggestion = did_you_mean(option, _long_options(self))
+            suggestion = did_you_mean(option, _find_long_options(self))
         super().error(f"{message}; {suggestion}" if suggestion else message)
 
     def _print_message(self, message: str, file: Any = None) -> None:
@@ -53,13 +53,13 @@ class _Parser(argparse.ArgumentParser):
             super()._print_message(message, file)
 
 
-def _long_options(parser: argparse.ArgumentParser) -> Iterator[str]:
+def _find_long_options(parser: argparse.ArgumentParser) -> Iterator[str]:
     """Yield the long options of a parser and its subparsers."""
     for action in parser._actions:
         yield from (name for name in action.option_strings if name.startswith("--"))
         if isinstance(action, argparse._SubParsersAction):
             for subparser in action.choices.values():
-                yield from _long_options(subparser)
+                yield from _find_long_options(subparser)
 
 
 def _make_formatter(prog: str) -> argparse.HelpFormatter:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _MIN_SIDE, _MAX_SIDE, _MAX_PIXELS = 16, 16384, 25_000_000
 _MAX_ANIMATED_PIXELS = 400_000_000
 _MIN_SECONDS, _MAX_SECONDS = 0.5, 60.0
-_USUAL_DURATION_S = 4
+_DEFAULT_DURATION_S = 4
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -38,7 +38,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--view",
-        type=_view,
+        type=_parse_view,
         default="iso",
         metavar="VIEW",
         help="iso, front, left or top, or AZIMUTH,ELEVATION of the camera in degrees: 0,0 is in front of the robot, "
@@ -46,14 +46,14 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--size",
-        type=_size,
+        type=_parse_size,
         default="800x600",
         metavar="WIDTHxHEIGHT",
         help="the size in pixels (default: %(default)s)",
     )
     parser.add_argument(
         "--joint",
-        type=_joint,
+        type=_parse_joint,
         action="append",
         default=[],
         metavar="NAME=VALUE",
@@ -65,9 +65,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--labels", choices=("links", "joints"), help="write the names of the links or joints")
     parser.add_argument(
         "--turntable",
-        type=_seconds,
+        type=_parse_seconds,
         nargs="?",
-        const=_USUAL_DURATION_S,
+        const=_DEFAULT_DURATION_S,
         metavar="SECONDS",
         help="write an animation of one turn, as APNG or WebP (default duration: %(const)s s)",
     )
@@ -80,7 +80,10 @@ def run(arguments: argparse.Namespace) -> int:
     if output.suffix.lower() not in endings:
         print(f"linkwright picture: '{output}' should end with {' or '.join(endings)}", file=sys.stderr)
         return 2
-    if arguments.turntable is not None and _frame_count(arguments) * math.prod(arguments.size) > _MAX_ANIMATED_PIXELS:
+    if (
+        arguments.turntable is not None
+        and _compute_frame_count(arguments) * math.prod(arguments.size) > _MAX_ANIMATED_PIXELS
+    ):
         limit = f"the images of an animation can have {_MAX_ANIMATED_PIXELS // 10**6} million pixels together"
         print(f"linkwright picture: {limit}; choose a smaller --size or fewer seconds", file=sys.stderr)
         return 2
@@ -95,14 +98,14 @@ def run(arguments: argparse.Namespace) -> int:
     if not len(scene.mesh.faces):
         message = phrase("'{file}' has nothing to draw: none of its visuals can be drawn", file=arguments.file)
         raise LinkwrightError(Diagnostic("PIC110", message, hint=phrase("add a <visual> to a link")))
-    style = _style(arguments, scene)
+    style = _create_style(arguments, scene)
     if arguments.turntable is None:
         from linkwright.images.png import png
         from linkwright.picture.rendering import render
 
         data = png(render(scene, arguments.view, arguments.size, style))
     else:
-        data = _animation(arguments, scene, style, output.suffix.lower())
+        data = _render_animation(arguments, scene, style, output.suffix.lower())
     write_output(output, data)
     print(f"Created file {output}")
     return 1 if scene.problems else 0
@@ -151,7 +154,7 @@ def _read_world(arguments: argparse.Namespace, path: Path, finder: PackageFinder
         raise LinkwrightError(Diagnostic("PIC112", message)) from None
 
 
-def _style(arguments: argparse.Namespace, scene: Scene) -> Style:
+def _create_style(arguments: argparse.Namespace, scene: Scene) -> Style:
     """Return the style of the image, and warn about labels that the font lacks."""
     from linkwright.picture.rendering import Style
     from linkwright.picture.stroke_font import is_drawable
@@ -164,13 +167,13 @@ def _style(arguments: argparse.Namespace, scene: Scene) -> Style:
     return Style(transparent=arguments.transparent, grid=arguments.grid, labels=arguments.labels)
 
 
-def _animation(arguments: argparse.Namespace, scene: Scene, style: Style, ending: str) -> bytes:
+def _render_animation(arguments: argparse.Namespace, scene: Scene, style: Style, ending: str) -> bytes:
     """Return the file of a turn around a scene, and show its progress."""
     from linkwright.cli.progress import ProgressLine
     from linkwright.picture.animation import animation
     from linkwright.picture.turntable import turntable
 
-    count = _frame_count(arguments)
+    count = _compute_frame_count(arguments)
     progress = ProgressLine()
 
     def report(finished_count: int) -> None:
@@ -183,7 +186,7 @@ def _animation(arguments: argparse.Namespace, scene: Scene, style: Style, ending
     return animation(images, arguments.turntable / count, ending)
 
 
-def _frame_count(arguments: argparse.Namespace) -> int:
+def _compute_frame_count(arguments: argparse.Namespace) -> int:
     """Return the number of images of an animation."""
     from linkwright.picture.turntable import FRAMES_PER_SECOND
 
@@ -191,7 +194,7 @@ def _frame_count(arguments: argparse.Namespace) -> int:
     return max(2, round(seconds * FRAMES_PER_SECOND))
 
 
-def _view(text: str) -> View:
+def _parse_view(text: str) -> View:
     from linkwright.picture.camera import VIEWS, View
 
     if text in VIEWS:
@@ -207,7 +210,7 @@ def _view(text: str) -> View:
     return view
 
 
-def _size(text: str) -> tuple[int, int]:
+def _parse_size(text: str) -> tuple[int, int]:
     width, _, height = text.lower().partition("x")
     if not (width.isascii() and width.isdigit() and height.isascii() and height.isdigit()):
         raise argparse.ArgumentTypeError(f"'{text}' is not WIDTHxHEIGHT in pixels, such as 800x600")
@@ -220,7 +223,7 @@ def _size(text: str) -> tuple[int, int]:
     return sides
 
 
-def _joint(text: str) -> tuple[str, float]:
+def _parse_joint(text: str) -> tuple[str, float]:
     name, _, value = text.rpartition("=")
     try:
         position = float(value)
@@ -231,7 +234,7 @@ def _joint(text: str) -> tuple[str, float]:
     return name.removesuffix(":"), position
 
 
-def _seconds(text: str) -> float:
+def _parse_seconds(text: str) -> float:
     try:
         seconds = float(text)
     except ValueError:

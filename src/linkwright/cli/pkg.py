@@ -108,7 +108,7 @@ def _create_package(arguments: argparse.Namespace) -> int:
 
     request = PackageRequest(
         name=arguments.name,
-        maintainer=_maintainer(arguments.maintainer_name, arguments.maintainer_email),
+        maintainer=_find_maintainer(arguments.maintainer_name, arguments.maintainer_email),
         year=datetime.now().astimezone().year,
         destination=Path(arguments.destination_directory),
         package_format=arguments.package_format,
@@ -124,7 +124,7 @@ def _create_package(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _maintainer(name: str | None, email: str | None) -> Maintainer:
+def _find_maintainer(name: str | None, email: str | None) -> Maintainer:
     """Return the maintainer of the new package.
 
     A missing name or address is taken from git's configuration, or else derived from the login name.
@@ -132,17 +132,17 @@ def _maintainer(name: str | None, email: str | None) -> Maintainer:
     from linkwright.packages.creation.request import Maintainer
     from linkwright.packages.naming import is_email
 
-    login = _login_name()
+    login = _find_login_name()
     if not name:
-        name = _git_setting("user.name") or login
+        name = _read_git_setting("user.name") or login
     if not email:
         # reject an address without a domain, which git may generate and colcon does not accept
-        configured = _git_setting("user.email")
-        email = configured if is_email(configured) else f"{_address_part(login)}@todo.todo"
+        configured = _read_git_setting("user.email")
+        email = configured if is_email(configured) else f"{_to_address_part(login)}@todo.todo"
     return Maintainer(name, email)
 
 
-def _git_setting(key: str) -> str:
+def _read_git_setting(key: str) -> str:
     """Return a value of git's configuration, or an empty string if the value or git is missing."""
     try:
         result = subprocess.run(  # noqa: S603 - fixed words, no shell
@@ -158,7 +158,7 @@ def _git_setting(key: str) -> str:
     return result.stdout.strip()
 
 
-def _login_name() -> str:
+def _find_login_name() -> str:
     import getpass
 
     try:
@@ -167,7 +167,7 @@ def _login_name() -> str:
         return "user"
 
 
-def _address_part(login: str) -> str:
+def _to_address_part(login: str) -> str:
     import re
 
     return re.sub(r"[^A-Za-z0-9_%+-]+", "-", login).strip("-") or "user"
@@ -219,13 +219,13 @@ def _print_prefix(arguments: argparse.Namespace) -> int:
 
 
 def _print_executables(arguments: argparse.Namespace) -> int:
-    from linkwright.launch import builtin_packages, executables_of
+    from linkwright.launch import builtin_packages, find_executables
     from linkwright.packages import PackageFinder
 
     finder = PackageFinder()
     packages = [arguments.package] if arguments.package else sorted({*finder.packages(), *builtin_packages()})
     for package in packages:
-        for name, path in sorted(executables_of(finder, package).items()):
+        for name, path in sorted(find_executables(finder, package).items()):
             print(path if arguments.full_path else f"{package} {name}")
     return 0
 

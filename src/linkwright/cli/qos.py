@@ -36,7 +36,7 @@ _LEASE_OPTION = "qos_liveliness_lease_duration_seconds"
 
 
 def add_publisher_qos_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the QoS options of a publishing command; see `profile`."""
+    """Declare the QoS options of a publishing command; see `create_profile`."""
     _add_arguments(
         parser,
         "default",
@@ -47,7 +47,7 @@ def add_publisher_qos_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def add_subscription_qos_arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the QoS options of a subscribing command; see `fitting_profile`."""
+    """Declare the QoS options of a subscribing command; see `create_fitting_profile`."""
     _add_arguments(
         parser,
         "sensor_data",
@@ -79,7 +79,7 @@ def _add_arguments(
     )
 
 
-def profile(arguments: argparse.Namespace) -> QoSProfile:
+def create_profile(arguments: argparse.Namespace) -> QoSProfile:
     """Return the QoS profile that the options set."""
     from linkwright.graph.qos import profile as qos
     from linkwright.graph.time.values import Duration
@@ -103,17 +103,17 @@ def profile(arguments: argparse.Namespace) -> QoSProfile:
     return qos_profile
 
 
-def fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> QoSProfile:
+def create_fitting_profile(node: Node, topic: str, arguments: argparse.Namespace) -> QoSProfile:
     """Return the QoS profile of a subscription that is compatible with the topic's publishers.
 
     If the options set a policy, the result is the profile of the options. If they set none, each policy is the
     strictest that all publishers offer. As in ros2cli, the subscription is reliable and transient local if all
-    publishers are, and then also receives a message that was published once. The default queue is longer than in
+    publishers are, so that it also receives a message that was published before. The default queue is longer than in
     ros2, so that bursts of messages are not dropped.
     """
     from linkwright.graph.qos.compatibility import fit
 
-    requested_profile = profile(arguments)
+    requested_profile = create_profile(arguments)
     if any(getattr(arguments, name) is not None for name in (*_POLICY_OPTIONS, _LEASE_OPTION)):
         return requested_profile
     requested_profile.depth = max(requested_profile.depth, _MIN_QUEUE_DEPTH)

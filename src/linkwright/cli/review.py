@@ -1,4 +1,4 @@
-"""``linkwright review``: report what a range of commits does to robots, worlds and launch files."""
+"""``linkwright review``: report the effects of commits on robots, worlds and launch files."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--fail-on",
         metavar="CONDITION,...",
-        type=_conditions,
+        type=_parse_conditions,
         default=(),
         help="exit with status 1 for: breaking (changes), findings (new ones), problems (files that cannot be "
         "compared), changes (any)",
@@ -102,18 +102,18 @@ def run(arguments: argparse.Namespace) -> int:
     range_text, packages = _split_words(arguments.words, arguments.repository)
     versions = open_versions(arguments.repository, range_text)
     try:
-        scenarios = [_relative(file, versions.new) for file in arguments.scenario]
+        scenarios = [_to_repository_path(file, versions.new) for file in arguments.scenario]
         workers = arguments.workers or usable_processors()
         has_page = arguments.html is not None
         images = {"with_images": has_page, "with_scenes": has_page and arguments.scenes}
         result = review(versions, packages, workers, scenarios, arguments.seeds, **images)
     finally:
         versions.close()
-    _write(result, arguments)
+    _write_report(result, arguments)
     return FINDINGS if any(_CONDITIONS[name](result) for name in arguments.fail_on) else FINE
 
 
-def _conditions(text: str) -> list[str]:
+def _parse_conditions(text: str) -> list[str]:
     names = [name.strip() for name in text.split(",") if name.strip()]
     for name in names:
         if name not in _CONDITIONS:
@@ -122,7 +122,10 @@ def _conditions(text: str) -> list[str]:
 
 
 def _split_words(words: Sequence[str], folder: Path) -> tuple[str, Sequence[str]]:
-    """Return the range and the packages. The first word is a package if it is a folder, or if it names no commit."""
+    """Return the range of commits and the packages.
+
+    The first word is a package if it is a folder or does not name a commit.
+    """
     if not words or ".." in words[0]:
         return (words[0], words[1:]) if words else ("", ())
     from linkwright.review import names_commit
@@ -131,7 +134,7 @@ def _split_words(words: Sequence[str], folder: Path) -> tuple[str, Sequence[str]
     return (words[0], words[1:]) if is_range else ("", words)
 
 
-def _relative(file: str, version: Version) -> str:
+def _to_repository_path(file: str, version: Version) -> str:
     """Return the path of a scenario relative to the root of the repository.
 
     Raises:
@@ -147,7 +150,7 @@ def _relative(file: str, version: Version) -> str:
     return path
 
 
-def _write(review: Review, arguments: argparse.Namespace) -> None:
+def _write_report(review: Review, arguments: argparse.Namespace) -> None:
     """Write the files that the arguments name, and print the report.
 
     Raises:

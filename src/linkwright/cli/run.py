@@ -6,7 +6,7 @@ import argparse
 import shlex
 
 from linkwright.cli.process_replacement import replace_process
-from linkwright.cli.view import add_viewer_options, terminal_folder
+from linkwright.cli.view import add_viewer_options, find_terminal_folder
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -44,13 +44,13 @@ def run(arguments: argparse.Namespace) -> int:
             not arguments.no_open,
             foxglove=arguments.foxglove,
             history=arguments.history,
-            terminal=terminal_folder(arguments),
+            terminal=find_terminal_folder(arguments),
         )
         return run_viewer(arguments.package, arguments.executable, program_arguments, options)
     standins.activate()
     program = find_program(PackageFinder(), arguments.package, arguments.executable)
     prefix = shlex.split(arguments.prefix) if arguments.prefix else []
-    if program.is_ours and not prefix:
+    if program.is_linkwright and not prefix:
         from linkwright.nodes.process import main
 
         return main(arguments.package, arguments.executable, program_arguments)

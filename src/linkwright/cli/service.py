@@ -8,7 +8,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from linkwright.cli.echo_format import EchoFormat, add_format_arguments
-from linkwright.cli.lookup import absolute, visible
+from linkwright.cli.lookup import make_absolute, sort_visible_names
 from linkwright.cli.names_listing import (
     Kind,
     add_count_argument,
@@ -18,16 +18,16 @@ from linkwright.cli.names_listing import (
 )
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
 from linkwright.cli.numbers import positive_float
-from linkwright.cli.qos import add_subscription_qos_arguments, fitting_profile
+from linkwright.cli.qos import add_subscription_qos_arguments, create_fitting_profile
 from linkwright.cli.session import add_session_arguments, run_in_graph
-from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
+from linkwright.cli.values import add_values_arguments, fill_message, parse_values, read_values
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
 
-_QUIET_WAIT = 0.2
+_QUIET_WAIT_S = 0.2
 """Seconds to wait for a service before the command prints that it is waiting."""
 
 
@@ -58,7 +58,9 @@ def run_list(arguments: argparse.Namespace) -> int:
     """Print the names of services, as ros2 does."""
 
     async def job(session: Session) -> int:
-        services = visible(session.node.get_service_names_and_types(), hidden=arguments.include_hidden_services)
+        services = sort_visible_names(
+            session.node.get_service_names_and_types(), hidden=arguments.include_hidden_services
+        )
         print_names_and_types(services, arguments)
         return 0
 
@@ -85,10 +87,10 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 def run_info(arguments: argparse.Namespace) -> int:
     """Print information about a service, as ros2 does."""
-    name = absolute(arguments.service_name)
+    name = make_absolute(arguments.service_name)
 
     async def job(session: Session) -> int:
-        types = _SERVICES.types_of(session, arguments.service_name)
+        types = _SERVICES.find_types(session, arguments.service_name)
         print(f"Type: {types[0] if len(types) == 1 else types}")
         print(f"Clients count: {session.node.count_clients(name)}")
         print(f"Services count: {session.node.count_services(name)}")
@@ -127,15 +129,15 @@ def run_call(arguments: argparse.Namespace) -> int:
     """Call a service, and print the request and the response as ros2 does."""
     from linkwright.messages import get_service
 
-    name = absolute(arguments.service_name)
+    name = make_absolute(arguments.service_name)
     service_class = get_service(arguments.service_type)
     text = read_values(arguments)
     request = service_class.Request()
-    fill(request, parse_values(text)[0], text)
+    fill_message(request, parse_values(text)[0], text)
 
     async def job(session: Session) -> int:
         client = session.node.create_client(service_class, name)
-        if not await session.wait_until(client.service_is_ready, _QUIET_WAIT):
+        if not await session.wait_until(client.service_is_ready, _QUIET_WAIT_S):
             _check_type(session, name, service_class.TYPE_NAME)
             print("waiting for service to become available...")
             if not await session.wait_until(client.service_is_ready, arguments.timeout):
@@ -208,14 +210,14 @@ def configure_echo(parser: argparse.ArgumentParser) -> None:
 
 def run_echo(arguments: argparse.Namespace) -> int:
     """Print service events until the user interrupts the command, as ros2 does."""
-    name = absolute(arguments.service_name)
+    name = make_absolute(arguments.service_name)
     echo_format = EchoFormat.of(arguments)
 
     async def job(session: Session) -> int:
         from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX
         from linkwright.messages import get_service
 
-        service_class = get_service(arguments.service_type or _SERVICES.types_of(session, arguments.service_name)[0])
+        service_class = get_service(arguments.service_type or _SERVICES.find_types(session, arguments.service_name)[0])
         topic = name + EVENT_TOPIC_SUFFIX
         if not session.node.get_publishers_info_by_topic(topic):
             print(
@@ -224,22 +226,22 @@ def run_echo(arguments: argparse.Namespace) -> int:
             )
 
         def show(event: Any) -> None:
-            sys.stdout.write(_event_text(event, echo_format))
+            sys.stdout.write(_format_event(event, echo_format))
 
-        profile = fitting_profile(session.node, topic, arguments)
-        session.node.create_subscription(service_class.Event, topic, session.receiver(show), profile)
+        profile = create_fitting_profile(session.node, topic, arguments)
+        session.node.create_subscription(service_class.Event, topic, session.guard_receiver(show), profile)
         return await session.wait_until_finished() or 0
 
     return run_in_graph(arguments, job)
 
 
-def _event_text(event: Any, form: EchoFormat) -> str:
+def _format_event(event: Any, echo_format: EchoFormat) -> str:
     """Format a service event as YAML with the name of the event's type, as ros2 does."""
     from linkwright.graph.endpoints.service import EventType
 
     event_type = event.info.event_type
     event_name = EventType(event_type).name if event_type in iter(EventType) else str(event_type)
-    return form.text(event).replace(f"event_type: {event_type}\n", f"event_type: {event_name}\n", 1)
+    return echo_format.text(event).replace(f"event_type: {event_type}\n", f"event_type: {event_name}\n", 1)
 
 
 VERBS = {

@@ -105,7 +105,7 @@ class Session:
 
         return call
 
-    def receiver(self, callback: Callable[..., object]) -> Callable[..., None]:
+    def guard_receiver(self, callback: Callable[..., object]) -> Callable[..., None]:
         """Wrap a subscription's callback like `guard`, and preserve its number of parameters.
 
         The graph determines from this number whether the callback receives only the message or also the message's
@@ -121,7 +121,7 @@ class Session:
 
         return pass_message if len(signature(callback).parameters) == 1 else pass_message_and_info
 
-    def every(self, period: float, callback: Callable[[], object]) -> None:
+    def call_every(self, period: float, callback: Callable[[], object]) -> None:
         """Call a function every `period` seconds until the command ends."""
         loop = asyncio.get_running_loop()
         guarded = self.guard(callback)
@@ -294,12 +294,12 @@ class ExitOnSigterm:
     def __enter__(self) -> None:
         self._previous_handler: Any = None
         if threading.current_thread() is threading.main_thread():
-            self._previous_handler = signal.signal(signal.SIGTERM, self._end)
+            self._previous_handler = signal.signal(signal.SIGTERM, self._exit_process)
 
     def __exit__(self, *_: object) -> None:
         if self._previous_handler is not None:
             signal.signal(signal.SIGTERM, self._previous_handler)
 
     @staticmethod
-    def _end(signal_number: int, _frame: FrameType | None) -> None:
+    def _exit_process(signal_number: int, _frame: FrameType | None) -> None:
         raise SystemExit(128 + signal_number)

@@ -19,13 +19,13 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run a shell, or a command in a shell, and return its exit status."""
-    from linkwright.cli.completion.scripts import shell_script
+    from linkwright.cli.completion.scripts import startup_script
     from linkwright.shell import run_shell
     from linkwright.shell.instead import HINTS
-    from linkwright.shell.session import MARK
+    from linkwright.shell.session import MARK_VARIABLE
 
     command = arguments.command
     return run_shell(
         command[1:] if command[:1] == ["--"] else command,
-        additions=lambda kind: shell_script(kind, sys.executable, MARK, list(HINTS)),
+        additions=lambda kind: startup_script(kind, sys.executable, MARK_VARIABLE, list(HINTS)),
     )

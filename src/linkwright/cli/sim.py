@@ -13,11 +13,11 @@ from linkwright.cli.simulation_options import (
     add_pose_options,
     add_simulation_options,
     load_model,
-    positive,
-    recording,
+    open_recording,
+    parse_positive_seconds,
     refuse_terminal_without_page,
 )
-from linkwright.cli.view import add_viewer_options, terminal_folder
+from linkwright.cli.view import add_viewer_options, find_terminal_folder
 from linkwright.process.assignments import parse_assignments
 
 if TYPE_CHECKING:
@@ -35,7 +35,9 @@ def configure(parser: argparse.ArgumentParser) -> None:
     add_values(parser, values_help="values for the robot's <xacro:arg>")
     add_pose_options(parser)
     add_simulation_options(parser)
-    parser.add_argument("--step", metavar="S", type=positive, default=0.0, help="the time step (default: the world's)")
+    parser.add_argument(
+        "--step", metavar="S", type=parse_positive_seconds, default=0.0, help="the time step (default: the world's)"
+    )
     parser.add_argument("--seed", metavar="N", type=int, default=0, help="the seed of noise (default: 0)")
     parser.add_argument("--pause", action="store_true", help="start paused")
     parser.add_argument("--gazebo-mistakes", action="store_true", help="let plugins reproduce the known bugs of Gazebo")
@@ -88,9 +90,9 @@ def run(arguments: argparse.Namespace, viewer_started: Callable[[Viewer], object
         arguments.port,
         not arguments.no_open,
         history=arguments.history,
-        terminal=terminal_folder(arguments),
+        terminal=find_terminal_folder(arguments),
         needs_terminal=arguments.needs_terminal,
         viewer_started=viewer_started,
     )
-    with recording(arguments) as writer:
+    with open_recording(arguments) as writer:
         return run_simulated(world, finder, options, foxglove=arguments.foxglove, writer=writer)

@@ -25,7 +25,11 @@ def add_simulation_options(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group(title="simulation")
     group.add_argument("--headless", action="store_true", help="run without a page in the browser")
     group.add_argument(
-        "--seconds", metavar="S", type=positive, default=0.0, help="stop after this many simulated seconds"
+        "--seconds",
+        metavar="S",
+        type=parse_positive_seconds,
+        default=0.0,
+        help="stop after this many simulated seconds",
     )
     group.add_argument(
         "--rate",
@@ -52,7 +56,7 @@ def refuse_terminal_without_page(arguments: argparse.Namespace) -> None:
         raise LinkwrightError(Diagnostic("CLI334", message, hint=phrase("leave out one of the two options")))
 
 
-def positive(text: str) -> float:
+def parse_positive_seconds(text: str) -> float:
     """Parse a positive number of seconds, below 1e9.
 
     Raises:
@@ -88,7 +92,7 @@ def add_pose_options(parser: argparse.ArgumentParser) -> None:
     group.add_argument("-Y", metavar="RAD", type=float, default=0.0, help="the initial yaw of the robot (rad)")
 
 
-def recording(arguments: argparse.Namespace) -> AbstractContextManager[BagWriter | None]:
+def open_recording(arguments: argparse.Namespace) -> AbstractContextManager[BagWriter | None]:
     """Return a context that yields the writer of the requested recording, or None.
 
     Raises:

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.calls import NoAnswerError, call
+from linkwright.cli.calls import NoResponseError, call
 from linkwright.cli.model_arguments import add_values
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.simulation_options import add_pose_options, load_model
@@ -60,7 +60,7 @@ def run(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         try:
             response = await call(session, SPAWN_SERVICE, "/spawn_entity", spawn_request(entity, model.text))
-        except NoAnswerError as error:
+        except NoResponseError as error:
             message = phrase("there is no running simulation to add '{name}' to", name=entity.name)
             hint = phrase("start a simulation with the same ROS_DOMAIN_ID, for example with `linkwright sim empty`")
             raise LinkwrightError(Diagnostic("CLI332", message, hint=hint)) from error

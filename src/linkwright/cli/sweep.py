@@ -129,7 +129,7 @@ def _rerun(scenario: Scenario, row: int) -> int:
         print(f"{name}: {value}", flush=True)
     try:
         results = run_scenario(scenario, scenario_run).results
-    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise whatever it likes
+    except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise any exception
         traceback.print_exception(error)
         return FINDINGS
     for name, result in results.items():
@@ -144,10 +144,12 @@ class _Progress:
         self.run_count = 0
         self._line = ProgressLine()
 
-    def show(self, done_count: int, count: int, failed: int) -> None:
+    def show(self, done_count: int, count: int, failed_count: int) -> None:
         """Count a run, and show the numbers of finished and of failed runs."""
         self.run_count += 1
-        self._line.show(phrase("{done} of {count} runs, {failed} failed", done=done_count, count=count, failed=failed))
+        self._line.show(
+            phrase("{done} of {count} runs, {failed} failed", done=done_count, count=count, failed=failed_count)
+        )
 
     def end(self) -> None:
         """End the progress line."""

@@ -41,4 +41,4 @@ def run(arguments: argparse.Namespace) -> int:
         if getattr(arguments, name) is not None:
             options += [f"--{name.replace('_', '-')}", getattr(arguments, name)]
     command = process.python_command(["-c", _LAUNCH_TEST_CODE, arguments.file, *arguments.words, *options])
-    return replace_process(command, process.environment(workspace_environment(PackageFinder(), os.environ)))
+    return replace_process(command, process.create_environment(workspace_environment(PackageFinder(), os.environ)))

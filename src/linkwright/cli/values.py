@@ -31,7 +31,7 @@ _ASSIGNMENT_ERRORS = (AssertionError, TypeError, ValueError, AttributeError, Ove
 They are the same as in rosidl's generated classes.
 """
 
-_AUTOMATIC = ("auto", "now")
+_AUTOMATIC_VALUES = ("auto", "now")
 
 
 def add_values_arguments(parser: argparse.ArgumentParser, *, values_help: str, metavar: str = "VALUES") -> Any:
@@ -111,11 +111,11 @@ def parse_values(text: str) -> list[dict[str, Any]]:
     documents = [document for document in documents if document is not None] or [{}]
     for document in documents:
         if not isinstance(document, dict):
-            raise LinkwrightError(_not_a_mapping(document, source))
+            raise LinkwrightError(_not_mapping_error(document, source))
     return documents
 
 
-def _not_a_mapping(document: object, source: SourceText) -> Diagnostic:
+def _not_mapping_error(document: object, source: SourceText) -> Diagnostic:
     hint = phrase("write 'field: value', or '{field: value, other: value}'")
     if isinstance(document, str) and ":" in document:
         name, _, value = document.partition(":")
@@ -144,7 +144,7 @@ def check_values(message: Message, values: Mapping[str, Any], text: str = "") ->
         raise LinkwrightError(*diagnostics)
 
 
-def fill(message: Message, values: Mapping[str, Any], text: str = "") -> list[Callable[[Any], None]]:
+def fill_message(message: Message, values: Mapping[str, Any], text: str = "") -> list[Callable[[Any], None]]:
     """Set the fields of a message to values.
 
     As in ``ros2 topic pub``, the values ``header: auto`` (for a std_msgs/Header) and ``stamp: now`` (for a
@@ -173,9 +173,9 @@ def _split(message: Any, values: dict[str, Any]) -> tuple[dict[str, Any], list[C
         field = getattr(message, name)
         type_name = getattr(field, "TYPE_NAME", "")
         if value == "auto" and type_name == "std_msgs/msg/Header":
-            setters.append(_setter(field, "stamp"))
+            setters.append(_create_setter(field, "stamp"))
         elif value == "now" and type_name == "builtin_interfaces/msg/Time":
-            setters.append(_setter(message, name))
+            setters.append(_create_setter(message, name))
         elif isinstance(value, dict) and type_name:
             plain_values[name], field_setters = _split(field, value)
             setters += field_setters
@@ -184,7 +184,7 @@ def _split(message: Any, values: dict[str, Any]) -> tuple[dict[str, Any], list[C
     return plain_values, setters
 
 
-def _setter(owner: Any, name: str) -> Callable[[Any], None]:
+def _create_setter(owner: Any, name: str) -> Callable[[Any], None]:
     return lambda stamp: setattr(owner, name, stamp)
 
 
@@ -246,7 +246,7 @@ def _find_problems(
         if hasattr(field, "get_fields_and_field_types") and isinstance(value, dict):
             yield from _find_problems(field, value, field_path, locations)
             continue
-        if hasattr(field, "get_fields_and_field_types") and value in _AUTOMATIC:
+        if hasattr(field, "get_fields_and_field_types") and value in _AUTOMATIC_VALUES:
             continue
         try:
             set_fields(type(message)(), {name: value})

@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linkwright.cli.model_arguments import add_second_model, names_file, requested_pair
+from linkwright.cli.model_arguments import add_second_model, names_file, open_requested_pair
 from linkwright.hosting.history_size import DEFAULT_HISTORY
 from linkwright.process.assignments import parse_assignments
 
@@ -77,12 +77,12 @@ def add_viewer_options(parser: argparse.ArgumentParser, *, offers_terminal: bool
         )
 
 
-def terminal_folder(arguments: argparse.Namespace) -> Path | None:
+def find_terminal_folder(arguments: argparse.Namespace) -> Path | None:
     """Return the folder for terminals in the page, or None if the page has none."""
     return Path.cwd() if arguments.terminal else None
 
 
-_UNITS = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "GB": 10**9}
+_BYTES_BY_UNIT = {"": 1, "B": 1, "KB": 10**3, "MB": 10**6, "GB": 10**9}
 
 
 def parse_size(text: str) -> int:
@@ -94,7 +94,7 @@ def parse_size(text: str) -> int:
     match = re.fullmatch(r"([0-9]{1,9}(?:\.[0-9]{1,3})?) ?([KMG]?B)?", text, re.ASCII | re.IGNORECASE)
     if match is None:
         raise argparse.ArgumentTypeError(f"'{text}' is not a size; give one such as 256MB, or 0")
-    return round(float(match[1]) * _UNITS[(match[2] or "").upper()])
+    return round(float(match[1]) * _BYTES_BY_UNIT[(match[2] or "").upper()])
 
 
 def parse_port(text: str) -> int:
@@ -113,7 +113,7 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.bag import is_recording
     from linkwright.hosting.plans import HostOptions
 
-    rviz = None if arguments.display_config is None else _readable_config(Path(arguments.display_config))
+    rviz = None if arguments.display_config is None else _check_config(Path(arguments.display_config))
     options = HostOptions(
         arguments.host,
         arguments.port,
@@ -122,7 +122,7 @@ def run(arguments: argparse.Namespace) -> int:
         history=arguments.history,
         rviz=rviz,
         follows_editor=arguments.editor,
-        terminal=terminal_folder(arguments),
+        terminal=find_terminal_folder(arguments),
     )
     if is_recording(Path(arguments.file)):
         return _view_recordings(arguments, options)
@@ -157,7 +157,7 @@ def _view_recordings(arguments: argparse.Namespace, options: HostOptions) -> int
     return run_bag_view(files, options, foxglove=arguments.foxglove)
 
 
-def _readable_config(rviz: Path) -> Path:
+def _check_config(rviz: Path) -> Path:
     """Return the absolute path of a .rviz file after checking that it can be read.
 
     Raises:
@@ -178,7 +178,7 @@ def _view_comparison(arguments: argparse.Namespace, options: HostOptions) -> int
     from linkwright.hosting.compared import run_compared_view
 
     with ExitStack() as stack:
-        pair = requested_pair(arguments, stack)
+        pair = open_requested_pair(arguments, stack)
         if pair is None:
             return _report_misuse("pass one file, two to compare, or one and --against COMMIT")
         return run_compared_view(pair, options, foxglove=arguments.foxglove)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.cli.exit_status import FINE, print_message
 from linkwright.cli.nested import SubVerb, configure_nested, run_nested
-from linkwright.cli.output import cannot_write
+from linkwright.cli.output import write_error
 from linkwright.diagnostics import (
     Diagnostic,
     LinkwrightError,
@@ -123,12 +123,12 @@ class _Trial:
                 }
                 print(localized(phrase(
                     "{file}: {result}, {start} s to {end} s, recognized {latency} s later",
-                    file=file, result=self._result_text(result), latency=f"{max(0.0, current_time - result.end):.2f}",
+                    file=file, result=self._format_result(result), latency=f"{max(0.0, current_time - result.end):.2f}",
                     **times,
                 )))  # fmt: skip
         return sum(result.final for result in results)
 
-    def _result_text(self, result: Heard) -> Phrase:
+    def _format_result(self, result: Heard) -> Phrase:
         if not result.text:
             return phrase("none of the phrases")
         values = {"text": result.text, "confidence": f"{result.confidence:.2f}"}
@@ -155,7 +155,7 @@ def run_enroll(arguments: argparse.Namespace) -> int:
     from linkwright.speech.enrolled.words import RECOMMENDED_TAKES
     from linkwright.speech.sound.wav import read_wav
 
-    path = _words_path(arguments)
+    path = _find_words_path(arguments)
     words = _read_words(path)
     diagnostics: list[Diagnostic] = []
     for file in arguments.files:
@@ -182,7 +182,7 @@ def configure_words(parser: argparse.ArgumentParser) -> None:
 
 def run_words(arguments: argparse.Namespace) -> int:
     """Print the enrolled words."""
-    path = _words_path(arguments)
+    path = _find_words_path(arguments)
     words = _read_words(path)
     for name in words.names:
         recordings = counted("{count} recording", "{count} recordings", len(words.takes(name)))
@@ -200,7 +200,7 @@ def configure_forget(parser: argparse.ArgumentParser) -> None:
 
 def run_forget(arguments: argparse.Namespace) -> int:
     """Remove an enrolled word."""
-    path = _words_path(arguments)
+    path = _find_words_path(arguments)
     words = _read_words(path)
     if arguments.word not in words.names:
         message = phrase("the word '{word}' is not enrolled", word=arguments.word)
@@ -221,18 +221,22 @@ def run_engines(_: argparse.Namespace) -> int:
 
     for name in engine_names():
         for language, text in _TEST_PHRASES.items():
-            print(f"{name} {language}: {localized(_engine_status(name, language, text))}")
+            print(f"{name} {language}: {localized(_format_engine_status(name, language, text))}")
     return FINE
 
 
-def _engine_status(name: str, language: str, text: str) -> Phrase:
+def _format_engine_status(name: str, language: str, text: str) -> Phrase:
     from linkwright.speech.engine import EngineOptions, make_engine
 
     try:
         make_engine(name, EngineOptions((text,), language)).close()
     except LinkwrightError as error:
-        (first, *_) = error.diagnostics
-        return phrase("{problem}; {hint}", problem=first.message, hint=first.hint) if first.hint else first.message
+        (first_line, *_) = error.diagnostics
+        return (
+            phrase("{problem}; {hint}", problem=first_line.message, hint=first_line.hint)
+            if first_line.hint
+            else first_line.message
+        )
     return phrase("ready")
 
 
@@ -242,7 +246,7 @@ def _add_file_argument(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _words_path(arguments: argparse.Namespace) -> Path:
+def _find_words_path(arguments: argparse.Namespace) -> Path:
     from linkwright.speech.enrolled.words import words_path
 
     path: Path | None = arguments.file
@@ -259,7 +263,7 @@ def _write_words(words: Words, path: Path) -> None:
     try:
         words.write(path)
     except OSError as error:
-        raise cannot_write(path, error) from None
+        raise write_error(path, error) from None
 
 
 VERBS = {

@@ -87,7 +87,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(**_DEFAULTS)
 
 
-def without_options(words: list[str]) -> SimpleNamespace | None:
+def parse_without_options(words: list[str]) -> SimpleNamespace | None:
     """Return the parsed arguments of a command line without options.
 
     The result is None if the command line names no file.
@@ -116,7 +116,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     if arguments.inorder and verbosity > _QUIET:
         print("linkwright xacro: files are always processed in reading order; -i can be left out", file=sys.stderr)
     tokens.remove(files[0])
-    values, warnings = _values(tokens)
+    values, warnings = _parse_values(tokens)
     if verbosity > _QUIET:
         print_diagnostics(warnings, sys.stderr)
     file, text = files[0], None
@@ -124,9 +124,9 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
         file, text = "<stdin>", sys.stdin.read()
     inputs = Inputs(file, values, None, text, Limits(), arguments.root_dir or "")
     if arguments.args:
-        result = _arguments_output(inputs, verbosity, arguments.format)
+        result = _format_arguments(inputs, verbosity, arguments.format)
     elif arguments.explain is not None:
-        result = _provenance_output(inputs, arguments.explain, arguments.format)
+        result = _format_provenance(inputs, arguments.explain, arguments.format)
     else:
         result = _expand_text(inputs, verbosity, deps=arguments.deps)
     if arguments.output:
@@ -138,7 +138,7 @@ def run(arguments: argparse.Namespace | SimpleNamespace) -> int:
     return 0
 
 
-def _values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
+def _parse_values(words: list[str]) -> tuple[dict[str, str], list[Diagnostic]]:
     """Return the xacro arguments by name, and warnings about ignored arguments.
 
     Empty values and ROS parameters (``_name:=``) are ignored.
@@ -174,31 +174,31 @@ def _expand_text(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
     return " ".join(map(str, expansion.dependencies[1:])) if deps else str(expansion)
 
 
-def _arguments_output(inputs: Inputs, verbosity: int, form: str) -> str:
+def _format_arguments(inputs: Inputs, verbosity: int, format_name: str) -> str:
     from linkwright.xacro.tracing.arguments import arguments_data, examine_arguments
     from linkwright.xacro.tracing.arguments_text import arguments_text, incompleteness_remarks
 
     examination = examine_arguments(inputs)
     if verbosity > _QUIET:
         print_diagnostics([*incompleteness_remarks(examination), *examination.unused_warnings], sys.stderr)
-    if form == "json":
-        return _json_text({"arguments": arguments_data(examination.arguments)})
+    if format_name == "json":
+        return _format_json({"arguments": arguments_data(examination.arguments)})
     return arguments_text(examination.arguments)
 
 
-def _provenance_output(inputs: Inputs, name: str, form: str) -> str:
+def _format_provenance(inputs: Inputs, name: str, format_name: str) -> str:
     from linkwright.xacro.inspection import provenance_of_named
     from linkwright.xacro.limits import recursion_limit_for
     from linkwright.xacro.tracing.provenance_text import provenance_data, provenance_text
 
     provenances = provenance_of_named(inputs, name)
-    if form == "json":
+    if format_name == "json":
         with recursion_limit_for(inputs.limits):  # elements can be nested more deeply than Python's default limit
-            return _json_text({"elements": [provenance_data(provenance) for provenance in provenances]})
+            return _format_json({"elements": [provenance_data(provenance) for provenance in provenances]})
     return "\n".join(map(provenance_text, provenances))
 
 
-def _json_text(data: object) -> str:
+def _format_json(data: object) -> str:
     import json
 
     return json.dumps(data, indent=2, ensure_ascii=False) + "\n"

@@ -26,7 +26,7 @@ class CommitFiles:
 
     Args:
         repository: the repository.
-        commit: the hash of the commit.
+        require_commit: the hash of the commit.
         name: the commit in git's notation, for users.
         must_be_complete: whether it is an error if git cannot write some of the files.
 
@@ -49,7 +49,7 @@ class CommitFiles:
             self.missing_files = repository.write_files(
                 commit, self.root, self.root.parent / "index", must_be_complete=must_be_complete
             )
-            self.removed_links = tuple(self._remove_outward_links(repository.symbolic_links(commit)))
+            self.removed_links = tuple(self._remove_outward_links(repository.list_symbolic_links(commit)))
         except BaseException:
             self.close()
             raise
@@ -143,7 +143,7 @@ def file_in_commit(path: Path, name: str) -> tuple[CommitFiles, Path]:
         raise LinkwrightError(Diagnostic("CLI344", message, hint=hint))
     hint = phrase("compare it with another file: `linkwright diff OLD NEW`")
     repository = GitRepository(real_path.parent, display_path(real_path), hint)
-    commit = repository.commit(name)
+    commit = repository.require_commit(name)
     relative_path = real_path.relative_to(repository.root)
     if not repository.contains(commit, relative_path.as_posix()):
         relative_path = _path_before_rename(repository, commit, relative_path, name)

@@ -7,9 +7,9 @@ from collections.abc import Iterable
 from linkwright.diagnostics.diagnostic import Diagnostic, Note
 from linkwright.diagnostics.phrase import as_phrase, counted
 
-_MAX_SEPARATE = 3
+_MAX_UNGROUPED = 3
 """The maximum number of similar findings that are shown one by one."""
-_MAX_PLACES = 2
+_MAX_LISTED_PLACES = 2
 """The number of findings of a group that are shown besides the first."""
 
 
@@ -27,14 +27,14 @@ def group_similar(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
     return [
         diagnostic
         for group in groups.values()
-        for diagnostic in (group if len(group) <= _MAX_SEPARATE else [_summarize(group)])
+        for diagnostic in (group if len(group) <= _MAX_UNGROUPED else [_summarize(group)])
     ]
 
 
 def _summarize(group: list[Diagnostic]) -> Diagnostic:
     first, *others = group
-    notes = [Note(other.message, other.span) for other in others[:_MAX_PLACES]]
-    hidden_count = len(others) - _MAX_PLACES
+    notes = [Note(other.message, other.span) for other in others[:_MAX_LISTED_PLACES]]
+    hidden_count = len(others) - _MAX_LISTED_PLACES
     notes.append(
         Note(
             counted(

@@ -90,7 +90,7 @@ class SourceText:
 
         The offset is clamped to the text.
         """
-        starts = self._line_starts()
+        starts = self._find_line_starts()
         offset = max(0, min(offset, len(self.text)))
         line = bisect_right(starts, offset)
         return line, offset - starts[line - 1] + 1
@@ -100,7 +100,7 @@ class SourceText:
 
         The result is clamped to the text.
         """
-        starts = self._line_starts()
+        starts = self._find_line_starts()
         start = starts[max(0, min(line - 1, len(starts) - 1))]
         return min(start + column - 1, len(self.text))
 
@@ -115,13 +115,13 @@ class SourceText:
 
         The result is an empty string if there is no such line.
         """
-        starts = self._line_starts()
+        starts = self._find_line_starts()
         if not 1 <= number <= len(starts):
             return ""
         end = starts[number] if number < len(starts) else len(self.text)
         return self.text[starts[number - 1] : end].rstrip("\r\n")
 
-    def _line_starts(self) -> list[int]:
+    def _find_line_starts(self) -> list[int]:
         if self._starts is None:
             starts = [0]
             find = self.text.find

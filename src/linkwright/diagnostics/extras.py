@@ -43,8 +43,8 @@ _EXTRA_BY_MODULE = {
 }
 
 
-_VERSION = sys.version_info[:2]
-_VERSION_LIMIT = r"python_version < '(\d+)\.(\d+)'"  # compiled only on use, because few commands need it
+_PYTHON_VERSION = sys.version_info[:2]
+_VERSION_LIMIT_PATTERN = r"python_version < '(\d+)\.(\d+)'"  # compiled only on use, because few commands need it
 
 
 def install_hint(extra: str, package: str = "") -> Phrase:
@@ -55,18 +55,18 @@ def install_hint(extra: str, package: str = "") -> Phrase:
         package: the missing module of the extra; empty for its module in `EXTRAS`.
     """
     package = package or EXTRAS[extra]
-    first_unsupported = _first_python_without_wheel(package)
-    if first_unsupported and first_unsupported <= _VERSION:
+    first_unsupported = _find_first_python_without_wheel(package)
+    if first_unsupported and first_unsupported <= _PYTHON_VERSION:
         return phrase(
             "there is no wheel of {package} for Python {version}: use an older Python, or run {command},"
             " which needs a compiler",
             package=package,
-            version=".".join(map(str, _VERSION)),
+            version=".".join(map(str, _PYTHON_VERSION)),
             command=_installation().command_for_packages(package),
         )
     installation = _installation()
     command = installation.command_for_extras(extra)
-    if installation.origin.is_gone:
+    if installation.origin.is_missing:
         return phrase(
             "run {command}, and replace {placeholder} with the path of a checkout or wheel of Linkwright, "
             "because '{path}', from which it was installed, no longer exists",
@@ -91,7 +91,7 @@ def _installation() -> Installation:
     return find_installation()
 
 
-def _first_python_without_wheel(package: str) -> tuple[int, ...]:
+def _find_first_python_without_wheel(package: str) -> tuple[int, ...]:
     """Return the first Python version for which a package has no wheel, or an empty tuple.
 
     From this version on, no extra requires the package.
@@ -106,7 +106,7 @@ def _first_python_without_wheel(package: str) -> tuple[int, ...]:
     limits = [
         tuple(map(int, match.groups()))
         for line in package_requirements
-        if (match := re.search(_VERSION_LIMIT, line.replace('"', "'")))
+        if (match := re.search(_VERSION_LIMIT_PATTERN, line.replace('"', "'")))
     ]
     return max(limits, default=()) if len(limits) == len(package_requirements) else ()
 

@@ -46,7 +46,7 @@ class Origin:
     name: str = NAME
 
     @property
-    def is_gone(self) -> bool:
+    def is_missing(self) -> bool:
         """Whether the origin is a checkout or a file that no longer exists."""
         return bool(self.location) and "://" not in self.location and not Path(self.location).exists()
 
@@ -55,7 +55,7 @@ class Origin:
         extras_suffix = f"[{','.join(sorted(extras))}]" if extras else ""
         if "://" in self.location:
             return [f"{self.name}{extras_suffix} @ {self.location}"]
-        location = PATH_PLACEHOLDER if self.is_gone else self.location or self.name
+        location = PATH_PLACEHOLDER if self.is_missing else self.location or self.name
         if self.location and Path(self.location) == Path.cwd():
             location = "."
         return [*(["-e"] if self.editable else []), f"{location}{extras_suffix}"]
@@ -104,10 +104,10 @@ _UV_CACHE_FOLDERS = ("archive-v", "environments-v")
 
 def find_installation() -> Installation:
     """Return the installation of the running Linkwright."""
-    return installation_in(Path(sys.prefix), _find_origin())
+    return find_installation_in(Path(sys.prefix), _find_origin())
 
 
-def installation_in(prefix: Path, origin: Origin) -> Installation:
+def find_installation_in(prefix: Path, origin: Origin) -> Installation:
     """Return the installation of Linkwright in an environment.
 
     Args:
@@ -133,10 +133,10 @@ def installation_in(prefix: Path, origin: Origin) -> Installation:
         return Installation(origin, UV_TOOL, extras, other_packages)
     if prefix.parent.name.startswith(_UV_CACHE_FOLDERS):  # uvx created the environment for this run only
         return Installation(origin, UV_TOOL)
-    return Installation(origin, _pip_command(prefix, origin))
+    return Installation(origin, _find_pip_command(prefix, origin))
 
 
-def origin_of(direct_url: Mapping[str, Any], name: str = NAME) -> Origin:
+def parse_origin(direct_url: Mapping[str, Any], name: str = NAME) -> Origin:
     """Return the origin of a distribution from the content of its ``direct_url.json``."""
     url = direct_url["url"]
     if version_control := direct_url.get("vcs_info"):
@@ -157,12 +157,12 @@ def _find_origin() -> Origin:
     for name in (NAME, ENGINE):
         with suppress(metadata.PackageNotFoundError):
             direct_url = metadata.distribution(name).read_text("direct_url.json")
-            return origin_of(json.loads(direct_url), name) if direct_url else Origin(name=name)
+            return parse_origin(json.loads(direct_url), name) if direct_url else Origin(name=name)
     checkout = Path(__file__).parents[3]  # Linkwright runs from a folder without being installed
     return Origin(str(checkout), editable=True) if (checkout / "pyproject.toml").is_file() else Origin()
 
 
-def _pip_command(prefix: Path, origin: Origin) -> tuple[str, ...]:
+def _find_pip_command(prefix: Path, origin: Origin) -> tuple[str, ...]:
     """Return the start of the command for installing into an environment that no tool manages."""
     if find_spec("pip"):
         pip_path = shutil.which("pip")

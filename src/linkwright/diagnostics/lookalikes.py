@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from linkwright.diagnostics.phrase import Phrase, phrase
 
-_PLAIN = {
+_ASCII_BY_LOOKALIKE = {
     "\u201c": '"',
     "\u201d": '"',
     "\u201e": '"',
@@ -30,25 +30,25 @@ _PLAIN = {
     "\u3000": " ",
     "\u00a0": " ",
 }
-_FIRST_FULL_WIDTH, _LAST_FULL_WIDTH, _SHIFT = 0xFF01, 0xFF5E, 0xFEE0
+_FIRST_FULL_WIDTH, _LAST_FULL_WIDTH, _FULL_WIDTH_SHIFT = 0xFF01, 0xFF5E, 0xFEE0
 
 
-def plain_character(character: str) -> str | None:
+def to_ascii_character(character: str) -> str | None:
     """Return the ASCII character that a character looks like, or None."""
     if character and _FIRST_FULL_WIDTH <= ord(character) <= _LAST_FULL_WIDTH:
-        return chr(ord(character) - _SHIFT)
-    return _PLAIN.get(character)
+        return chr(ord(character) - _FULL_WIDTH_SHIFT)
+    return _ASCII_BY_LOOKALIKE.get(character)
 
 
-def plain_text(text: str) -> str:
+def to_ascii_text(text: str) -> str:
     """Return a text with ASCII characters in place of those that look like them."""
-    return "".join(plain_character(character) or character for character in text)
+    return "".join(to_ascii_character(character) or character for character in text)
 
 
 def lookalike_hint(text: str) -> Phrase | None:
     """Return a hint about the first character of a text that looks like ASCII, or None."""
     for character in text:
-        plain = plain_character(character)
+        plain = to_ascii_character(character)
         if plain == " ":
             return phrase("write a plain space in place of U+{code:04X}", code=ord(character))
         if plain is not None:

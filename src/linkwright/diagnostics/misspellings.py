@@ -1,7 +1,7 @@
 """The search for the existing name that another name misspells.
 
-The name of a sibling is not a misspelling: ``wheel_2`` does not misspell ``wheel_1``, nor ``lwheel`` ``rwheel``, nor
-``stopKp`` ``stopKd``. Such names denote different parts, and a fix that confuses the names breaks the robot.
+The name of a sibling is not a misspelling: ``wheel_2`` does not misspell ``wheel_1``, and ``stopKp`` does not misspell
+``stopKd``. Such names denote different parts, and a fix that confuses the names breaks the robot.
 """
 
 from __future__ import annotations
@@ -25,15 +25,17 @@ def find_misspelled(name: str, names: Iterable[str]) -> str | None:
 
 def _is_misspelling(name: str, known_name: str) -> bool:
     """Return whether two names differ only in case, separators, or a typing error in one word."""
-    words, others = words_of(name), words_of(known_name)
-    if not words or not others:
+    words, known_words = words_of(name), words_of(known_name)
+    if not words or not known_words:
         return False
-    if "".join(words) == "".join(others):
+    if "".join(words) == "".join(known_words):
         return True
-    if len(words) != len(others):
+    if len(words) != len(known_words):
         # Either a separator is missing, or there is also a typing error.
-        return _is_misspelled_word("".join(words), "".join(others)) and not any(map(str.isdigit, name + known_name))
-    differing_pairs = [pair for pair in zip(words, others, strict=True) if pair[0] != pair[1]]
+        return _is_misspelled_word("".join(words), "".join(known_words)) and not any(
+            map(str.isdigit, name + known_name)
+        )
+    differing_pairs = [pair for pair in zip(words, known_words, strict=True) if pair[0] != pair[1]]
     return len(differing_pairs) == 1 and _is_misspelled_word(*differing_pairs[0])
 
 

@@ -24,7 +24,7 @@ RULES = "rule"
 """The context of titles of pages about rules and other diagnostic codes."""
 
 
-class Wording(Protocol):
+class Catalog(Protocol):
     """The catalog of a language, with the interface of gettext's translations.
 
     A text that the catalog lacks is returned unchanged.
@@ -70,9 +70,9 @@ class Phrase(str):
     def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         return type(self), (self.template, self.arguments)
 
-    def translated_text(self, wording: Wording) -> str:
+    def translated_text(self, catalog: Catalog) -> str:
         """Return the text in another language."""
-        return self._fill(wording.gettext(self.template), wording) if self.template else ""
+        return self._fill(catalog.gettext(self.template), catalog) if self.template else ""
 
     def with_arguments(self, **arguments: object) -> Phrase:
         """Return the phrase with new values; values for unknown arguments are ignored."""
@@ -82,14 +82,17 @@ class Phrase(str):
 
     @property
     def chosen_template(self) -> str:
-        """The English template. For a counted phrase, the singular or the plural, depending on the count."""
+        """The English template.
+
+        For a counted phrase, this is the singular or the plural, depending on the count.
+        """
         return self.template
 
-    def translated(self, wording: Wording) -> Phrase:
+    def translated(self, catalog: Catalog) -> Phrase:
         """Return the phrase with its text in another language, and the same template and arguments."""
-        return _Translated(self.translated_text(wording), self)
+        return _Translated(self.translated_text(catalog), self)
 
-    def _fill(self, template: str, wording: Wording) -> str:
+    def _fill(self, template: str, catalog: Catalog) -> str:
         if not self.arguments:
             return template
         from string import Formatter  # imported here, because commands in English do not need it
@@ -103,7 +106,7 @@ class Phrase(str):
             value = self.arguments[name]
             after_phrase = isinstance(value, Phrase)
             if isinstance(value, Phrase):
-                text = _join_spaced(text, value.translated_text(wording))
+                text = _join_spaced(text, value.translated_text(catalog))
             else:
                 text += format(value, spec or "")
         return text
@@ -129,36 +132,36 @@ class _Translated(Phrase):
     def chosen_template(self) -> str:
         return self.original.chosen_template
 
-    def translated_text(self, wording: Wording) -> str:
-        return self.original.translated_text(wording)
+    def translated_text(self, catalog: Catalog) -> str:
+        return self.original.translated_text(catalog)
 
 
 class _Counted(Phrase):
     """A phrase with a singular and a plural template."""
 
-    __slots__ = ("several",)
-    several: str
+    __slots__ = ("plural",)
+    plural: str
 
-    def __new__(cls, template: str, arguments: Mapping[str, object], several: str) -> Self:
-        self = super().__new__(cls, template if arguments["count"] == 1 else several, arguments)
+    def __new__(cls, template: str, arguments: Mapping[str, object], plural: str) -> Self:
+        self = super().__new__(cls, template if arguments["count"] == 1 else plural, arguments)
         self.template = template
-        self.several = several
+        self.plural = plural
         return self
 
     def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
-        return type(self), (self.template, self.arguments, self.several)
+        return type(self), (self.template, self.arguments, self.plural)
 
     @property
     def chosen_template(self) -> str:
-        return self.template if self.arguments["count"] == 1 else self.several
+        return self.template if self.arguments["count"] == 1 else self.plural
 
-    def translated_text(self, wording: Wording) -> str:
+    def translated_text(self, catalog: Catalog) -> str:
         count = self.arguments["count"]
         assert isinstance(count, int)
-        return self._fill(wording.ngettext(self.template, self.several, count), wording)
+        return self._fill(catalog.ngettext(self.template, self.plural, count), catalog)
 
 
-class _Known(Phrase):
+class _ContextPhrase(Phrase):
     """A text that is translated as a whole, in a context of the catalog."""
 
     __slots__ = ("context",)
@@ -172,11 +175,11 @@ class _Known(Phrase):
     def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         return type(self), (self.template, self.context)
 
-    def translated_text(self, wording: Wording) -> str:
-        return wording.pgettext(self.context, self.template) if self.template else ""
+    def translated_text(self, catalog: Catalog) -> str:
+        return catalog.pgettext(self.context, self.template) if self.template else ""
 
 
-class _Foreign(_Known):
+class _Foreign(_ContextPhrase):
     """A text of another program.
 
     The catalog contains the text unchanged, or with ``'…'`` for each quoted part.
@@ -184,22 +187,22 @@ class _Foreign(_Known):
 
     __slots__ = ()
 
-    def translated_text(self, wording: Wording) -> str:
-        text = super().translated_text(wording)
+    def translated_text(self, catalog: Catalog) -> str:
+        text = super().translated_text(catalog)
         parts = self.template.split("'")
         if text != self.template or len(parts) % 2 == 0:
             return text
         quoted_parts = parts[1::2]
-        parts[1::2] = [_ELIDED] * len(quoted_parts)
+        parts[1::2] = [_ELLIPSIS] * len(quoted_parts)
         pattern = "'".join(parts)
-        translation = wording.pgettext(self.context, pattern)
-        if translation == pattern or translation.count(_ELIDED) != len(quoted_parts):
+        translation = catalog.pgettext(self.context, pattern)
+        if translation == pattern or translation.count(_ELLIPSIS) != len(quoted_parts):
             return text
-        ends = translation.split(_ELIDED)
+        ends = translation.split(_ELLIPSIS)
         return ends[0] + "".join(part + end for part, end in zip(quoted_parts, ends[1:], strict=True))
 
 
-_ELIDED = "…"
+_ELLIPSIS = "…"
 
 
 class _Joined(Phrase):
@@ -220,33 +223,32 @@ class _Joined(Phrase):
     def __reduce__(self) -> tuple[type[Self], tuple[object, ...]]:
         return type(self), (self.items, self.separator, self.last)
 
-    def translated_text(self, wording: Wording) -> str:
-        items = [item.translated_text(wording) if isinstance(item, Phrase) else item for item in self.items]
-        return _join_items(items, wording.pgettext(TERMS, self.separator), wording.pgettext(TERMS, self.last))
+    def translated_text(self, catalog: Catalog) -> str:
+        items = [item.translated_text(catalog) if isinstance(item, Phrase) else item for item in self.items]
+        return _join_items(items, catalog.pgettext(TERMS, self.separator), catalog.pgettext(TERMS, self.last))
 
 
 def phrase(template: str, **arguments: object) -> Phrase:
     """Return a text that can be translated.
 
     Args:
-        template: the English text. It must be a literal, because the catalogs are checked against the literals in
-                the source. Each argument has a placeholder with its name, optionally with a number format: ``{length:g}
-            m``.
+        template: the English text. It must be a literal, because the catalogs are checked against the literals in the
+            source. Each argument has a placeholder with its name, optionally with a number format: ``{length:g} m``.
         arguments: names from the user's input, numbers, or phrases; phrases are translated as well.
     """
     return Phrase(template, arguments)
 
 
-def counted(one: str, several: str, count: int, **arguments: object) -> Phrase:
+def counted(singular: str, plural: str, count: int, **arguments: object) -> Phrase:
     """Return a translatable text with a count, which selects the singular or the plural.
 
     Args:
-        one: the template for the singular; ``{count}`` is the number.
-        several: the template for any other number.
+        singular: the template for the singular; ``{count}`` is the number.
+        plural: the template for any other number.
         count: the number that selects the template.
         arguments: the other arguments of the templates.
     """
-    return _Counted(one, {"count": count, **arguments}, several)
+    return _Counted(singular, {"count": count, **arguments}, plural)
 
 
 def term(word: str) -> Phrase:
@@ -254,7 +256,7 @@ def term(word: str) -> Phrase:
 
     The term is translated as a whole, with the context for terms.
     """
-    return _Known(word, TERMS)
+    return _ContextPhrase(word, TERMS)
 
 
 def title_of_page(text: str) -> Phrase:
@@ -262,7 +264,7 @@ def title_of_page(text: str) -> Phrase:
 
     The title is translated as a whole, with the context for titles.
     """
-    return _Known(text, RULES)
+    return _ContextPhrase(text, RULES)
 
 
 def foreign(words: object) -> Phrase:

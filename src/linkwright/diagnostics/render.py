@@ -17,8 +17,8 @@ _COLORS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.INFO: "36"}
 MAX_PRINTED = 500
 """The maximum number of findings to print. No user reads more, and the errors among them would scroll away."""
 _TAB = "    "
-_MAX_LINE = 300
-_CONTEXT = 80
+_MAX_LINE_LENGTH = 300
+_CONTEXT_LENGTH = 80
 """The number of characters of a longer line that are shown before and after the position."""
 _REPLACEMENTS = {
     **{code: 0x2400 + code for code in range(0x20) if chr(code) not in "\t\n"},
@@ -48,12 +48,12 @@ def render(diagnostic: Diagnostic, *, color: bool = False, lang: str = "en") -> 
     words = labels(lang)
     severity, colon = diagnostic.severity, words[": "]
     head = f"{words[severity.value]}[{diagnostic.code}]"
-    lines = [f"{paint(head, _COLORS[severity] + ';1')}{paint(colon + printable(diagnostic.message), '1')}"]
+    lines = [f"{paint(head, _COLORS[severity] + ';1')}{paint(colon + make_printable(diagnostic.message), '1')}"]
     if diagnostic.span:
-        lines.append(f"  {paint('-->', '34')} {_location_text(diagnostic.span)}")
-        lines += _excerpt(diagnostic, paint)
+        lines.append(f"  {paint('-->', '34')} {_format_location(diagnostic.span)}")
+        lines += _format_excerpt(diagnostic, paint)
     for note in diagnostic.notes:
-        position = f" ({_location_text(note.span)})" if note.span else ""
+        position = f" ({_format_location(note.span)})" if note.span else ""
         lines.append(f"   {paint('=', '34')} {words['note']}{colon}{_indent(note.message)}{position}")
     if diagnostic.hint:
         lines.append(f"   {paint('=', '34')} {paint(words['hint'], '32')}{colon}{_indent(diagnostic.hint)}")
@@ -102,13 +102,13 @@ def to_data(diagnostic: Diagnostic) -> dict[str, Any]:
         "message": diagnostic.message,
         "template": message.chosen_template,
         "arguments": dict(message.arguments),
-        **_span_data(diagnostic.span),
-        "notes": [_note_data(note) for note in diagnostic.notes],
+        **_to_span_data(diagnostic.span),
+        "notes": [_to_note_data(note) for note in diagnostic.notes],
         "hints": [diagnostic.hint] if diagnostic.hint else [],
     }
 
 
-def _span_data(span: Span | None) -> dict[str, Any]:
+def _to_span_data(span: Span | None) -> dict[str, Any]:
     return {
         "file": span.file if span else None,
         "line": span.line if span else None,
@@ -118,7 +118,7 @@ def _span_data(span: Span | None) -> dict[str, Any]:
     }
 
 
-def _note_data(note: Note) -> dict[str, Any]:
+def _to_note_data(note: Note) -> dict[str, Any]:
     span = note.span
     return {
         "message": note.message,
@@ -136,12 +136,12 @@ class _Painter:
         return f"\x1b[{code}m{text}\x1b[0m" if self._color else text
 
 
-def _location_text(span: Span) -> str:
+def _format_location(span: Span) -> str:
     path = span.file if span.file.startswith("<") else display_path(span.file)
-    return f"{printable(path)}:{span.line}:{span.column}"
+    return f"{make_printable(path)}:{span.line}:{span.column}"
 
 
-def _excerpt(diagnostic: Diagnostic, paint: _Painter) -> list[str]:
+def _format_excerpt(diagnostic: Diagnostic, paint: _Painter) -> list[str]:
     span, source = diagnostic.span, diagnostic.source
     if span is None or source is None or source.name != span.file:
         return []
@@ -153,25 +153,25 @@ def _excerpt(diagnostic: Diagnostic, paint: _Painter) -> list[str]:
         marked = line[span.column - 1 : max(span.end_column - 1, span.column)]
     else:
         marked = line[span.column - 1 :]
-    if len(line) > _MAX_LINE:  # for example, an entire robot in one line
-        start = max(0, len(prefix) - _CONTEXT)
-        end = len(prefix) + _CONTEXT
+    if len(line) > _MAX_LINE_LENGTH:  # for example, an entire robot in one line
+        start = max(0, len(prefix) - _CONTEXT_LENGTH)
+        end = len(prefix) + _CONTEXT_LENGTH
         line = f"{'...' if start else ''}{line[start:end]}{'...' if end < len(line) else ''}"
         prefix = f"{'...' if start else ''}{prefix[start:]}"
-        marked = marked[:_CONTEXT]
+        marked = marked[:_CONTEXT_LENGTH]
     number = str(span.line)
     gutter = " " * len(number)
     bar = paint("|", "34")
-    carets = paint("^" * max(1, shown_width(marked)), _COLORS[diagnostic.severity])
-    visible_line = printable(line).replace("\t", _TAB)
+    carets = paint("^" * max(1, compute_width(marked)), _COLORS[diagnostic.severity])
+    visible_line = make_printable(line).replace("\t", _TAB)
     return [
         f"{gutter} {bar}",
         f"{paint(number, '34')} {bar} {visible_line}",
-        f"{gutter} {bar} {' ' * shown_width(prefix)}{carets}",
+        f"{gutter} {bar} {' ' * compute_width(prefix)}{carets}",
     ]
 
 
-def printable(text: str) -> str:
+def make_printable(text: str) -> str:
     """Return the text with control characters replaced by visible characters.
 
     The result is safe to print on a terminal.
@@ -179,12 +179,12 @@ def printable(text: str) -> str:
     return text.translate(_REPLACEMENTS)
 
 
-def shown_width(text: str) -> int:
+def compute_width(text: str) -> int:
     """Return the number of terminal columns that a printed text occupies."""
-    return sum(map(_columns, text))
+    return sum(map(_count_columns, text))
 
 
-def _columns(character: str) -> int:
+def _count_columns(character: str) -> int:
     if character == "\t":
         return len(_TAB)
     if character.isascii():
@@ -197,7 +197,7 @@ def _columns(character: str) -> int:
 
 
 def _indent(text: str) -> str:
-    return printable(text).replace("\n", "\n     ")
+    return make_printable(text).replace("\n", "\n     ")
 
 
 def display_path(path: str | Path) -> str:

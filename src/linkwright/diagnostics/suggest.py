@@ -15,9 +15,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _MAX_LISTED = 8
-_ADDRESSES = ("http:", "https:", "ftp:")
-_ADDRESS_PATTERN = r"(?:^|/)((?:https?|ftp):)/+(.+)"  # compiled only on use, because few commands need it
-_MAX_COMPARED = 1_000
+_URL_SCHEMES = ("http:", "https:", "ftp:")
+_URL_PATTERN = r"(?:^|/)((?:https?|ftp):)/+(.+)"  # compiled only on use, because few commands need it
+_MAX_CANDIDATES = 1_000
 """The maximum number of names to compare. More names are filtered by beginning and length."""
 _WORD_PATTERN = r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+|[^\W\d_]+"
 _MAX_SHORT_LENGTH = 2
@@ -30,11 +30,11 @@ def nearest(name: str, candidates: Iterable[str], limit: int = 3) -> list[str]:
     A common word, as in the names of two robots, is not enough: the names may only differ by typing errors, by missing
     words, or in the order of words.
     """
-    return list(_nearest(name, tuple(candidates), limit))
+    return list(_find_nearest(name, tuple(candidates), limit))
 
 
 @lru_cache(maxsize=256)
-def _nearest(name: str, candidates: tuple[str, ...], limit: int) -> tuple[str, ...]:
+def _find_nearest(name: str, candidates: tuple[str, ...], limit: int) -> tuple[str, ...]:
     """Return the result of `nearest`.
 
     The result is cached, because a description may use a missing property very often.
@@ -46,9 +46,9 @@ def _nearest(name: str, candidates: tuple[str, ...], limit: int) -> tuple[str, .
         by_fold.setdefault(candidate.casefold(), candidate)
     folded = name.casefold()
     comparable: Iterable[str] = by_fold
-    if len(by_fold) > _MAX_COMPARED:
+    if len(by_fold) > _MAX_CANDIDATES:
         comparable = [other for other in by_fold if abs(len(other) - len(folded)) < 3 and other[:2] == folded[:2]]
-        comparable = comparable[:_MAX_COMPARED]
+        comparable = comparable[:_MAX_CANDIDATES]
     matches = get_close_matches(folded, comparable, n=4 * limit, cutoff=0.6)
     return tuple(by_fold[match] for match in matches if _is_similar(name, by_fold[match]))[:limit]
 
@@ -145,18 +145,18 @@ def _did_you_mean(names: Sequence[str]) -> Phrase | None:
     return phrase("did you mean {names}?", names=quoted_names(names, " or ")) if names else None
 
 
-def _in_neighboring_folder(path: Path) -> Path | None:
+def _find_in_neighboring_folder(path: Path) -> Path | None:
     """Return the file of the same name one folder below or above a missing file, or None."""
     folder = path.parent
     try:
-        folders = [*sorted(folder.iterdir())[:_MAX_COMPARED], folder.parent]
+        folders = [*sorted(folder.iterdir())[:_MAX_CANDIDATES], folder.parent]
     except OSError:
         return None
     candidates = (other / path.name for other in folders)
     return next((file for file in candidates if os.path.isfile(file)), None)  # noqa: PTH113 - is_file() raises for EACCES
 
 
-def _similar_files(name: str, names: Iterable[str]) -> list[str]:
+def _find_similar_files(name: str, names: Iterable[str]) -> list[str]:
     """Return at most three file names that are similar to a name, compared without extensions.
 
     The extensions must be similar as well: 'a.urdf' is not similar to 'robot.urdf'.
@@ -187,7 +187,7 @@ def as_typed(path: str | os.PathLike[str]) -> str:
     A URL that was handled as a path gets its second slash back.
     """
     path_text = os.fspath(path)
-    match = re.search(_ADDRESS_PATTERN, path_text)
+    match = re.search(_URL_PATTERN, path_text)
     return path_text if match is None else f"{match[1]}//{match[2]}"
 
 
@@ -201,7 +201,7 @@ def missing_file_hint(path: Path, is_candidate: Callable[[str], bool] | None = N
         is_candidate: a function that returns whether a file name in the folder can be suggested; None for names with
             the same extension.
     """
-    if any(part in path.parts for part in _ADDRESSES):
+    if any(part in path.parts for part in _URL_SCHEMES):
         return phrase("files are not fetched from the network: download the file, and give its path")
     if "package:" in path.parts:
         package = path.parts[path.parts.index("package:") + 1 :][:1]
@@ -224,10 +224,10 @@ def missing_file_hint(path: Path, is_candidate: Callable[[str], bool] | None = N
             folder=display_path(folder),
             current=os.getcwd(),  # noqa: PTH109 - pathlib takes long to import
         )
-    suggestion = _did_you_mean(_similar_files(path.name, names))
+    suggestion = _did_you_mean(_find_similar_files(path.name, names))
     if suggestion:
         return suggestion
-    if elsewhere := _in_neighboring_folder(path):
+    if elsewhere := _find_in_neighboring_folder(path):
         return phrase("did you mean '{name}'?", name=display_path(elsewhere))
     listed_names = [name for name in names if is_candidate(name)][:_MAX_LISTED]
     if listed_names:

@@ -1,4 +1,4 @@
-"""A git repository: its commits, the files of a commit, and the files that changed between commits."""
+"""A git repository: its commits, their files, and the changes between commits."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _HOOK_VARIABLES = ("GIT_DIR", "GIT_WORK_TREE", "GIT_INDEX_FILE", "GIT_PREFIX")
 """Variables that git sets for hooks. They would override the repository of a folder."""
 
 _SUBMODULE_MODE = "160000"
-_LFS_POINTER_SIZE = 1024
+_MAX_LFS_POINTER_BYTES = 1024
 _LFS_POINTER = lazy_pattern(
     rb"version https://git-lfs\.github\.com/spec/v1\n(?:[^\n]+\n)*?oid sha256:(?P<hash>[0-9a-f]{64})\n"
 )
@@ -51,14 +51,16 @@ class ChangedFile:
 
 
 class GitRepository:
-    """The git repository of a folder. None of the methods changes the repository or its working tree.
+    """The git repository of a folder.
+
+    None of the methods changes the repository or its working tree.
 
     Args:
         folder: a folder of the working tree.
         subject: the name of the file or folder that the user named, for messages.
         hint: what the user can do if the folder is not in a repository.
         downloads_lfs: whether files of Git LFS are written with their contents, which may download them. Otherwise
-            their pointers are written; see `lfs_hash`.
+            their pointers are written; see `read_lfs_hash`.
 
     Attributes:
         root: the root folder of the working tree.
@@ -84,8 +86,8 @@ class GitRepository:
     def run(self, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.CompletedProcess[str]:
         """Run git in the repository with English output, and return the completed process.
 
-        Bytes of its output that are not UTF-8 become surrogates, as in the names of files that Python reads. Without
-        them, a file of such a name would not be found, nor a symbolic link of such a name checked.
+        Bytes of its output that are not UTF-8 become surrogates, as in the names of files that Python reads.
+        Otherwise, files and symbolic links with such names would not be found.
 
         Raises:
             LinkwrightError: CLI341 if git is not installed, or CLI342 if the folder does not exist.
@@ -109,13 +111,16 @@ class GitRepository:
             raise LinkwrightError(Diagnostic("CLI341", phrase("git is not installed"), hint=hint)) from None
 
     def resolve(self, name: str) -> str | None:
-        """Return the hash of a commit in git's notation, such as ``HEAD~2``, or None if there is no such commit."""
+        """Return the hash of a commit in git's notation, such as ``HEAD~2``.
+
+        The result is None if there is no such commit.
+        """
         if name.startswith("-"):
             return None
         result = self.run("rev-parse", "--verify", "--quiet", f"{name}^{{commit}}")
         return result.stdout.strip() if result.returncode == 0 else None
 
-    def commit(self, name: str) -> str:
+    def require_commit(self, name: str) -> str:
         """Return the hash of a commit in git's notation.
 
         Raises:
@@ -141,7 +146,10 @@ class GitRepository:
         return self.run("rev-parse", "--is-shallow-repository").stdout.strip() == "true"
 
     def merge_base(self, commit: str, other: str) -> str | None:
-        """Return the hash of the best common ancestor of two commits, or None if they have none in this clone."""
+        """Return the hash of the best common ancestor of two commits.
+
+        The result is None if they have none in this clone.
+        """
         result = self.run("merge-base", commit, other)
         return result.stdout.strip() if result.returncode == 0 else None
 
@@ -153,7 +161,7 @@ class GitRepository:
         """Return whether a commit contains a file, whose path is relative to the root."""
         return self.run("cat-file", "-e", f"{commit}:{path}").returncode == 0
 
-    def symbolic_links(self, commit: str) -> list[str]:
+    def list_symbolic_links(self, commit: str) -> list[str]:
         """Return the paths of a commit's symbolic links, relative to the root."""
         entries = self.run("ls-tree", "-r", "-z", commit).stdout.split("\0")
         return [entry.partition("\t")[2] for entry in entries if entry.startswith(_LINK_MODE)]
@@ -195,36 +203,36 @@ class GitRepository:
         )
         raise LinkwrightError(Diagnostic("CLI345", message))
 
-    def changed_files(self, old: str, new: str | None = None) -> list[ChangedFile]:
+    def changed_files(self, old_commit: str, new_commit: str | None = None) -> list[ChangedFile]:
         """Return the files that differ between two commits, sorted by path.
 
         Renamed files are recognized as git recognizes them, unless the clone lacks the contents of a file.
 
         Args:
-            old: the hash of the old commit.
-            new: the hash of the new commit; None for the files of the working tree, including files that git does not
-                track and does not ignore.
+            old_commit: the hash of the old commit.
+            new_commit: the hash of the new commit; None for the files of the working tree, including files that
+                git does not track and does not ignore.
 
         Raises:
             LinkwrightError: CLI346 if git cannot compare them.
         """
         arguments = ("--raw", "-z", "--no-abbrev")
-        commits = [old] if new is None else [old, new]
+        commits = [old_commit] if new_commit is None else [old_commit, new_commit]
         result = self.run("diff", "--no-ext-diff", "--find-renames", *arguments, *commits)
         if result.returncode != 0:  # a partial clone may lack files, which these commands do not read
-            command = ("diff-index",) if new is None else ("diff-tree", "-r")
+            command = ("diff-index",) if new_commit is None else ("diff-tree", "-r")
             result = self.run(*command, *arguments, *commits)
         if result.returncode != 0:
             message = phrase("git cannot compare the commits: {reason}", reason=foreign(result.stderr.strip()))
             raise LinkwrightError(Diagnostic("CLI346", message))
         files = list(_parse_raw_changes(result.stdout))
-        if new is None:
+        if new_commit is None:
             names = self.run("ls-files", "--others", "--exclude-standard", "-z").stdout.split("\0")
             files += [ChangedFile(None, name) for name in names if name]
         return sorted(files, key=lambda file: file.path)
 
 
-def file_hash(path: Path) -> str:
+def compute_file_hash(path: Path) -> str:
     """Return the SHA-256 hash of a file in hexadecimal.
 
     Raises:
@@ -233,14 +241,14 @@ def file_hash(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def lfs_hash(path: Path) -> str | None:
-    """Return the SHA-256 hash of the file of a pointer of Git LFS, or None if the path is not a pointer.
+def read_lfs_hash(path: Path) -> str | None:
+    """Return the SHA-256 hash in a pointer of Git LFS, or None for any other file.
 
     Source: the specification of Git LFS, docs/spec.md.
     """
     try:
         with path.open("rb") as file:
-            start = file.read(_LFS_POINTER_SIZE)
+            start = file.read(_MAX_LFS_POINTER_BYTES)
     except OSError:
         return None
     match = _LFS_POINTER.match(start)

@@ -13,7 +13,7 @@ import stat
 
 _FIRST_READ_BYTES = 1 << 17  # most files are shorter, and a larger buffer takes longer to allocate
 _NON_BLOCKING = getattr(os, "O_NONBLOCK", 0)  # Windows does not have such pipes
-_FLAGS = os.O_RDONLY | _NON_BLOCKING | getattr(os, "O_BINARY", 0)  # Windows reads in text mode by default
+_OPEN_FLAGS = os.O_RDONLY | _NON_BLOCKING | getattr(os, "O_BINARY", 0)  # Windows reads in text mode by default
 _pipe_contents: dict[tuple[int, int], bytes] = {}
 """Maps the device and inode of a pipe to its contents.
 
@@ -38,7 +38,7 @@ def read_file(path: str | os.PathLike[str], max_bytes: int) -> bytes:
     Raises:
         OSError: the file cannot be read. `NoWriterError`: the file is an empty pipe without a writer.
     """
-    descriptor = os.open(path, _FLAGS)
+    descriptor = os.open(path, _OPEN_FLAGS)
     try:
         return _read_content(descriptor, path, max_bytes)
     finally:

@@ -14,7 +14,7 @@ SHARES_SUBFOLDER = "shares"
 See `linkwright.packages.share_layout`.
 """
 
-_DEFAULTS = {"CACHE": ".cache", "CONFIG": ".config", "DATA": ".local/share", "STATE": ".local/state"}
+_DEFAULT_FOLDERS = {"CACHE": ".cache", "CONFIG": ".config", "DATA": ".local/share", "STATE": ".local/state"}
 
 
 def cache_folder() -> Path:
@@ -22,7 +22,7 @@ def cache_folder() -> Path:
 
     The folder is ``XDG_CACHE_HOME/linkwright`` or ``~/.cache/linkwright``.
     """
-    return _folder("CACHE")
+    return _find_folder("CACHE")
 
 
 def config_folder() -> Path:
@@ -30,7 +30,7 @@ def config_folder() -> Path:
 
     The folder is ``XDG_CONFIG_HOME/linkwright`` or ``~/.config/linkwright``.
     """
-    return _folder("CONFIG")
+    return _find_folder("CONFIG")
 
 
 def data_folder() -> Path:
@@ -38,7 +38,7 @@ def data_folder() -> Path:
 
     The folder is ``XDG_DATA_HOME/linkwright`` or ``~/.local/share/linkwright``.
     """
-    return _folder("DATA")
+    return _find_folder("DATA")
 
 
 def state_folder() -> Path:
@@ -46,9 +46,9 @@ def state_folder() -> Path:
 
     The folder is ``XDG_STATE_HOME/linkwright`` or ``~/.local/state/linkwright``.
     """
-    return _folder("STATE")
+    return _find_folder("STATE")
 
 
-def _folder(kind: str) -> Path:
+def _find_folder(kind: str) -> Path:
     base_folder = os.environ.get(f"XDG_{kind}_HOME")
-    return (Path(base_folder) if base_folder else Path.home() / _DEFAULTS[kind]) / "linkwright"
+    return (Path(base_folder) if base_folder else Path.home() / _DEFAULT_FOLDERS[kind]) / "linkwright"

@@ -37,7 +37,7 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
     """
     content = data.encode("utf-8") if isinstance(data, str) else data
     target = os.path.realpath(os.fspath(path))
-    permissions = _permissions(target)
+    permissions = _read_permissions(target)
     if permissions is None and os.path.exists(target):
         with open(target, "wb", buffering=0) as device:
             _write_all(device.fileno(), content)
@@ -51,7 +51,7 @@ def write_whole_file(path: str | os.PathLike[str], data: str | bytes, *, mode: i
         _write_in_place(target, content)
 
 
-def _permissions(path: str) -> int | None:
+def _read_permissions(path: str) -> int | None:
     """Return the permissions of an existing regular file, or None for anything else."""
     try:
         status = os.stat(path)
@@ -61,7 +61,7 @@ def _permissions(path: str) -> int | None:
 
 
 def _replace(target: str, content: bytes, mode: int | None) -> None:
-    draft_path = _temporary_path(target, "draft")
+    draft_path = _create_temporary_path(target, "draft")
     _create(draft_path, content, 0o666 if mode is None else mode)
     try:
         if mode is not None:
@@ -97,7 +97,7 @@ def _write_in_place(target: str, content: bytes) -> None:
 def _create_copy(target: str, content: bytes) -> str:
     import tempfile
 
-    copy_path = _temporary_path(target, "before")
+    copy_path = _create_temporary_path(target, "before")
     try:
         _create(copy_path, content)
     except OSError:
@@ -106,7 +106,7 @@ def _create_copy(target: str, content: bytes) -> str:
     return copy_path
 
 
-def _temporary_path(target: str, purpose: str) -> str:
+def _create_temporary_path(target: str, purpose: str) -> str:
     folder, name = os.path.split(target)
     name = os.fsdecode(os.fsencode(name)[:_MAX_NAME_BYTES])
     return os.path.join(folder, f".{name}.{purpose}-{os.urandom(4).hex()}")

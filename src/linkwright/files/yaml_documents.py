@@ -102,7 +102,10 @@ class YamlDocument:
 
 
 def yaml_hint(source: SourceText, line: int) -> Phrase | None:
-    """Return a hint about the line at which a YAML parser failed, or the line before it, or None."""
+    """Return a hint about the line at which a YAML parser failed, or None.
+
+    The cause may be in the line before it.
+    """
     previous_line = next((number for number in range(line - 1, 0, -1) if source.line(number).strip()), line)
     for number in (line, previous_line):
         text = source.line(number).partition("#")[0]

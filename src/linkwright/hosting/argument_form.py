@@ -16,7 +16,7 @@ _MAX_TRIED_SETS = 12
 """The maximum number of argument sets that are tried, because users do not choose between more."""
 
 
-def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Diagnostic]) -> ArgumentForm | None:
+def create_argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Diagnostic]) -> ArgumentForm | None:
     """Return the arguments that a description needs, with argument sets for its expansion.
 
     The description is expanded with each argument set, which takes time, so call this function in another thread.
@@ -36,21 +36,25 @@ def argument_form(call: XacroCall, finder: PackageFinder, findings: Iterable[Dia
     if call.path.suffix == ".sdf":
         return None
     given_values = dict(call.arguments)
-    sets: list[dict[str, str]] = []
+    expandable_sets: list[dict[str, str]] = []
     for argument_set in argument_sets(call.path, finder)[:_MAX_TRIED_SETS]:
         values = {**given_values, **argument_set.values}
-        if argument_set.values and values not in sets and _can_expand(call, values, finder):
-            sets.append(values)
+        if argument_set.values and values not in expandable_sets and _can_expand(call, values, finder):
+            expandable_sets.append(values)
     missing_names = [name for finding in findings if (name := undeclared_argument(finding))]
     names = list(
         dict.fromkeys(
-            [*missing_names, *(name for values in sets for name in values), *(given_values if missing_names else ())]
+            [
+                *missing_names,
+                *(name for values in expandable_sets for name in values),
+                *(given_values if missing_names else ()),
+            ]
         )
     )
     if not names:
         return None
-    choices = [ArgumentChoice(_label(values, sets), values) for values in sets]
-    return ArgumentForm(call.path.name, names, sets[0] if sets else given_values, choices)
+    choices = [ArgumentChoice(_create_label(values, expandable_sets), values) for values in expandable_sets]
+    return ArgumentForm(call.path.name, names, expandable_sets[0] if expandable_sets else given_values, choices)
 
 
 def _can_expand(call: XacroCall, values: Mapping[str, str], finder: PackageFinder) -> bool:
@@ -62,7 +66,7 @@ def _can_expand(call: XacroCall, values: Mapping[str, str], finder: PackageFinde
         return False
 
 
-def _label(values: Mapping[str, str], sets: Sequence[Mapping[str, str]]) -> str:
+def _create_label(values: Mapping[str, str], sets: Sequence[Mapping[str, str]]) -> str:
     """Return a label for an argument set.
 
     The label contains the values of the arguments in which the sets differ.

@@ -77,20 +77,20 @@ class BagView(ModelView):
 
     @cached_property
     def _robot(self) -> Robot | None:
-        from linkwright.viewer.recorded_robot import robot_of
+        from linkwright.viewer.recorded_robot import read_robot
 
-        return robot_of(self._bag, self.descriptions.library)
+        return read_robot(self._bag, self.descriptions.library)
 
     @cached_property
     def _player(self) -> Node:
         return self.host.graph.create_node("rosbag2_player", start_parameter_services=False)
 
-    def _plan_others(self) -> None:
-        self._plan(
+    def _plan_other_nodes(self) -> None:
+        self._plan_node(
             *VIEWER,
             {"use_sim_time": True},
             name="viewer",
-            viewer_config=self._viewer_config,
+            viewer_config=self._create_viewer_config,
             viewer_started=self._attach,
         )
 
@@ -98,7 +98,7 @@ class BagView(ModelView):
         playback = Playback(self._player.handle, self._bag, self._output, viewer.on_playback_error)
         viewer.attach_recording(playback, self._bag)
 
-    def _viewer_config(self) -> RvizConfig:
-        from linkwright.viewer.recording_config import recording_config
+    def _create_viewer_config(self) -> RvizConfig:
+        from linkwright.viewer.recording_config import create_recording_config
 
-        return recording_config(self._bag, self._robot)
+        return create_recording_config(self._bag, self._robot)

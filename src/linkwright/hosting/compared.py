@@ -79,14 +79,14 @@ class ComparedView(ModelView):
         self.shut_down("there is no model")
         return False
 
-    def _plan_others(self) -> None:
-        self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
-        self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._attach)
+    def _plan_other_nodes(self) -> None:
+        self._plan_node("joint_state_publisher_gui", "joint_state_publisher_gui")
+        self._plan_node(*VIEWER, name="viewer", viewer_config=self._create_viewer_config, viewer_started=self._attach)
 
-    def _viewer_config(self) -> RvizConfig:
+    def _create_viewer_config(self) -> RvizConfig:
         from linkwright.panels.comparison.feature import add_old_robot
 
-        config = super()._viewer_config()
+        config = super()._create_viewer_config()
         add_old_robot(config, self._pair.old.title)
         return config
 
@@ -115,7 +115,7 @@ class ComparedView(ModelView):
             self.fail(self._old_call)
             self._old_reload.report(self._old_call, error.diagnostics)
             return None
-        self._old_reload.report(self._old_call, self._old.warnings_of(self._old_call))
+        self._old_reload.report(self._old_call, self._old.get_warnings(self._old_call))
         return text
 
     def _show_findings(self, _: list[Diagnostic]) -> None:

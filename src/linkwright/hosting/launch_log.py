@@ -87,8 +87,8 @@ class LaunchLog:
         self._folder: Path | None = None
         self._has_folder = True
         self._closed = False
-        self._format_screen_line = line_formatter(os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT"), FORMATS)
-        self._format_file_line = line_formatter(os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT"), FILE_FORMATS)
+        self._format_screen_line = create_line_formatter(os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT"), FORMATS)
+        self._format_file_line = create_line_formatter(os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT"), FILE_FORMATS)
 
     @property
     def folder(self) -> Path:
@@ -97,9 +97,9 @@ class LaunchLog:
         The folder is created on first access. If that fails, this is the folder of all logs.
         """
         if self._folder is None:
-            base_folder = log_base()
+            base_folder = find_log_base()
             try:
-                self._folder = new_log_folder(base_folder)
+                self._folder = create_log_folder(base_folder)
             except OSError as error:
                 self._folder = base_folder
                 self._files[LAUNCH_LOG] = None
@@ -230,7 +230,7 @@ Line = Callable[[str, str, str], str]
 """Returns a formatted line for a level, the name of a logger, and a text."""
 
 
-def line_formatter(format_name: str | None, formats: dict[str, str]) -> Line:
+def create_line_formatter(format_name: str | None, formats: dict[str, str]) -> Line:
     """Return a function that formats log lines.
 
     Args:
@@ -243,7 +243,7 @@ def line_formatter(format_name: str | None, formats: dict[str, str]) -> Line:
     """
     template = formats.get(format_name or "default", format_name or "")
 
-    def line(level: str, name: str, text: str) -> str:
+    def format_line(level: str, name: str, text: str) -> str:
         created = time.time()
         fields = {
             "levelname": level,
@@ -259,13 +259,13 @@ def line_formatter(format_name: str | None, formats: dict[str, str]) -> Line:
         except (LookupError, ValueError):
             return formats["default"].format(**fields)
 
-    return line
+    return format_line
 
 
 LATEST = "latest"
 
 
-def log_base(environment: Mapping[str, str] | None = None) -> Path:
+def find_log_base(environment: Mapping[str, str] | None = None) -> Path:
     """Return the folder of all logs: ``ROS_LOG_DIR``, or ``ROS_HOME/log``, or ``~/.ros/log``."""
     environment = os.environ if environment is None else environment
     log_folder = environment.get("ROS_LOG_DIR")
@@ -275,7 +275,7 @@ def log_base(environment: Mapping[str, str] | None = None) -> Path:
     return (Path(home).expanduser() if home else Path.home() / ".ros") / "log"
 
 
-def new_log_folder(base: Path) -> Path:
+def create_log_folder(base: Path) -> Path:
     """Create the log folder of a launch, and return its path.
 
     Its name consists of the date, the computer and the process. The link ``latest`` refers to the newest folder.

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 _SWITCH_VARIABLE = "LINKWRIGHT_DDS"
-_DELAY_S = 0.8
+_JOIN_DELAY_S = 0.8
 """The delay with a viewer, so that the page and the robot appear before joining, which keeps a processor busy."""
 
 
@@ -55,7 +55,7 @@ class Network:
         if self._graph is None or self._handle is not None or os.environ.get(_SWITCH_VARIABLE) == "0":
             return
         loop = asyncio.get_running_loop()
-        self._handle = loop.call_later(_DELAY_S if with_viewer else 0.0, self._join)
+        self._handle = loop.call_later(_JOIN_DELAY_S if with_viewer else 0.0, self._join)
 
     def close(self) -> None:
         """Cancel a pending attempt to join the network."""
@@ -78,7 +78,7 @@ class Network:
             )
 
 
-_COLLECTION_S = 0.3
+_COLLECTION_PERIOD_S = 0.3
 """The seconds to collect names: nodes of another launch are discovered one by one, and one warning lists all."""
 _MAX_LISTED_NAMES = 6
 """The maximum number of names in the warning, so that it fits on one line of the terminal."""
@@ -120,18 +120,18 @@ class SharedNames:
     def _schedule_report(self, names: frozenset[str]) -> None:
         self._names = names
         if self._report_timer is None:
-            self._report_timer = self._loop.call_later(_COLLECTION_S, self._report)
+            self._report_timer = self._loop.call_later(_COLLECTION_PERIOD_S, self._report)
 
     def _report(self) -> None:
         self._report_timer = None
         new_names, self._reported = self._names - self._reported, self._names
         if new_names:
-            (finding,) = translated([self._finding(new_names)])
+            (finding,) = translated([self._create_finding(new_names)])
             self._log.write_warning("launch", f"{finding.message}; {finding.hint}")
-        self.findings = [self._finding(self._names)] if self._names else []
+        self.findings = [self._create_finding(self._names)] if self._names else []
         self._show()
 
-    def _finding(self, names: frozenset[str]) -> Diagnostic:
+    def _create_finding(self, names: frozenset[str]) -> Diagnostic:
         domain = self._network.domain_id or 0
         message = phrase(
             "another launch or program on ROS_DOMAIN_ID {domain} has nodes with the same names, which "

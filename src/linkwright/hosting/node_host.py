@@ -124,7 +124,7 @@ class NodeHost:
         if not self._is_closing:
             self._planned.append(plan)
 
-    def forget_planned(self) -> None:
+    def discard_planned(self) -> None:
         """Discard all plans of nodes that have not been started."""
         self._planned.clear()
 
@@ -190,7 +190,7 @@ class NodeHost:
         """End all nodes, and start to end the viewers."""
         self._is_closing = True
         self._closed.set()
-        self.forget_planned()
+        self.discard_planned()
         self.stop_matching(lambda _: True)
 
     async def close(self) -> None:
@@ -236,7 +236,7 @@ class NodeHost:
             node.on_loaded.append(
                 lambda loaded, node_options: self._register(plan.process_name, loaded, node_options.parameters)
             )
-        session.node_started(plan)
+        session.report_node_start(plan)
         if isinstance(node, FinishingNode):
             node.finished.add_done_callback(lambda future: self._handle_finish(plan, node, future))
 
@@ -272,7 +272,7 @@ class NodeHost:
             session.fail(plan)
             session.log.write_diagnostics(error.diagnostics)
             session.log.write_error(plan.process_name, "node has not started")
-            session.node_ended(plan, 1)
+            session.report_node_end(plan, 1)
             return
         name, call = description
         session.fail(call)
@@ -295,12 +295,12 @@ class NodeHost:
 
         session = self._session
         for name, value in parameters.items():
-            call = session.descriptions.call_of(value) if isinstance(value, str) else None
+            call = session.descriptions.find_call(value) if isinstance(value, str) else None
             if call is not None:
                 session.reload.bind(call, partial(self._set_parameter, process_name, node, name))
             if isinstance(node, NodeWithDescription) and name == node.description_parameter:
                 read_description = session.descriptions.library.read(value)
-                warnings = session.descriptions.warnings_of(call) if call else ()
+                warnings = session.descriptions.get_warnings(call) if call else ()
                 session.reload.report(call or process_name, (*warnings, *read_description.diagnostics))
 
     def _set_parameter(self, process_name: str, node: RunningNode, name: str, text: str) -> None:
@@ -324,7 +324,7 @@ class NodeHost:
 
     def _find_description(self, plan: HostedPlan) -> tuple[str, XacroCall] | None:
         for name, value in plan.parameters.items():
-            call = self._session.descriptions.call_of(value) if isinstance(value, str) else None
+            call = self._session.descriptions.find_call(value) if isinstance(value, str) else None
             if call is not None:
                 return name, call
         return None
@@ -369,13 +369,13 @@ class NodeHost:
             session.fail(plan)
             session.log.write_diagnostics(error.diagnostics)
             if plan.owner is not None:
-                session.node_ended(plan, 1)
+                session.report_node_end(plan, 1)
             session.shut_down("the viewer has not started")
             return False
         logger = ".".join([*plan.namespace.strip("/").split("/"), plan.node_name or plan.executable]).lstrip(".")
         self._process_of_logger[logger] = plan.process_name
         if plan.owner is not None:
-            session.node_started(plan)
+            session.report_node_start(plan)
         return True
 
     async def _stop_viewer(self, plan: HostedPlan, viewer: Viewer) -> None:
@@ -394,13 +394,13 @@ class NodeHost:
         else:
             self._session.log.write_error(plan.process_name, f"has ended with exit code {status}")
         if plan.owner is not None:
-            self._session.node_ended(plan, status)
+            self._session.report_node_end(plan, status)
         window = self._windows.pop(plan.process_name, None)
         if window is None:
             return
-        heir = next((other for other, _ in self._running.values() if other.panel_program is not None), None)
-        if heir is not None:
-            self._windows[heir.process_name] = window
+        panel_plan = next((other for other, _ in self._running.values() if other.panel_program is not None), None)
+        if panel_plan is not None:
+            self._windows[panel_plan.process_name] = window
         else:
             self._session.spawn(self._stop_viewer(window, self._viewers.pop_viewer(window)))
 

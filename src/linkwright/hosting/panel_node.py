@@ -42,38 +42,38 @@ class PanelNode(SingleNode, NodeWithPanel):
         self._node, own_arguments = create_node(graph, options, default_name, any_parameters=True)
         arguments = read_rqt_arguments(plan.executable, program, own_arguments)
         self.findings: list[Diagnostic] = arguments.findings
-        self.request = self._panel_request(arguments)
+        self.request = self._create_panel_request(arguments)
 
-    def _panel_request(self, arguments: RqtArguments) -> PanelRequest | None:
+    def _create_panel_request(self, arguments: RqtArguments) -> PanelRequest | None:
         program, values = arguments.program, arguments.values
         if program.panel == "teleop":
-            topic = self._parameter("default_topic", str, str) or _DEFAULT_VELOCITY_TOPIC
+            topic = self._read_parameter("default_topic", str, str) or _DEFAULT_VELOCITY_TOPIC
             return PanelRequest(
                 program.panel,
                 topic=self._node.resolve_topic_name(topic),
-                stamped=self._parameter("default_stamped", bool, bool),
-                linear=self._parameter("default_vx_max", (int, float), float),
-                angular=self._parameter("default_vw_max", (int, float), float),
+                stamped=self._read_parameter("default_stamped", bool, bool),
+                linear=self._read_parameter("default_vx_max", (int, float), float),
+                angular=self._read_parameter("default_vw_max", (int, float), float),
             )
-        if program.takes == "topic" and not values:  # the user chooses the topic in the list of displays
+        if program.positional_kind == "topic" and not values:  # the user chooses the topic in the list of displays
             return PanelRequest("displays", program.display_class)
         return (
             PanelRequest(
                 program.panel,
                 program.display_class,
-                topic=self._node.resolve_topic_name(values[0]) if program.takes == "topic" else "",
-                fields=tuple(map(self._absolute, values)) if program.takes == "fields" else (),
-                node=self._absolute(values[0]) if program.takes == "node" and values else "",
+                topic=self._node.resolve_topic_name(values[0]) if program.positional_kind == "topic" else "",
+                fields=tuple(map(self._make_absolute, values)) if program.positional_kind == "fields" else (),
+                node=self._make_absolute(values[0]) if program.positional_kind == "node" and values else "",
             )
             if program.panel
             else None
         )
 
-    def _absolute(self, name: str) -> str:
+    def _make_absolute(self, name: str) -> str:
         """Return a name with the namespace of the node, unless it begins with a slash."""
         return name if name.startswith("/") else f"{self._node.get_namespace().rstrip('/')}/{name}"
 
-    def _parameter(self, name: str, types: type | tuple[type, ...], convert: Callable[[Any], Any]) -> Any:
+    def _read_parameter(self, name: str, types: type | tuple[type, ...], convert: Callable[[Any], Any]) -> Any:
         """Return the value of a parameter, or None if it is not set or has another type."""
         value = self._node.get_parameter(name).value if self._node.has_parameter(name) else None
         return convert(value) if isinstance(value, types) else None

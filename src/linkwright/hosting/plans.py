@@ -1,4 +1,4 @@
-"""Plans of hosted nodes and viewers, and the interface of a run that the host of nodes uses."""
+"""Plans of hosted nodes and viewers, and the interface of a run for the host of nodes."""
 
 from __future__ import annotations
 
@@ -84,7 +84,7 @@ class HostedPlan:
     @property
     def panel_program(self) -> PanelProgram | None:
         """The program of rqt whose window is a panel of the page, or None for other nodes."""
-        return _panel_program(self.package, self.executable)
+        return _find_panel_program(self.package, self.executable)
 
     @property
     def opens_gazebo_window(self) -> bool:
@@ -94,7 +94,7 @@ class HostedPlan:
     @property
     def gazebo_window(self) -> HostedPlan:
         """The plan of the viewer that replaces Gazebo's window."""
-        from linkwright.hosting.world_config import world_config
+        from linkwright.hosting.world_config import create_world_config
 
         return HostedPlan(
             None,
@@ -103,7 +103,7 @@ class HostedPlan:
             "viewer",
             "/",
             {"use_sim_time": True},
-            viewer_config=lambda: world_config("Gazebo"),
+            viewer_config=lambda: create_world_config("Gazebo"),
             replaced_window="Gazebo's window",
         )
 
@@ -156,17 +156,17 @@ def is_viewer(package: str | None, executable: str) -> bool:
 
 
 def opens_page(package: str | None, executable: str) -> bool:
-    """Return whether a node is RViz or a program of rqt, whose window Linkwright's page replaces."""
-    return is_viewer(package, executable) or _panel_program(package, executable) is not None
+    """Return whether Linkwright's page replaces the window of a node: RViz, or one of rqt."""
+    return is_viewer(package, executable) or _find_panel_program(package, executable) is not None
 
 
-def _panel_program(package: str | None, executable: str) -> PanelProgram | None:
+def _find_panel_program(package: str | None, executable: str) -> PanelProgram | None:
     """Return the program of rqt whose window is a panel of the page, or None for other nodes."""
     if package is None or not package.startswith("rqt"):
         return None
-    from linkwright.hosting.rqt_programs import panel_program  # few launches start programs of rqt
+    from linkwright.hosting.rqt_programs import find_panel_program  # few launches start programs of rqt
 
-    return panel_program(package, executable)
+    return find_panel_program(package, executable)
 
 
 @dataclass(frozen=True)
@@ -201,7 +201,7 @@ class HostOptions:
 
 
 class Supervisor(Protocol):
-    """The callbacks from a host to the run that owns it: a launch, or a viewer of one description."""
+    """The callbacks from a host to the run that owns it: a launch, or a view."""
 
     @property
     def finder(self) -> PackageFinder:
@@ -246,8 +246,8 @@ class Supervisor(Protocol):
     def shut_down(self, reason: str) -> None:
         """End the run when the current work is done."""
 
-    def node_started(self, plan: HostedPlan) -> None:
+    def report_node_start(self, plan: HostedPlan) -> None:
         """Report that a node or viewer has started."""
 
-    def node_ended(self, plan: HostedPlan, status: int) -> None:
+    def report_node_end(self, plan: HostedPlan, status: int) -> None:
         """Report the exit status of a node or viewer that has ended or could not start."""

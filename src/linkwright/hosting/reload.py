@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from linkwright.graph import Node
     from linkwright.nodes.watched_files import ReadWorld
 
-_RETRY_S = 0.06
+_RETRY_DELAY_S = 0.06
 """The delay before a failure is reported, because an editor may still be writing the file."""
 _MISSING_ATTEMPTS = 8
 """The number of attempts to read a missing file, because some editors delete a file before they write it."""
-_CATCH_UP_S = 0.4
+_CATCH_UP_DELAY_S = 0.4
 """The delay after which files are checked once for changes that were made before the watch began."""
 
-_STEP_MS = 20
+_CHECK_INTERVAL_MS = 20
 """The interval, in milliseconds, at which the watcher checks for the end of notifications.
 
 The interval is also the latency.
@@ -97,11 +97,11 @@ class LiveReload:
         Errors are printed at each call, but warnings and notes only when they are new.
         """
         findings = tuple(diagnostics)
-        known_keys = {_finding_key(finding) for finding in self._findings.get(subject, ())}
+        known_keys = {_create_finding_key(finding) for finding in self._findings.get(subject, ())}
         self._log.write_diagnostics(
             finding
             for finding in findings
-            if finding.severity is Severity.ERROR or _finding_key(finding) not in known_keys
+            if finding.severity is Severity.ERROR or _create_finding_key(finding) not in known_keys
         )
         self.show(subject, findings)
 
@@ -129,9 +129,9 @@ class LiveReload:
 
     # --- watched files --------------------------------------------------------------------------------------
 
-    def _files_of_interest(self, call: XacroCall) -> set[Path]:
+    def _find_watched_files(self, call: XacroCall) -> set[Path]:
         """Return the files of a description, and the files that its findings mention."""
-        files = {call.path, *self.descriptions.files_of(call)}
+        files = {call.path, *self.descriptions.get_files(call)}
         for finding in self._findings.get(call, ()):
             spans = (finding.span, *(note.span for note in finding.notes))
             files.update(Path(span.file) for span in spans if span and not span.file.startswith("<"))
@@ -142,8 +142,8 @@ class LiveReload:
             return
         if self._watch is None:
             self._watch = FileWatch(self._on_change, self._on_watch_failure)
-        if self._watch.watch({file for call in self._callbacks for file in self._files_of_interest(call)}):
-            asyncio.get_running_loop().call_later(_CATCH_UP_S, self._reload_missed)
+        if self._watch.watch({file for call in self._callbacks for file in self._find_watched_files(call)}):
+            asyncio.get_running_loop().call_later(_CATCH_UP_DELAY_S, self._reload_missed)
 
     def _on_watch_failure(self, reason: str) -> None:
         self._log.write_warning("launch", f"model files are not watched for changes: {reason}")
@@ -152,7 +152,7 @@ class LiveReload:
         """Reload descriptions whose files changed after they were read, but before the watch began."""
         for call in self._callbacks if not self._is_closed else ():
             read_ns = self.descriptions.read_ns(call)
-            modification_times = [_modified_ns(path) for path in self._files_of_interest(call)]
+            modification_times = [_read_modified_ns(path) for path in self._find_watched_files(call)]
             if max(modification_times) > read_ns or (0 in modification_times and not self._is_broken(call)):
                 self._start_reload(call)
 
@@ -162,8 +162,8 @@ class LiveReload:
         if self._is_closed:
             return
         for call in self._callbacks:
-            files = self._files_of_interest(call)
-            if not paths.isdisjoint(files | {resolved_path(file) for file in files}):
+            files = self._find_watched_files(call)
+            if not paths.isdisjoint(files | {resolve_path(file) for file in files}):
                 self._saved_calls.add(call)
             if self._is_broken(call):
                 # The missing file may be in the folder of this file, or in any package.
@@ -185,7 +185,7 @@ class LiveReload:
         return "errors" if any(call in self._failed_calls for call in affected_calls) else "shown"
 
     def _uses_file(self, call: XacroCall, path: str) -> bool:
-        return any(os.path.realpath(file) == path for file in self._files_of_interest(call))
+        return any(os.path.realpath(file) == path for file in self._find_watched_files(call))
 
     def _is_unsaved(self, call: XacroCall) -> bool:
         """Return whether a description is read with unsaved texts.
@@ -223,17 +223,17 @@ class LiveReload:
                 self.show(call, findings)
                 self._watch_files()
                 return
-            all_exist = all(path.is_file() for path in self._files_of_interest(call))
+            all_exist = all(path.is_file() for path in self._find_watched_files(call))
             if attempt > 0 and all_exist:
                 break
-            await asyncio.sleep(_RETRY_S)
+            await asyncio.sleep(_RETRY_DELAY_S)
             if call in self._pending_reloads:
                 return  # A newer change has already started another reload.
         if call not in self._callbacks:
             return
         self._failed_calls.add(call)
-        known_keys = [_finding_key(finding) for finding in self._findings.get(call, ())]
-        if call in self._saved_calls or known_keys != [_finding_key(finding) for finding in findings]:
+        known_keys = [_create_finding_key(finding) for finding in self._findings.get(call, ())]
+        if call in self._saved_calls or known_keys != [_create_finding_key(finding) for finding in findings]:
             self.report(call, findings)
         self._saved_calls.discard(call)
         self._watch_files()
@@ -267,11 +267,11 @@ class LiveReload:
         self._watch_files()
 
 
-def _finding_key(finding: Diagnostic) -> tuple[object, ...]:
+def _create_finding_key(finding: Diagnostic) -> tuple[object, ...]:
     return finding.code, finding.message, finding.span
 
 
-def _modified_ns(path: Path) -> int:
+def _read_modified_ns(path: Path) -> int:
     """Return a file's modification time in ns since the epoch, or 0 if it does not exist."""
     try:
         return path.stat().st_mtime_ns
@@ -307,7 +307,7 @@ class FileWatch:
         folders = frozenset(
             (str(folder), inode)
             for file in files
-            for folder, inode in {_nearest_folder(file), _nearest_folder(resolved_path(file))}
+            for folder, inode in {_find_nearest_folder(file), _find_nearest_folder(resolve_path(file))}
         )
         if folders == self._folders:
             return False
@@ -338,7 +338,7 @@ class FileWatch:
                 *folders,
                 watch_filter=None,
                 debounce=_DEBOUNCE_MS,
-                step=_STEP_MS,
+                step=_CHECK_INTERVAL_MS,
                 stop_event=stop_event,
                 rust_timeout=1000,
                 raise_interrupt=False,
@@ -362,7 +362,7 @@ class FileWatch:
             return
 
 
-def _nearest_folder(file: Path) -> tuple[Path, int]:
+def _find_nearest_folder(file: Path) -> tuple[Path, int]:
     """Return the nearest existing folder above a file, with its inode number.
 
     The number changes when the folder is replaced.
@@ -377,7 +377,7 @@ def _nearest_folder(file: Path) -> tuple[Path, int]:
     return file.absolute().parents[-1], 0
 
 
-def resolved_path(path: Path) -> Path:
+def resolve_path(path: Path) -> Path:
     """Return a path with its links resolved, or unchanged if the links form a cycle."""
     try:
         return path.resolve()
@@ -440,7 +440,7 @@ class WatchedFiles:
 
         This has no effect unless this process expanded the text from a file.
         """
-        call = self._reload.descriptions.call_of(text)
+        call = self._reload.descriptions.find_call(text)
         if call is not None and (call, name) not in self._watched:
             self._watched.add((call, name))
             self._reload.bind(call, on_text)

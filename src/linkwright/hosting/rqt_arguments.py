@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, did_you_mean, phrase
-from linkwright.hosting.rqt_programs import PanelProgram, instead_of_program, program_of_plugin
+from linkwright.hosting.rqt_programs import PanelProgram, find_program_of_plugin, find_replacement
 
 _IGNORED_OPTIONS: Mapping[str, int] = {
     "-f": 0,
@@ -55,34 +55,36 @@ class RqtArguments:
         self.findings.append(Diagnostic("LAUNCH144", message, hint=hint).with_changes(severity=Severity.WARNING))
 
 
-def usage(executable: str, program: PanelProgram) -> str:
+def format_usage(executable: str, program: PanelProgram) -> str:
     """Return the help text of a program.
 
     Args:
-        executable: the name of the program.
-        program: the program.
+        executable: the name of the executable in its package.
+        program: the program of rqt and its panel.
     """
     plugin = "" if program.panel else " [-s PLUGIN]"
     return f"""\
-usage: {executable}{plugin}{_POSITIONAL_ARGUMENTS[program.takes]} [--ros-args ...]
+usage: {executable}{plugin}{_POSITIONAL_ARGUMENTS[program.positional_kind]} [--ros-args ...]
 
 Opens the page with the panel that replaces the window of {executable}.
 """
 
 
 def read_rqt_arguments(executable: str, program: PanelProgram, arguments: Sequence[str]) -> RqtArguments:
-    """Return the arguments of a program of rqt. Arguments without an effect are findings.
+    """Return the arguments of a program of rqt.
+
+    Arguments without an effect are findings.
 
     Args:
-        executable: the name of the program.
-        program: the program.
+        executable: the name of the executable in its package.
+        program: the program of rqt and its panel.
         arguments: the command line without ROS arguments.
     """
-    read = RqtArguments(program)
+    parsed = RqtArguments(program)
     is_for_plugin = False
     remaining_arguments = iter(arguments)
     for argument in remaining_arguments:
-        ignored_options = {**_IGNORED_OPTIONS, **read.program.ignored_options}
+        ignored_options = {**_IGNORED_OPTIONS, **parsed.program.ignored_options}
         known_options = (*_STANDALONE_OPTIONS, *_PERSPECTIVE_OPTIONS, *ignored_options)
         if argument == _PLUGIN_ARGUMENTS and not is_for_plugin:
             is_for_plugin = True
@@ -92,35 +94,35 @@ def read_rqt_arguments(executable: str, program: PanelProgram, arguments: Sequen
         elif argument in _STANDALONE_OPTIONS or argument in _PERSPECTIVE_OPTIONS:
             value = next(remaining_arguments, None)
             if value is None:
-                read.warn(
+                parsed.warn(
                     phrase("argument '{argument}' of {program} needs a value", argument=argument, program=executable)
                 )
             elif argument in _STANDALONE_OPTIONS:
-                _select_plugin(read, value)
+                _select_plugin(parsed, value)
             else:
-                read.warn(
+                parsed.warn(
                     phrase("{program} ignores the perspective '{value}'", program=executable, value=value),
                     phrase("arrange the panels in the page, which keeps the arrangement"),
                 )
-        elif argument and not argument.startswith("-") and _takes_another_value(read):
-            read.values.append(argument)
+        elif argument and not argument.startswith("-") and _accepts_another_value(parsed):
+            parsed.values.append(argument)
         elif argument:
-            read.warn(
+            parsed.warn(
                 phrase("{program} has no argument '{argument}'", program=executable, argument=argument),
                 did_you_mean(argument, known_options),
             )
-    return read
+    return parsed
 
 
-def _takes_another_value(read: RqtArguments) -> bool:
-    return read.program.takes == "fields" or (read.program.takes != "" and not read.values)
+def _accepts_another_value(parsed: RqtArguments) -> bool:
+    return parsed.program.positional_kind == "fields" or (parsed.program.positional_kind != "" and not parsed.values)
 
 
-def _select_plugin(read: RqtArguments, plugin: str) -> None:
-    program = program_of_plugin(plugin)
+def _select_plugin(parsed: RqtArguments, plugin: str) -> None:
+    program = find_program_of_plugin(plugin)
     if program is None:
-        read.warn(
-            phrase("the page has no panel for the rqt plugin '{plugin}'", plugin=plugin), instead_of_program(plugin)
+        parsed.warn(
+            phrase("the page has no panel for the rqt plugin '{plugin}'", plugin=plugin), find_replacement(plugin)
         )
     else:
-        read.program = program
+        parsed.program = program

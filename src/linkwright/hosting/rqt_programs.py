@@ -1,4 +1,4 @@
-"""The programs of rqt that open a panel of the page, and the programs whose panel the page does not have."""
+"""The programs of rqt: those that open a panel of the page, and those without a panel."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ class PanelProgram:
     Attributes:
         panel: the name of the panel in the page; empty if the page opens as it is.
         display_class: the class of the display that the panel needs; empty if it needs none.
-        takes: the meaning of the positional arguments: a topic, fields to plot, a node, or none.
+        positional_kind: the meaning of the positional arguments: a topic, fields to plot, a node, or none.
         ignored_options: the options that are accepted without an effect, each with the number of its values.
     """
 
     panel: str
     display_class: str = ""
-    takes: Literal["", "topic", "fields", "node"] = ""
+    positional_kind: Literal["", "topic", "fields", "node"] = ""
     ignored_options: Mapping[str, int] = field(default=NO_OPTIONS)
 
 
@@ -37,9 +37,9 @@ PANEL_PROGRAMS: Mapping[tuple[str, str], PanelProgram] = MappingProxyType(
         ("rqt_gui", "rqt_gui"): PanelProgram(""),
         ("rqt_image_view", "rqt_image_view"): PanelProgram("image", "rviz_default_plugins/Image", "topic"),
         ("rqt_plot", "rqt_plot"): PanelProgram(
-            "plot", takes="fields", ignored_options={"-P": 0, "--pause": 0, "-e": 0, "--empty": 0, "-b": 1}
+            "plot", positional_kind="fields", ignored_options={"-P": 0, "--pause": 0, "-e": 0, "--empty": 0, "-b": 1}
         ),
-        ("rqt_reconfigure", "rqt_reconfigure"): PanelProgram("parameters", takes="node"),
+        ("rqt_reconfigure", "rqt_reconfigure"): PanelProgram("parameters", positional_kind="node"),
         ("rqt_robot_steering", "rqt_robot_steering"): PanelProgram("teleop"),
         ("rqt_tf_tree", "rqt_tf_tree"): PanelProgram("displays", "rviz_default_plugins/TF"),
         ("rqt_topic", "rqt_topic"): PanelProgram("topics"),
@@ -75,12 +75,12 @@ _OTHER_PROGRAMS = phrase(
 )
 
 
-def panel_program(package: str | None, executable: str) -> PanelProgram | None:
+def find_panel_program(package: str | None, executable: str) -> PanelProgram | None:
     """Return the program with a package and an executable, or None if it opens no panel."""
     return None if package is None else PANEL_PROGRAMS.get((package, executable))
 
 
-def program_of_plugin(plugin: str) -> PanelProgram | None:
+def find_program_of_plugin(plugin: str) -> PanelProgram | None:
     """Return the program that shows a plugin of rqt, or None if the page has no such panel.
 
     Args:
@@ -91,7 +91,7 @@ def program_of_plugin(plugin: str) -> PanelProgram | None:
     return PANEL_PROGRAMS.get((package, package))
 
 
-def instead_of_program(package: str) -> Phrase | None:
+def find_replacement(package: str) -> Phrase | None:
     """Return the replacement of a program of rqt that is missing, or None for other packages.
 
     Args:

@@ -51,7 +51,7 @@ def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagn
     """
     from linkwright.rviz import RvizConfig
 
-    path, fixed_frame, findings = _read(arguments)
+    path, fixed_frame, findings = _parse_arguments(arguments)
     config: RvizConfig | None = None
     if path:
         try:
@@ -65,7 +65,7 @@ def read_viewer_config(arguments: Sequence[str]) -> tuple[RvizConfig, list[Diagn
     return config, findings
 
 
-def _read(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagnostic]]:
+def _parse_arguments(arguments: Sequence[str]) -> tuple[str | None, str | None, list[Diagnostic]]:
     path: str | None = None
     fixed_frame: str | None = None
     findings: list[Diagnostic] = []

@@ -19,40 +19,40 @@ _REMAPPING = re.compile(r"<remapping>\s*([\w/]+)\s*:=\s*([\w/]+)\s*</remapping>"
 _TOPIC = re.compile(r"<topic>\s*([\w/]+)\s*</topic>")
 
 
-def scan_topics(text: str) -> list[str]:
+def find_scan_topics(text: str) -> list[str]:
     """Return the topics of the laser scanners in a description, in document order."""
     matches = (_SCAN_TOPIC.search(match[0]) for match in _LIDAR.finditer(text))
-    return _absolute_topics(match[1] or match[2] for match in matches if match)
+    return _to_absolute_topics(match[1] or match[2] for match in matches if match)
 
 
-def image_topics(text: str) -> list[str]:
+def find_image_topics(text: str) -> list[str]:
     """Return the topics of the cameras in a description, in document order.
 
     Cameras of gz without a topic name have the default topics ``/image`` and ``/depth_image``, as in
     ``linkwright sim``.
     """
-    return _absolute_topics(_image_topic(match[0], match[1], match[2]) for match in _CAMERA.finditer(text))
+    return _to_absolute_topics(_compute_image_topic(match[0], match[1], match[2]) for match in _CAMERA.finditer(text))
 
 
-def _image_topic(sensor: str, kind: str, name: str) -> str:
+def _compute_image_topic(sensor: str, kind: str, name: str) -> str:
     if not _CLASSIC_PLUGIN.search(sensor):
         topic_match = _TOPIC.search(sensor)
         if topic_match is None:
             return "depth_image" if kind.startswith("depth") else "image"
         return f"{topic_match[1]}/image" if kind.startswith("rgbd") else topic_match[1]
-    image_topic = _first_match(_IMAGE_NAME, sensor, "image_raw")
+    image_topic = _find_first_match(_IMAGE_NAME, sensor, "image_raw")
     topic_name = (
-        image_topic if image_topic.startswith("/") else f"{_first_match(_CAMERA_NAME, sensor, name)}/{image_topic}"
+        image_topic if image_topic.startswith("/") else f"{_find_first_match(_CAMERA_NAME, sensor, name)}/{image_topic}"
     )
     topic_name = dict(_REMAPPING.findall(sensor)).get(topic_name, topic_name)
-    return topic_name if topic_name.startswith("/") else f"{_first_match(_NAMESPACE, sensor, '')}/{topic_name}"
+    return topic_name if topic_name.startswith("/") else f"{_find_first_match(_NAMESPACE, sensor, '')}/{topic_name}"
 
 
-def _first_match(pattern: re.Pattern[str], text: str, default: str) -> str:
+def _find_first_match(pattern: re.Pattern[str], text: str, default: str) -> str:
     match = pattern.search(text)
     return match[1] if match else default
 
 
-def _absolute_topics(topics: Iterable[str]) -> list[str]:
+def _to_absolute_topics(topics: Iterable[str]) -> list[str]:
     """Return the topics as absolute names, without duplicates."""
     return list(dict.fromkeys(f"/{topic.strip('/')}" for topic in topics))

@@ -23,7 +23,7 @@ from linkwright.files.unfinished import finish_all
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.packages import PackageFinder, use_finder
 from linkwright.process.event_loop import run_coroutine
-from linkwright.process.interruption import on_lost_interrupt, signal_again
+from linkwright.process.interruption import on_lost_interrupt, resend_signal
 
 T = TypeVar("T")
 
@@ -97,7 +97,7 @@ class SignalWatch:
         if threading.current_thread() is threading.main_thread():
             for signal_number in _SIGNALS:
                 self._previous_handlers[signal_number] = signal.signal(signal_number, self._handle)
-            self._previous_hook = on_lost_interrupt(self._handle_again)
+            self._previous_hook = on_lost_interrupt(self._resend_signal)
         return self
 
     def __exit__(
@@ -136,7 +136,7 @@ class SignalWatch:
             ends_now = self._is_hurried or session is None or session.loop is None
             self._is_hurried = True
         self.received, self._last_signal_time = self.received or signal_number, now
-        self._end_after(0.0 if ends_now else _DEADLINE_S)
+        self._schedule_end(0.0 if ends_now else _DEADLINE_S)
         if ends_now or self._is_creating_loop:
             return
         if session is None or session.loop is None:
@@ -144,7 +144,7 @@ class SignalWatch:
         session.loop.call_soon_threadsafe(self._extend_deadline, session)
         if session.is_blocking:
             raise KeyboardInterrupt
-        session.loop.call_soon_threadsafe(session.interrupt, interruption_text(signal_number))
+        session.loop.call_soon_threadsafe(session.interrupt, format_interruption(signal_number))
 
     def _extend_deadline(self, session: Session) -> None:
         """Extend the deadline by the time that processes may take to end.
@@ -152,16 +152,16 @@ class SignalWatch:
         This is called when the event loop is responsive.
         """
         if not self._is_hurried:
-            self._end_after(_DEADLINE_S + session.seconds_to_end())
+            self._schedule_end(_DEADLINE_S + session.seconds_to_end())
 
-    def _end_after(self, seconds: float) -> None:
+    def _schedule_end(self, seconds: float) -> None:
         if self._deadline is not None:
             self._deadline.cancel()
         self._deadline = threading.Timer(seconds, self._end_immediately)
         self._deadline.daemon = True
         self._deadline.start()
 
-    def _handle_again(self) -> None:
+    def _resend_signal(self) -> None:
         """Send the signal again after its KeyboardInterrupt was lost.
 
         The state before the signal is restored first.
@@ -170,7 +170,7 @@ class SignalWatch:
         if self._deadline is not None:
             self._deadline.cancel()
         if signal_number is not None:
-            signal_again(signal_number)
+            resend_signal(signal_number)
 
     def _end_immediately(self) -> None:
         """End the process from another thread.
@@ -185,7 +185,7 @@ class SignalWatch:
         os._exit(self.exit_status or 1)
 
 
-def interruption_text(signal_number: int) -> str:
+def format_interruption(signal_number: int) -> str:
     """Return the line that the log shows for a signal."""
     if signal_number == signal.SIGINT:
         return "user interrupted with ctrl-c (SIGINT)"
@@ -210,7 +210,7 @@ def run_to_end(run: Callable[[SignalWatch], bool], finder: PackageFinder, log: L
         except KeyboardInterrupt:
             if signals.received is None:  # raised in another thread, or by the user's own code
                 raise
-            log.write_warning("launch", interruption_text(signals.received))
+            log.write_warning("launch", format_interruption(signals.received))
             succeeded = False
         if signals.exit_status is not None:
             return signals.exit_status

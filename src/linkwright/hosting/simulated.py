@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
-from linkwright.hosting.sensor_topics import image_topics, scan_topics
+from linkwright.hosting.sensor_topics import find_image_topics, find_scan_topics
 from linkwright.hosting.signals import SignalWatch, run_to_end
 from linkwright.hosting.simulated_files import SimulatedDescriptions
 from linkwright.hosting.view import ModelView
@@ -35,11 +35,11 @@ _DRIVE_PLUGIN = re.compile(
 )
 
 
-def _description_text(description: Description) -> str:
+def _to_text(description: Description) -> str:
     return description.text
 
 
-def _complete_text(description: Description, inference: Inference) -> str:
+def _complete_description(description: Description, inference: Inference) -> str:
     from linkwright.inference.applying import complete_description  # Only some robots need it.
 
     return write(complete_description(description.document, inference))
@@ -81,7 +81,7 @@ class SimulatedWorld:
     headless: bool = False
     gazebo_mistakes: bool = False
     arguments: tuple[tuple[str, str], ...] = ()
-    complete: Callable[[Description], str] = _description_text
+    complete: Callable[[Description], str] = _to_text
 
     @classmethod
     def of(
@@ -102,12 +102,12 @@ class SimulatedWorld:
             return (
                 new_description.text
                 if new_description.robot is None
-                else _complete_text(new_description, infer(new_description.robot))
+                else _complete_description(new_description, infer(new_description.robot))
             )
 
         assert description.robot is not None, "something was inferred about it"
         pose = (0.0, 0.0, -inference.ground_z, 0.0, 0.0, 0.0)
-        path, text = Path(description.name).absolute(), _complete_text(description, inference)
+        path, text = Path(description.name).absolute(), _complete_description(description, inference)
         return cls(world, path, description, text, description.robot.name, pose, complete=complete)
 
     @property
@@ -184,43 +184,43 @@ class SimulatedView(ModelView):
             self._files.store_text(self._call, text, (self._call.path,) if description is None else description.files)
         if description is not None:
             self._files.store(self._call, description)
-            self._plan(
+            self._plan_node(
                 "robot_state_publisher", "robot_state_publisher", {"robot_description": text, "use_sim_time": True}
             )
         return True
 
-    def _plan_others(self) -> None:
-        self._plan(*_SIMULATOR_NODE, self._world.parameters, output="screen", waits_for_fix=False)
+    def _plan_other_nodes(self) -> None:
+        self._plan_node(*_SIMULATOR_NODE, self._world.parameters, output="screen", waits_for_fix=False)
         if not self._world.headless:
-            self._plan(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._viewer_config)
+            self._plan_node(*VIEWER, {"use_sim_time": True}, name="viewer", viewer_config=self._create_viewer_config)
 
-    def _viewer_config(self) -> RvizConfig:
+    def _create_viewer_config(self) -> RvizConfig:
         """Return a configuration that shows the world, and the robot with its scans and images.
 
         Only the images of the first camera are shown, because rendering takes time. Odometry is hidden, because it
         would cover the robot.
         """
-        from linkwright.hosting.world_config import world_config
+        from linkwright.hosting.world_config import create_world_config
 
-        config = world_config(str(self._world.path), *self._world.pose[:2])
+        config = create_world_config(str(self._world.path), *self._world.pose[:2])
 
-        def add(cls: str, topic: str, *, checked: bool = True) -> None:
-            display = config.new_display(cls, cls.rpartition("/")[2])
+        def add_display(display_class: str, topic: str, *, checked: bool = True) -> None:
+            display = config.new_display(display_class, display_class.rpartition("/")[2])
             display.section.put(("Topic", "Value"), topic, string=True)
             display.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
             config.insert(display)
             display.checked = checked
 
         text = self._world.text
-        for topic in scan_topics(text):
-            add(_SCAN_DISPLAY, topic)
-        for index, topic in enumerate(image_topics(text)):
-            add(_IMAGE_DISPLAY, topic, checked=index == 0)
+        for topic in find_scan_topics(text):
+            add_display(_SCAN_DISPLAY, topic)
+        for index, topic in enumerate(find_image_topics(text)):
+            add_display(_IMAGE_DISPLAY, topic, checked=index == 0)
         if _DRIVE_PLUGIN.search(text):
-            add(_ODOMETRY_DISPLAY, _ODOMETRY_TOPIC, checked=False)
+            add_display(_ODOMETRY_DISPLAY, _ODOMETRY_TOPIC, checked=False)
         return config
 
-    def node_ended(self, plan: HostedPlan, status: int) -> None:
+    def report_node_end(self, plan: HostedPlan, status: int) -> None:
         """End the view if the node that ended is the simulator."""
         if plan.package == _SIMULATOR_NODE[0]:
             if status:

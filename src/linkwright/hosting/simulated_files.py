@@ -1,4 +1,4 @@
-"""The descriptions of a simulated world and its robot, reloaded when the user saves their files."""
+"""The descriptions of a simulated world and its robot, reloaded from saved files."""
 
 from __future__ import annotations
 

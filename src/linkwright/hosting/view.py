@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.hosting.argument_form import argument_form
+from linkwright.hosting.argument_form import create_argument_form
 from linkwright.hosting.launch_log import LaunchLog, output_destinations
 from linkwright.hosting.node_host import NodeHost
 from linkwright.hosting.plans import VIEWER, HostedPlan, HostOptions
@@ -130,9 +130,9 @@ class ModelView:
             if writer is not None:
                 self._recorder = self._create_recorder(writer)
             if self._plan_description():
-                self._plan_others()
+                self._plan_other_nodes()
                 if foxglove is not None:
-                    self._plan("foxglove_bridge", "foxglove_bridge", {"port": foxglove})
+                    self._plan_node("foxglove_bridge", "foxglove_bridge", {"port": foxglove})
                 await self.host.serve_pages()
                 if not self._end_event.is_set():
                     await self.host.start_planned()
@@ -198,7 +198,7 @@ class ModelView:
         self.is_blocking = True
         try:
             self._text = self.descriptions.expand(self._call)
-            self.reload.report(self._call, self.descriptions.warnings_of(self._call))
+            self.reload.report(self._call, self.descriptions.get_warnings(self._call))
         except DescriptionError as error:
             self.fail(self._call)
             if not error.is_missing:
@@ -215,13 +215,15 @@ class ModelView:
         finally:
             self.is_blocking = False
         parameters = {"robot_description": self._text, "publish_frequency": _PUBLISH_FREQUENCY_HZ}
-        self._plan("robot_state_publisher", "robot_state_publisher", parameters, owner=self._call)
+        self._plan_node("robot_state_publisher", "robot_state_publisher", parameters, owner=self._call)
         return True
 
-    def _plan_others(self) -> None:
+    def _plan_other_nodes(self) -> None:
         """Plan the remaining nodes: the sliders and the viewer."""
-        self._plan("joint_state_publisher_gui", "joint_state_publisher_gui")
-        self._plan(*VIEWER, name="viewer", viewer_config=self._viewer_config, viewer_started=self._set_viewer)
+        self._plan_node("joint_state_publisher_gui", "joint_state_publisher_gui")
+        self._plan_node(
+            *VIEWER, name="viewer", viewer_config=self._create_viewer_config, viewer_started=self._set_viewer
+        )
 
     def _set_viewer(self, viewer: Viewer) -> None:
         self._viewer = viewer
@@ -235,7 +237,10 @@ class ModelView:
         self._replace_description(self._call)
 
     def _replace_description(self, call: XacroCall) -> None:
-        """Publish a description whose file has been fixed, one with other arguments, or another file."""
+        """Publish another description in place of the current one.
+
+        Its file has been fixed, its arguments have changed, or it is another file.
+        """
         previous_call, self._call, self._form, self._text = self._call, call, None, None
         self.host.stop_matching(lambda owner: owner is previous_call)
         self.reload.forget(previous_call)
@@ -247,7 +252,7 @@ class ModelView:
 
     async def _request_arguments(self, call: XacroCall, error: DescriptionError) -> None:
         """Show a form in the pages if the error can be fixed by values of arguments."""
-        form = await asyncio.to_thread(argument_form, call, self.finder, error.diagnostics)
+        form = await asyncio.to_thread(create_argument_form, call, self.finder, error.diagnostics)
         if form is not None and call is self._call and self._text is None:
             self._form = form
             self._show_form()
@@ -270,7 +275,7 @@ class ModelView:
         if robot is not None and manager is not None and manager.fixed_frame not in robot.links:
             manager.set_fixed_frame(robot.root)
 
-    def _plan(
+    def _plan_node(
         self,
         package: str,
         executable: str,
@@ -285,7 +290,7 @@ class ModelView:
     ) -> None:
         config_path = self.options.rviz
         if viewer_config is not None and config_path is not None:
-            viewer_config = partial(_config_of, config_path)
+            viewer_config = partial(_load_config, config_path)
         plan = HostedPlan(
             owner or self,
             f"{name or executable}-{next(self._process_numbers)}",
@@ -306,7 +311,7 @@ class ModelView:
         """The name under which unsaved edits of the viewer's configuration are stored."""
         return str(self._call.path)
 
-    def _viewer_config(self) -> RvizConfig:
+    def _create_viewer_config(self) -> RvizConfig:
         """Return a configuration with the displays Grid, RobotModel and TF.
 
         The Fixed Frame is the root link.
@@ -317,7 +322,7 @@ class ModelView:
 
         library = self.descriptions.library
         robot = None if self._text is None else library.read(self._text).robot
-        frame = robot.root if robot is not None else _first_link(self._call.path)
+        frame = robot.root if robot is not None else _find_first_link(self._call.path)
         size = size_of(robot) if robot is not None else None
         finder = library.packages(self._text or "") or self.finder
         shows_frames = robot is not None and not has_visuals(robot, finder)
@@ -340,15 +345,15 @@ class ModelView:
         """
         task = asyncio.get_running_loop().create_task(coroutine)
         self._tasks.add(task)
-        task.add_done_callback(self._handle_done)
+        task.add_done_callback(self._handle_task_end)
 
-    def _handle_done(self, task: asyncio.Task[Any]) -> None:
+    def _handle_task_end(self, task: asyncio.Task[Any]) -> None:
         self._tasks.discard(task)
         if not task.cancelled() and task.exception() is not None:
             self._exception = task.exception()
             self._end_event.set()
 
-    def node_started(self, plan: HostedPlan) -> None:
+    def report_node_start(self, plan: HostedPlan) -> None:
         """Log the first lines of the log when the first node starts.
 
         If an error keeps all nodes from starting, only that error is printed.
@@ -357,7 +362,7 @@ class ModelView:
             self._has_logged_start = True
             self.log.begin()
 
-    def node_ended(self, plan: HostedPlan, status: int) -> None:
+    def report_node_end(self, plan: HostedPlan, status: int) -> None:
         """Do nothing, because the view continues without its nodes."""
 
     def interrupt(self, reason: str) -> None:
@@ -367,7 +372,7 @@ class ModelView:
 
     def shut_down(self, reason: str) -> None:
         """End the view, without starting the nodes that are still planned."""
-        self.host.forget_planned()
+        self.host.discard_planned()
         self._end_event.set()
 
     def seconds_to_end(self) -> float:
@@ -386,13 +391,13 @@ class ModelView:
         self.log.close()
 
 
-def _config_of(rviz: Path) -> RvizConfig:
+def _load_config(rviz: Path) -> RvizConfig:
     from linkwright.rviz import RvizConfig
 
     return RvizConfig.load(rviz)
 
 
-def _first_link(path: Path) -> str:
+def _find_first_link(path: Path) -> str:
     """Return the first link in the text of an invalid description, which is usually the root.
 
     If there is none, return ``base_link``.

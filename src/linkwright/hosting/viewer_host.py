@@ -27,7 +27,7 @@ _RECONNECT_TIMEOUT_S = 2.5
 This is longer than the interval at which the pages try to reconnect.
 """
 
-_POLL_S = 0.1
+_POLL_INTERVAL_S = 0.1
 
 
 class ViewerHost:
@@ -61,7 +61,10 @@ class ViewerHost:
             viewer.show_diagnostics(findings)
 
     def attach_panel(self, node: RunningNode) -> None:
-        """Show the sliders of a node in the viewers, or open the panel that it requests in the first viewer."""
+        """Show the panel of a node.
+
+        Sliders are shown in all viewers. A panel that the node requests opens in the first viewer.
+        """
         for number, (_, viewer) in enumerate(self._viewers.values()):
             _attach_panel(viewer, node)
             if number == 0:
@@ -90,7 +93,7 @@ class ViewerHost:
         options = self._session.options
         return PageServer(
             options.host,
-            self._port_for(plan),
+            self._choose_port(plan),
             only_loopback=options.terminal is not None,
             needs_terminal=options.needs_terminal,
         )
@@ -151,7 +154,7 @@ class ViewerHost:
             history=session.options.history,
         )
         self._servers.pop(plan.process_name, None)
-        viewer.make_guests = lambda: _make_guests(viewer)
+        viewer.make_guests = lambda: _create_guests(viewer)
         if session.options.terminal is not None:
             from linkwright.panels.terminal.feature import TerminalFeature
 
@@ -182,13 +185,13 @@ class ViewerHost:
 
     async def _open_unless_reconnected(self, viewer: Viewer) -> None:
         """Open the page in a browser, unless a page of the previous run reconnects."""
-        for _ in range(round(_RECONNECT_TIMEOUT_S / _POLL_S)):
+        for _ in range(round(_RECONNECT_TIMEOUT_S / _POLL_INTERVAL_S)):
             if self._session.is_ending or len(viewer.audience) > 0:
                 return
-            await asyncio.sleep(_POLL_S)
+            await asyncio.sleep(_POLL_INTERVAL_S)
         _open_in_browser(viewer.url)
 
-    def _port_for(self, plan: HostedPlan) -> int | None:
+    def _choose_port(self, plan: HostedPlan) -> int | None:
         """Return the port that the user requested.
 
         Return None if another page of this run already uses it.
@@ -236,7 +239,7 @@ def load_viewer() -> None:
     import linkwright.viewer.viewer  # noqa: F401 - only loaded
 
 
-def _make_guests(viewer: Viewer) -> GuestRecordings:
+def _create_guests(viewer: Viewer) -> GuestRecordings:
     from linkwright.viewer.guests import GuestRecordings  # few users upload recordings
 
     return GuestRecordings(viewer)

@@ -13,7 +13,7 @@ _CAMERA_DISTANCE = 5.0
 """The distance in m from which the camera shows an empty world."""
 
 
-def world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
+def create_world_config(name: str, x: float = 0.0, y: float = 0.0) -> RvizConfig:
     """Return a configuration with the world and its robots, a grid, and a fixed view.
 
     The displays of robot models and transforms are disabled, because they would draw parts of the world twice.

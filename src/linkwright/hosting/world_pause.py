@@ -44,17 +44,17 @@ class WorldPause:
         """Pause the world, if one is running."""
         if self._state == self._state_type.STATE_PLAYING and self._pause.service_is_ready():
             self.is_active = True
-            _call(self._pause)
+            _call_service(self._pause)
 
     def end(self) -> None:
         """Resume the world that `begin` has paused."""
         if self.is_active and self._state == self._state_type.STATE_PAUSED and self._resume.service_is_ready():
-            _call(self._resume)
+            _call_service(self._resume)
         self.is_active = False
 
     def _receive(self, message: Any) -> None:
         self._state = message.state
 
 
-def _call(client: Client[Any, Any]) -> None:
+def _call_service(client: Client[Any, Any]) -> None:
     client.call_async(client.srv_type.Request())

@@ -113,12 +113,12 @@ class Descriptions:
         The findings about this world are not reported again.
 
         Args:
-            world: the world.
+            world: the world as it was read.
             read: reads the world again from its path.
         """
         call = WorldCall(world.path.absolute(), read=read)
         self._read_ns[call] = world.read_ns
-        self._known_findings |= {_finding_key(diagnostic) for diagnostic in world.diagnostics}
+        self._known_findings |= {_create_finding_key(diagnostic) for diagnostic in world.diagnostics}
         self._set_world(call, world)
         return call
 
@@ -183,15 +183,15 @@ class Descriptions:
         """
         if isinstance(call, WorldCall):
             self._set_world(call, description)
-            return str(call.path), self._new_findings(description.diagnostics)
+            return str(call.path), self._find_new_findings(description.diagnostics)
         text = self.store(call, description)
         return (None if description.robot is None else text), description.diagnostics
 
-    def call_of(self, text: str) -> XacroCall | None:
+    def find_call(self, text: str) -> XacroCall | None:
         """Return the call from which a text was expanded, or None if it was not expanded here."""
         return self._calls.get(text)
 
-    def warnings_of(self, call: XacroCall) -> tuple[Diagnostic, ...]:
+    def get_warnings(self, call: XacroCall) -> tuple[Diagnostic, ...]:
         """Return the warnings of the last successful expansion of a call.
 
         The result is empty before the first successful expansion.
@@ -205,13 +205,13 @@ class Descriptions:
         """
         return self._read_ns.get(call, 0)
 
-    def files_of(self, call: XacroCall) -> tuple[Path, ...]:
+    def get_files(self, call: XacroCall) -> tuple[Path, ...]:
         """Return the files that the last successful expansion of a call read, and its mesh files.
 
         Before the first successful expansion, the result is only the description file.
         """
         if call in self._robots and call not in self._meshes:
-            self._meshes[call] = _mesh_files(self._robots[call], self.finder, call.path.parent)
+            self._meshes[call] = _find_mesh_files(self._robots[call], self.finder, call.path.parent)
         if call in self._worlds and call not in self._meshes:
             self._meshes[call] = self._worlds[call].mesh_files
         return (*self._files.get(call, (call.path,)), *self._meshes.get(call, ()))
@@ -220,17 +220,19 @@ class Descriptions:
         self.record_read_time(call)
         world = call.read(str(call.path))
         errors = [
-            diagnostic for diagnostic in self._new_findings(world.diagnostics) if diagnostic.severity is Severity.ERROR
+            diagnostic
+            for diagnostic in self._find_new_findings(world.diagnostics)
+            if diagnostic.severity is Severity.ERROR
         ]
         if errors:
             raise DescriptionError(call, errors)
         return world
 
-    def _new_findings(self, findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
-        return tuple(finding for finding in findings if _finding_key(finding) not in self._known_findings)
+    def _find_new_findings(self, findings: tuple[Diagnostic, ...]) -> tuple[Diagnostic, ...]:
+        return tuple(finding for finding in findings if _create_finding_key(finding) not in self._known_findings)
 
 
-def _mesh_files(robot: Robot, finder: PackageFinder, folder: Path) -> tuple[Path, ...]:
+def _find_mesh_files(robot: Robot, finder: PackageFinder, folder: Path) -> tuple[Path, ...]:
     """Return the mesh files of a robot that exist, without duplicates."""
     from linkwright.urdf import Mesh
 
@@ -246,7 +248,7 @@ def _mesh_files(robot: Robot, finder: PackageFinder, folder: Path) -> tuple[Path
     return tuple(path for path in mesh_files if path.is_file())
 
 
-def _finding_key(finding: Diagnostic) -> tuple[str, str]:
+def _create_finding_key(finding: Diagnostic) -> tuple[str, str]:
     return finding.code, str(finding.message)
 
 

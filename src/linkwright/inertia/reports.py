@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict
 
 from linkwright.diagnostics import Phrase, counted, display_path, phrase, quoted_names
-from linkwright.diagnostics.render import shown_width
+from linkwright.diagnostics.render import compute_width
 from linkwright.diagnostics.translation import localized
 from linkwright.geometry.mass import MassProperties
 from linkwright.inertia.blocks import inertial_block
@@ -71,9 +71,9 @@ def as_text(
 def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
     """Yield the lines of a table with its header and left-aligned cells."""
     lines = [tuple(map(localized, _COLUMN_TITLES)), *rows]
-    widths = [max(map(shown_width, column)) for column in zip(*lines, strict=True)]
+    widths = [max(map(compute_width, column)) for column in zip(*lines, strict=True)]
     for line in lines:
-        cells = (cell + " " * (width - shown_width(cell)) for cell, width in zip(line, widths, strict=True))
+        cells = (cell + " " * (width - compute_width(cell)) for cell, width in zip(line, widths, strict=True))
         yield _STEP.join(cells).rstrip()
 
 

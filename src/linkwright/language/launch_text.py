@@ -108,10 +108,10 @@ def typed_word(typed: str) -> str:
 @cache
 def substitution_names() -> Mapping[str, str]:
     """Return the names of all substitutions, each with the first line of its documentation."""
-    from linkwright.launch.frontend.extensions import ACTIONS, load
+    from linkwright.launch.frontend.extensions import ACTION_GROUP, load
     from linkwright.launch.model.markup.expose import substitution_parse_methods
 
-    for _ in load(ACTIONS):
+    for _ in load(ACTION_GROUP):
         pass
     return {name: _purpose(method) for name, method in sorted(substitution_parse_methods.items(), key=_rank)}
 

@@ -189,7 +189,7 @@ def controller_parameters(kind: str, names: Collection[str] = ()) -> tuple[Param
 
 @cache
 def _list_controller_parameters(controller: Any, kind: str) -> tuple[ParameterInfo, ...]:
-    from linkwright.nodes.parameter_tables import entries  # imported here because it loads the graph
+    from linkwright.nodes.parameter_tables import list_entries  # imported here because it loads the graph
 
     return tuple(
         ParameterInfo(
@@ -201,7 +201,7 @@ def _list_controller_parameters(controller: Any, kind: str) -> tuple[ParameterIn
             entry.keys,
             kind,
         )
-        for entry in entries(controller.PARAMETERS)
+        for entry in list_entries(controller.PARAMETERS)
     )
 
 

@@ -15,7 +15,7 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.launch.model.actions import DeclareLaunchArgument
-from linkwright.launch.model.declared_arguments import undeclared_names
+from linkwright.launch.model.declared_arguments import find_undeclared_names
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.substitution import describe
 from linkwright.process.assignments import parse_assignments
@@ -50,23 +50,23 @@ def check_arguments(description: LaunchDescription, values: Mapping[str, str]) -
     """
     declared_arguments = description.get_launch_arguments()
     declared_names = [argument.name for argument in declared_arguments]
-    undeclared = undeclared_names(description.entities, [name for name in values if name not in UNDECLARED])
+    undeclared = find_undeclared_names(description.entities, [name for name in values if name not in UNDECLARED])
     errors: list[Diagnostic] = []
     for argument in declared_arguments:
         value = values.get(argument.name)
         if value is not None and argument.choices is not None and not argument.conditionally_included:
-            errors += _argument_errors(argument, values)
+            errors += _find_argument_errors(argument, values)
         elif value is None and argument.default_value is None and not argument.conditionally_included:
             errors += [
                 _misspelled_argument_error(argument.name, undeclared, error)
-                for error in _argument_errors(argument, values)
+                for error in _find_argument_errors(argument, values)
             ]
     if errors:
         raise LinkwrightError(*errors)
     return [_undeclared_warning(name, declared_names) for name in undeclared]
 
 
-def _argument_errors(argument: DeclareLaunchArgument, values: Mapping[str, str]) -> Sequence[Diagnostic]:
+def _find_argument_errors(argument: DeclareLaunchArgument, values: Mapping[str, str]) -> Sequence[Diagnostic]:
     from linkwright.launch.model.context import LaunchContext
 
     context = LaunchContext()

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from linkwright.hosting.launch_log import LaunchLog
-from linkwright.hosting.rqt_arguments import usage
-from linkwright.hosting.rqt_programs import panel_program
+from linkwright.hosting.rqt_arguments import format_usage
+from linkwright.hosting.rqt_programs import find_panel_program
 from linkwright.hosting.rviz2_arguments import USAGE, asks_for_help
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.ros import Node
@@ -27,12 +27,12 @@ class Program:
     Attributes:
         command: the command as a list of arguments.
         environment: the environment variables of the process.
-        is_ours: whether the executable is one of Linkwright's own nodes.
+        is_linkwright: whether the executable is one of Linkwright's own nodes.
     """
 
     command: list[str]
     environment: dict[str, str]
-    is_ours: bool
+    is_linkwright: bool
 
 
 def find_program(finder: PackageFinder, package: str, executable: str) -> Program:
@@ -59,8 +59,8 @@ def run_viewer(package: str, executable: str, arguments: Sequence[str], options:
         The exit status, see `linkwright.launch.run_launch`.
     """
     if asks_for_help(arguments):
-        program = panel_program(package, executable)
-        print(USAGE if program is None else usage(executable, program), end="")
+        program = find_panel_program(package, executable)
+        print(USAGE if program is None else format_usage(executable, program), end="")
         return 0
     viewer = Node(package=package, executable=executable, arguments=list(arguments))
 

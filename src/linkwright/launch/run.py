@@ -103,7 +103,7 @@ def run_launch(
         LinkwrightError: the target, the launch file or the arguments have errors.
     """
     argument_values = dict(arguments or {})
-    finder = target.finder()
+    finder = target.create_finder()
     options = options or LaunchOptions()
 
     def load(log: LaunchLog) -> tuple[LaunchDescription, dict[str, Any]]:
@@ -130,7 +130,7 @@ def show_arguments(target: LaunchTarget) -> str:
     Raises:
         LinkwrightError: the errors in the target or the launch file.
     """
-    return _read(target, format_arguments)
+    return _describe_target(target, format_arguments)
 
 
 def print_description(target: LaunchTarget) -> str:
@@ -141,15 +141,15 @@ def print_description(target: LaunchTarget) -> str:
     """
     from linkwright.launch.model.introspector import format_launch_description
 
-    return _read(target, format_launch_description)
+    return _describe_target(target, format_launch_description)
 
 
-def _read(target: LaunchTarget, describe: Callable[[LaunchDescription], str]) -> str:
+def _describe_target(target: LaunchTarget, describe: Callable[[LaunchDescription], str]) -> str:
     """Read a launch file, and return the text that `describe` returns for it.
 
     The file is not launched.
     """
-    finder = target.finder()
+    finder = target.create_finder()
     with own_environment(finder):
         return describe(load_launch_file(target.resolve(finder)))
 

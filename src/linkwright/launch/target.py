@@ -26,7 +26,7 @@ class LaunchTarget:
     file: str
     package: str | None = None
 
-    def finder(self) -> PackageFinder:
+    def create_finder(self) -> PackageFinder:
         """Return a finder of ROS packages.
 
         The search starts in the current folder and, if the launch file is a path, in the folder of the file.
@@ -47,9 +47,9 @@ class LaunchTarget:
         for path in (share / self.file, share / "launch" / self.file):
             if path.is_file():
                 return path
-        return self._search(share)
+        return self._find_in_package(share)
 
-    def _search(self, share: Path) -> Path:
+    def _find_in_package(self, share: Path) -> Path:
         launch_files = launch_files_below(share)
         matching_files = [path for path in launch_files if path.name == self.file]
         if len(matching_files) == 1:
@@ -106,7 +106,7 @@ def parse_launch_words(words: Sequence[str]) -> tuple[LaunchTarget, dict[str, st
         )
     if len(target_names) == 1:
         if not _is_file(target_names[0]) and not _is_path(target_names[0]):
-            files = [path.name for path in _files_of_package(target_names[0])]
+            files = [path.name for path in _find_package_files(target_names[0])]
             if files:
                 hint = phrase("the package has {names}", names=joined(files))
                 raise _incomplete_error(
@@ -124,7 +124,7 @@ def _is_path(argument: str) -> bool:
     return os.sep in argument or is_launch_file_name(argument) or argument.endswith((".py", ".xml", ".yaml"))
 
 
-def _files_of_package(name: str) -> list[Path]:
+def _find_package_files(name: str) -> list[Path]:
     share = PackageFinder().find(name)
     return [] if share is None else launch_files_below(share)
 

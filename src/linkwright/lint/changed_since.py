@@ -36,7 +36,7 @@ class WorkingTreeChanges:
         folder = paths[0] if paths[0].is_dir() else paths[0].parent
         self._repository = GitRepository(folder, display_path(paths[0]), _HINT, downloads_lfs=False)
         self.root = self._repository.root
-        self._commit = self._repository.commit(name)
+        self._commit = self._repository.require_commit(name)
         self._name = name
         self._paths = paths
         self._with_packages = with_packages

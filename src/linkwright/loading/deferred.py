@@ -1,4 +1,7 @@
-"""Names and regular expressions that are loaded or compiled on first use, for a quick start."""
+"""Names and regular expressions that are loaded or compiled on first use.
+
+This makes programs start quickly.
+"""
 
 from __future__ import annotations
 

@@ -71,14 +71,14 @@ def extensions(group: str) -> Mapping[str, EntryPoint]:
     Raises:
         RuntimeError: one of Linkwright's groups is missing, because the installed metadata is older than the code.
     """
-    groups = _all_groups()
+    groups = _read_all_groups()
     if group.startswith(_OWN_PREFIX) and group not in groups and _NODES_GROUP in groups:
         raise RuntimeError(f"Linkwright's metadata lacks the entry points '{group}': reinstall it")
     return groups.get(group, {})
 
 
 @cache
-def _all_groups() -> Mapping[str, Mapping[str, EntryPoint]]:
+def _read_all_groups() -> Mapping[str, Mapping[str, EntryPoint]]:
     groups: dict[str, dict[str, EntryPoint]] = {}
     entries = [item for distribution, text in _read_declarations() for item in _parse_declaration(distribution, text)]
     for group, entry_point in sorted(

@@ -5,8 +5,8 @@ this purpose, it also imports `inspect`. A check of a small robot defines sixty 
 them. The compilation took a quarter of its time. Here, ``__init__`` is compiled when the first object is created, and
 all classes share the remaining methods.
 
-For type checkers, the functions are `dataclasses.dataclass`, `field` and `replace`, with those of their arguments that
-are used here. The functions of `dataclasses` for a class or an object, such as ``fields`` and ``asdict``, also accept
+For type checkers, the functions are `dataclasses.dataclass`, `field` and `replace`, with the arguments that are
+used here. The functions of `dataclasses` for a class or an object, such as ``fields`` and ``asdict``, also accept
 these classes. `NamedTuple` replaces the one in `typing`, and does not compile each annotation.
 """
 
@@ -72,7 +72,7 @@ def _field(
 def _dataclass(cls: Any = None, /, *, frozen: bool = False, slots: bool = False, eq: bool = True) -> Any:
     if cls is None:
         return lambda cls: _dataclass(cls, frozen=frozen, slots=slots, eq=eq)
-    own_fields = dict(_own_fields(cls))
+    own_fields = dict(_find_own_fields(cls))
     fields: dict[str, _Field] = {}
     for base in reversed(cls.__mro__[1:]):
         fields |= vars(base).get(_FIELDS, {})
@@ -83,7 +83,9 @@ def _dataclass(cls: Any = None, /, *, frozen: bool = False, slots: bool = False,
     }
     if class_members.get("__hash__", "") is None:
         del class_members["__hash__"]  # Python sets this to None if the class defines `__eq__`
-    shared_members = _SHARED | (_comparison_methods(fields, frozen=frozen) if eq else {}) | (_FROZEN if frozen else {})
+    shared_members = (
+        _SHARED | (_create_comparison_methods(fields, frozen=frozen) if eq else {}) | (_FROZEN if frozen else {})
+    )
     shared_members |= _PICKLE_METHODS if frozen and slots else {}
     members = {
         **shared_members,
@@ -107,7 +109,7 @@ def _dataclass(cls: Any = None, /, *, frozen: bool = False, slots: bool = False,
     return cls
 
 
-def _own_fields(cls: type) -> Iterator[tuple[str, _Field]]:
+def _find_own_fields(cls: type) -> Iterator[tuple[str, _Field]]:
     for name, annotation in cls.__annotations__.items():
         if annotation.startswith(("ClassVar", "typing.ClassVar")):
             continue
@@ -173,7 +175,7 @@ def _repr(self: Any) -> str:
     return f"{type(self).__qualname__}({', '.join(texts)})"
 
 
-def _comparison_methods(fields: dict[str, _Field], *, frozen: bool) -> dict[str, Any]:
+def _create_comparison_methods(fields: dict[str, _Field], *, frozen: bool) -> dict[str, Any]:
     names = [name for name, entry in fields.items() if entry.compare]
     values: Callable[[Any], Any] = attrgetter(*names) if names else lambda _: ()
 
@@ -255,7 +257,7 @@ class _NamedTupleMeta(type):
         return named_tuple
 
 
-def _named_tuple() -> Any:
+def _create_named_tuple_base() -> Any:
     """Return a base class whose direct subclasses are named tuples, as for `typing.NamedTuple`.
 
     Subclasses of these named tuples are ordinary classes.
@@ -268,4 +270,4 @@ if TYPE_CHECKING:
     from dataclasses import dataclass, field, replace
     from typing import NamedTuple
 else:
-    dataclass, field, replace, NamedTuple = _dataclass, _field, _replace, _named_tuple()
+    dataclass, field, replace, NamedTuple = _dataclass, _field, _replace, _create_named_tuple_base()

@@ -1,4 +1,4 @@
-"""The ROS 2 nodes that come with Linkwright, such as nodes for robot descriptions and demos.
+"""The ROS 2 nodes that come with Linkwright, such as nodes for descriptions and demos.
 
 Each node has a module of its own, which is imported when the node is started.
 """

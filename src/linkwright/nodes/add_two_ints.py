@@ -12,8 +12,8 @@ from linkwright.graph import Graph
 from linkwright.messages import get_service
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
-_TYPE = "example_interfaces/srv/AddTwoInts"
-_WAIT_S = 1.0
+_SERVICE_TYPE = "example_interfaces/srv/AddTwoInts"
+_LOG_PERIOD_S = 1.0
 
 
 class AddTwoIntsServer(SingleNode):
@@ -23,7 +23,7 @@ class AddTwoIntsServer(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        self._node.create_service(get_service(_TYPE), "add_two_ints", self._add)
+        self._node.create_service(get_service(_SERVICE_TYPE), "add_two_ints", self._add)
 
     def _add(self, request: Any, response: Any) -> Any:
         self._node.get_logger().info(f"Incoming request\na: {request.a} b: {request.b}")
@@ -39,7 +39,7 @@ class AddTwoIntsClient(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
-        self._client = self._node.create_client(get_service(_TYPE), "add_two_ints")
+        self._client = self._node.create_client(get_service(_SERVICE_TYPE), "add_two_ints")
         self._timer = self._node.create_timer(0.05, self._call_when_available)
         self._ticks = 0
 
@@ -50,7 +50,7 @@ class AddTwoIntsClient(SingleNode):
             self._client.call_async(request).add_done_callback(self._log_result)
             return
         self._ticks += 1
-        if self._ticks * 0.05 >= _WAIT_S:
+        if self._ticks * 0.05 >= _LOG_PERIOD_S:
             self._ticks = 0
             self._node.get_logger().info("service not available, waiting again...")
 

@@ -67,7 +67,7 @@ class ComponentContainer(SingleNode):
         """
         factory = COMPONENTS.get((package, plugin))
         if factory is None:
-            raise _missing_component(package, plugin)
+            raise _missing_component_error(package, plugin)
         with self.loading():
             running_node = factory(self._graph, options)
         self._last_id += 1
@@ -95,7 +95,7 @@ class ComponentContainer(SingleNode):
             problem = error.diagnostics[0].message
             logger.error(f"Component constructor threw an exception: {problem}")  # noqa: TRY400 - a user's mistake
             response.success = False
-            response.error_message = "; ".join(_text(diagnostic) for diagnostic in error.diagnostics)
+            response.error_message = "; ".join(_to_text(diagnostic) for diagnostic in error.diagnostics)
             return response
         logger.info(f"Instantiate class: rclcpp_components::NodeFactoryTemplate<{request.plugin_name}>")
         response.success = True
@@ -128,7 +128,7 @@ def load_request() -> Any:
     return get_service("composition_interfaces/srv/LoadNode").Request()
 
 
-def _missing_component(package: str, plugin: str) -> LinkwrightError:
+def _missing_component_error(package: str, plugin: str) -> LinkwrightError:
     message = phrase(
         "Failed to find class with the requested plugin name: package '{package}' has no component '{plugin}'",
         package=package,
@@ -144,7 +144,7 @@ def _missing_component(package: str, plugin: str) -> LinkwrightError:
     return LinkwrightError(Diagnostic("NODE601", message, hint=hint))
 
 
-def _text(diagnostic: Diagnostic) -> str:
+def _to_text(diagnostic: Diagnostic) -> str:
     return diagnostic.message if diagnostic.hint is None else f"{diagnostic.message} ({diagnostic.hint})"
 
 

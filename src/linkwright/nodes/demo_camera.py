@@ -53,7 +53,7 @@ class DemoCamera(SingleNode):
             reliability=ReliabilityPolicy[_policy_name(ReliabilityPolicy, "reliability", reliability)],
         )
         self._publisher = node.create_publisher(get_message("sensor_msgs/msg/Image"), "image", qos)
-        self._image = _stripes(width, height)
+        self._image = _create_test_image(width, height)
         self._frame_id = frame_id
         self._count = 0
         node.create_timer(1.0 / frequency, self._publish)
@@ -73,7 +73,7 @@ class DemoCamera(SingleNode):
         self._publisher.publish(message)
 
 
-def _stripes(width: int, height: int) -> NDArray[np.uint8]:
+def _create_test_image(width: int, height: int) -> NDArray[np.uint8]:
     """Return a test image with bars of eight colors above a ramp from black to white.
 
     The image has the channel order BGR and the shape (height, width, 3).

@@ -9,7 +9,7 @@ from linkwright.graph import Graph, QoSProfile
 from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 
 
 class Listener(SingleNode):
@@ -20,7 +20,7 @@ class Listener(SingleNode):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
-            self._node.create_subscription(String, "chatter", self._receive, QoSProfile.of(_DEPTH))
+            self._node.create_subscription(String, "chatter", self._receive, QoSProfile.of(_QUEUE_DEPTH))
 
     def _receive(self, message: String) -> None:
         self._node.get_logger().info(f"I heard: [{message.data}]")

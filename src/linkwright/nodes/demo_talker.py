@@ -10,7 +10,7 @@ from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 _PERIOD_S = 1.0
-_DEPTH = 7
+_QUEUE_DEPTH = 7
 
 
 class Talker(SingleNode):
@@ -22,7 +22,7 @@ class Talker(SingleNode):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._count = 0
         with handle_start_errors(self._node):
-            self._publisher = self._node.create_publisher(String, "chatter", QoSProfile.of(_DEPTH))
+            self._publisher = self._node.create_publisher(String, "chatter", QoSProfile.of(_QUEUE_DEPTH))
             self._node.create_timer(_PERIOD_S, self._talk)
 
     def _talk(self) -> None:

@@ -13,8 +13,8 @@ from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
 _PERIOD_S = 1.0
-_DEPTH = 10
-_UNLIMITED = 1 << 31
+_QUEUE_DEPTH = 10
+_UNLIMITED_COUNT = 1 << 31
 
 
 class _CountingNode(SingleNode, ABC):
@@ -25,15 +25,15 @@ class _CountingNode(SingleNode, ABC):
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         self._count = 0
         with handle_start_errors(self._node):
-            settings = _read(self.DEFAULT_NAME, arguments)
+            settings = _parse_arguments(self.DEFAULT_NAME, arguments)
             self._message_limit = settings.number_of_cycles
-            self._begin(QoSProfile.of(_DEPTH) if settings.reliable else SENSOR_DATA_QOS)
+            self._create_endpoint(QoSProfile.of(_QUEUE_DEPTH) if settings.reliable else SENSOR_DATA_QOS)
         self._node.get_logger().info(f"{'Reliable' if settings.reliable else 'Best effort'} {self._role}")
 
     _role: str
 
     @abstractmethod
-    def _begin(self, qos: QoSProfile) -> None: ...
+    def _create_endpoint(self, qos: QoSProfile) -> None: ...
 
     def _count_message(self) -> None:
         self._count += 1
@@ -47,7 +47,7 @@ class TalkerQos(_CountingNode):
     DEFAULT_NAME = "talker_qos"
     _role = "talker"
 
-    def _begin(self, qos: QoSProfile) -> None:
+    def _create_endpoint(self, qos: QoSProfile) -> None:
         self._publisher = self._node.create_publisher(String, "chatter", qos)
         self._node.create_timer(_PERIOD_S, self._talk)
 
@@ -64,7 +64,7 @@ class ListenerQos(_CountingNode):
     DEFAULT_NAME = "listener_qos"
     _role = "listener"
 
-    def _begin(self, qos: QoSProfile) -> None:
+    def _create_endpoint(self, qos: QoSProfile) -> None:
         self._node.create_subscription(String, "chatter", self._receive, qos)
 
     def _receive(self, message: String) -> None:
@@ -72,10 +72,10 @@ class ListenerQos(_CountingNode):
         self._count_message()
 
 
-def _read(name: str, arguments: Sequence[str]) -> argparse.Namespace:
+def _parse_arguments(name: str, arguments: Sequence[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=name, add_help=False, exit_on_error=False)
     parser.add_argument("--reliable", action="store_true")
-    parser.add_argument("-n", "--number_of_cycles", type=int, default=_UNLIMITED)
+    parser.add_argument("-n", "--number_of_cycles", type=int, default=_UNLIMITED_COUNT)
     try:
         return parser.parse_known_args(arguments)[0]
     except argparse.ArgumentError as error:

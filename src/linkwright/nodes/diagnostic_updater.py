@@ -10,7 +10,7 @@ from linkwright.graph import Node
 from linkwright.messages import get_message
 
 _PERIOD_S = 1.0
-_DEPTH = 1
+_QUEUE_DEPTH = 1
 
 
 class Level(IntEnum):
@@ -48,7 +48,7 @@ class DiagnosticUpdater:
         self._array = get_message("diagnostic_msgs/msg/DiagnosticArray")
         self._status = get_message("diagnostic_msgs/msg/DiagnosticStatus")
         self._key_value = get_message("diagnostic_msgs/msg/KeyValue")
-        self._publisher = node.create_publisher(self._array, "/diagnostics", _DEPTH)
+        self._publisher = node.create_publisher(self._array, "/diagnostics", _QUEUE_DEPTH)
         node.create_timer(_PERIOD_S, self._publish)
 
     def _publish(self) -> None:

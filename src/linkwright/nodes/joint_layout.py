@@ -20,7 +20,10 @@ _DEPENDENT_FIELDS = ("parent", "factor", "offset")
 
 @dataclass(frozen=True, slots=True)
 class Dependence:
-    """The dependence of a joint: ``position = factor * position of parent + offset`` (rad or m)."""
+    """The dependence of a joint on another one, in rad or m.
+
+    ``position = factor * position of parent + offset``
+    """
 
     parent: str
     factor: float = 1.0
@@ -81,7 +84,7 @@ def declare_settings(node: Node) -> None:
         node.declare_parameter("source_list", [], ParameterDescriptor(type=ParameterType.STRING_ARRAY))
 
 
-def settings_from(values: Mapping[str, Any]) -> JointSettings:
+def parse_settings(values: Mapping[str, Any]) -> JointSettings:
     """Convert parameter values by name to settings.
 
     Raises:
@@ -89,15 +92,15 @@ def settings_from(values: Mapping[str, Any]) -> JointSettings:
     """
     reader = _Reader(values)
     settings = JointSettings(
-        rate=reader.number("rate", positive=True),
-        publish_default_positions=reader.flag("publish_default_positions"),
-        publish_default_velocities=reader.flag("publish_default_velocities"),
-        publish_default_efforts=reader.flag("publish_default_efforts"),
-        use_mimic_tags=reader.flag("use_mimic_tags"),
-        use_smallest_joint_limits=reader.flag("use_smallest_joint_limits"),
-        source_list=reader.texts("source_list"),
-        delta=reader.number("delta"),
-        zeros={joint: reader.number(f"zeros.{joint}") for joint in reader.below("zeros")},
+        rate=reader.read_number("rate", positive=True),
+        publish_default_positions=reader.read_flag("publish_default_positions"),
+        publish_default_velocities=reader.read_flag("publish_default_velocities"),
+        publish_default_efforts=reader.read_flag("publish_default_efforts"),
+        use_mimic_tags=reader.read_flag("use_mimic_tags"),
+        use_smallest_joint_limits=reader.read_flag("use_smallest_joint_limits"),
+        source_list=reader.read_texts("source_list"),
+        delta=reader.read_number("delta"),
+        zeros={joint: reader.read_number(f"zeros.{joint}") for joint in reader.list_names_below("zeros")},
         dependent_joints=reader.dependent_joints(),
     )
     if reader.problems:
@@ -106,21 +109,23 @@ def settings_from(values: Mapping[str, Any]) -> JointSettings:
 
 
 class _Reader:
+    """A reader of parameter values, which collects the problems."""
+
     def __init__(self, values: Mapping[str, Any]) -> None:
         self._values = values
         self.problems: list[Diagnostic] = []
 
-    def below(self, prefix: str) -> list[str]:
+    def list_names_below(self, prefix: str) -> list[str]:
         full_prefix = f"{prefix}."
         return [name[len(full_prefix) :] for name in self._values if name.startswith(full_prefix)]
 
-    def flag(self, name: str) -> bool:
+    def read_flag(self, name: str) -> bool:
         value = self._values[name]
         if not isinstance(value, bool):
             self._add_problem(name, phrase("true or false"))
         return bool(value)
 
-    def number(self, name: str, *, positive: bool = False) -> float:
+    def read_number(self, name: str, *, positive: bool = False) -> float:
         value = self._values[name]
         is_number = isinstance(value, (int, float)) and not isinstance(value, bool) and isfinite(value)
         if not is_number or (positive and value <= 0):
@@ -128,16 +133,20 @@ class _Reader:
             return 1.0
         return float(value)
 
-    def texts(self, name: str) -> tuple[str, ...]:
+    def read_texts(self, name: str) -> tuple[str, ...]:
         value = self._values[name]
-        if not isinstance(value, Sequence) or isinstance(value, str) or not all(isinstance(v, str) for v in value):
+        if (
+            not isinstance(value, Sequence)
+            or isinstance(value, str)
+            or not all(isinstance(item, str) for item in value)
+        ):
             self._add_problem(name, phrase("a list of topic names"))
             return ()
         return tuple(value)
 
     def dependent_joints(self) -> dict[str, Dependence]:
         dependent: dict[str, dict[str, Any]] = {}
-        for entry_name in self.below("dependent_joints"):
+        for entry_name in self.list_names_below("dependent_joints"):
             # Joint names can contain dots, so split at the last dot.
             joint, _, field_name = entry_name.rpartition(".")
             if field_name not in _DEPENDENT_FIELDS or not joint:
@@ -153,15 +162,15 @@ class _Reader:
                 )
             else:
                 dependent.setdefault(joint, {})[field_name] = f"dependent_joints.{entry_name}"
-        return {joint: self._dependence(joint, names) for joint, names in dependent.items()}
+        return {joint: self._read_dependence(joint, names) for joint, names in dependent.items()}
 
-    def _dependence(self, joint: str, names: Mapping[str, str]) -> Dependence:
+    def _read_dependence(self, joint: str, names: Mapping[str, str]) -> Dependence:
         parent = self._values.get(names.get("parent", ""))
         if not isinstance(parent, str):
             self._add_problem(f"dependent_joints.{joint}.parent", phrase("the name of a joint"))
             parent = ""
-        factor = self.number(names["factor"]) if "factor" in names else 1.0
-        offset = self.number(names["offset"]) if "offset" in names else 0.0
+        factor = self.read_number(names["factor"]) if "factor" in names else 1.0
+        offset = self.read_number(names["offset"]) if "offset" in names else 0.0
         return Dependence(parent, factor, offset)
 
     def _add_problem(self, name: str, expected: Phrase) -> None:
@@ -214,8 +223,8 @@ class JointLayout:
         free: the joints that do not mimic another joint, in the same order; position arrays have one entry per free
             joint.
         dependent: the other joints by name, each with the joint that it mimics directly.
-        masters: array of shape (n,): for each published joint, the index in `free` of the joint at the end of its mimic
-            chain; -1 if that joint does not move.
+        master_indices: array of shape (n,): for each published joint, the index in `free` of the joint at the end of
+            its mimic chain; -1 if that joint does not move.
         factor: array of shape (n,): published position = factor * position of the master + offset.
         offset: array of shape (n,), see `factor`.
         problems: the problems of the description; the affected joints are omitted or do not move.
@@ -224,7 +233,7 @@ class JointLayout:
     ranges: Mapping[str, JointRange]
     free: tuple[JointRange, ...]
     dependent: Mapping[str, Dependence]
-    masters: NDArray[np.intp]
+    master_indices: NDArray[np.intp]
     factor: Array
     offset: Array
     problems: tuple[str, ...]
@@ -250,7 +259,7 @@ def make_layout(robot: Robot, settings: JointSettings) -> JointLayout:
         limits = _read_limits(joint, settings, problems)
         if limits is None:
             continue
-        zero = settings.zeros.get(joint.name, _default_zero(*limits))
+        zero = settings.zeros.get(joint.name, _choose_default_zero(*limits))
         ranges[joint.name] = JointRange(joint.name, joint.type, *limits, zero)
         # The parameter takes precedence over <mimic>, even after the description changes. In the ROS node, <mimic>
         # then takes precedence.
@@ -290,7 +299,7 @@ def _resolve_chain(name: str, dependent: Mapping[str, Dependence]) -> tuple[str,
     return name, factor, offset
 
 
-def _default_zero(lower: float, upper: float) -> float:
+def _choose_default_zero(lower: float, upper: float) -> float:
     return (lower + upper) / 2.0 if lower > 0.0 or upper < 0.0 else 0.0
 
 

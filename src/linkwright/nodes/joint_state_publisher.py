@@ -38,7 +38,7 @@ from linkwright.nodes.joint_layout import (
     declare_settings,
     empty_layout,
     make_layout,
-    settings_from,
+    parse_settings,
 )
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.urdf import Robot
@@ -69,7 +69,7 @@ class _Quantity:
         """
         if np.isnan(self.values).all():
             return None
-        values: Array = self._values_and_zero[layout.masters]  # masters is -1 for joints that do not move
+        values: Array = self._values_and_zero[layout.master_indices]  # masters is -1 for joints that do not move
         if scaled:
             values *= layout.factor
         if shifted:
@@ -169,7 +169,7 @@ class JointPositions:
         positions = self._position.expand(self.layout, scaled=True, shifted=True)
         return np.zeros(len(self.layout.ranges)) if positions is None else positions
 
-    def fill(self, message: JointState) -> None:
+    def fill_message(self, message: JointState) -> None:
         """Write the joint names and values to a message.
 
         Quantities without any value remain empty.
@@ -292,7 +292,7 @@ class JointStatePublisher(SingleNode):
             ) from error
         reading = self._library.read(text)
         if reading.robot is None:
-            other = _other_format(text)
+            other = _find_other_format(text)
             if other:
                 raise LinkwrightError(
                     Diagnostic(
@@ -311,7 +311,7 @@ class JointStatePublisher(SingleNode):
     def _on_description(self, message: String) -> None:
         robot = self._library.read(message.data).robot
         if robot is None:
-            other = _other_format(message.data)
+            other = _find_other_format(message.data)
             reason = f": it is {other}, and this node reads URDF" if other else ""
             self._node.get_logger().warning(f"Invalid robot_description given, ignoring{reason}")
             return
@@ -333,7 +333,7 @@ class JointStatePublisher(SingleNode):
     def _read_settings(self, changed: Sequence[Parameter] = ()) -> JointSettings:
         node = self._node
         values = {name: node.get_parameter(name).value for name in node.parameter_names()}
-        return settings_from(values | {parameter.name: parameter.value for parameter in changed})
+        return parse_settings(values | {parameter.name: parameter.value for parameter in changed})
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
         try:
@@ -384,12 +384,12 @@ class JointStatePublisher(SingleNode):
 
     def _publish(self) -> None:
         message = JointState(header=Header(stamp=Time.from_nanoseconds(self._clock.now_ns())))
-        self._joints.fill(message)
+        self._joints.fill_message(message)
         if message.name:
             self._publisher.publish(message)
 
 
-def _other_format(text: str) -> str | None:
+def _find_other_format(text: str) -> str | None:
     """Return the name of another robot format that the root element indicates, or None."""
     element = _FIRST_ELEMENT.search(text)
     return None if element is None else _OTHER_FORMATS.get(element[1])

@@ -136,8 +136,8 @@ class JointPanel:
         layout = self._joints.layout
         movable_names = {joint.name for joint in layout.free if joint.lower != joint.upper}
         free_joints = layout.free
-        master_names = [free_joints[master].name if master >= 0 else "" for master in layout.masters.tolist()]
-        zeros = [free_joints[master].zero if master >= 0 else 0.0 for master in layout.masters.tolist()]
+        master_names = [free_joints[master].name if master >= 0 else "" for master in layout.master_indices.tolist()]
+        zeros = [free_joints[master].zero if master >= 0 else 0.0 for master in layout.master_indices.tolist()]
         no_dependence = Dependence("")
         dependences = [layout.dependent.get(name, no_dependence) for name in layout.ranges]
         self._sliders = [

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 N = TypeVar("N", bound=Node)
 
 
-def _new_library() -> DescriptionLibrary:
+def _create_library() -> DescriptionLibrary:
     from linkwright.descriptions import DescriptionLibrary
 
     return DescriptionLibrary()
@@ -48,7 +48,7 @@ class NodeOptions:
 
     Attributes:
         name: the name; None for the default name of the node.
-        namespace: the namespace.
+        namespace: the namespace of the node.
         parameters: the values by name; nested dictionaries represent names with dots.
         remappings: the rules ``(from, to)``.
         arguments: the command line without the program's name, including ``--ros-args`` sections.
@@ -66,7 +66,7 @@ class NodeOptions:
     parameters: dict[str, Any] = field(default_factory=dict)
     remappings: list[tuple[str, str]] = field(default_factory=list)
     arguments: list[str] = field(default_factory=list)
-    library: DescriptionLibrary = field(default_factory=_new_library)
+    library: DescriptionLibrary = field(default_factory=_create_library)
     parameters_of_others: ParameterRules = field(default_factory=ParameterRules)
     environment: Mapping[str, str] = field(default_factory=lambda: os.environ)
     output: Callable[[str], None] = _print_line
@@ -173,7 +173,12 @@ def create_node(
 
 
 def create_node_with_class(
-    node_class: Callable[..., N], graph: Graph, options: NodeOptions, default_name: str, *, any_parameters: bool = False
+    node_class: Callable[..., N],
+    graph: Graph,
+    options: NodeOptions,
+    default_name: str,
+    *,
+    any_parameters: bool = False,
 ) -> tuple[N, list[str]]:
     """Create a node as `create_node` does, with a given class.
 
@@ -191,7 +196,7 @@ def create_node_with_class(
         namespace=options.namespace,
         parameters={
             **options.parameters,
-            **ros_arguments.parameters_for(_full_name(name, options.namespace, remappings)),
+            **ros_arguments.parameters_for(_compute_full_name(name, options.namespace, remappings)),
         },
         remappings=remappings,
         enclave=ros_arguments.enclave or "/",
@@ -217,7 +222,7 @@ def handle_start_errors(node: Node) -> Iterator[None]:
         raise
 
 
-def _full_name(name: str, namespace: str, remappings: list[tuple[str, str]]) -> str:
+def _compute_full_name(name: str, namespace: str, remappings: list[tuple[str, str]]) -> str:
     rules = Remappings(remappings)
     return join(absolute_namespace(rules.namespace(namespace, name)), rules.node_name(name))
 
@@ -283,7 +288,7 @@ class NodeRegistry(Mapping[tuple[str, str], Factory]):
         return len(self.entry_points)
 
 
-def default_name(package: str, executable: str) -> str | None:
+def find_default_name(package: str, executable: str) -> str | None:
     """Return the default name of a node, or None if only the node's own code determines it."""
     with suppress(LinkwrightError, KeyError):
         name: str | None = getattr(EXECUTABLES[package, executable], "DEFAULT_NAME", None)

@@ -56,7 +56,7 @@ HUMBLE, JAZZY = "humble", "jazzy"
 _UNCHANGED = object()
 _ATTRIBUTE = lazy_pattern(r"(?m)^    (\w+): (.*(?:\n     .*)*)")
 """An entry below ``Attributes:`` of a docstring."""
-_NAMES, _TABLE, _PREFIX, _PROPERTIES = "names", "table", "below", "about"
+_NAMES_KEY, _TABLE_KEY, _PREFIX_KEY, _PROPERTIES_KEY = "names", "table", "below", "about"
 _COMMON_PARAMETERS = ("use_sim_time", "params_file", "type", "qos_overrides", "start_type_description_service")
 
 
@@ -94,7 +94,7 @@ def parameter(
             `HUMBLE` includes all distributions before Iron, and `JAZZY` includes Iron and later.
         later: the default in Iron and later, if it differs.
     """
-    return field(default=default, metadata={_PROPERTIES: _Properties(description, read_only, check, only, later)})
+    return field(default=default, metadata={_PROPERTIES_KEY: _Properties(description, read_only, check, only, later)})
 
 
 def for_each(names: str, table: type[Any], *, prefix: str | None = None) -> Any:
@@ -106,12 +106,14 @@ def for_each(names: str, table: type[Any], *, prefix: str | None = None) -> Any:
         table: the dataclass with the parameters for one name.
         prefix: the prefix of the parameters, empty for ``JOINT.p``; by default, the name of the field.
     """
-    return field(default_factory=dict, metadata={_NAMES: tuple(names.split()), _TABLE: table, _PREFIX: prefix})
+    return field(
+        default_factory=dict, metadata={_NAMES_KEY: tuple(names.split()), _TABLE_KEY: table, _PREFIX_KEY: prefix}
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class TableEntry:
-    """A parameter of a table, as `entries` describes it.
+    """A parameter of a table, as `list_entries` describes it.
 
     Attributes:
         name: the name with dots; ``*`` represents the names in another parameter, as in ``gains.*.p``.
@@ -132,7 +134,7 @@ class TableEntry:
     keys: tuple[str, ...] = ()
 
 
-def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterator[TableEntry]:
+def list_entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterator[TableEntry]:
     """Yield the parameters of a table, without a node.
 
     If a parameter has no description, its entry below ``Attributes:`` in the docstring of the table is used.
@@ -142,15 +144,17 @@ def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterato
         prefix: the text before the names, such as ``gains.*.``.
         keys: the parameters that contain the names for ``*`` in the prefix.
     """
-    kinds, descriptions = _kinds(table), _attributes(table)
+    kinds, descriptions = _find_kinds(table), _parse_attributes(table)
     for entry in fields(table):
         name = f"{prefix}{entry.name}"
-        if _NAMES in entry.metadata:
-            yield from entries(entry.metadata[_TABLE], f"{prefix}{_group_prefix(entry)}*.", entry.metadata[_NAMES])
+        if _NAMES_KEY in entry.metadata:
+            yield from list_entries(
+                entry.metadata[_TABLE_KEY], f"{prefix}{_compute_group_prefix(entry)}*.", entry.metadata[_NAMES_KEY]
+            )
         elif is_dataclass(kinds[entry.name]):
-            yield from entries(kinds[entry.name], f"{name}.", keys)
+            yield from list_entries(kinds[entry.name], f"{name}.", keys)
         else:
-            properties: _Properties = entry.metadata.get(_PROPERTIES, _Properties())
+            properties: _Properties = entry.metadata.get(_PROPERTIES_KEY, _Properties())
             default = None if entry.default is MISSING else entry.default
             if properties.later is not _UNCHANGED and not is_before_iron():
                 default = properties.later
@@ -159,7 +163,7 @@ def entries(table: Any, prefix: str = "", keys: tuple[str, ...] = ()) -> Iterato
             yield TableEntry(name, _TYPES[kinds[entry.name]], default, description, choices, properties.only, keys)
 
 
-def _attributes(table: Any) -> dict[str, str]:
+def _parse_attributes(table: Any) -> dict[str, str]:
     """Return the descriptions of fields in a docstring."""
     _, _, text = cleandoc(table.__doc__ or "").partition("\nAttributes:\n")
     return {match[1]: " ".join(match[2].split()) for match in _ATTRIBUTE.finditer(text)}
@@ -177,8 +181,8 @@ def declare_table(node: Node, table: type[P], prefix: str = "", defaults: P | No
     """Declare the parameters of a table that are not yet declared, and return their values.
 
     Args:
-        node: the node.
-        table: the dataclass.
+        node: the node that declares the parameters.
+        table: the dataclass that declares the parameters.
         prefix: the prefix of the names, such as the name of a plugin for ``PLUGIN.parameter``.
         defaults: the defaults to use instead of the defaults of the table.
 
@@ -193,8 +197,8 @@ class ParameterTable(Generic[P]):
     """The parameters of a node, declared by a dataclass and updated when they change.
 
     Args:
-        node: the node.
-        table: the dataclass.
+        node: the node that declares the parameters.
+        table: the dataclass that declares the parameters.
 
     Raises:
         LinkwrightError: a value has another type (GRAPH201) or is not allowed (CTL101).
@@ -251,20 +255,20 @@ class _Reader:
         self.declared: dict[str, _Declaration] = {}
 
     def read(self, table: Any, prefix: str = "", defaults: Any = None) -> Any:
-        kinds = _kinds(table)
+        kinds = _find_kinds(table)
         values: dict[str, Any] = {}
         for entry in fields(table):
             kind, name = kinds[entry.name], f"{prefix}{entry.name}"
-            if _NAMES in entry.metadata:
-                keys = dict.fromkeys(key for names in entry.metadata[_NAMES] for key in _names_in(values[names]))
-                name_table = entry.metadata[_TABLE]
-                group = f"{prefix}{_group_prefix(entry)}"
+            if _NAMES_KEY in entry.metadata:
+                keys = dict.fromkeys(key for names in entry.metadata[_NAMES_KEY] for key in _to_names(values[names]))
+                name_table = entry.metadata[_TABLE_KEY]
+                group = f"{prefix}{_compute_group_prefix(entry)}"
                 values[entry.name] = {key: self.read(name_table, f"{group}{key}.") for key in keys}
             elif is_dataclass(kind):
                 values[entry.name] = self.read(kind, f"{name}.")
             else:
                 default = entry.default if entry.default is not MISSING else None
-                properties = entry.metadata.get(_PROPERTIES, _Properties())
+                properties = entry.metadata.get(_PROPERTIES_KEY, _Properties())
                 if defaults is not None:
                     default = getattr(defaults, entry.name)
                 elif properties.later is not _UNCHANGED and not is_before_iron():
@@ -275,7 +279,7 @@ class _Reader:
     def _declare_and_get(self, declaration: _Declaration) -> Any:
         name, properties = declaration.name, declaration.properties
         if name not in self.declared:
-            if properties.only not in ("", _distribution()) and name not in self._node.undeclared_overrides():
+            if properties.only not in ("", _find_distribution()) and name not in self._node.undeclared_overrides():
                 return declaration.default
             descriptor = ParameterDescriptor(
                 type=declaration.kind.value, description=properties.description, read_only=properties.read_only
@@ -296,17 +300,17 @@ class _Reader:
         return tuple(value) if self.declared[name].kind.is_array and value is not None else value
 
 
-def _group_prefix(group: Field[Any]) -> str:
-    """Return the prefix of the parameters of a group, with a dot at its end; empty if they have none."""
-    prefix = group.name if group.metadata[_PREFIX] is None else group.metadata[_PREFIX]
+def _compute_group_prefix(group: Field[Any]) -> str:
+    """Return the prefix of the parameters of a group, with a final dot, or an empty text."""
+    prefix = group.name if group.metadata[_PREFIX_KEY] is None else group.metadata[_PREFIX_KEY]
     return f"{prefix}." if prefix else ""
 
 
-def _distribution() -> str:
+def _find_distribution() -> str:
     return HUMBLE if is_before_iron() else JAZZY
 
 
-def _names_in(names: Any) -> Iterable[str]:
+def _to_names(names: Any) -> Iterable[str]:
     """Return the names in a parameter value.
 
     The value is one string or a sequence of strings.
@@ -315,7 +319,7 @@ def _names_in(names: Any) -> Iterable[str]:
 
 
 @cache
-def _kinds(table: Hashable) -> Mapping[str, Any]:
+def _find_kinds(table: Hashable) -> Mapping[str, Any]:
     return get_type_hints(table)
 
 
@@ -357,7 +361,7 @@ class _OneOf:
     choices: tuple[str, ...]
 
     def __call__(self, name: str, value: Any) -> Phrase | None:
-        """Return an error message if the value, or an item of a list, is not one of the choices, else None."""
+        """Return an error message if the value, or an item of it, is not one of the choices."""
         for item in (value,) if isinstance(value, str) else value:
             if item not in self.choices:
                 text = phrase(

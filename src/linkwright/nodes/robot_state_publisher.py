@@ -3,7 +3,7 @@
 The node follows the ROS 2 node of that name (Humble 3.0.3 and later), with these deliberate differences:
 
 - A message that the throttle delays is published as soon as the throttle permits, unless a newer message arrives
-  before. The ROS node drops the message, so the last move of a slider can be missing.
+  first. The ROS node drops the message, so the last move of a slider can be missing.
 - A message that repeats the last positions does not delay a move that arrives right after it (see `Throttle`).
 - A new description resets the throttle, and a new ``frame_prefix`` publishes the fixed transforms again.
 - ``publish_frequency`` 0, for which the ROS node divides by zero, is rejected.
@@ -142,9 +142,9 @@ class RobotTransforms:
     def fixed_transforms(self, stamp_ns: int) -> TransformBatch:
         """Return the transforms of the joints that do not move."""
         poses = JointMotion(self._fixed_joints).poses(np.zeros(len(self._fixed_joints)))
-        return TransformBatch(*self._frames(self._fixed_joints), stamp_ns, poses)
+        return TransformBatch(*self._find_frames(self._fixed_joints), stamp_ns, poses)
 
-    def conversion_for(self, names: Sequence[str]) -> Conversion:
+    def find_conversion(self, names: Sequence[str]) -> Conversion:
         """Return the conversion to transforms for messages with these joint names.
 
         Names of joints that do not move or do not exist are ignored. A mimic joint follows the joint that it mimics,
@@ -170,14 +170,14 @@ class RobotTransforms:
                 sources.append((joint, indices[mimic.joint], mimic.multiplier, mimic.offset))
         joints = tuple(joint for joint, *_ in sources)
         return Conversion(
-            *self._frames(joints),
+            *self._find_frames(joints),
             np.array([source for _, source, _, _ in sources], dtype=np.intp),
             np.array([factor for _, _, factor, _ in sources], dtype=np.float64),
             np.array([offset for *_, offset in sources], dtype=np.float64),
             self._motion.select([self._rows[joint.name] for joint in joints]),
         )
 
-    def _frames(self, joints: Sequence[Joint]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    def _find_frames(self, joints: Sequence[Joint]) -> tuple[tuple[str, ...], tuple[str, ...]]:
         parents = tuple(self._prefix + joint.parent for joint in joints)
         children = tuple(self._prefix + joint.child for joint in joints)
         return parents, children
@@ -345,7 +345,7 @@ class RobotStatePublisher(SingleNode):
                     phrase("{rule}, but it is {frequency:g}", rule=BAD_FREQUENCY, frequency=frequency),
                 )
             )
-        self._throttle = Throttle(_interval_ns(frequency))
+        self._throttle = Throttle(_compute_interval_ns(frequency))
         self._ignore_timestamp: bool = node.declare_parameter("ignore_timestamp", False).value
         node.declare_parameter("frame_prefix", "")
         self._description_publisher = node.create_publisher(String, "robot_description", DESCRIPTION_QOS)
@@ -460,7 +460,7 @@ class RobotStatePublisher(SingleNode):
         return False
 
     def _publish_moving(self, message: JointState, stamp_ns: int) -> None:
-        batch = self._transforms.conversion_for(message.name).batch(message.position, stamp_ns)
+        batch = self._transforms.find_conversion(message.name).batch(message.position, stamp_ns)
         if len(batch):
             self._tf_publisher.publish(TFMessage(batch=batch))
 
@@ -518,7 +518,7 @@ class RobotStatePublisher(SingleNode):
             if parameter.name == "robot_description":
                 self._use_description(parameter.value, self._read(parameter.value))
             elif parameter.name == "publish_frequency":
-                self._throttle.interval_ns = _interval_ns(parameter.value)
+                self._throttle.interval_ns = _compute_interval_ns(parameter.value)
             elif parameter.name == "ignore_timestamp":
                 self._ignore_timestamp = parameter.value
             elif parameter.name == "frame_prefix":
@@ -530,5 +530,5 @@ def _is_valid_frequency(frequency: float) -> bool:
     return isfinite(frequency) and 0.0 < frequency <= 1000.0
 
 
-def _interval_ns(frequency: float) -> int:
+def _compute_interval_ns(frequency: float) -> int:
     return int(1000.0 / frequency) * _NANOSECONDS_PER_MILLISECOND

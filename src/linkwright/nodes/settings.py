@@ -19,7 +19,7 @@ def declare_required(node: Node, name: str, kind: ParameterType, usage: str) -> 
     """Declare a parameter without a default, and return its value.
 
     Args:
-        node: the node.
+        node: the node that declares the parameter.
         name: the name of the parameter.
         kind: the type of the parameter.
         usage: a command line that starts the node, for the hint.
@@ -68,23 +68,23 @@ def _convert_argument(argument: str, name: str, convert: Callable[[str], Any], h
         raise LinkwrightError(Diagnostic("NODE432", message, hint=hint)) from None
 
 
-def arguments_of(options: NodeOptions) -> list[str]:
+def get_arguments(options: NodeOptions) -> list[str]:
     """Return the command-line arguments of a node that are not ROS arguments."""
     return parse(options.arguments).non_ros_arguments
 
 
-def positive(node: Node, name: str, value: float) -> float:
+def check_positive(node: Node, name: str, value: float) -> float:
     """Return the value of a parameter after checking that it is greater than zero.
 
     Raises:
         LinkwrightError: NODE433, the value is not greater than zero.
     """
     if not value > 0:
-        raise bad_value(name, value, node.get_name())
+        raise invalid_value_error(name, value, node.get_name())
     return value
 
 
-def bad_value(name: str, value: object, node: str, choices: Sequence[str] = ()) -> LinkwrightError:
+def invalid_value_error(name: str, value: object, node: str, choices: Sequence[str] = ()) -> LinkwrightError:
     """Return the error NODE433 for an invalid value of a parameter."""
     message = phrase("parameter '{name}' of '{node}' cannot be '{value}'", name=name, node=node, value=value)
     hint = None
@@ -93,7 +93,7 @@ def bad_value(name: str, value: object, node: str, choices: Sequence[str] = ()) 
     return LinkwrightError(Diagnostic("NODE433", message, hint=hint))
 
 
-def log_unknown(node: Node) -> None:
+def log_unknown_parameters(node: Node) -> None:
     """Log the parameters that are set but not declared.
 
     This must be called after all declarations.

@@ -1,4 +1,4 @@
-"""static_transform_publisher of tf2_ros: publishes a static transform from the command line."""
+"""static_transform_publisher of tf2_ros: publishes the transform of its arguments."""
 
 from __future__ import annotations
 
@@ -40,15 +40,15 @@ _POSITIONS_WITH_QUATERNION = (*_TRANSLATION, *_QUATERNION, *_FRAMES)
 class StaticTransform:
     """The pose of the child frame in the parent frame, from the command line.
 
-    The translation is in meters, and the rotation is a unit quaternion x y z w. `old_style` is true if the values were
-    positional arguments, which are deprecated in tf2_ros.
+    The translation is in meters, and the rotation is a unit quaternion x y z w. `is_old_style` is true if the values
+    were positional arguments, which are deprecated in tf2_ros.
     """
 
     translation: tuple[float, float, float]
     rotation: tuple[float, float, float, float]
     frame_id: str
     child_frame_id: str
-    old_style: bool
+    is_old_style: bool
 
 
 def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
@@ -59,9 +59,9 @@ def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
     Raises:
         LinkwrightError: the command line is invalid; the message is tf2_ros's.
     """
-    options, positional = _split(arguments)
-    old_style = bool(positional)
-    if old_style:
+    options, positional = _split_arguments(arguments)
+    is_old_style = bool(positional)
+    if is_old_style:
         names = {8: _POSITIONS_WITH_ANGLES, 9: _POSITIONS_WITH_QUATERNION}.get(len(positional))
         if names is None:
             raise _usage_error(phrase("Extra unparsed arguments on command-line"))
@@ -73,9 +73,13 @@ def parse_arguments(arguments: Sequence[str]) -> StaticTransform:
     for name, label in zip(_FRAMES, ("Frame id", "Child frame id"), strict=True):
         if not options.get(name):
             raise _usage_error(phrase("{argument} must not be empty", argument=label))
-    x, y, z = (_number(options, name, 0.0) for name in _TRANSLATION)
+    x, y, z = (_parse_number(options, name, 0.0) for name in _TRANSLATION)
     return StaticTransform(
-        (x, y, z), _rotation(options), options["--frame-id"], options["--child-frame-id"], old_style=old_style
+        (x, y, z),
+        _parse_rotation(options),
+        options["--frame-id"],
+        options["--child-frame-id"],
+        is_old_style=is_old_style,
     )
 
 
@@ -98,7 +102,7 @@ class StaticTransformPublisher(SingleNode):
 
     def _publish(self, transform: StaticTransform) -> None:
         logger = self._node.get_logger()
-        if transform.old_style:
+        if transform.is_old_style:
             logger.warning("Old-style arguments are deprecated; see --help for new-style arguments")
         publisher = self._node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
         batch = TransformBatch(
@@ -121,7 +125,7 @@ def _random_suffix() -> str:
     return "".join(secrets.choice(string.ascii_letters + string.digits) for _ in range(16))
 
 
-def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+def _split_arguments(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     options, positional = {}, []
     known_names = {*_TRANSLATION, *_QUATERNION, *_ANGLES, *_FRAMES}
     waiting = iter(arguments)
@@ -136,18 +140,18 @@ def _split(arguments: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     return options, positional
 
 
-def _rotation(options: dict[str, str]) -> tuple[float, float, float, float]:
+def _parse_rotation(options: dict[str, str]) -> tuple[float, float, float, float]:
     if any(name in options for name in _ANGLES):
-        x, y, z, w = quaternion_from_rpy([_number(options, name, 0.0) for name in _ANGLES]).tolist()
+        x, y, z, w = quaternion_from_rpy([_parse_number(options, name, 0.0) for name in _ANGLES]).tolist()
         return x, y, z, w
-    x, y, z = (_number(options, name, 0.0) for name in _QUATERNION[:3])
-    w = _number(options, "--qw", 1.0)
+    x, y, z = (_parse_number(options, name, 0.0) for name in _QUATERNION[:3])
+    w = _parse_number(options, "--qw", 1.0)
     if x == y == z == w == 0.0:
         raise _usage_error(phrase("The quaternion must not be zero"))
     return normalized(x, y, z, w)
 
 
-def _number(options: dict[str, str], name: str, default: float) -> float:
+def _parse_number(options: dict[str, str], name: str, default: float) -> float:
     text = options.get(name)
     if text is None:
         return default

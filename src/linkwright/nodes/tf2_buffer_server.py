@@ -19,8 +19,8 @@ from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import get_action, get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node
 
-_BUFFER_S = 120.0
-_CHECK_S = 0.01
+_BUFFER_DURATION_S = 120.0
+_CHECK_PERIOD_S = 0.01
 _OTHER_ERROR_CODE = 6
 _ERROR_CODES: dict[type[TransformException], int] = {
     LookupException: 1,
@@ -45,11 +45,11 @@ class Tf2BufferServer(SingleNode):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
-        seconds = float(self._node.declare_parameter("buffer_size", _BUFFER_S).value)
+        seconds = float(self._node.declare_parameter("buffer_size", _BUFFER_DURATION_S).value)
         self._buffer = BufferCore(Duration(seconds=seconds), logger=self._node.get_logger().get_child("tf2"))
         TransformListener(self._buffer, self._node)
         self._waiting: dict[ServerGoalHandle, int] = {}
-        self._check_timer = self._node.create_timer(_CHECK_S, self._execute_ready_goals, autostart=False)
+        self._check_timer = self._node.create_timer(_CHECK_PERIOD_S, self._execute_ready_goals, autostart=False)
         self._action_type = get_action("tf2_msgs/action/LookupTransform")
         self._error_type = get_message("tf2_msgs/msg/TF2Error")
         ActionServer(
@@ -84,14 +84,14 @@ class Tf2BufferServer(SingleNode):
             handle.canceled()
             return result
         try:
-            result.transform = self._transform(handle.request)
+            result.transform = self._look_up_transform(handle.request)
         except TransformException as error:
             error_code = _ERROR_CODES.get(type(error), _OTHER_ERROR_CODE)
             result.error = self._error_type(error=error_code, error_string=error.diagnostics[0].message)
         handle.succeed()
         return result
 
-    def _transform(self, goal: Any) -> Any:
+    def _look_up_transform(self, goal: Any) -> Any:
         source_time = Time.from_msg(goal.source_time)
         if not goal.advanced:
             return self._buffer.lookup_transform_core(goal.target_frame, goal.source_frame, source_time)
@@ -102,7 +102,7 @@ class Tf2BufferServer(SingleNode):
 
     def _is_available(self, goal: Any) -> bool:
         try:
-            self._transform(goal)
+            self._look_up_transform(goal)
         except TransformException:
             return False
         return True

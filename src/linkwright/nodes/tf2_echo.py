@@ -71,16 +71,16 @@ class Tf2Echo(SingleNode):
                 f"Failure at {seconds:.3f}\nException thrown:{error}\nThe current list of frames is:\n{frames}"
             )
         else:
-            self._output(describe(transform))
+            self._output(format_transform(transform))
 
 
-def describe(transform: Any) -> str:
+def format_transform(transform: Any) -> str:
     """Format a geometry_msgs/msg/TransformStamped as tf2_echo does."""
     stamp, translation, rotation = transform.header.stamp, transform.transform.translation, transform.transform.rotation
     position = (translation.x, translation.y, translation.z)
     quaternion = (rotation.x, rotation.y, rotation.z, rotation.w)
     matrix = rotation_matrix(quaternion)
-    angles = _roll_pitch_yaw(matrix)
+    angles = _compute_roll_pitch_yaw(matrix)
     transform_matrix = np.eye(4)
     transform_matrix[:3, :3], transform_matrix[:3, 3] = matrix, position
     return "\n".join(
@@ -97,7 +97,7 @@ def describe(transform: Any) -> str:
     )
 
 
-def _roll_pitch_yaw(matrix: NDArray[np.float64]) -> tuple[float, float, float]:
+def _compute_roll_pitch_yaw(matrix: NDArray[np.float64]) -> tuple[float, float, float]:
     """Return roll, pitch and yaw of a rotation matrix, with the signs of zero as in tf2."""
     (xx, xy, xz), (yx, _, _), (zx, zy, zz) = matrix.tolist()
     if abs(zx) >= 1.0:

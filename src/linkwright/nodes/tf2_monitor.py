@@ -118,15 +118,15 @@ class Tf2Monitor(SingleNode):
         lines += ["", "Frames:"]
         for frame, delays in sorted(self._delays.items()):
             if self._frames is None or frame in self._chain:
-                lines.append(f"Frame: {frame}, published by {AUTHORITY}, {_delay_text(delays, ', ')}")
+                lines.append(f"Frame: {frame}, published by {AUTHORITY}, {_format_delays(delays, ', ')}")
         lines += ["", "All Broadcasters:"]
         if self._message_times:
             span = max(_MIN_SPAN_S, self._message_times[-1] - self._message_times[0])
             frequency = len(self._message_times) / span
-            lines.append(f"Node: {AUTHORITY} {frequency:g} Hz, {_delay_text(self._message_delays, ' ')}")
+            lines.append(f"Node: {AUTHORITY} {frequency:g} Hz, {_format_delays(self._message_delays, ' ')}")
         self._output("\n".join(lines))
 
 
-def _delay_text(delays: Iterable[float], separator: str) -> str:
+def _format_delays(delays: Iterable[float], separator: str) -> str:
     values = list(delays)
     return f"Average Delay: {sum(values) / len(values):g}{separator}Max Delay: {max(0.0, *values):g}"

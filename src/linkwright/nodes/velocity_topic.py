@@ -9,10 +9,10 @@ from linkwright.graph import EndpointKind, Node, Publisher
 
 TWIST = "geometry_msgs/msg/Twist"
 TWIST_STAMPED = "geometry_msgs/msg/TwistStamped"
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 
 
-def velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, ...]:
+def choose_velocity_types(node: Node, topic: str, stamped: bool | None) -> tuple[str, ...]:
     """Return the message types to subscribe to for velocities.
 
     The result is one type if `stamped` is True or False, and both types if it is None. If TwistStamped is already
@@ -83,7 +83,7 @@ class VelocityTopic:
         message_type = self._choose_type(subscriber_types)
         if self._publisher is None or (may_change and self._publisher.type_name != message_type):
             self.close()
-            self._publisher = self._node.create_publisher(message_type, self._topic, _DEPTH)
+            self._publisher = self._node.create_publisher(message_type, self._topic, _QUEUE_DEPTH)
         return subscriber_types.count(self._publisher.type_name)
 
     def publish(self, linear: Sequence[float], angular: Sequence[float]) -> None:

@@ -37,13 +37,13 @@ def parse_assignments(
         if separator and name and not name.startswith("-"):
             values[name] = value
         else:
-            errors.append(create_error(argument, _hint(argument)))
+            errors.append(create_error(argument, _create_hint(argument)))
     if errors:
         raise LinkwrightError(*errors)
     return values
 
 
-def _hint(argument: str) -> Phrase:
+def _create_hint(argument: str) -> Phrase:
     match = re.match(_SINGLE_SIGN_PATTERN, argument, re.DOTALL)
     if match:
         return phrase("write {name}:={value}", name=match[1], value=match[3])

@@ -1,4 +1,4 @@
-"""A server process that imports modules in advance, and forks itself for each requested program.
+"""A server process that imports modules in advance, and forks for each program.
 
 Run as ``python -m linkwright.process.fork_server FD NAME...``, where FD is a socket of `linkwright.process.forked` and
 each NAME is a module, or ``PACKAGE.*`` for all in a package. The process ends when the socket is closed. Running
@@ -25,10 +25,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-LARGEST_REQUEST = 1 << 17
+MAX_REQUEST_BYTES = 1 << 17
 """The maximum size of a request in bytes. A request is one datagram."""
 
-NUMBER = struct.Struct("q")
+NUMBER_FORMAT = struct.Struct("q")
 """The format of reports: first the process ID, then the exit status. A status alone is that of a program that never
 started."""
 
@@ -89,7 +89,7 @@ class _Server:
         except OSError:  # too many processes: the client sees the end of the pipe
             pid = -1
         if pid == 0:
-            self._leave()
+            self._close_server_files()
             return True
         for stream in request.streams:
             os.close(stream)
@@ -109,10 +109,10 @@ class _Server:
                     return
                 report = self.reports.pop(pid)
                 with contextlib.suppress(BrokenPipeError):  # the client no longer waits for the program
-                    os.write(report, NUMBER.pack(os.waitstatus_to_exitcode(status)))
+                    os.write(report, NUMBER_FORMAT.pack(os.waitstatus_to_exitcode(status)))
                 os.close(report)
 
-    def _leave(self) -> None:
+    def _close_server_files(self) -> None:
         """Close the files of the server in a new process."""
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
@@ -124,7 +124,7 @@ class _Server:
 
 
 def _receive(control: socket.socket) -> Request | None:
-    data, descriptors, _, _ = socket.recv_fds(control, LARGEST_REQUEST, 4)
+    data, descriptors, _, _ = socket.recv_fds(control, MAX_REQUEST_BYTES, 4)
     if not data:
         return None
     requested: dict[str, Any] = json.loads(data)
@@ -132,10 +132,10 @@ def _receive(control: socket.socket) -> Request | None:
     return Request(**requested, streams=streams, report=report)
 
 
-def _become(request: Request) -> None:
+def _run_program(request: Request) -> None:
     """Run ``python -m MODULE WORDS`` in this process, in a session of its own."""
     os.setsid()
-    os.write(request.report, NUMBER.pack(os.getpid()))
+    os.write(request.report, NUMBER_FORMAT.pack(os.getpid()))
     os.close(request.report)
     for descriptor, stream in enumerate(request.streams):
         os.dup2(stream, descriptor)
@@ -159,10 +159,10 @@ def _end_without_cleanup(code: object) -> None:
     """End the process as Python does, except that the objects of modules are not freed.
 
     Freeing them would write to all the shared memory, and thereby copy it: ten times the work of a short program. A
-    file that the program has not closed can lose its end.
+    file that the program has not closed may be incomplete.
     """
     atexit.unregister(_end_without_cleanup)
-    atexit._run_exitfuncs()  # those that were registered before
+    atexit._run_exitfuncs()  # the handlers that were registered earlier
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(OSError, ValueError):
             stream.flush()
@@ -187,7 +187,7 @@ def _import_all(names: Sequence[str]) -> None:
     for name in names:
         package = name.removesuffix(".*")
         _import(package)
-        for inner in _inner_modules(package) if name != package else ():
+        for inner in _find_inner_modules(package) if name != package else ():
             _import(inner)
 
 
@@ -196,12 +196,12 @@ def _import(name: str) -> None:
         importlib.import_module(name)
 
 
-def _inner_modules(package: str) -> Iterator[str]:
+def _find_inner_modules(package: str) -> Iterator[str]:
     """Yield the modules in a package, and import inner packages to yield their modules."""
     for module in pkgutil.iter_modules(getattr(sys.modules.get(package), "__path__", ()), f"{package}."):
         if not module.name.endswith(".__main__"):
             yield module.name
-            yield from _inner_modules(module.name)
+            yield from _find_inner_modules(module.name)
 
 
 def main() -> None:
@@ -216,7 +216,7 @@ def main() -> None:
     control = socket.socket(fileno=int(descriptor))
     control.send(b"ready")
     if request := _Server(control).serve():
-        _become(request)
+        _run_program(request)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Python programs that are forked from a server process, so that they start without import time.
+"""Python programs that are forked from a server process to save the time of imports.
 
 The server process has already imported the modules that the programs need.
 """
@@ -39,8 +39,8 @@ class ForkedProcess:
     The program leads a session of its own.
 
     Attributes:
-        args: the words of the program.
-        pid: its process ID.
+        args: the command line of the program.
+        pid: the process ID of the program.
         returncode: its exit status, or minus the number of the signal that ended it; None while it runs.
     """
 
@@ -51,7 +51,7 @@ class ForkedProcess:
         self._report = report
         self.pid = self._read_number()
         if self.pid < 0:  # the program was killed before it started
-            self._end(self.pid)
+            self._end_server(self.pid)
 
     def __del__(self) -> None:
         if self.returncode is None:
@@ -60,7 +60,7 @@ class ForkedProcess:
     def poll(self) -> int | None:
         """Return the exit status, or None while the program runs."""
         if self.returncode is None and _is_readable(self._report, 0.0):
-            self._end(self._read_number())
+            self._end_server(self._read_number())
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
@@ -89,13 +89,13 @@ class ForkedProcess:
         self.send_signal(signal.SIGKILL)
 
     def _read_number(self) -> int:
-        from linkwright.process.fork_server import NUMBER
+        from linkwright.process.fork_server import NUMBER_FORMAT
 
-        data = os.read(self._report, NUMBER.size)
-        number: int = NUMBER.unpack(data)[0] if data else -signal.SIGKILL  # the server was killed
+        data = os.read(self._report, NUMBER_FORMAT.size)
+        number: int = NUMBER_FORMAT.unpack(data)[0] if data else -signal.SIGKILL  # the server was killed
         return number
 
-    def _end(self, status: int) -> None:
+    def _end_server(self, status: int) -> None:
         self.returncode = status
         os.close(self._report)
 
@@ -110,12 +110,12 @@ Program = Union[ForkedProcess, "subprocess.Popen[bytes]"]
 """A program that was forked or started afresh."""
 
 
-def start_fresh(
+def start_new_process(
     python: Sequence[str], module: str, words: Sequence[str], *, cwd: Path, env: Mapping[str, str], streams: Streams
 ) -> subprocess.Popen[bytes]:
     """Start ``python -m MODULE WORDS`` in a new process and a new session."""
     stdin, stdout, stderr = streams
-    return subprocess.Popen(  # noqa: S603 - our own command
+    return subprocess.Popen(  # noqa: S603 - Linkwright's own command
         [*python, "-m", module, *words],
         cwd=cwd,
         env=env,
@@ -163,7 +163,7 @@ class ForkServer:
         """Start the server unless it is running, so that its imports finish early."""
         with self._lock:
             if IS_POSSIBLE:
-                self._running_control()
+                self._ensure_running()
 
     @property
     def is_ready(self) -> bool:
@@ -182,7 +182,7 @@ class ForkServer:
         if IS_POSSIBLE:
             with contextlib.suppress(OSError):
                 return self._fork(module, words, cwd, env, streams)
-        return start_fresh(self._python, module, words, cwd=cwd, env=env, streams=streams)
+        return start_new_process(self._python, module, words, cwd=cwd, env=env, streams=streams)
 
     def _fork(
         self, module: str, words: Sequence[str], cwd: Path, env: Mapping[str, str], streams: Streams
@@ -204,22 +204,22 @@ class ForkServer:
     def _send(self, data: bytes, descriptors: Sequence[int]) -> None:
         """Send a request to the server."""
         with self._lock:
-            socket.send_fds(self._running_control(), [data], list(descriptors))
+            socket.send_fds(self._ensure_running(), [data], list(descriptors))
 
-    def _running_control(self) -> socket.socket:
+    def _ensure_running(self) -> socket.socket:
         """Return the socket of the server, and start the server if it is not running."""
         if self._process is not None and self._process.poll() is not None:
-            self._end()
-        return self._control or self._begin()
+            self._end_server()
+        return self._control or self._start_server()
 
-    def _begin(self) -> socket.socket:
-        control, far = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        with far:
-            self._process = subprocess.Popen(  # noqa: S603 - our own command
-                [*self._python, "-m", _MODULE, str(far.fileno()), *self._modules],
+    def _start_server(self) -> socket.socket:
+        control, server_end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        with server_end:
+            self._process = subprocess.Popen(  # noqa: S603 - Linkwright's own command
+                [*self._python, "-m", _MODULE, str(server_end.fileno()), *self._modules],
                 cwd="/",  # a folder whose files hide no modules
                 env={**os.environ, **self._variables},
-                pass_fds=[far.fileno()],
+                pass_fds=[server_end.fileno()],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
@@ -229,11 +229,14 @@ class ForkServer:
         return control
 
     def close(self) -> None:
-        """Stop the server. Running programs continue, but their exit statuses are no longer reported."""
-        with self._lock:
-            self._end()
+        """Stop the server.
 
-    def _end(self) -> None:
+        Running programs continue, but their exit statuses are no longer reported.
+        """
+        with self._lock:
+            self._end_server()
+
+    def _end_server(self) -> None:
         if self._control is not None and self._process is not None:
             self._control.close()
             self._process.terminate()  # The server may still be importing.

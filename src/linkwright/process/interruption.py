@@ -33,7 +33,7 @@ INTERRUPTED = 130
 As in shells, it is 128 plus the number of SIGINT.
 """
 
-_DELAY_S = 0.01
+_RESEND_DELAY_S = 0.01
 
 
 def end_on_interrupt() -> None:
@@ -51,7 +51,7 @@ def raise_interrupts() -> None:
     """Make Ctrl-C raise KeyboardInterrupt again, so that code can handle it."""
     if _signal.getsignal(_signal.SIGINT) is _handle_interrupt:
         _signal.signal(_signal.SIGINT, _signal.default_int_handler)
-        on_lost_interrupt(lambda: signal_again(_signal.SIGINT))
+        on_lost_interrupt(lambda: resend_signal(_signal.SIGINT))
 
 
 def on_lost_interrupt(deliver: Callable[[], None]) -> Callable[[Any], Any]:
@@ -69,7 +69,7 @@ def on_lost_interrupt(deliver: Callable[[], None]) -> Callable[[Any], Any]:
     previous_hook = sys.unraisablehook
 
     def deliver_later() -> None:
-        time.sleep(_DELAY_S)
+        time.sleep(_RESEND_DELAY_S)
         deliver()
 
     def hook(unraisable: Any) -> None:
@@ -82,7 +82,7 @@ def on_lost_interrupt(deliver: Callable[[], None]) -> Callable[[Any], Any]:
     return previous_hook
 
 
-def signal_again(signal_number: int) -> None:
+def resend_signal(signal_number: int) -> None:
     """Send a signal to this process.
 
     The main thread handles it like a signal from outside.

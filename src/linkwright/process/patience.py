@@ -30,13 +30,13 @@ class PatientClock:
         self._process = os.getpid() if process is None else process
         self._start = self._last = time.monotonic()
         self._waited = 0.0
-        self._usages = dict(_usages_below(self._process))
+        self._usages = dict(_read_usages(self._process))
         self.cpu_seconds = 0.0
 
     def read(self) -> float:
         """Return the seconds on this clock since its creation."""
         now = time.monotonic()
-        usages = dict(_usages_below(self._process))
+        usages = dict(_read_usages(self._process))
         running = waiting = 0.0
         for thread, (run, wait) in usages.items():
             run_before, wait_before = self._usages.get(thread, (0.0, 0.0))
@@ -51,7 +51,7 @@ class PatientClock:
         return max(elapsed - self._waited, elapsed / _MAX_SLOWDOWN)
 
 
-def _usages_below(root: int) -> Iterator[tuple[str, tuple[float, float]]]:
+def _read_usages(root: int) -> Iterator[tuple[str, tuple[float, float]]]:
     """Yield the threads of a process and of its descendants, with running and waiting times.
 
     Both times are in seconds.
@@ -62,12 +62,12 @@ def _usages_below(root: int) -> Iterator[tuple[str, tuple[float, float]]]:
         with contextlib.suppress(OSError):
             for thread in os.listdir(folder):  # noqa: PTH208 - read often
                 with contextlib.suppress(OSError, ValueError):
-                    run, wait, _ = map(int, _read(f"{folder}/{thread}/schedstat").split())
+                    run, wait, _ = map(int, _read_text(f"{folder}/{thread}/schedstat").split())
                     yield thread, (run * _SECONDS_PER_NANOSECOND, wait * _SECONDS_PER_NANOSECOND)
                 with contextlib.suppress(OSError):  # not supported by all kernels
-                    waiting += map(int, _read(f"{folder}/{thread}/children").split())
+                    waiting += map(int, _read_text(f"{folder}/{thread}/children").split())
 
 
-def _read(path: str) -> str:
+def _read_text(path: str) -> str:
     with open(path, encoding="ascii") as file:  # noqa: PTH123 - read often
         return file.read()

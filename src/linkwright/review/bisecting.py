@@ -72,10 +72,10 @@ class History:
         real_path = file.resolve()
         hint = phrase("`linkwright bisect` searches the commits of a git repository")
         self._repository = GitRepository(real_path.parent, display_path(file), hint, downloads_lfs=False)
-        self.new = self._repository.commit(new)
+        self.new = self._repository.require_commit(new)
         self._names = self._names_of(real_path.relative_to(self._repository.root).as_posix())
         self._require_file(self.new, new)
-        self.old = self._repository.commit(old) if old else self._first_commit()
+        self.old = self._repository.require_commit(old) if old else self._first_commit()
         self._require_ancestor(old, new)
         self._require_file(self.old, old or self.old)
 

@@ -225,8 +225,8 @@ def open_versions(folder: Path, range_text: str) -> Versions:
     """
     repository = _open_repository(folder)
     old_name, new_name = _split_range(repository, range_text)
-    old_commit = repository.commit(old_name)
-    new_commit = repository.commit(new_name) if new_name else None
+    old_commit = repository.require_commit(old_name)
+    new_commit = repository.require_commit(new_name) if new_name else None
     if "..." in range_text or not range_text:
         old_commit = _common_commit(repository, old_commit, old_name, new_name or "HEAD")
     changed_files = repository.changed_files(old_commit, new_commit)
@@ -272,7 +272,7 @@ def _default_branch(repository: GitRepository) -> str:
 
 
 def _common_commit(repository: GitRepository, old_commit: str, old_name: str, new_name: str) -> str:
-    common = repository.merge_base(old_commit, repository.commit(new_name))
+    common = repository.merge_base(old_commit, repository.require_commit(new_name))
     if common is None:
         message = phrase("'{old}' and '{new}' have no common commit in this clone", old=old_name, new=new_name)
         hint = phrase(
@@ -292,4 +292,4 @@ def _is_checked_out(repository: GitRepository, commit: str) -> bool:
     if repository.resolve("HEAD") != commit or repository.changed_files(commit):
         return False
     root = repository.root
-    return not any(leads_outside(root / link, root) for link in repository.symbolic_links(commit))
+    return not any(leads_outside(root / link, root) for link in repository.list_symbolic_links(commit))

@@ -22,7 +22,7 @@ from linkwright.diagnostics import SourceText
 from linkwright.packages import MANIFEST
 from linkwright.packages.readers.cmake import CMakeFile, read_cmake
 
-COPIED = "ros.ament_cmake_copied"
+COPIED_TYPE = "ros.ament_cmake_copied"
 """The colcon type of packages whose files are copied."""
 
 _LOGGER = colcon_logger.getChild(__name__)
@@ -30,19 +30,22 @@ _RESOURCE_INDEX = "share/ament_index/resource_index"
 
 
 class CopiedPackageIdentification(RosPackageIdentification):  # type: ignore[misc]  # its base has no types
-    """An identification of ``ament_cmake`` packages that must be copied because ament_cmake is missing."""
+    """An identification of ``ament_cmake`` packages that are copied without ament_cmake."""
 
     PRIORITY = RosPackageIdentification.PRIORITY + 10
 
     def identify(self, desc: Any) -> None:
-        """Identify a ROS package as colcon-ros does, with type `COPIED` if ament_cmake is missing."""
+        """Identify a ROS package as colcon-ros does, with type `COPIED_TYPE` if ament_cmake is missing."""
         super().identify(desc)
         if desc.type == "ros.ament_cmake" and not _has_ament_cmake(os.environ):
-            desc.type = COPIED
+            desc.type = COPIED_TYPE
 
 
 class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its base has no types
-    """A build task that installs the files an ``ament_cmake`` package copies, and logs the skipped parts."""
+    """A build task that installs the files that an ``ament_cmake`` package copies.
+
+    It logs the parts that it skips.
+    """
 
     async def build(self) -> int:
         """Install the files of the package, and return the exit status.
@@ -71,7 +74,7 @@ class CopyingAmentCmakeTask(TaskExtensionPoint):  # type: ignore[misc]  # its ba
         )
         if cmake.modules:
             hooks += create_environment_hook(
-                "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _site_packages(), mode="prepend"
+                "pythonpath", Path(args.install_base), package.name, "PYTHONPATH", _find_site_packages(), mode="prepend"
             )
         # Hooks in the language of a shell call functions of ament. Only ``.dsv`` hooks work with colcon alone.
         hooks += [Path(hook) for hook in cmake.hooks if hook.endswith(".dsv")]
@@ -110,10 +113,10 @@ def _install_module(args: Any, folder: Path, module: str) -> None:
     for file in [path] if path.is_file() else sorted(path.rglob("*")):
         if file.is_file() and "__pycache__" not in file.parts:
             relative_path = Path(path.name) / file.relative_to(path) if path.is_dir() else Path(path.name)
-            install(args, file.relative_to(folder).as_posix(), f"{_site_packages()}/{relative_path.as_posix()}")
+            install(args, file.relative_to(folder).as_posix(), f"{_find_site_packages()}/{relative_path.as_posix()}")
 
 
-def _site_packages() -> str:
+def _find_site_packages() -> str:
     """Return the folder for Python packages, relative to the install prefix."""
     paths = sysconfig.get_paths("posix_prefix" if os.name != "nt" else "nt", vars={"base": "", "platbase": ""})
     return paths["purelib"].strip("/\\").replace("\\", "/")

@@ -24,7 +24,7 @@ from linkwright.standins import process
 
 _PR_SET_PDEATHSIG = 1
 """The option of prctl(2) that requests a signal when the parent process ends."""
-MARK = "LINKWRIGHT_SHELL"
+MARK_VARIABLE = "LINKWRIGHT_SHELL"
 """The environment variable that contains the folder of the shell's programs."""
 
 
@@ -52,7 +52,9 @@ def run_shell(
         folder.mkdir()
         write_programs(folder)
         variables = shell_environment(folder, os.environ if environment is None else environment)
-        command_line = list(command) or _interactive_command(Path(scratch), variables, additions or (lambda _: ""))
+        command_line = list(command) or _create_interactive_command(
+            Path(scratch), variables, additions or (lambda _: "")
+        )
         path = shutil.which(command_line[0], path=variables["PATH"])
         if path is None:
             raise unknown_command_error(command_line[0], tuple(PROGRAMS), _COMMAND_HINT)
@@ -74,24 +76,24 @@ def shell_environment(folder: Path, base: Mapping[str, str]) -> dict[str, str]:
         folder: the folder of Linkwright's programs.
         base: the environment variables to extend.
     """
-    variables = process.environment(base)
+    variables = process.create_environment(base)
     folders = [
         folder_name
         for folder_name in variables.get("PATH", os.defpath).split(os.pathsep)
-        if folder_name and folder_name != base.get(MARK)
+        if folder_name and folder_name != base.get(MARK_VARIABLE)
     ]
     if shutil.which("ros2", path=os.pathsep.join(folders)) is None:
         interpreter_folder = str(Path(sys.executable).parent)
         folders = [interpreter_folder, *(part for part in folders if part != interpreter_folder)]
     variables["PATH"] = os.pathsep.join([*folders, str(folder)])
-    variables[MARK] = str(folder)
+    variables[MARK_VARIABLE] = str(folder)
     return variables
 
 
 _SHELLS_WITH_START_FILE = ("bash", "zsh", "fish")
 
 
-def _interactive_command(scratch: Path, variables: dict[str, str], additions: Callable[[str], str]) -> list[str]:
+def _create_interactive_command(scratch: Path, variables: dict[str, str], additions: Callable[[str], str]) -> list[str]:
     """Return the command that starts the user's shell and then sets the search path again.
 
     The search path is set after the user's start-up files, because they often change it.
@@ -103,22 +105,24 @@ def _interactive_command(scratch: Path, variables: dict[str, str], additions: Ca
     if shell_name in _SHELLS_WITH_START_FILE:
         # The folder is appended after the start-up file has run, so that the user's own entries come first.
         folders = variables["PATH"].split(os.pathsep)
-        variables["PATH"] = os.pathsep.join(folder for folder in folders if folder != variables[MARK])
+        variables["PATH"] = os.pathsep.join(folder for folder in folders if folder != variables[MARK_VARIABLE])
     if shell_name == "bash":
         start_file = scratch / "bashrc"
-        start_file.write_text(_start_file("~/.bashrc", variables) + additions(shell_name), encoding="utf-8")
+        start_file.write_text(_format_start_file("~/.bashrc", variables) + additions(shell_name), encoding="utf-8")
         return [shell, "--rcfile", str(start_file), "-i"]
     if shell_name == "zsh":
         home = variables.get("ZDOTDIR") or variables.get("HOME") or "~"
         (scratch / ".zshrc").write_text(
-            f"ZDOTDIR={shlex.quote(home)}\n" + _start_file(f"{home}/.zshrc", variables) + additions(shell_name),
+            f"ZDOTDIR={shlex.quote(home)}\n" + _format_start_file(f"{home}/.zshrc", variables) + additions(shell_name),
             encoding="utf-8",
         )
         variables["ZDOTDIR"] = str(scratch)
         return [shell, "-i"]
     if shell_name == "fish":
         settings = "; ".join(
-            f"set -gx {name} {shlex.quote(variables[name])}" for name in ("PYTHONPATH", MARK) if name in variables
+            f"set -gx {name} {shlex.quote(variables[name])}"
+            for name in ("PYTHONPATH", MARK_VARIABLE)
+            if name in variables
         )
         start_file = scratch / "start.fish"
         start_file.write_text(additions(shell_name), encoding="utf-8")
@@ -126,12 +130,12 @@ def _interactive_command(scratch: Path, variables: dict[str, str], additions: Ca
             shell,
             "-i",
             "--init-command",
-            f"{settings}; set -gx PATH $PATH ${MARK}; source {shlex.quote(str(start_file))}",
+            f"{settings}; set -gx PATH $PATH ${MARK_VARIABLE}; source {shlex.quote(str(start_file))}",
         ]
     return [shell, "-i"]
 
 
-def _start_file(user_file: str, variables: Mapping[str, str]) -> str:
+def _format_start_file(user_file: str, variables: Mapping[str, str]) -> str:
     """Return the contents of a start-up file for bash or zsh.
 
     The start-up file reads the user's own file, and then appends the commands to the search path.
@@ -141,7 +145,7 @@ def _start_file(user_file: str, variables: Mapping[str, str]) -> str:
     return f"""\
 [ -f {user_file} ] && . {user_file}
 command -v ros2 >/dev/null 2>&1 || case "$PATH:" in {interpreter}:*) ;; *) export PATH={interpreter}:"$PATH" ;; esac
-export PATH="$PATH":{shlex.quote(variables[MARK])}
+export PATH="$PATH":{shlex.quote(variables[MARK_VARIABLE])}
 case ":$PYTHONPATH:" in *:{standins}:*) ;; *) export PYTHONPATH="${{PYTHONPATH:+$PYTHONPATH:}}"{standins} ;; esac
 PS1="(linkwright) $PS1"
 """
@@ -167,7 +171,7 @@ def _run(words: Sequence[str], variables: Mapping[str, str]) -> int:
         elif is_detached or signal_number != signal.SIGINT:
             child.send_signal(signal_number)
 
-    previous = {number: signal.signal(number, forward_signal) for number in _forwarded_signals()}
+    previous = {number: signal.signal(number, forward_signal) for number in _find_forwarded_signals()}
     try:
         setup = _create_setup() if is_detached else None
         # The command is the user's own (S603). There is only one thread, and `setup` imports nothing (PLW1509).
@@ -214,7 +218,7 @@ def _create_setup() -> Callable[[], None]:
     return detach_from_parent
 
 
-def _forwarded_signals() -> list[int]:
+def _find_forwarded_signals() -> list[int]:
     """Return the numbers of the signals that are forwarded.
 
     A signal that this process ignored from its start is excluded, because the command ignores it too.

@@ -70,7 +70,7 @@ class _LazyInterfaceFinder:
 
 
 class _WorkspaceModuleFinder:
-    """A finder of the Python modules of workspace packages, for users' launch files and modules."""
+    """A finder of the Python modules of workspace packages, for users' launch files."""
 
     def find_spec(
         self,
@@ -78,11 +78,11 @@ class _WorkspaceModuleFinder:
         path: Sequence[str] | None = None,
         target: ModuleType | None = None,
     ) -> ModuleSpec | None:
-        """Return the spec of a workspace module that a user's file imports during a launch, or None."""
+        """Return the spec of a workspace module that a user's file imports, or None."""
         from linkwright.packages.active import active_finder
 
         finder = active_finder()
-        importing_file = None if finder is None or path is not None else _importing_file()
+        importing_file = None if finder is None or path is not None else _find_importing_file()
         if finder is None or importing_file is None:
             return None
         from linkwright.packages.programs.python_modules import find_module
@@ -90,7 +90,7 @@ class _WorkspaceModuleFinder:
         return find_module(finder, fullname, importing_file.parent)
 
 
-def _importing_file() -> Path | None:
+def _find_importing_file() -> Path | None:
     """Return the user's file that runs the current import.
 
     The result is None if a library runs the import, because a library may import a module optionally.
@@ -121,13 +121,13 @@ def _register_for_processes() -> None:
     """Make the stand-ins importable in processes that launch files start."""
     from linkwright.packages.programs import child_python as surroundings
 
-    surroundings.register_launcher(_environment, _python_command)
+    surroundings.register_launcher(_create_environment, _python_command)
 
 
-def _environment(base: Mapping[str, str]) -> Mapping[str, str]:
+def _create_environment(base: Mapping[str, str]) -> Mapping[str, str]:
     from linkwright.standins import process  # imported late, when the first process is started
 
-    return process.environment(base)
+    return process.create_environment(base)
 
 
 def _python_command(arguments: Sequence[str]) -> Sequence[str]:

@@ -1,4 +1,4 @@
-"""Conversion between image messages and numpy arrays, without OpenCV (API of ``cv_bridge``)."""
+"""Conversion between image messages and arrays without OpenCV (API of ``cv_bridge``)."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from linkwright.standins.image_encodings import (
     NUMPY_NAMES,
     ConversionError,
     convert_image,
-    depth_and_channels,
-    encoding,
+    parse_encoding,
+    split_cv_type,
 )
 
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ def getCvType(encoding_name: str) -> int:  # name as in cv_bridge
     Raises:
         RuntimeError: the encoding is unknown.
     """
-    return encoding(encoding_name).cv_type
+    return parse_encoding(encoding_name).cv_type
 
 
 class CvBridge:
@@ -67,7 +67,7 @@ class CvBridge:
 
     def cvtype2_to_dtype_with_channels(self, cvtype: int) -> tuple[str, int]:
         """Return the name of the numpy type and the number of channels for OpenCV's type number."""
-        depth, channels = depth_and_channels(cvtype)
+        depth, channels = split_cv_type(cvtype)
         return self.numpy_type_to_cvtype[depth], channels
 
     def encoding_to_cvtype2(self, encoding: str) -> int:
@@ -175,7 +175,7 @@ class CvBridge:
         message.format = dst_format
         buffer = io.BytesIO()
         try:
-            pillow_image = _pillow_image(cvim)
+            pillow_image = _to_pillow_image(cvim)
             pillow_format = _PILLOW_FORMATS.get(dst_format.lower(), dst_format.upper())
             if pillow_format == "JPEG" and pillow_image.mode == "RGBA":
                 pillow_image = pillow_image.convert("RGB")
@@ -199,7 +199,7 @@ def _check_array(image: object) -> None:
         raise TypeError("Your input type is not a numpy array")
 
 
-def _pillow_image(image: NDArray[Any]) -> PillowImage:
+def _to_pillow_image(image: NDArray[Any]) -> PillowImage:
     from PIL import Image
 
     if image.ndim == 3 and image.shape[2] == 1:

@@ -56,7 +56,7 @@ class Encoding:
         return DEPTHS.index(self.depth) + ((self.channels - 1) << _CHANNEL_SHIFT)
 
 
-def encoding(name: str) -> Encoding:
+def parse_encoding(name: str) -> Encoding:
     """Return the encoding with a name that messages use.
 
     Raises:
@@ -74,7 +74,7 @@ def encoding(name: str) -> Encoding:
     return Encoding(name, f"{color_match[2]}U", _CHANNEL_COUNTS[color_match[1]], color_match[1])
 
 
-def depth_and_channels(cv_type: int) -> tuple[str, int]:
+def split_cv_type(cv_type: int) -> tuple[str, int]:
     """Return OpenCV's name of the depth and the number of channels for a type number."""
     return DEPTHS[cv_type & ((1 << _CHANNEL_SHIFT) - 1)], (cv_type >> _CHANNEL_SHIFT) + 1
 
@@ -90,7 +90,7 @@ def convert_image(image: NDArray[Any], source: str, target: str) -> NDArray[Any]
     Raises:
         ConversionError: an encoding does not exist, or the conversion is not possible.
     """
-    source_encoding, target_encoding = encoding(source), encoding(target)
+    source_encoding, target_encoding = parse_encoding(source), parse_encoding(target)
     if source == target or not target:
         return np.array(image, order="C")
     if not source_encoding.order and target_encoding.order:
@@ -107,7 +107,10 @@ def convert_image(image: NDArray[Any], source: str, target: str) -> NDArray[Any]
 
 
 def _reorder_channels(image: NDArray[Any], source_encoding: Encoding, order: str) -> NDArray[Any]:
-    """Return an image with its channels in another order, adding or dropping channels if needed."""
+    """Return an image with its channels in another order.
+
+    Missing channels are added, and unused channels are dropped.
+    """
     if source_encoding.order == order:
         return image
     if source_encoding.order == "mono":

@@ -77,9 +77,9 @@ def find_spec(name: str) -> ModuleSpec | None:
     if len(submodules) > 2 or (submodules and submodules[0] not in KINDS) or not is_package_name(package):
         return None
     names = (
-        _interfaces(package, submodules[0])
+        _find_interface_names(package, submodules[0])
         if submodules
-        else [interface for kind in KINDS for interface in _interfaces(package, kind)]
+        else [interface for kind in KINDS for interface in _find_interface_names(package, kind)]
     )
     if not names:
         return None
@@ -93,7 +93,7 @@ def find_spec(name: str) -> ModuleSpec | None:
     return ModuleSpec(name, _InterfaceLoader(f"{package}/{submodules[0]}/{interface}"), origin="Linkwright")
 
 
-def _interfaces(package: str, kind: str) -> list[str]:
+def _find_interface_names(package: str, kind: str) -> list[str]:
     """Return the names of a package's interfaces.
 
     Packages that are part of Linkwright are not searched for on disk.
@@ -112,7 +112,7 @@ class _PackageLoader(Loader):
         module.__doc__ = f"The messages, services and actions of {module.__name__}."
 
         def load_kind(name: str) -> Any:
-            if name in KINDS and _interfaces(module.__name__, name):
+            if name in KINDS and _find_interface_names(module.__name__, name):
                 return importlib.import_module(f"{module.__name__}.{name}")
             raise AttributeError(f"module '{module.__name__}' has no attribute '{name}'")
 
@@ -153,7 +153,7 @@ class _KindLoader(Loader):
 
 
 class _InterfaceLoader(Loader):
-    """A loader of a module such as ``std_srvs.srv._set_bool``, with the same classes as rosidl's."""
+    """A loader of a module such as ``std_srvs.srv._set_bool``, with the classes of rosidl."""
 
     def __init__(self, type_name: str) -> None:
         self._type_name = type_name
@@ -169,7 +169,7 @@ class _InterfaceLoader(Loader):
         name = interface.__name__
         attributes = {name: interface}
         if issubclass(interface, ServiceType):
-            attributes |= _parts_of_service(name, interface)
+            attributes |= _collect_service_parts(name, interface)
         elif issubclass(interface, ActionType):
             attributes |= {
                 f"{name}_Goal": interface.Goal,
@@ -182,11 +182,11 @@ class _InterfaceLoader(Loader):
                 ("GetResult", interface.Impl.GetResultService),
             ):
                 attributes[f"{name}_{part}"] = service
-                attributes |= _parts_of_service(f"{name}_{part}", service)
+                attributes |= _collect_service_parts(f"{name}_{part}", service)
         module.__dict__.update(attributes)
 
 
-def _parts_of_service(name: str, service: type[ServiceType]) -> dict[str, Any]:
+def _collect_service_parts(name: str, service: type[ServiceType]) -> dict[str, Any]:
     return {
         f"{name}_Request": service.Request,
         f"{name}_Response": service.Response,

@@ -58,7 +58,7 @@ def flake8_with_errors(argv: Sequence[str] | None = None) -> tuple[int, list[str
             settings.append("--import-order-style=google")
     if options.linelength:
         settings.append(f"--max-line-length={options.linelength}")
-    return _run("flake8", settings, [path for path in _source_files(options) if path.suffix == ".py"])
+    return _run("flake8", settings, [path for path in _find_source_files(options) if path.suffix == ".py"])
 
 
 def pep257(argv: Sequence[str] | None = None) -> int:
@@ -80,8 +80,8 @@ def pep257(argv: Sequence[str] | None = None) -> int:
         settings = [f"--ignore={','.join(options.ignore or _IGNORED_DOCSTRING_RULES)}"]
     else:
         settings = [f"--convention={options.convention}"]
-    settings += [f"--{name}={','.join(codes)}" for name, codes in _additional_codes(options)]
-    return _run("pydocstyle", settings, [path for path in _source_files(options) if path.suffix == ".py"])[0]
+    settings += [f"--{name}={','.join(codes)}" for name, codes in _find_additional_codes(options)]
+    return _run("pydocstyle", settings, [path for path in _find_source_files(options) if path.suffix == ".py"])[0]
 
 
 def copyright_headers(argv: Sequence[str] | None = None) -> int:
@@ -94,7 +94,7 @@ def copyright_headers(argv: Sequence[str] | None = None) -> int:
     """
     files = [
         path
-        for path in _source_files(_create_parser("ament_copyright").parse_args(argv))
+        for path in _find_source_files(_create_parser("ament_copyright").parse_args(argv))
         if not _is_setup_of_package(path)
     ]
     findings = []
@@ -115,13 +115,13 @@ def _create_parser(name: str) -> argparse.ArgumentParser:
     return parser
 
 
-def _additional_codes(options: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
+def _find_additional_codes(options: argparse.Namespace) -> Iterator[tuple[str, list[str]]]:
     for name in ("add_ignore", "add_select"):
         if codes := getattr(options, name):
             yield name.replace("_", "-"), codes
 
 
-def _source_files(options: argparse.Namespace) -> list[Path]:
+def _find_source_files(options: argparse.Namespace) -> list[Path]:
     """Return the source files in the paths of the options.
 
     Excluded files, hidden folders and folders with ``AMENT_IGNORE`` are skipped.

@@ -86,7 +86,7 @@ class Cache(SimpleFilter):
     The cache also forwards each message.
 
     Args:
-        f: the filter.
+        f: the filter whose output is cached.
         cache_size: the maximum number of messages.
         allow_headerless: whether to accept messages without a stamp, for which the time of arrival is used.
     """
@@ -105,7 +105,7 @@ class Cache(SimpleFilter):
 
     def add(self, msg: Any) -> None:
         """Add a message, drop the oldest one if the cache is full, and forward the message."""
-        stamp = _message_time(msg, allow_headerless=self.allow_headerless, logger="message_filters_cache")
+        stamp = _find_message_time(msg, allow_headerless=self.allow_headerless, logger="message_filters_cache")
         if stamp is None:
             return
         self.cache_msgs.append(msg)
@@ -215,17 +215,17 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         if self.sync_arrival_time:
             time: Time | None = ROSClock().now()
         else:
-            time = _message_time(msg, allow_headerless=self.allow_headerless, logger="message_filters_approx")
+            time = _find_message_time(msg, allow_headerless=self.allow_headerless, logger="message_filters_approx")
         if time is None:
             return
         with self.lock:
             self._store(msg, my_queue, time.nanoseconds)
-            stamps = self._match(time.nanoseconds, my_queue_index)
+            stamps = self._find_match(time.nanoseconds, my_queue_index)
             match = [queue.pop(stamp) for queue, stamp in zip(self.queues, stamps, strict=True)] if stamps else None
         if match is not None:
             self.signalMessage(*match)
 
-    def _match(self, stamp: int, own_index: int | None) -> tuple[int, ...] | None:
+    def _find_match(self, stamp: int, own_index: int | None) -> tuple[int, ...] | None:
         """Return the stamps of the messages that match a new message, in the order of the filters.
 
         The result is None if a filter has no matching message.
@@ -245,7 +245,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         return None
 
 
-def _message_time(msg: Any, *, allow_headerless: bool, logger: str) -> Time | None:
+def _find_message_time(msg: Any, *, allow_headerless: bool, logger: str) -> Time | None:
     """Return the stamp of a message, or its time of arrival if `allow_headerless` is set.
 
     If neither is available, a warning is logged and the result is None.

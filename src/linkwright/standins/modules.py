@@ -27,8 +27,8 @@ def install() -> None:
 
     Repeated calls have no further effect.
     """
-    if _finder_for_path not in sys.path_hooks:
-        sys.path_hooks.insert(0, _finder_for_path)
+    if _create_finder not in sys.path_hooks:
+        sys.path_hooks.insert(0, _create_finder)
         for path in [path for path in sys.path_importer_cache if path.startswith(FOLDER)]:
             del sys.path_importer_cache[path]
 
@@ -55,7 +55,7 @@ def is_stand_in(module: ModuleType | None) -> bool:
     return isinstance(getattr(getattr(module, "__spec__", None), "loader", None), _Loader)
 
 
-def _finder_for_path(path: str) -> _Finder:
+def _create_finder(path: str) -> _Finder:
     """Return the finder for an entry of ``sys.path``, as a path hook of Python.
 
     Raises:
@@ -79,7 +79,7 @@ class _Finder:
     def iter_modules(self, prefix: str = "") -> Iterator[tuple[str, bool]]:
         """Yield the name of each module and whether it is a package, for `pkgutil`."""
         package_entries = table.find(self._package)
-        names = table.packages() if package_entries is None else package_entries.submodules
+        names = table.list_packages() if package_entries is None else package_entries.submodules
         for name in names:
             submodule_entries = table.find(f"{self._package}.{name}" if self._package else name)
             yield prefix + name, bool(submodule_entries and submodule_entries.submodules) or not self._package
@@ -91,9 +91,9 @@ class _Loader:
     def __init__(self, entries: table.Module) -> None:
         self._entries = entries
 
-    def providers(self, name: str) -> list[str]:
+    def find_providers(self, name: str) -> list[str]:
         """Return the modules that provide a name, for the message of a failed import of the name."""
-        return table.modules_providing(name)
+        return table.find_modules_providing(name)
 
     def create_module(self, spec: ModuleSpec) -> ModuleType | None:
         """Return None, so that Python creates a module object."""
@@ -107,7 +107,7 @@ class _Loader:
 
         def import_name(name: str) -> Any:
             if name in entries.names:
-                value = value_of(entries, name)
+                value = resolve_name(entries, name)
             elif name in entries.submodules:
                 value = importlib.import_module(f"{entries.name}.{name}")
             elif entries.others:
@@ -125,13 +125,13 @@ class _Loader:
                 # If a function has the name of its submodule, import the submodule first. If not, a later import of the
                 # submodule would replace the function with the module.
                 importlib.import_module(f"{entries.name}.{name}")
-                setattr(module, name, value_of(entries, name))
+                setattr(module, name, resolve_name(entries, name))
         if entries.setup:
             origin, _, function = entries.setup.rpartition(".")
             getattr(importlib.import_module(origin), function)()
 
 
-def value_of(module: table.Module, name: str) -> Any:
+def resolve_name(module: table.Module, name: str) -> Any:
     """Return the object that a module provides under a name.
 
     Raises:

@@ -1,4 +1,4 @@
-"""Conversion between point clouds and numpy arrays (API of ``sensor_msgs_py.point_cloud2``)."""
+"""Conversion between point clouds and arrays (API of ``sensor_msgs_py.point_cloud2``)."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def read_points(
         AssertionError: the cloud lacks one of the fields.
     """
     dtype = dtype_from_fields(cloud.fields, cloud.point_step, is_bigendian=cloud.is_bigendian)
-    points: NDArray[Any] = _flat_points(cloud, dtype)
+    points: NDArray[Any] = _to_flat_points(cloud, dtype)
     if field_names is not None:
         missing = [name for name in field_names if name not in _field_names(dtype)]
         if missing:
@@ -122,7 +122,7 @@ def create_cloud(
         AssertionError: the points do not have these fields.
     """
     dtype = dtype_from_fields(fields, step)
-    rows = _as_structured(points, dtype)
+    rows = _to_structured(points, dtype)
     if rows.ndim > 2:
         raise AssertionError("the array of points must have at most two dimensions: width and height")
     width, height = rows.shape[0], rows.shape[1] if rows.ndim == 2 else 1
@@ -151,7 +151,7 @@ def _field_names(dtype: np.dtype[Any]) -> tuple[str, ...]:
     return dtype.names or ()
 
 
-def _flat_points(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
+def _to_flat_points(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
     """Return the points of a cloud as a one-dimensional array, without the padding of rows."""
     data = np.frombuffer(cloud.data, np.uint8)
     width, height = cloud.width, cloud.height
@@ -174,21 +174,21 @@ def _is_not_nan(points: NDArray[Any]) -> NDArray[np.bool_]:
     return is_valid
 
 
-def _as_structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
+def _to_structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
     if not isinstance(points, np.ndarray):
-        return _without_gaps([tuple(point) for point in points], dtype)
+        return _fill_gaps([tuple(point) for point in points], dtype)
     if points.dtype.names is None:
         if points.shape[-1] != len(_field_names(dtype)):
             raise AssertionError(
                 f"points have {points.shape[-1]} values, but there are {len(_field_names(dtype))} fields"
             )
-        return _without_gaps(unstructured_to_structured(points, dtype), dtype)
+        return _fill_gaps(unstructured_to_structured(points, dtype), dtype)
     if points.dtype.names != dtype.names or any(points.dtype[name] != dtype[name] for name in _field_names(dtype)):
         raise AssertionError(f"points have the type {points.dtype}, but the fields have the type {dtype}")
-    return _without_gaps(points, dtype)
+    return _fill_gaps(points, dtype)
 
 
-def _without_gaps(points: list[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
+def _fill_gaps(points: list[Any] | NDArray[Any], dtype: np.dtype[Any]) -> NDArray[Any]:
     """Convert points to a structured array with zeros in the gaps between fields.
 
     numpy does not initialize these gaps itself.

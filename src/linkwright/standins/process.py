@@ -29,7 +29,7 @@ def standin_path() -> str:
     return str(_STARTUP_FOLDER)
 
 
-def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
+def create_environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
     """Return an environment that lets a process and its children import the stand-ins.
 
     Args:
@@ -44,7 +44,7 @@ def environment(base: Mapping[str, str] | None = None) -> dict[str, str]:
     result = dict(os.environ if base is None else base)
     _remove_hiding_sources(result)
     _prepend(result, "PYTHONPATH", [standin_path()])
-    result["LINKWRIGHT_SITE"] = os.pathsep.join(_site_folders())
+    result["LINKWRIGHT_SITE"] = os.pathsep.join(_find_site_folders())
     return result
 
 
@@ -61,10 +61,10 @@ def python_command(arguments: Sequence[str], base: Mapping[str, str] | None = No
         If not, it is the interpreter of this process.
     """
     variables = os.environ if base is None else base
-    return [_interpreter(variables), *arguments]
+    return [_find_interpreter(variables), *arguments]
 
 
-def _interpreter(variables: Mapping[str, str]) -> str:
+def _find_interpreter(variables: Mapping[str, str]) -> str:
     active_environment = variables.get("VIRTUAL_ENV") or variables.get("CONDA_PREFIX")
     if active_environment and Path(active_environment) != Path(sys.prefix):
         version = f"python{sys.version_info.major}.{sys.version_info.minor}"
@@ -87,7 +87,7 @@ def _remove_hiding_sources(variables: dict[str, str]) -> None:
 
 def _hides_stand_in(folder: Path) -> bool:
     names = {package_name(path) for path in (folder, folder.parent) if (path / MANIFEST).is_file()}
-    return not names.isdisjoint(table.packages()) if names else False
+    return not names.isdisjoint(table.list_packages()) if names else False
 
 
 def _prepend(variables: dict[str, str], name: str, folders: Sequence[str]) -> None:
@@ -95,7 +95,7 @@ def _prepend(variables: dict[str, str], name: str, folders: Sequence[str]) -> No
     variables[name] = os.pathsep.join([*folders, *existing])
 
 
-def _site_folders() -> list[str]:
+def _find_site_folders() -> list[str]:
     folders: list[str] = []
     for package in _REQUIRED_PACKAGES:
         spec = find_spec(package)

@@ -140,7 +140,7 @@ class TopicInformation:
     message_count: int
 
 
-def _time_at(stamp_ns: int) -> Time:
+def _to_time(stamp_ns: int) -> Time:
     return Time(nanoseconds=stamp_ns, clock_type=ClockType.SYSTEM_TIME)
 
 
@@ -164,7 +164,7 @@ class BagMetadata:
     relative_file_paths: list[str] = field(default_factory=list)
     files: list[FileInformation] = field(default_factory=list)
     duration: Duration = field(default_factory=Duration)
-    starting_time: Time = field(default_factory=lambda: _time_at(0))
+    starting_time: Time = field(default_factory=lambda: _to_time(0))
     message_count: int = 0
     topics_with_message_count: list[TopicInformation] = field(default_factory=list)
     compression_format: str = ""
@@ -270,10 +270,10 @@ def _parse_metadata(content: Mapping[str, Any]) -> BagMetadata:
         arguments["offered_qos_profiles"] = from_text(arguments.get("offered_qos_profiles", ""))
         topics.append(TopicInformation(TopicMetadata(**arguments), entry["message_count"]))
     files = [
-        FileInformation(entry["path"], *_time_range(entry), entry["message_count"])
+        FileInformation(entry["path"], *_parse_time_range(entry), entry["message_count"])
         for entry in content.get("files") or ()
     ]
-    starting_time, duration = _time_range(content)
+    starting_time, duration = _parse_time_range(content)
     return BagMetadata(
         version=content["version"],
         storage_identifier=content["storage_identifier"],
@@ -290,19 +290,19 @@ def _parse_metadata(content: Mapping[str, Any]) -> BagMetadata:
     )
 
 
-def _time_range(entry: Mapping[str, Any]) -> tuple[Time, Duration]:
+def _parse_time_range(entry: Mapping[str, Any]) -> tuple[Time, Duration]:
     start, duration = entry["starting_time"]["nanoseconds_since_epoch"], entry["duration"]["nanoseconds"]
-    return _time_at(start), Duration(nanoseconds=duration)
+    return _to_time(start), Duration(nanoseconds=duration)
 
 
 def _convert_metadata(metadata: BagMetadata) -> dict[str, Any]:
     from linkwright.bag.parts import VERSION
 
-    def span(owner: BagMetadata | FileInformation) -> dict[str, Any]:
+    def convert_time_range(information: BagMetadata | FileInformation) -> dict[str, Any]:
         return {
-            "starting_time": {"nanoseconds_since_epoch": owner.starting_time.nanoseconds},
-            "duration": {"nanoseconds": owner.duration.nanoseconds},
-            "message_count": owner.message_count,
+            "starting_time": {"nanoseconds_since_epoch": information.starting_time.nanoseconds},
+            "duration": {"nanoseconds": information.duration.nanoseconds},
+            "message_count": information.message_count,
         }
 
     topics = []
@@ -316,11 +316,11 @@ def _convert_metadata(metadata: BagMetadata) -> dict[str, Any]:
         "version": VERSION,
         "storage_identifier": metadata.storage_identifier,
         "relative_file_paths": list(metadata.relative_file_paths),
-        **span(metadata),
+        **convert_time_range(metadata),
         "topics_with_message_count": topics,
         "compression_format": metadata.compression_format,
         "compression_mode": metadata.compression_mode,
-        "files": [{"path": file.path, **span(file)} for file in metadata.files],
+        "files": [{"path": file.path, **convert_time_range(file)} for file in metadata.files],
         "custom_data": dict(metadata.custom_data) or None,
         "ros_distro": metadata.ros_distro,
     }

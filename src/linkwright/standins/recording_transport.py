@@ -1,4 +1,4 @@
-"""The classes of ``rosbag2_py`` for recording, playback and rewriting, such as ``Recorder``."""
+"""The classes of ``rosbag2_py`` for recording, playback and rewriting."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 from linkwright.bag import BagReader, PlayerServices, RecorderServices, TopicSelection
 from linkwright.bag import Player as _Playing
-from linkwright.bag import PlayOptions as _HowToPlay
+from linkwright.bag import PlayOptions as _BagPlayOptions
 from linkwright.bag import Recorder as _Recording
 from linkwright.bag.reindexing import reindex
 from linkwright.bag.rewriting import rewrite
@@ -26,9 +26,9 @@ from linkwright.standins.rclpy_api.context import Context
 from linkwright.standins.rclpy_api.executors import SingleThreadedExecutor
 from linkwright.standins.rclpy_api.node import Node
 from linkwright.standins.recording_storage import StorageOptions
-from linkwright.standins.recordings import writer_for
+from linkwright.standins.recordings import create_writer
 
-_POLL_S = 0.1
+_POLL_INTERVAL_S = 0.1
 
 
 class ServiceRequestsSource(enum.Enum):
@@ -118,16 +118,16 @@ class RecordOptions:
         """
         return TopicSelection(
             everything=self.all_topics or self.all,
-            names=_absolute_names(self.topics),
+            names=_to_absolute_names(self.topics),
             types=self.topic_types,
             pattern=self.regex,
-            without_names=_absolute_names(self.exclude_topics),
+            without_names=_to_absolute_names(self.exclude_topics),
             without_types=self.exclude_topic_types,
             without_pattern=self.exclude_regex or self.exclude,
             hidden=self.include_hidden_topics,
             every_service=self.all_services,
-            services=_service_names(self.services),
-            without_services=_service_names(self.exclude_service_events),
+            services=_find_service_names(self.services),
+            without_services=_find_service_names(self.exclude_service_events),
         )
 
 
@@ -174,7 +174,7 @@ class _Transport:
 
             def spin_until(is_done: Callable[[], bool]) -> None:
                 while not (is_done() or self._cancelled.is_set()) and context.ok():
-                    executor.spin_once(timeout_sec=_POLL_S)
+                    executor.spin_once(timeout_sec=_POLL_INTERVAL_S)
 
             yield node, spin_until
         except LinkwrightError as error:
@@ -197,7 +197,7 @@ class Recorder(_Transport):
         """
         parameters = ("-p", "use_sim_time:=true") if record_options.use_sim_time else ()
         with self._running(node_name, *parameters) as (node, spin_until):
-            writer = writer_for(storage_options, record_options.compression_mode)
+            writer = create_writer(storage_options, record_options.compression_mode)
             recorder = _Recording(
                 node,
                 record_options.selection,
@@ -237,14 +237,14 @@ class Player(_Transport):
 
     def _play(self, storage_options: StorageOptions, options: PlayOptions, burst_count: int | None) -> None:
         remapping_arguments = [
-            argument for rule in options.topic_remapping_options for argument in _remapping_arguments(rule)
+            argument for rule in options.topic_remapping_options for argument in _to_remapping_arguments(rule)
         ]
         with (
             self._running("rosbag2_player", *remapping_arguments) as (node, spin_until),
             BagReader(storage_options.uri) as bag,
         ):
             player = _Playing(
-                node, bag, _bag_play_options(options, paused=options.start_paused or burst_count is not None)
+                node, bag, _to_bag_play_options(options, paused=options.start_paused or burst_count is not None)
             )
             PlayerServices(node, player)
             try:
@@ -287,16 +287,16 @@ def bag_rewrite(input_options: Sequence[StorageOptions], output_config_file: str
         raise RuntimeError(str(error)) from error
 
 
-def _bag_play_options(options: PlayOptions, *, paused: bool) -> _HowToPlay:
-    return _HowToPlay(
+def _to_bag_play_options(options: PlayOptions, *, paused: bool) -> _BagPlayOptions:
+    return _BagPlayOptions(
         rate=options.rate,
-        topics=_absolute_names(options.topics_to_filter),
-        without=[*_absolute_names(options.exclude_topics_to_filter), *options.exclude_service_events_to_filter],
+        topics=_to_absolute_names(options.topics_to_filter),
+        without=[*_to_absolute_names(options.exclude_topics_to_filter), *options.exclude_service_events_to_filter],
         pattern=options.regex_to_filter,
         without_pattern=options.exclude_regex_to_filter,
         loop=options.loop,
         clock_hz=options.clock_publish_frequency,
-        clock_topics=_absolute_names(options.clock_topics),
+        clock_topics=_to_absolute_names(options.clock_topics),
         clock_before_all=options.clock_publish_on_topic_publish and not options.clock_topics,
         delay=options.delay,
         start_offset=options.start_offset,
@@ -307,7 +307,7 @@ def _bag_play_options(options: PlayOptions, *, paused: bool) -> _HowToPlay:
     )
 
 
-def _remapping_arguments(rule: str) -> list[str]:
+def _to_remapping_arguments(rule: str) -> list[str]:
     """Convert a remapping option to command-line arguments.
 
     ``--ros-args`` and ``--remap``, which rosbag2 also accepts in this option, are ignored.
@@ -315,9 +315,9 @@ def _remapping_arguments(rule: str) -> list[str]:
     return [] if rule.startswith("-") else ["--remap", rule]
 
 
-def _absolute_names(names: Sequence[str]) -> list[str]:
+def _to_absolute_names(names: Sequence[str]) -> list[str]:
     return [f"/{name.lstrip('/')}" for name in names]
 
 
-def _service_names(topics: Sequence[str]) -> list[str]:
-    return [name.removesuffix(EVENT_TOPIC_SUFFIX) for name in _absolute_names(topics)]
+def _find_service_names(topics: Sequence[str]) -> list[str]:
+    return [name.removesuffix(EVENT_TOPIC_SUFFIX) for name in _to_absolute_names(topics)]

@@ -30,7 +30,7 @@ from linkwright.standins.recording_storage import (
 
 _Message = tuple[str, int, bytes]
 
-_BLOCK_NS = NANOSECONDS_PER_SECOND
+_BLOCK_DURATION_NS = NANOSECONDS_PER_SECOND
 """The duration in nanoseconds of the block that is loaded at a time when messages are read backwards."""
 
 
@@ -143,12 +143,12 @@ class SequentialReader:
             )
             for number, topic in enumerate(bag.topics, 1)
         ]
-        start, duration = _time(bag.start_ns), Duration(nanoseconds=bag.end_ns - bag.start_ns)
+        start, duration = _to_time(bag.start_ns), Duration(nanoseconds=bag.end_ns - bag.start_ns)
         files, count = [file.name for file in bag.files], sum(topic.count for topic in bag.topics)
         return BagMetadata(
             storage_identifier=bag.storage,
             relative_file_paths=files,
-            files=[FileInformation(files[0], start, duration, count)] if len(files) == 1 else _files(bag),
+            files=[FileInformation(files[0], start, duration, count)] if len(files) == 1 else _read_files(bag),
             bag_size=sum(file.stat().st_size for file in bag.files),
             starting_time=start,
             duration=duration,
@@ -161,7 +161,7 @@ class SequentialReader:
     def set_filter(self, storage_filter: StorageFilter) -> None:
         """Restrict further reading to the topics that a filter includes."""
         self._filter = storage_filter
-        self._continue()
+        self._open_stream()
 
     def reset_filter(self) -> None:
         """Remove the filter, so that further reading returns all topics."""
@@ -179,7 +179,7 @@ class SequentialReader:
         if read_order.sort_by is not ReadOrderSortBy.ReceivedTimestamp:
             raise RuntimeError(f"Not Implemented - {read_order.sort_by.name} read order")
         self._reverse = read_order.reverse
-        self._continue()
+        self._open_stream()
         return True
 
     def seek(self, timestamp: int | None) -> None:
@@ -189,14 +189,14 @@ class SequentialReader:
         this time.
         """
         self._start_ns, self._last = timestamp, None
-        self._continue()
+        self._open_stream()
 
     def _open_bag(self) -> BagReader:
         if self._bag is None:
             raise RuntimeError("Bag is not open. Call open() before reading.")
         return self._bag
 
-    def _continue(self) -> None:
+    def _open_stream(self) -> None:
         """Open the stream of messages after the last message that was read."""
         bag = self._open_bag()
         topics = [topic.name for topic in bag.topics if self._filter.admits(topic.name)]
@@ -206,18 +206,22 @@ class SequentialReader:
             self._stream = self._messages_from(topics, self._start_ns)
         else:
             stamp_ns = self._last[1]
-            simultaneous = list(bag.messages((), stamp_ns, stamp_ns + 1))
+            same_stamp_messages = list(bag.messages((), stamp_ns, stamp_ns + 1))
             if self._reverse:
-                simultaneous.reverse()
-            remaining = [
-                message for message in simultaneous[simultaneous.index(self._last) + 1 :] if message[0] in topics
+                same_stamp_messages.reverse()
+            remaining_messages = [
+                message
+                for message in same_stamp_messages[same_stamp_messages.index(self._last) + 1 :]
+                if message[0] in topics
             ]
-            self._stream = chain(remaining, self._messages_from(topics, stamp_ns + (-1 if self._reverse else 1)))
+            self._stream = chain(
+                remaining_messages, self._messages_from(topics, stamp_ns + (-1 if self._reverse else 1))
+            )
         self._advance()
 
     def _messages_from(self, topics: Collection[str], stamp_ns: int | None) -> Iterator[_Message]:
         if self._reverse:
-            return _backwards(self._open_bag(), topics, stamp_ns)
+            return _read_backwards(self._open_bag(), topics, stamp_ns)
         return self._open_bag().messages(topics, stamp_ns)
 
     def _advance(self) -> None:
@@ -228,20 +232,20 @@ class SequentialReader:
             raise RuntimeError(str(error)) from error
 
 
-def _backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> Iterator[_Message]:
+def _read_backwards(bag: BagReader, topics: Collection[str], last_ns: int | None) -> Iterator[_Message]:
     """Yield the messages of topics in reverse order, from the last one at or before `last_ns`.
 
     If `last_ns` is None, begin at the end of the recording.
     """
-    stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _BLOCK_NS
+    stop_ns, step_ns = (bag.end_ns if last_ns is None else min(last_ns, bag.end_ns)) + 1, _BLOCK_DURATION_NS
     while stop_ns > bag.start_ns:
         messages = list(bag.messages(topics, stop_ns - step_ns, stop_ns))
         yield from reversed(messages)
         stop_ns -= step_ns
-        step_ns = _BLOCK_NS if messages else 2 * step_ns
+        step_ns = _BLOCK_DURATION_NS if messages else 2 * step_ns
 
 
-def _files(bag: BagReader) -> list[FileInformation]:
+def _read_files(bag: BagReader) -> list[FileInformation]:
     """Return the files that the ``metadata.yaml`` of a recording lists.
 
     Without a ``metadata.yaml``, the list is empty.
@@ -251,7 +255,7 @@ def _files(bag: BagReader) -> list[FileInformation]:
     return metadata.read_metadata(path).files if metadata.metadata_file_exists(path) else []
 
 
-def _time(stamp_ns: int) -> Time:
+def _to_time(stamp_ns: int) -> Time:
     return Time(nanoseconds=stamp_ns, clock_type=ClockType.SYSTEM_TIME)
 
 
@@ -271,7 +275,7 @@ class SequentialWriter:
             RuntimeError: the folder already exists, or there is no such storage.
         """
         try:
-            self._bag = writer_for(storage_options, self._compression(storage_options))
+            self._bag = create_writer(storage_options, self._choose_compression(storage_options))
         except LinkwrightError as error:
             raise RuntimeError(str(error)) from error
         weakref.finalize(self, self._bag.close)
@@ -336,7 +340,7 @@ class SequentialWriter:
         except LinkwrightError as error:
             raise RuntimeError(str(error)) from error
 
-    def _compression(self, storage_options: StorageOptions) -> str:
+    def _choose_compression(self, storage_options: StorageOptions) -> str:
         return "none"
 
     def _open_bag(self) -> BagWriter:
@@ -355,7 +359,7 @@ class SequentialCompressionWriter(SequentialWriter):
         super().__init__()
         self._options = compression_options
 
-    def _compression(self, storage_options: StorageOptions) -> str:
+    def _choose_compression(self, storage_options: StorageOptions) -> str:
         if self._options is None:
             return "storage" if storage_options.storage_id != "sqlite3" else "none"
         return self._options.compression_mode.name
@@ -412,7 +416,7 @@ def get_registered_writers() -> set[str]:
     return set(STORAGES)
 
 
-def writer_for(options: StorageOptions, compression: str) -> BagWriter:
+def create_writer(options: StorageOptions, compression: str) -> BagWriter:
     """Create the writer of a recording from storage options.
 
     Raises:

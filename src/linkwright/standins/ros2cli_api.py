@@ -12,7 +12,7 @@ from linkwright.packages import PackageNotFoundError, get_package_prefix, get_pa
 from linkwright.standins.rclpy_api.naming import expand_topic_name, topic_or_service_is_hidden, validate_full_topic_name
 from linkwright.standins.rclpy_api.session import ok
 
-_POLL_S = 0.1
+_POLL_INTERVAL_S = 0.1
 
 
 class PackageNotFound(Exception):
@@ -76,7 +76,7 @@ def get_msg_class(node: Any, topic: str, blocking: bool = False, include_hidden_
     if message_class is None:
         print(f"WARNING: topic [{topic}] does not appear to be published yet")
     while message_class is None and blocking and ok():
-        time.sleep(_POLL_S)
+        time.sleep(_POLL_INTERVAL_S)
         message_class = _get_msg_class(node, topic, include_hidden_topics)
     return message_class
 

@@ -90,26 +90,26 @@ class BasicNavigator(Node):
 
     def goToPose(self, pose: Any, behavior_tree: str = "") -> bool:
         """Navigate to a pose, and return whether the goal was accepted."""
-        return self._begin("navigate_to_pose", pose=pose, behavior_tree=behavior_tree)
+        return self._start_task("navigate_to_pose", pose=pose, behavior_tree=behavior_tree)
 
     def goThroughPoses(self, poses: Any, behavior_tree: str = "") -> bool:
         """Navigate through all poses in order, and return whether the goal was accepted."""
-        return self._begin("navigate_through_poses", poses=list(poses), behavior_tree=behavior_tree)
+        return self._start_task("navigate_through_poses", poses=list(poses), behavior_tree=behavior_tree)
 
     def followWaypoints(self, poses: Any) -> bool:
         """Navigate to each pose and run the waypoint task there.
 
         Return whether the goal was accepted.
         """
-        return self._begin("follow_waypoints", poses=list(poses))
+        return self._start_task("follow_waypoints", poses=list(poses))
 
     def followPath(self, path: Any, controller_id: str = "", goal_checker_id: str = "") -> bool:
         """Follow a path, and return whether the goal was accepted."""
-        return self._begin("follow_path", path=path, controller_id=controller_id, goal_checker_id=goal_checker_id)
+        return self._start_task("follow_path", path=path, controller_id=controller_id, goal_checker_id=goal_checker_id)
 
     def spin(self, spin_dist: float = 1.57, time_allowance: float = 10) -> bool:
         """Rotate in place by an angle in radians, and return whether the goal was accepted."""
-        return self._begin("spin", target_yaw=float(spin_dist), time_allowance=_duration(time_allowance))
+        return self._start_task("spin", target_yaw=float(spin_dist), time_allowance=_to_duration(time_allowance))
 
     def backup(self, backup_dist: float = 0.15, backup_speed: float = 0.025, time_allowance: float = 10) -> bool:
         """Drive straight back, in m and m/s, and return whether the goal was accepted."""
@@ -121,7 +121,7 @@ class BasicNavigator(Node):
 
     def assistedTeleop(self, time_allowance: float = 30) -> bool:
         """Allow teleoperation with collision avoidance, and return whether the goal was accepted."""
-        return self._begin("assisted_teleop", time_allowance=_duration(time_allowance))
+        return self._start_task("assisted_teleop", time_allowance=_to_duration(time_allowance))
 
     def cancelTask(self) -> None:
         """Cancel the current task, if there is one."""
@@ -185,7 +185,7 @@ class BasicNavigator(Node):
         self, path: Any, smoother_id: str = "", max_duration: float = 2.0, check_for_collision: bool = False
     ) -> Any:
         """Return a smoothed path (nav_msgs/Path), or None if smoothing failed."""
-        request = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _duration(max_duration)}
+        request = {"path": path, "smoother_id": smoother_id, "max_smoothing_duration": _to_duration(max_duration)}
         return getattr(
             self._run_to_result("smooth_path", **request, check_for_collisions=check_for_collision), "path", None
         )
@@ -194,7 +194,7 @@ class BasicNavigator(Node):
 
     def changeMap(self, map_filepath: str) -> bool:
         """Load another map, and return whether it was loaded."""
-        response = self._call("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
+        response = self._call_service("nav2_msgs/srv/LoadMap", "map_server/load_map", map_url=map_filepath)
         if response.result != response.RESULT_SUCCESS:
             self.error("Change map request failed!")
         return bool(response.result == response.RESULT_SUCCESS)
@@ -206,37 +206,37 @@ class BasicNavigator(Node):
 
     def clearLocalCostmap(self) -> None:
         """Clear the local costmap."""
-        self._call("nav2_msgs/srv/ClearEntireCostmap", "local_costmap/clear_entirely_local_costmap")
+        self._call_service("nav2_msgs/srv/ClearEntireCostmap", "local_costmap/clear_entirely_local_costmap")
 
     def clearGlobalCostmap(self) -> None:
         """Clear the global costmap."""
-        self._call("nav2_msgs/srv/ClearEntireCostmap", "global_costmap/clear_entirely_global_costmap")
+        self._call_service("nav2_msgs/srv/ClearEntireCostmap", "global_costmap/clear_entirely_global_costmap")
 
     def getGlobalCostmap(self) -> Any:
         """Return the global costmap (nav2_msgs/Costmap)."""
-        return self._call("nav2_msgs/srv/GetCostmap", "global_costmap/get_costmap").map
+        return self._call_service("nav2_msgs/srv/GetCostmap", "global_costmap/get_costmap").map
 
     def getLocalCostmap(self) -> Any:
         """Return the local costmap (nav2_msgs/Costmap)."""
-        return self._call("nav2_msgs/srv/GetCostmap", "local_costmap/get_costmap").map
+        return self._call_service("nav2_msgs/srv/GetCostmap", "local_costmap/get_costmap").map
 
     # --- the lifecycle of nav2 ----------------------------------------------------------------------------------------
 
     def lifecycleStartup(self) -> None:
         """Start nav2 through the lifecycle managers."""
-        self._manage("STARTUP")
+        self._manage_lifecycle("STARTUP")
 
     def lifecycleShutdown(self) -> None:
         """Shut nav2 down through the lifecycle managers."""
-        self._manage("SHUTDOWN")
+        self._manage_lifecycle("SHUTDOWN")
 
     # --- internals ----------------------------------------------------------------------------------------------------
 
     def _drive_straight(self, name: str, distance: float, speed: float, time_allowance: float) -> bool:
         target = get_message("geometry_msgs/msg/Point")(x=float(distance))
-        return self._begin(name, target=target, speed=float(speed), time_allowance=_duration(time_allowance))
+        return self._start_task(name, target=target, speed=float(speed), time_allowance=_to_duration(time_allowance))
 
-    def _begin(self, name: str, **goal: Any) -> bool:
+    def _start_task(self, name: str, **goal: Any) -> bool:
         """Send the goal of a task without waiting for its result.
 
         Return whether the goal was accepted.
@@ -274,7 +274,7 @@ class BasicNavigator(Node):
         spin_until_future_complete(self, future)
         return future.result()
 
-    def _call(self, service_type: str, name: str, **request: Any) -> Any:
+    def _call_service(self, service_type: str, name: str, **request: Any) -> Any:
         service = get_service(service_type)
         client = self.create_client(service, name)
         try:
@@ -286,17 +286,17 @@ class BasicNavigator(Node):
         finally:
             self.destroy_client(client)
 
-    def _manage(self, command: str) -> None:
+    def _manage_lifecycle(self, command: str) -> None:
         service_type = "nav2_msgs/srv/ManageLifecycleNodes"
         command_code = getattr(get_service(service_type).Request, command)
         for name, types in self.get_service_names_and_types():
             if service_type in types:
-                self._call(service_type, name, command=command_code)
+                self._call_service(service_type, name, command=command_code)
 
     def _waitForNodeToActivate(self, node_name: str) -> None:
         state = "unknown"
         while state != _ACTIVE_STATE:
-            state = self._call("lifecycle_msgs/srv/GetState", f"{node_name}/get_state").current_state.label
+            state = self._call_service("lifecycle_msgs/srv/GetState", f"{node_name}/get_state").current_state.label
             self.debug(f"Result of get_state: {state}")
             if state != _ACTIVE_STATE:
                 spin_once(self, timeout_sec=_SPIN_TIMEOUT_S)
@@ -339,5 +339,5 @@ class BasicNavigator(Node):
         self.get_logger().debug(msg)
 
 
-def _duration(seconds: float) -> Any:
+def _to_duration(seconds: float) -> Any:
     return Duration(seconds=float(seconds)).to_msg()

@@ -86,7 +86,7 @@ class Module:
         return [name for name in self.names if not name.startswith("_")]
 
 
-def packages() -> list[str]:
+def list_packages() -> list[str]:
     """Return the names of all packages that have a table."""
     return sorted(path.stem for path in FOLDER.glob("*.txt"))
 
@@ -109,13 +109,13 @@ def find(module: str) -> Module | None:
     return read(module.partition(".")[0]).get(module)
 
 
-def modules_providing(name: str) -> list[str]:
+def find_modules_providing(name: str) -> list[str]:
     """Return the modules that provide a name, one per package.
 
     For ``Node``, one of them is ``rclpy.node``.
     """
     modules_by_package: dict[str, str] = {}
-    for package in packages():
+    for package in list_packages():
         providers = [
             module.name
             for module in read(package).values()

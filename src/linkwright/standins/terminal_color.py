@@ -21,7 +21,7 @@ _COLOR_NAMES = ("black", "red", "green", "yellow", "blue", "purple", "cyan", "wh
 _SHORT_FORMS = {"@!": "@{boldon}", "@/": "@{italicson}", "@_": "@{ulon}", "@|": "@{reset}"}
 
 
-def _ansi_codes() -> dict[str, str]:
+def _create_ansi_codes() -> dict[str, str]:
     numbers = {"reset": 0, **_STYLE_CODES}
     for index, color in enumerate(_COLOR_NAMES):
         numbers[f"{color}f"], numbers[f"{color}b"] = 30 + index, 40 + index
@@ -30,7 +30,7 @@ def _ansi_codes() -> dict[str, str]:
     return {**sequences, **escapes}
 
 
-_SEQUENCES_BY_NAME = _ansi_codes()
+_SEQUENCES_BY_NAME = _create_ansi_codes()
 
 
 class _ColorSetting:

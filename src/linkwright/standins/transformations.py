@@ -70,8 +70,8 @@ def rotation_from_matrix(matrix: ArrayLike) -> tuple[float, Vector, Vector]:
         ValueError: the matrix is not a rotation.
     """
     m = np.array(matrix, dtype=float)
-    direction = _fixed_vector(m[:3, :3].T)
-    point = _fixed_vector(m)
+    direction = _find_fixed_vector(m[:3, :3].T)
+    point = _find_fixed_vector(m)
     point = point / point[3]
     x, y, z, w = quaternion_from_matrix(m)
     axis = np.array([x, y, z])
@@ -121,7 +121,7 @@ def euler_from_matrix(matrix: ArrayLike, axes: str = "sxyz") -> tuple[float, flo
     Raises:
         ValueError: the axes code is invalid.
     """
-    are_rotating, (a, b, c) = _read_axes(axes)
+    are_rotating, (a, b, c) = _parse_axes(axes)
     m = np.asarray(matrix, dtype=float)[:3, :3]
     first, second, third = _proper_angles(m, a, b) if a == c else _cardan_angles(m, a, b, c)
     return (third, second, first) if are_rotating else (first, second, third)
@@ -142,7 +142,7 @@ def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -
     Raises:
         ValueError: the axes code is invalid.
     """
-    are_rotating, (a, b, c) = _read_axes(axes)
+    are_rotating, (a, b, c) = _parse_axes(axes)
     first, third = (ak, ai) if are_rotating else (ai, ak)
     return quaternion_multiply(
         _rotation_about(third, c), quaternion_multiply(_rotation_about(aj, b), _rotation_about(first, a))
@@ -342,9 +342,9 @@ def compose_matrix(
 
 
 def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float], Vector, Vector]:
-    """Return the scale, shear, Euler angles (``sxyz``), translation and perspective of a matrix.
+    """Return the scale, shear, Euler angles, translation and perspective of a matrix.
 
-    This is the inverse of `compose_matrix`.
+    The axes code of the angles is ``sxyz``. This is the inverse of `compose_matrix`.
 
     Raises:
         ValueError: the matrix is not invertible.
@@ -371,7 +371,7 @@ def decompose_matrix(matrix: ArrayLike) -> tuple[Vector, list[float], list[float
     return scale, shear, list(euler_from_matrix(rotation)), m[:3, 3].copy(), perspective
 
 
-def _read_axes(axes: str) -> tuple[bool, tuple[int, int, int]]:
+def _parse_axes(axes: str) -> tuple[bool, tuple[int, int, int]]:
     """Parse an axes code.
 
     Returns:
@@ -409,7 +409,7 @@ def _proper_angles(m: Matrix, a: int, b: int) -> tuple[float, float, float]:
     return sign * math.atan2(-m[b, c], m[b, b]), second, 0.0
 
 
-def _fixed_vector(matrix: Matrix) -> Vector:
+def _find_fixed_vector(matrix: Matrix) -> Vector:
     """Return the real unit eigenvector of a matrix for the eigenvalue 1."""
     values, vectors = np.linalg.eig(matrix)
     fixed_indices = np.flatnonzero(np.abs(np.real(values) - 1.0) < 1e-8)

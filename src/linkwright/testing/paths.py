@@ -20,7 +20,7 @@ class RobotPath:
     """The true path of a robot as seen from above, with a point in each period.
 
     Attributes:
-        points: the points.
+        points: the recorded positions, in the order of time.
     """
 
     def __init__(self) -> None:

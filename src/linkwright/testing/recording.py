@@ -28,7 +28,7 @@ class Recording:
 
     Attributes:
         topic: the absolute name of the topic.
-        messages: the messages.
+        messages: the recorded messages, in the order of arrival.
         times: the time of each message, in seconds since the beginning of the test.
     """
 

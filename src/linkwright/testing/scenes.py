@@ -52,7 +52,7 @@ def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
 
     def read() -> tuple[Model, tuple[Path, ...]]:
         finder = PackageFinder(start=[path.parent, Path.cwd()])
-        # The server of a simulated world keeps the links on fixed joints, too: a laser measures all links but its own.
+        # As in the server of a world, keep links on fixed joints, because a laser measures all links except its own.
         conversion = as_sdf(path, finder, arguments=dict(arguments), lump_fixed_joints=False, folder=Path.cwd())
         if conversion.sdf is None or not conversion.sdf.models:
             message = phrase("the file '{path}' contains no model", path=str(path))
@@ -67,16 +67,16 @@ def read_model(path: Path, arguments: Mapping[str, str]) -> Model:
 
 def _read_cached(key: tuple[object, ...], read: Callable[[], tuple[Any, tuple[Path, ...]]]) -> Any:
     entry = _cache.pop(key, None)
-    if entry is None or entry.states != tuple(map(_file_state, entry.files)):
+    if entry is None or entry.states != tuple(map(_read_file_state, entry.files)):
         value, files = read()
-        entry = _CacheEntry(value, tuple(map(_file_state, files)), files)
+        entry = _CacheEntry(value, tuple(map(_read_file_state, files)), files)
     _cache[key] = entry
     if len(_cache) > _MAX_CACHED_SCENES:
         del _cache[next(iter(_cache))]
     return entry.value
 
 
-def _file_state(path: Path) -> object:
+def _read_file_state(path: Path) -> object:
     try:
         status = path.stat()
     except OSError:

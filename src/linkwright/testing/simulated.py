@@ -39,10 +39,10 @@ if TYPE_CHECKING:
 _P = ParamSpec("_P")
 _T = TypeVar("_T")
 
-_NODE = "gazebo"
-_CLOCK, _TWIST = "rosgraph_msgs/msg/Clock", "geometry_msgs/msg/Twist"
+_NODE_NAME = "gazebo"
+_CLOCK_TYPE, _TWIST_TYPE = "rosgraph_msgs/msg/Clock", "geometry_msgs/msg/Twist"
 _STEP_PERIOD_S = 0.01
-_ORIGIN = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+_ORIGIN_POSE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 class AsyncSteppedSimulation(AsyncSteppedGraph):
@@ -57,7 +57,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         robot: str | Path | None = None,
         *,
         arguments: Mapping[str, object] | None = None,
-        pose: Sequence[float] = _ORIGIN,
+        pose: Sequence[float] = _ORIGIN_POSE,
         seed: int = 0,
         friction: float | None = None,
         mass: float = 1.0,
@@ -116,8 +116,8 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
 
     def _begin(self) -> None:
         simulation = Simulation(self._loaded_world.world, ResourceFinder(PackageFinder(start=self._folders)))
-        node = self.graph.create_node(_NODE)
-        self._clock_topic = node.create_publisher(get_message(_CLOCK), "/clock", CLOCK_QOS)
+        node = self.graph.create_node(_NODE_NAME)
+        self._clock_topic = node.create_publisher(get_message(_CLOCK_TYPE), "/clock", CLOCK_QOS)
         self._server = SimulationServer(simulation, node, self._options)
         self._server.on_failure.append(self.errors.append)
         self._run_control = _RunControl(simulation)
@@ -154,7 +154,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         robot: str | Path,
         name: str = "",
         *,
-        pose: Sequence[float] = _ORIGIN,
+        pose: Sequence[float] = _ORIGIN_POSE,
         namespace: str = "",
         arguments: Mapping[str, object] | None = None,
     ) -> str:
@@ -174,7 +174,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
 
     def drive(self, linear: float, angular: float = 0.0, topic: str = "/cmd_vel") -> None:
         """Command the robot's velocity. See `SteppedSimulation.drive`."""
-        message = get_message(_TWIST)()
+        message = get_message(_TWIST_TYPE)()
         message.linear.x, message.angular.z = float(linear), float(angular)
         self.publish(topic, message)
 
@@ -227,7 +227,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
             await self._settle_graph()
 
     def _record_position(self) -> None:
-        """Add the robot's true position to its path, if the path is recorded and the next point is due."""
+        """Add the robot's true position to its recorded path if the next point is due."""
         path, time_ns = self._robot_path, self.clock.steady_ns()
         if path is None or not path.is_due(time_ns):
             return
@@ -251,7 +251,7 @@ class AsyncSteppedSimulation(AsyncSteppedGraph):
         await self.settle()
 
     def _publish_time(self) -> None:
-        self._clock_topic.publish(get_message(_CLOCK)(clock=Time.from_nanoseconds(self.simulation.time)))
+        self._clock_topic.publish(get_message(_CLOCK_TYPE)(clock=Time.from_nanoseconds(self.simulation.time)))
 
 
 def _with_arguments_of(
@@ -340,7 +340,7 @@ class SteppedSimulation(SteppedGraph):
         robot: str | Path,
         name: str = "",
         *,
-        pose: Sequence[float] = _ORIGIN,
+        pose: Sequence[float] = _ORIGIN_POSE,
         namespace: str = "",
         arguments: Mapping[str, object] | None = None,
     ) -> str:
@@ -424,7 +424,7 @@ def _resolve_path(robot: str | Path) -> Path:
 
 
 def _read_robot(path: Path, arguments: Mapping[str, object]) -> Model:
-    return read_model(path, {name: _text(value) for name, value in arguments.items()})
+    return read_model(path, {name: _format_argument(value) for name, value in arguments.items()})
 
 
 def _read_description(path: Path, arguments: Mapping[str, object]) -> str:
@@ -434,7 +434,7 @@ def _read_description(path: Path, arguments: Mapping[str, object]) -> str:
         LinkwrightError: the file has errors.
     """
     finder = PackageFinder(start=[path.parent, Path.cwd()])
-    texts = {name: _text(value) for name, value in arguments.items()}
+    texts = {name: _format_argument(value) for name, value in arguments.items()}
     description = examine(str(path), arguments=texts, packages=finder)
     if description.robot is None:
         raise LinkwrightError(*description.diagnostics)
@@ -446,6 +446,6 @@ def _transform_from_rpy(pose: Sequence[float]) -> Transform:
     return (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
 
 
-def _text(value: object) -> str:
+def _format_argument(value: object) -> str:
     """Format a value as a xacro argument."""
     return str(value).lower() if isinstance(value, bool) else str(value)

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from linkwright.testing.programs.program import Main, Program
     from linkwright.testing.programs.programs import Programs
 
-_NODE = "test"
+_NODE_NAME = "test"
 
 
 class AsyncSteppedGraph:
@@ -55,7 +55,7 @@ class AsyncSteppedGraph:
 
     Attributes:
         clock: the clock; ``clock.jump(seconds)`` changes only the time of day, as when a system clock is corrected.
-        graph: the graph.
+        graph: the graph of the test.
         node: the node of the test, ``/test``, for creating clients and other endpoints.
         log: the log messages of nodes.
         errors: the errors of callbacks, if `strict` is not set.
@@ -101,7 +101,7 @@ class AsyncSteppedGraph:
     def node(self) -> Node:
         """The node of the test, ``/test``."""
         if self._node is None:
-            self._node = self.graph.create_node(_NODE)
+            self._node = self.graph.create_node(_NODE_NAME)
         return self._node
 
     @property
@@ -130,7 +130,7 @@ class AsyncSteppedGraph:
         return self._programs.start(main, args, budget, seed)
 
     async def end_programs(self, error: BaseException | None = None) -> None:
-        """Interrupt the programs that are running, and let them end. See `SteppedGraph.start_program`.
+        """Interrupt the running programs, and let them end. See `SteppedGraph.start_program`.
 
         Args:
             error: the error that ends the test, which takes precedence over errors of programs.
@@ -201,7 +201,7 @@ class AsyncSteppedGraph:
             LookupError: there is no service with this name.
             TimeoutError: the response did not arrive in time.
         """
-        client = self._service_client(service)
+        client = self._create_service_client(service)
         future = client.call_async(request)
         await self.settle()
         if not future.ended() and timeout > 0:
@@ -219,7 +219,7 @@ class AsyncSteppedGraph:
         if self._programs is not None:
             await self._programs.settle()
 
-    def _service_client(self, service: str) -> Client[Any, Any]:
+    def _create_service_client(self, service: str) -> Client[Any, Any]:
         name = self.node.resolve_service_name(service)
         client = self._clients.get(name)
         if client is None:

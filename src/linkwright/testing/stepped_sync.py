@@ -124,12 +124,13 @@ class SteppedGraph:
         return self._context
 
     def start_program(self, main: Main, args: Sequence[str] = (), *, budget: float = 30.0, seed: int = 0) -> Program:
-        """Start a program, such as a file that calls ``rclpy.init()`` and ``rclpy.spin(node)``, and return it.
+        """Start a program, and return it.
 
-        The program runs in separate threads, but only in the steps of the graph, until all its threads wait.
-        Executors, ``time.sleep``, rates, locks, events, queues, futures and asyncio return control to the graph. The
-        modules ``time`` and ``rclpy`` use the time of the graph, so the program's results are bit-identical in each
-        run. Several programs may run in a graph. Each has its own default context of rclpy and its own ``sys.argv``.
+        A program is, for example, a file that calls ``rclpy.init()`` and ``rclpy.spin(node)``. The program runs in
+        separate threads, but only in the steps of the graph, until all its threads wait. Executors, ``time.sleep``,
+        rates, locks, events, queues, futures and asyncio return control to the graph. The modules ``time`` and
+        ``rclpy`` use the time of the graph, so the program's results are bit-identical in each run. Several programs
+        may run in a graph. Each has its own default context of rclpy and its own ``sys.argv``.
 
         If an exception ends a program, the step in which it happens raises it. At the end of the test, programs
         receive Ctrl-C, and have 5 s of simulated time to end.

@@ -13,7 +13,7 @@ from functools import lru_cache
 from math import isfinite, isinf, radians
 
 from linkwright.diagnostics import Phrase, phrase
-from linkwright.diagnostics.lookalikes import plain_text
+from linkwright.diagnostics.lookalikes import to_ascii_text
 from linkwright.geometry.single import Quaternion, Vector3
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import get_args
@@ -111,8 +111,8 @@ def number_hint(text: str) -> Phrase | None:
         return phrase("URDF has no 'pi': write 3.14159..., or use xacro, where ${pi} works")
     if len(stripped.split()) > 1 and all(map(_is_number, stripped.split())):
         return phrase("give one number")
-    if stripped != plain_text(stripped) and _is_number(plain_text(stripped)):
-        return phrase("use ASCII characters: '{text}'", text=plain_text(stripped))
+    if stripped != to_ascii_text(stripped) and _is_number(to_ascii_text(stripped)):
+        return phrase("use ASCII characters: '{text}'", text=to_ascii_text(stripped))
     if stripped in _UNITS:
         return _UNITS[stripped][0]
     name = stripped.strip("${}\uff5b\uff5d")
@@ -142,8 +142,8 @@ def vector_hint(text: str, count: int) -> Phrase | None:
     pieces = text.replace(",", ".").split()
     if "," in text and len(pieces) == count and all(map(_is_number, pieces)):
         return phrase("write a point as decimal separator: '{text}'", text=" ".join(pieces))
-    pieces = plain_text(text).split()
-    if len(pieces) == count and text != plain_text(text) and all(map(_is_number, pieces)):
+    pieces = to_ascii_text(text).split()
+    if len(pieces) == count and text != to_ascii_text(text) and all(map(_is_number, pieces)):
         return phrase("use ASCII characters: '{text}'", text=" ".join(pieces))
     pieces = re.split(r"\s*[x\u00d7*]\s*", text.strip())
     if len(pieces) == count and all(map(_is_number, pieces)):

@@ -67,8 +67,8 @@ class GuestRecordings:
             LinkwrightError: BAG101, BAG102, BAG107, see `BagReader`; BAG111, the limit of recordings is reached.
         """
         from linkwright.bag import BagReader, Playback  # imported here, because few viewers show other recordings
-        from linkwright.viewer.recorded_robot import publish_recording, robot_of
-        from linkwright.viewer.recording_config import recording_config
+        from linkwright.viewer.recorded_robot import publish_recording, read_robot
+        from linkwright.viewer.recording_config import create_recording_config
 
         await self._close_longest_idle()
         if len(self._recordings) >= _MAX_RECORDINGS:
@@ -84,8 +84,8 @@ class GuestRecordings:
         bag = await asyncio.to_thread(BagReader, path, path.name)
         host_context = self._host.context
         try:
-            robot = robot_of(bag, host_context.library)
-            config = recording_config(bag, robot)
+            robot = read_robot(bag, host_context.library)
+            config = create_recording_config(bag, robot)
             graph = Graph()
             node = graph.create_node("rosbag2_player", start_parameter_services=False)
             output = publish_recording(bag, node, robot)

@@ -23,16 +23,16 @@ from linkwright.viewer.viewer import Viewer
 if TYPE_CHECKING:
     from linkwright.descriptions.pairs import Pair
 
-_TIME_NS = NANOSECONDS_PER_SECOND
+_SNAPSHOT_TIME_NS = NANOSECONDS_PER_SECOND
 """The time of a snapshot, in nanoseconds. No real time, so that the bytes of an export depend only on its files."""
 
 
-def snapshot_of_model(
+def take_model_snapshot(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None = None
 ) -> Snapshot:
-    """Return a snapshot of a model as `linkwright view` shows it, with the same bytes for the same files.
+    """Return a snapshot of a model as `linkwright view` shows it.
 
-    Joints are at zero, or in the middle of their limits if the limits exclude zero.
+    The same files give the same bytes. Joints are at zero, or in the middle of their limits if the limits exclude zero.
 
     Args:
         text: the description.
@@ -41,7 +41,7 @@ def snapshot_of_model(
         finder: finds the meshes of the robot.
         old: the description to compare with; None for no comparison.
     """
-    return asyncio.run(_snapshot(text, robot, library, finder, old))
+    return asyncio.run(_take_snapshot(text, robot, library, finder, old))
 
 
 @dataclass(frozen=True)
@@ -57,10 +57,10 @@ class OldDescription:
     text: str
 
 
-async def _snapshot(
+async def _take_snapshot(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None
 ) -> Snapshot:
-    graph = Graph(clock=JumpClock(_TIME_NS), on_log=lambda _: None)
+    graph = Graph(clock=JumpClock(_SNAPSHOT_TIME_NS), on_log=lambda _: None)
     config = RvizConfig.for_model(robot.root, size=size_of(robot), frames=not has_visuals(robot, finder))
     if old is not None:
         add_old_robot(config, old.pair.old.title)
@@ -71,9 +71,11 @@ async def _snapshot(
     transforms = RobotTransforms(robot, "")
     layout = make_layout(robot, JointSettings())
     zero_positions = {joint.name: joint.zero for joint in layout.free}
-    moving_batch = transforms.conversion_for(list(zero_positions)).batch(list(zero_positions.values()), _TIME_NS)
+    moving_batch = transforms.find_conversion(list(zero_positions)).batch(
+        list(zero_positions.values()), _SNAPSHOT_TIME_NS
+    )
     node.create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS).publish(
-        TFMessage(batch=transforms.fixed_transforms(_TIME_NS))
+        TFMessage(batch=transforms.fixed_transforms(_SNAPSHOT_TIME_NS))
     )
     node.create_publisher(TFMessage, "/tf", TF_QOS).publish(TFMessage(batch=moving_batch))
     if old is not None:

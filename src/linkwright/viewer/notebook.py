@@ -19,9 +19,9 @@ from linkwright.packages import PackageFinder
 from linkwright.panels.export.html import html_of
 from linkwright.panels.export.snapshot import no_robot_error
 from linkwright.urdf import Robot, save
-from linkwright.viewer.model_snapshot import snapshot_of_model
+from linkwright.viewer.model_snapshot import take_model_snapshot
 
-_FRAME = (
+_IFRAME_TEMPLATE = (
     '<iframe title="{title}" srcdoc="{page}" style="width: 100%; height: {height}px; border: 0" '
     'allow="fullscreen"></iframe>'
 )
@@ -44,7 +44,7 @@ class RobotCell:
     diagnostics: tuple[Diagnostic, ...]
 
     def _repr_html_(self) -> str:
-        return _FRAME.format(title=escape(self.name), page=escape(self.page), height=self.height)
+        return _IFRAME_TEMPLATE.format(title=escape(self.name), page=escape(self.page), height=self.height)
 
 
 def show(
@@ -77,6 +77,6 @@ def show(
         raise LinkwrightError(*description.diagnostics) if description.diagnostics else no_robot_error()
     text = library.store(description)
     with ThreadPoolExecutor(1) as thread:  # the main thread of a notebook already runs an event loop
-        snapshot = thread.submit(snapshot_of_model, text, described_robot, library, finder).result()
+        snapshot = thread.submit(take_model_snapshot, text, described_robot, library, finder).result()
     page = html_of(snapshot).decode("utf-8")
     return RobotCell(described_robot.name, page, height, (*description.diagnostics, *snapshot.problems))

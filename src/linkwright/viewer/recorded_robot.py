@@ -18,14 +18,14 @@ _JOINT_STATES = "sensor_msgs/msg/JointState"
 _DESCRIPTION_SUFFIX = "/robot_description"
 
 
-def description_topic(bag: BagReader) -> str | None:
+def find_description_topic(bag: BagReader) -> str | None:
     """Return the topic with the description of the recorded robot, or None if there is none."""
     names = [topic.name for topic in bag.topics if topic.count and topic.name.endswith(_DESCRIPTION_SUFFIX)]
-    preferred_topic = namespace_of_transforms(bag) + _DESCRIPTION_SUFFIX
+    preferred_topic = find_transform_namespace(bag) + _DESCRIPTION_SUFFIX
     return preferred_topic if preferred_topic in names else next(iter(names), None)
 
 
-def namespace_of_transforms(bag: BagReader) -> str:
+def find_transform_namespace(bag: BagReader) -> str:
     """Return the namespace of the transforms of a robot, such as ``/robot1``.
 
     The namespace is empty if there are transforms without a namespace. If there are several robots, the first robot
@@ -41,18 +41,18 @@ def namespace_of_transforms(bag: BagReader) -> str:
 
 def lacks_transforms(bag: BagReader) -> bool:
     """Return whether a recording has no messages on the topic of moving transforms."""
-    transforms_topic = namespace_of_transforms(bag) + TRANSFORMS
+    transforms_topic = find_transform_namespace(bag) + TRANSFORMS
     return not any(topic.name == transforms_topic and topic.count for topic in bag.topics)
 
 
-def robot_of(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
+def read_robot(bag: BagReader, library: DescriptionLibrary) -> Robot | None:
     """Return the robot of a recording, or None if it has no description that can be read.
 
     Args:
         bag: the recording.
         library: reads the description of the robot.
     """
-    topic = description_topic(bag)
+    topic = find_description_topic(bag)
     if topic is None:
         return None
     try:
@@ -77,10 +77,10 @@ class RecordingWithTransforms:
 
     def __init__(self, recording: PublishedRecording, node: Node, bag: BagReader, robot: Robot) -> None:
         self._recording = recording
-        self._description = description_topic(bag)
+        self._description = find_description_topic(bag)
         self._joint_states_topic = next((topic.name for topic in bag.topics if topic.type_name == _JOINT_STATES), None)
         self._transforms = RobotTransforms(robot, "")
-        self._zero_positions = _zero_positions(robot)
+        self._zero_positions = _compute_zero_positions(robot)
         self._positions = dict(self._zero_positions)
         self._last_time_ns = 0
         self._tf_publisher = node.create_publisher(TFMessage, TRANSFORMS, TF_QOS)
@@ -117,7 +117,7 @@ class RecordingWithTransforms:
             self._publish_transforms(joint_states.header.stamp.nanoseconds or stamp_ns)
 
     def _publish_transforms(self, stamp_ns: int) -> None:
-        batch = self._transforms.conversion_for(tuple(self._positions)).batch(list(self._positions.values()), stamp_ns)
+        batch = self._transforms.find_conversion(tuple(self._positions)).batch(list(self._positions.values()), stamp_ns)
         if len(batch):
             self._tf_publisher.publish(TFMessage(batch=batch))
 
@@ -128,9 +128,9 @@ def publish_recording(bag: BagReader, node: Node, robot: Robot | None) -> Publis
     Args:
         bag: the recording.
         node: the node that publishes.
-        robot: the robot that `robot_of` returned, or None.
+        robot: the robot that `read_robot` returned, or None.
     """
-    namespace = namespace_of_transforms(bag)
+    namespace = find_transform_namespace(bag)
     recording = PublishedRecording(node, bag, namespace)
     if namespace:
         node.get_logger().info(f"The recording has no /tf: {namespace}{TRANSFORMS} replaces it")
@@ -141,7 +141,7 @@ def publish_recording(bag: BagReader, node: Node, robot: Robot | None) -> Publis
     )
 
 
-def _zero_positions(robot: Robot) -> dict[str, float]:
+def _compute_zero_positions(robot: Robot) -> dict[str, float]:
     try:
         return {joint.name: joint.zero for joint in make_layout(robot, JointSettings()).free}
     except LinkwrightError:  # joints that mimic each other in a cycle have no positions

@@ -13,9 +13,9 @@ from linkwright.rviz.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPI
 from linkwright.rviz.robot import size_of
 from linkwright.sdf.poses import WORLD
 from linkwright.urdf import Robot
-from linkwright.viewer.recorded_robot import description_topic, namespace_of_transforms
+from linkwright.viewer.recorded_robot import find_description_topic, find_transform_namespace
 
-_SETTLING_NS = 2_000_000_000
+_SETTLING_TIME_NS = 2_000_000_000
 """The time between the first transform and the reading of the frames, in nanoseconds."""
 
 _PREFERRED_ROOTS = ("map", "odom", "world", "base_link", "base_footprint")
@@ -41,7 +41,7 @@ _DISPLAYS = (
 """Message types, the display for each, and the number of enabled displays. Further displays are disabled."""
 
 
-def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
+def create_recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
     """Return the initial configuration of a recording: robot and displays of common topics.
 
     TF is enabled only if there is no robot, because its axes would cover the robot. A recording of a simulation shows
@@ -51,12 +51,12 @@ def recording_config(bag: BagReader, robot: Robot | None = None) -> RvizConfig:
         bag: the recording.
         robot: the recorded robot, or None if it cannot be read.
     """
-    description_topic_name, namespace = description_topic(bag), namespace_of_transforms(bag)
-    root, children = _root_and_frames(bag, namespace)
+    description_topic_name, namespace = find_description_topic(bag), find_transform_namespace(bag)
+    root, children = _find_root_and_frames(bag, namespace)
     has_world = _has_world(bag)
-    fixed_frame = WORLD if has_world else root or (robot.root if robot is not None else _frame_of_messages(bag))
+    fixed_frame = WORLD if has_world else root or (robot.root if robot is not None else _find_message_frame(bag))
     config = RvizConfig.for_model(fixed_frame, frames=description_topic_name is None, name=str(bag.path))
-    base_frame = next((name for name in _base_frames(robot) if name in children), None)
+    base_frame = next((name for name in _list_base_frames(robot) if name in children), None)
     if base_frame is not None and root in _WORLD_FIXED_FRAMES and not has_world:
         size = None if robot is None else size_of(robot)
         config.follow_frame(
@@ -111,12 +111,12 @@ def _add_display(config: RvizConfig, display_class: str, topic: BagTopic, *, che
     display.checked = checked
 
 
-def _base_frames(robot: Robot | None) -> list[str]:
+def _list_base_frames(robot: Robot | None) -> list[str]:
     """Return the candidates for the base frame of the robot, the best first (REP 105, REP 120)."""
     return ["base_footprint", "base_link"] if robot is None else [robot.root, *robot.links]
 
 
-def _root_and_frames(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
+def _find_root_and_frames(bag: BagReader, namespace: str) -> tuple[str | None, set[str]]:
     """Return the root frame, or None, and the other frames, from the transforms at two times.
 
     The times are shortly after the first transform and the middle of the recording, because a node that localizes the
@@ -128,14 +128,14 @@ def _root_and_frames(bag: BagReader, namespace: str) -> tuple[str | None, set[st
     first_message = next(iter(bag.messages(moving_topics or names)), None) if names else None
     if first_message is None:
         return None, set()
-    times_ns = first_message[1] + _SETTLING_NS, (bag.start_ns + bag.end_ns) // 2
+    times_ns = first_message[1] + _SETTLING_TIME_NS, (bag.start_ns + bag.end_ns) // 2
     batches = [deserialize(data, TFMessage).batch for moment in times_ns for _, _, data in bag.state_at(names, moment)]
     children = {name for batch in batches for name in batch.children}
     roots = dict.fromkeys(name for batch in batches for name in batch.parents if name not in children)
     return next((name for name in _PREFERRED_ROOTS if name in roots), next(iter(roots), None)), children
 
 
-def _frame_of_messages(bag: BagReader) -> str:
+def _find_message_frame(bag: BagReader) -> str:
     """Return the frame of the first displayed message.
 
     It is the Fixed Frame if there are no transforms.
@@ -143,12 +143,12 @@ def _frame_of_messages(bag: BagReader) -> str:
     for message, _, _ in _DISPLAYS:
         for topic in (topic for topic in bag.topics if topic.type_name == message and topic.count):
             first_message = next(iter(bag.messages([topic.name])), None)
-            if first_message is not None and (frame := _frame_of(first_message[2], message)):
+            if first_message is not None and (frame := _read_frame(first_message[2], message)):
                 return frame
     return _PREFERRED_ROOTS[0]
 
 
-def _frame_of(data: bytes, type_name: str) -> str:
+def _read_frame(data: bytes, type_name: str) -> str:
     message = deserialize(data, get_message(type_name))
     headers = [message.header] if hasattr(message, "header") else [marker.header for marker in message.markers]
     return next((str(header.frame_id) for header in headers if header.frame_id), "")

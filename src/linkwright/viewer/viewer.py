@@ -137,7 +137,7 @@ class Viewer:
             if self._host_viewer is None:
                 await self._open_server()
             if self._history:
-                self.live = self._timeline.start_history(self._history)
+                self.live = self._get_timeline.start_history(self._history)
             self.managers.shared.start()
             self._is_started = True
             for feature in self._features:
@@ -226,13 +226,13 @@ class Viewer:
     def attach_recording(self, playback: Playback, bag: BagReader) -> None:
         """Show the timeline of a recording in pages."""
         self.live = None
-        self._timeline.attach(playback, bag)
+        self._get_timeline.attach(playback, bag)
         for feature in self._features:
             feature.on_recording_shown()
 
     def on_playback_error(self, error: LinkwrightError) -> None:
         """Show pages the error that makes the rest of the recording unreadable."""
-        self._timeline.show_error(error)
+        self._get_timeline.show_error(error)
 
     def attach_comparison(self, pair: Pair, node: Node) -> Callable[[str], None]:
         """Show the differences between two descriptions in pages, see `ComparisonFeature.attach`."""
@@ -241,7 +241,7 @@ class Viewer:
         return self.add_feature(ComparisonFeature).attach(pair, node)
 
     @property
-    def _timeline(self) -> TimelineFeature:
+    def _get_timeline(self) -> TimelineFeature:
         return self.add_feature(TimelineFeature)
 
     def add_feature(self, cls: type[F], receives: Iterable[str] = ()) -> F:
@@ -288,12 +288,12 @@ class Viewer:
         """
         messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title, self._run)]
         tree_messages, table, frames = manager.opening_state()
-        messages += self._feature_openings(before_displays=True)
+        messages += self._create_feature_openings(before_displays=True)
         messages += tree_messages
-        messages += self._feature_openings(before_displays=False)
+        messages += self._create_feature_openings(before_displays=False)
         return [*messages, *self.configuration_messages(manager), table], frames
 
-    def _feature_openings(self, *, before_displays: bool) -> list[ServerMessage]:
+    def _create_feature_openings(self, *, before_displays: bool) -> list[ServerMessage]:
         messages: list[ServerMessage] = []
         for feature in self._features:  # `opening_messages` may append features, which this loop also reaches
             if feature.BEFORE_DISPLAYS is before_displays:

@@ -70,9 +70,9 @@ def arm(tmp_path, monkeypatch) -> Iterator[type[Arm]]:
     monkeypatch.syspath_prepend(tmp_path)
     for name in ("fault", "life", "sent"):
         monkeypatch.setattr(Arm, name, getattr(Arm, name))
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     yield Arm
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
 
 
 @pytest.mark.parametrize("fault", [HardwareError("the cable is out"), OSError("the cable is out")])

@@ -251,4 +251,4 @@ class TestGuardian:
 
     def test_missing_process_groups_are_ignored(self) -> None:
         guardian_program.end_groups({2**22 - 3})
-        assert guardian_program.marked_groups(b"LINKWRIGHT_LAUNCH=no-such-launch") == set()
+        assert guardian_program.find_marked_groups(b"LINKWRIGHT_LAUNCH=no-such-launch") == set()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.model.replaced_programs import replaced_programs, replacing_node
+from linkwright.launch.model.replaced_programs import find_replacing_node, replaced_programs
 from linkwright.loading import extensions
 from linkwright.nodes.node_command import NodeCommand
 
@@ -31,9 +31,9 @@ def installed_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
         f"[linkwright.replaced_programs]\nsea = {__name__}:sail\nsunk = my_sea_that_is_not_there:sail\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
     yield
-    extensions._all_groups.cache_clear()
+    extensions._read_all_groups.cache_clear()
 
 
 @pytest.mark.parametrize("name", [*replaced_programs()])
@@ -42,22 +42,22 @@ def test_builtin_replacements_can_be_imported(name: str) -> None:
 
 
 def test_program_of_another_package_is_replaced(installed_package: None) -> None:
-    assert replacing_node(["/opt/bin/sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
-    assert replacing_node(["ruby", "sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
-    assert replacing_node(["sea", "--version"], NOWHERE) is None
-    assert replacing_node(["lake", "sail", "3"], NOWHERE) is None
-    assert replacing_node([], NOWHERE) is None
+    assert find_replacing_node(["/opt/bin/sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
+    assert find_replacing_node(["ruby", "sea", "sail", "3"], NOWHERE) == NodeCommand("my_sea", "boat", {"wind": 3.0})
+    assert find_replacing_node(["sea", "--version"], NOWHERE) is None
+    assert find_replacing_node(["lake", "sail", "3"], NOWHERE) is None
+    assert find_replacing_node([], NOWHERE) is None
 
 
 def test_installed_program_is_not_replaced(installed_package: None, tmp_path: Path) -> None:
     program = tmp_path / "sea"
     program.touch(mode=0o755)
-    assert replacing_node(["sea", "sail", "3"], {"PATH": str(tmp_path)}) is None
-    assert replacing_node([str(program), "sail", "3"], NOWHERE) is None
+    assert find_replacing_node(["sea", "sail", "3"], {"PATH": str(tmp_path)}) is None
+    assert find_replacing_node([str(program), "sail", "3"], NOWHERE) is None
 
 
 def test_failed_import_names_the_package(installed_package: None) -> None:
     with pytest.raises(LinkwrightError, match="the node that replaces 'sunk' cannot be imported") as caught:
-        replacing_node(["sunk"], NOWHERE)
+        find_replacing_node(["sunk"], NOWHERE)
     assert caught.value.diagnostics[0].code == "NODE002"
     assert "fix the Python package 'my_sea'" in str(caught.value.diagnostics[0].hint)

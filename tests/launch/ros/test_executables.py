@@ -14,7 +14,7 @@ from launch_ros.substitutions import ExecutableInPackage
 
 from launch import LaunchContext
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch import builtin_packages, executables_of
+from linkwright.launch import builtin_packages, find_executables
 from linkwright.launch.errors.unavailable import is_unavailable
 from linkwright.launch.ros.executables import Origin, find_executable
 from linkwright.packages import PackageFinder, use_finder
@@ -174,7 +174,9 @@ class TestInstalled:
         write("ws/src/arm/package.xml", "<package><name>arm</name></package>")
         write("ws/src/arm/setup.py", SETUP)
         finder = PackageFinder(start=folder, environment={})
-        assert {name: executable.path for name, executable in executables_of(finder, "arm").items()} == {"wave": built}
+        assert {name: executable.path for name, executable in find_executables(finder, "arm").items()} == {
+            "wave": built
+        }
         assert find_executable(finder, "arm", "wave").command == [str(built)]
 
     def test_unsourced_workspace_environment_is_created(self, write: Write) -> None:
@@ -209,7 +211,7 @@ class TestInstalled:
 class TestBuiltinExecutables:
     def test_builtin_packages_and_executables_are_listed(self, finder: PackageFinder) -> None:
         assert {"robot_state_publisher", "tf2_ros", "rviz2", "rclcpp_components"} <= builtin_packages()
-        executables = executables_of(finder, "robot_state_publisher")
+        executables = find_executables(finder, "robot_state_publisher")
         assert str(executables["robot_state_publisher"]) == "built into Linkwright"
 
     def test_builtin_nodes_run_as_processes(self, finder: PackageFinder) -> None:

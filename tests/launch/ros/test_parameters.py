@@ -18,7 +18,7 @@ from launch_ros.utilities import evaluate_parameters, normalize_parameters
 from launch import LaunchContext
 from launch.frontend import Parser
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.ros.parameters import own_parameters
+from linkwright.launch.ros.parameters import evaluate_own_parameters
 
 Write = Callable[[str, str], Path]
 
@@ -33,7 +33,7 @@ def context() -> LaunchContext:
 
 
 def evaluated_parameters(context: LaunchContext, *parameters: Any, node: str = "/talker") -> dict[str, Any]:
-    return own_parameters(normalize_parameters(list(parameters)), context).values(context, node)
+    return evaluate_own_parameters(normalize_parameters(list(parameters)), context).values(context, node)
 
 
 def error_message(error: BaseException) -> str:

@@ -196,7 +196,7 @@ def run_pytest(folder, text, *options):
     return subprocess.run(
         [sys.executable, "-m", "pytest", "-rA", "-p", "no:cacheprovider", "--strict-markers", *options],
         cwd=folder,
-        env=process.environment({"PATH": os.environ["PATH"], "HOME": str(folder), "LINKWRIGHT_DDS": "0"}),
+        env=process.create_environment({"PATH": os.environ["PATH"], "HOME": str(folder), "LINKWRIGHT_DDS": "0"}),
         check=False,
         capture_output=True,
         text=True,

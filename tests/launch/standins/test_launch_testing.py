@@ -128,7 +128,7 @@ def run(tmp_path: Path):
         if words[:1] == ("pytest",):
             program = ["-m", "pytest", "-q", "-p", "no:cacheprovider", *words[1:], "test_it.py"]
         if words[:2] != ("pytest", "--launch-args"):  # the plugin of pytest provides the stand-ins
-            environment = process.environment(environment)
+            environment = process.create_environment(environment)
         return subprocess.run(
             [sys.executable, *program], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
         )

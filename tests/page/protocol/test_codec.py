@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from msgspec import to_builtins
 
 from linkwright.diagnostics import phrase
-from linkwright.diagnostics.translation.translate import wording
+from linkwright.diagnostics.translation.translate import load_catalog
 from linkwright.page.protocol.configuration import (
     DisplayProperties,
     DisplayStatus,
@@ -141,7 +141,7 @@ def test_phrases_are_translated_to_page_language():
 
     assert text("zh") == "没有 tf 数据。实际的错误：坐标系 [base] 不存在"
     assert text("en") == text(None) == "No tf data.  Actual error: Frame [base] does not exist"
-    in_chinese = frame.translated(wording("zh"))
+    in_chinese = frame.translated(load_catalog("zh"))
     message.status = [StatusRow("Fixed Frame", "error", in_chinese)]
     assert (text("en"), text(None)) == ("Frame [base] does not exist", "坐标系 [base] 不存在")
     malformed = DisplayStatus("global", "warn", [StatusRow("caf\udce9", "warn", frame)])

@@ -13,7 +13,7 @@ import numpy as np
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.geometry.arrays import rotation_matrix
 from linkwright.packages import PackageFinder
-from linkwright.viewer.model_snapshot import snapshot_of_model
+from linkwright.viewer.model_snapshot import take_model_snapshot
 
 GRIPPER = """\
 <robot name="gripper" version="1.2">
@@ -41,7 +41,7 @@ def make_snapshot(text: str, packages: dict[str, Path] | None = None):
     library = DescriptionLibrary()
     robot = library.read(text).robot
     finder = PackageFinder(start=Path("/nonexistent"), environment={}, extra=packages or {})
-    return snapshot_of_model(text, robot, library, finder)
+    return take_model_snapshot(text, robot, library, finder)
 
 
 @dataclass

@@ -1,4 +1,7 @@
-"""``linkwright bag description``: print the robot description of a recording, or compare it with a file."""
+"""``linkwright bag description``: print the robot description of a recording.
+
+The command can also compare the description with a file.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +59,7 @@ def run_description(arguments: argparse.Namespace) -> int:
         print_diagnostics(error.diagnostics, sys.stderr)
         return FAILURE
     if text is None:
-        print_diagnostics([_no_description(arguments.bag)], sys.stderr)
+        print_diagnostics([_missing_description_error(arguments.bag)], sys.stderr)
         return FAILURE
     sys.stdout.write(text if text.endswith("\n") else f"{text}\n")
     return SAME
@@ -81,7 +84,7 @@ def _compare(bag: BagReader, path: Path, values: dict[str, str]) -> int:
     if text is None:
         known_hash = recorded_hash(bag)
         if known_hash is None:
-            raise LinkwrightError(_no_description(str(bag.path)))
+            raise LinkwrightError(_missing_description_error(str(bag.path)))
         return _compare_hashes(known_hash, hash_of_description(new.read().text))
     with ScratchFolder("recorded") as folder:
         recorded = Path(folder).resolve() / "robot.urdf"
@@ -95,21 +98,21 @@ def _compare(bag: BagReader, path: Path, values: dict[str, str]) -> int:
     return DIFFERENT if comparison.differences else SAME
 
 
-def _compare_hashes(recorded: str, present: str) -> int:
-    if recorded == present:
+def _compare_hashes(recorded_hash: str, file_hash: str) -> int:
+    if recorded_hash == file_hash:
         print(localized(phrase("the description is the same as in the recording")))
         return SAME
     message = phrase(
         "the description differs from the recorded one; the recording has only a hash: "
         "SHA-256 {recorded}... -> {present}...",
-        recorded=recorded[:_HASH_DIGITS],
-        present=present[:_HASH_DIGITS],
+        recorded=recorded_hash[:_HASH_DIGITS],
+        present=file_hash[:_HASH_DIGITS],
     )
     print(localized(message))
     return DIFFERENT
 
 
-def _no_description(bag: str) -> Diagnostic:
+def _missing_description_error(bag: str) -> Diagnostic:
     message = phrase("'{path}' has no robot description", path=display_path(bag))
     hint = phrase("record the topic /robot_description, too; `linkwright bag record -a` records all topics")
     return Diagnostic("BAG118", message, hint=hint)

@@ -125,7 +125,7 @@ def run_play(arguments: argparse.Namespace) -> int:
         without_pattern=arguments.exclude,
         clock_topics=[_absolute_name(name) for name in arguments.clock_topics],
         clock_before_all=arguments.clock_topics_all,
-        until_ns=_until_ns(arguments),
+        until_ns=_compute_until_ns(arguments),
         without=[_absolute_name(name) for name in arguments.exclude_topics],
         loop=arguments.loop,
         clock_hz=arguments.clock,
@@ -170,7 +170,7 @@ def run_play(arguments: argparse.Namespace) -> int:
         return run_in_graph(arguments, job, node_name="rosbag2_player", remappings=remappings)
 
 
-def _until_ns(arguments: argparse.Namespace) -> int | None:
+def _compute_until_ns(arguments: argparse.Namespace) -> int | None:
     """Return the time in nanoseconds at which playback stops, or None for no limit.
 
     As in ros2, a negative option means no limit.

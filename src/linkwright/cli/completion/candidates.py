@@ -13,9 +13,9 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from linkwright.cli.completion.values import argument_candidates
+from linkwright.cli.completion.values import find_argument_candidates
 
-TABLE = Path(__file__).with_name("commands.json")
+TABLE_PATH = Path(__file__).with_name("commands.json")
 
 _LAUNCH_METAVAR = "PACKAGE FILE | PATH [NAME:=VALUE ...]"
 
@@ -40,11 +40,13 @@ def complete(words: Sequence[str]) -> list[str]:
     program, *arguments = words
     *preceding, current = arguments or [""]
     current = current.lstrip("'\"")  # the opening quotation mark of an unfinished string
-    candidates = _candidates(Path(program).name, preceding, current, json.loads(TABLE.read_text(encoding="utf-8")))
+    candidates = _find_candidates(
+        Path(program).name, preceding, current, json.loads(TABLE_PATH.read_text(encoding="utf-8"))
+    )
     return [candidate for candidate in dict.fromkeys(candidates) if candidate.startswith((current, ":"))]
 
 
-def _candidates(program: str, preceding: list[str], current: str, table: dict[str, Any]) -> Iterable[str]:
+def _find_candidates(program: str, preceding: list[str], current: str, table: dict[str, Any]) -> Iterable[str]:
     verbs: dict[str, Any] = table["verbs"]
     if not preceding:
         return table["ros2"] if program == "ros2" else [*verbs, "--help", "--version"]
@@ -58,14 +60,14 @@ def _candidates(program: str, preceding: list[str], current: str, table: dict[st
         remaining = remaining[subcommand_index + 1 :]
     options: dict[str, Any] = command.get("options", {})
     if remaining and options.get(remaining[-1]):
-        return _argument_candidates(options[remaining[-1]], path, [], table)
+        return _find_argument_candidates(options[remaining[-1]], path, [], table)
     if current.startswith("-"):
         return options
     positionals = [word for index, word in enumerate(remaining) if not _is_option(remaining, index, options)]
     parameters: list[dict[str, Any]] = command.get("places", [])
     if not parameters or (len(positionals) >= len(parameters) and not parameters[-1]["many"]):
         return options
-    return _argument_candidates(parameters[min(len(positionals), len(parameters) - 1)], path, positionals, table)
+    return _find_argument_candidates(parameters[min(len(positionals), len(parameters) - 1)], path, positionals, table)
 
 
 def _is_option(words: list[str], index: int, options: dict[str, Any]) -> bool:
@@ -73,7 +75,7 @@ def _is_option(words: list[str], index: int, options: dict[str, Any]) -> bool:
     return words[index].startswith("-") or (index > 0 and bool(options.get(words[index - 1])))
 
 
-def _argument_candidates(
+def _find_argument_candidates(
     argument: dict[str, Any], path: list[str], positionals: list[str], table: dict[str, Any]
 ) -> Iterable[str]:
     metavar: str = argument["name"]
@@ -81,4 +83,4 @@ def _argument_candidates(
         return [str(choice) for choice in argument["choices"]]
     if metavar == _LAUNCH_METAVAR:
         metavar = ("LAUNCH_PACKAGE", "LAUNCH_FILE", "LAUNCH_ARGUMENT")[min(len(positionals), 2)]
-    return argument_candidates(metavar, path, positionals, table)
+    return find_argument_candidates(metavar, path, positionals, table)

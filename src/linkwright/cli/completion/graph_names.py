@@ -19,13 +19,13 @@ from linkwright.files.user_folders import cache_folder
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
 
-_FRESH_S = 2.0
+_REFRESH_AGE_S = 2.0
 """Seconds for which the cached names are not refreshed."""
-_STALE_S = 600.0
+_MAX_AGE_S = 600.0
 """Seconds after which the cached names are too old to offer."""
 
 
-def names_of(kind: str) -> list[str]:
+def read_names(kind: str) -> list[str]:
     """Return the cached names of a kind, and start a discovery if they are out of date.
 
     Args:
@@ -34,27 +34,27 @@ def names_of(kind: str) -> list[str]:
     Returns:
         The names, or an empty list if there is no cache or the cache is too old.
     """
-    path = _path()
+    path = _cache_path()
     try:
         age = time.time() - path.stat().st_mtime
         names: list[str] = json.loads(path.read_text(encoding="utf-8"))[kind]
     except (OSError, ValueError, KeyError):
-        age, names = _STALE_S, []
-    if age > _FRESH_S:
+        age, names = _MAX_AGE_S, []
+    if age > _REFRESH_AGE_S:
         _start_discovery(path)
-    return names if age < _STALE_S else []
+    return names if age < _MAX_AGE_S else []
 
 
-def _path() -> Path:
+def _cache_path() -> Path:
     return cache_folder() / "completion" / f"graph-{os.environ.get('ROS_DOMAIN_ID') or 0}.json"
 
 
 def _start_discovery(path: Path) -> None:
-    """Start a discovery in another process, unless one started less than `_FRESH_S` ago."""
+    """Start a discovery in another process, unless one started less than `_REFRESH_AGE_S` ago."""
     marker = path.with_suffix(".begun")
     with suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        if marker.exists() and time.time() - marker.stat().st_mtime < _FRESH_S:
+        if marker.exists() and time.time() - marker.stat().st_mtime < _REFRESH_AGE_S:
             return
         marker.touch()
         import subprocess
@@ -69,24 +69,24 @@ def _start_discovery(path: Path) -> None:
 
 
 def discover() -> int:
-    """Discover the names of the graph, cache them for `names_of`, and return the exit status."""
+    """Discover the names of the graph, cache them for `read_names`, and return the exit status."""
     from argparse import Namespace
 
-    from linkwright.cli.calls import node_names
-    from linkwright.cli.lookup import visible
+    from linkwright.cli.calls import list_node_names
+    from linkwright.cli.lookup import sort_visible_names
     from linkwright.cli.session import run_in_graph
 
     async def job(session: Session) -> int:
         node = session.node
         names_by_kind = {
-            "topics": [name for name, _ in visible(node.get_topic_names_and_types(), hidden=False)],
-            "services": [name for name, _ in visible(node.get_service_names_and_types(), hidden=False)],
-            "nodes": node_names(session, hidden=False),
+            "topics": [name for name, _ in sort_visible_names(node.get_topic_names_and_types(), hidden=False)],
+            "services": [name for name, _ in sort_visible_names(node.get_service_names_and_types(), hidden=False)],
+            "nodes": list_node_names(session, hidden=False),
         }
         suffix = "/_action/feedback"
         topics = [name for name, _ in node.get_topic_names_and_types()]
         names_by_kind["actions"] = sorted(name.removesuffix(suffix) for name in topics if name.endswith(suffix))
-        path = _path()
+        path = _cache_path()
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary_path = path.with_suffix(f".{os.getpid()}")
         temporary_path.write_text(json.dumps(names_by_kind), encoding="utf-8")

@@ -108,7 +108,7 @@ It suggests the replacements for commands of ROS.
 """
 
 
-def script(shell: str, python: str, commands: Sequence[str]) -> str:
+def completion_script(shell: str, python: str, commands: Sequence[str]) -> str:
     """Return the completion script for a shell.
 
     Args:
@@ -120,7 +120,7 @@ def script(shell: str, python: str, commands: Sequence[str]) -> str:
     return text.replace("FILES", FILES)
 
 
-def shell_script(shell: str, python: str, mark: str, missing: Sequence[str]) -> str:
+def startup_script(shell: str, python: str, mark: str, missing: Sequence[str]) -> str:
     """Return the start-up script of ``linkwright shell``.
 
     The script sets up completion, and prints a hint when the user calls a program that is not available.
@@ -133,4 +133,4 @@ def shell_script(shell: str, python: str, mark: str, missing: Sequence[str]) -> 
     """
     names = (" " if shell == "fish" else "|").join(missing)
     not_found = _NOT_FOUND[shell].replace("PYTHON", shlex.quote(python)).replace("NAMES", names)
-    return script(shell, python, ["linkwright"]) + _ROS2_COMPLETION[shell].replace("MARK", mark) + not_found
+    return completion_script(shell, python, ["linkwright"]) + _ROS2_COMPLETION[shell].replace("MARK", mark) + not_found

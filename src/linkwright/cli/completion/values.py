@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
-from linkwright.cli.completion.graph_names import names_of
+from linkwright.cli.completion.graph_names import read_names
 from linkwright.cli.completion.scripts import FILES
 from linkwright.packages import PackageFinder, install_prefix, is_installed
 from linkwright.packages.launch_files import launch_files_below
@@ -23,14 +23,16 @@ _XACRO_ARGUMENT = re.compile(r"""<xacro:arg\s[^>]*?\bname\s*=\s*["']([^"']+)["']
 
 _INTERFACE_KINDS = {"topic": ("msg",), "bag": ("msg",), "service": ("srv",), "action": ("action",)}
 
-Asked = tuple[list[str], list[str], Mapping[str, Any]]
+Request = tuple[list[str], list[str], Mapping[str, Any]]
 """A request for candidates of an argument.
 
 It contains the names of the command and subcommand, the preceding positional arguments, and the table of commands.
 """
 
 
-def argument_candidates(kind: str, path: list[str], positionals: list[str], table: Mapping[str, Any]) -> Iterable[str]:
+def find_argument_candidates(
+    kind: str, path: list[str], positionals: list[str], table: Mapping[str, Any]
+) -> Iterable[str]:
     """Return the candidates for an argument.
 
     Args:
@@ -39,15 +41,15 @@ def argument_candidates(kind: str, path: list[str], positionals: list[str], tabl
         positionals: the preceding positional arguments.
         table: the contents of ``commands.json``.
     """
-    find_candidates = _KINDS.get(kind)
+    find_candidates = _FINDERS_BY_KIND.get(kind)
     return [] if find_candidates is None else find_candidates((path, positionals, table))
 
 
-def _packages(request: Asked) -> Iterable[str]:
+def _packages(request: Request) -> Iterable[str]:
     return sorted({*PackageFinder().packages(), *request[2]["executables"]})
 
 
-def _executables(request: Asked) -> Iterable[str]:
+def _executables(request: Request) -> Iterable[str]:
     _, positionals, table = request
     package = positionals[-1] if positionals else ""
     names = set(table["executables"].get(package, ()))
@@ -63,37 +65,37 @@ def _executables(request: Asked) -> Iterable[str]:
     return sorted(names)
 
 
-def _launch_packages(_: Asked) -> Iterable[str]:
+def _launch_packages(_: Request) -> Iterable[str]:
     return [*sorted(PackageFinder().packages()), FILES]
 
 
-def _launch_files(request: Asked) -> Iterable[str]:
+def _launch_files(request: Request) -> Iterable[str]:
     path_or_package = Path(request[1][0])
     if path_or_package.is_file():
-        return _declared_arguments(path_or_package, _LAUNCH_ARGUMENT)
+        return _find_declared_arguments(path_or_package, _LAUNCH_ARGUMENT)
     share = PackageFinder().find(request[1][0])
     return [] if share is None else sorted(path.name for path in launch_files_below(share))
 
 
-def _launch_arguments(request: Asked) -> Iterable[str]:
+def _launch_arguments(request: Request) -> Iterable[str]:
     package, file = request[1][:2]
     if Path(package).is_file():
-        return _declared_arguments(Path(package), _LAUNCH_ARGUMENT)
+        return _find_declared_arguments(Path(package), _LAUNCH_ARGUMENT)
     share = PackageFinder().find(package)
     launch_file = next((path for path in launch_files_below(share) if path.name == file), None) if share else None
-    return [] if launch_file is None else _declared_arguments(launch_file, _LAUNCH_ARGUMENT)
+    return [] if launch_file is None else _find_declared_arguments(launch_file, _LAUNCH_ARGUMENT)
 
 
-def _description_arguments(request: Asked) -> Iterable[str]:
+def _description_arguments(request: Request) -> Iterable[str]:
     paths = [Path(word) for word in request[1] if ":=" not in word]
-    return [name for path in paths if path.is_file() for name in _declared_arguments(path, _XACRO_ARGUMENT)]
+    return [name for path in paths if path.is_file() for name in _find_declared_arguments(path, _XACRO_ARGUMENT)]
 
 
-def _second_description(request: Asked) -> Iterable[str]:
+def _second_description(request: Request) -> Iterable[str]:
     return [*_description_arguments(request), FILES]
 
 
-def _declared_arguments(path: Path, pattern: re.Pattern[str]) -> list[str]:
+def _find_declared_arguments(path: Path, pattern: re.Pattern[str]) -> list[str]:
     """Return the arguments that a launch file or xacro file declares.
 
     The file is searched with a regular expression, because executing it takes too long.
@@ -103,7 +105,7 @@ def _declared_arguments(path: Path, pattern: re.Pattern[str]) -> list[str]:
     return [f"{name}:=" for name in dict.fromkeys(names)]
 
 
-def _types(request: Asked) -> Iterable[str]:
+def _types(request: Request) -> Iterable[str]:
     path, _, table = request
     kinds = _INTERFACE_KINDS.get(path[0], ("msg", "srv", "action"))
     package_types = (
@@ -115,33 +117,33 @@ def _types(request: Asked) -> Iterable[str]:
     return sorted({*(name for kind in kinds for name in table["types"][kind]), *package_types})
 
 
-def _graph_names(kind: str) -> Callable[[Asked], Iterable[str]]:
-    return lambda _: names_of(kind)
+def _graph_names(kind: str) -> Callable[[Request], Iterable[str]]:
+    return lambda _: read_names(kind)
 
 
-def _detectors(request: Asked) -> Iterable[str]:
+def _detectors(request: Request) -> Iterable[str]:
     from linkwright.vision.detectors.registry import detector_names
 
     return [*detector_names(), *_files(request)]
 
 
-def _models(_: Asked) -> Iterable[str]:
+def _models(_: Request) -> Iterable[str]:
     from linkwright.model_files import model_table
 
     return model_table()
 
 
-def _engines(_: Asked) -> Iterable[str]:
+def _engines(_: Request) -> Iterable[str]:
     from linkwright.speech.engine import engine_names
 
     return engine_names()
 
 
-def _files(_: Asked) -> Iterable[str]:
+def _files(_: Request) -> Iterable[str]:
     return [FILES]
 
 
-_KINDS: dict[str, Callable[[Asked], Iterable[str]]] = {
+_FINDERS_BY_KIND: dict[str, Callable[[Request], Iterable[str]]] = {
     "PACKAGE": _packages,
     "EXECUTABLE": _executables,
     "LAUNCH_PACKAGE": _launch_packages,

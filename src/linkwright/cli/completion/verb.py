@@ -23,7 +23,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the completion script, and return the exit status."""
-    from linkwright.cli.completion.scripts import script
+    from linkwright.cli.completion.scripts import completion_script
 
-    print(script(arguments.shell, sys.executable, ["linkwright"]), end="")
+    print(completion_script(arguments.shell, sys.executable, ["linkwright"]), end="")
     return 0

@@ -1,4 +1,4 @@
-"""``linkwright learn grade``: check the folders of many students with the checks of a course."""
+"""``linkwright learn grade``: check the folders of many students."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from linkwright.cli.exit_status import FINDINGS, FINE, print_message
 from linkwright.cli.numbers import positive_float, positive_int
 from linkwright.cli.progress import ProgressLine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
-from linkwright.diagnostics.render import shown_width
+from linkwright.diagnostics.render import compute_width
 from linkwright.diagnostics.translation import language, localized
 from linkwright.process.processors import usable_processors
 
@@ -112,10 +112,10 @@ def run_grade(arguments: argparse.Namespace) -> int:
     outputs = [path for path in (arguments.csv, arguments.nbgrader, arguments.json, arguments.html) if path]
     _check_outputs(outputs)
     submissions = find_submissions(arguments.folders, course)
-    limits = _limits(arguments)
+    limits = _create_limits(arguments)
     journal = Journal(_journal_path(outputs))
     line = ProgressLine()
-    begin = time.monotonic()
+    start_time = time.monotonic()
     if arguments.ray is None:
         check_extras(steps)
     with _choose_workers(arguments) as run_jobs:
@@ -137,7 +137,7 @@ def run_grade(arguments: argparse.Namespace) -> int:
         journal.remove()
     _print_table(students)
     _print_protections(students)
-    seconds = f"{time.monotonic() - begin:.0f}"
+    seconds = f"{time.monotonic() - start_time:.0f}"
     print_message(localized(phrase("{size} in {seconds} s", size=class_size(students), seconds=seconds)))
     if not is_complete:
         print_message(localized(phrase("some steps were not graded; run the command again to grade only these")))
@@ -155,16 +155,20 @@ def _choose_workers(arguments: argparse.Namespace) -> AbstractContextManager[Run
 
 
 def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
-    """Return the selected steps in the order of the course: the steps of the lessons, or individual ones.
+    """Return the selected steps of the selected lessons, in the order of the course.
 
     Raises:
         LinkwrightError: LEARN106, the course has no such lesson, or the lessons have no such step.
     """
     lessons = course.find_lessons(arguments.lesson)
     given_lessons = lessons if arguments.lesson else ()
-    named = {course.find_step(name, given_lessons).address for name in arguments.step}
+    selected_addresses = {course.find_step(name, given_lessons).address for name in arguments.step}
     ids = {lesson.id for lesson in lessons}
-    return [step for step in course.steps if step.lesson.id in ids and (not named or step.address in named)]
+    return [
+        step
+        for step in course.steps
+        if step.lesson.id in ids and (not selected_addresses or step.address in selected_addresses)
+    ]
 
 
 def _check_outputs(outputs: Sequence[Path]) -> None:
@@ -189,7 +193,7 @@ def _journal_path(outputs: Sequence[Path]) -> Path | None:
     return outputs[0].with_name(outputs[0].name + SUFFIX) if outputs else None
 
 
-def _limits(arguments: argparse.Namespace) -> Limits:
+def _create_limits(arguments: argparse.Namespace) -> Limits:
     from linkwright.learning.sandbox import Limits
 
     return Limits(
@@ -223,11 +227,11 @@ def _write_outputs(
 
 def _print_table(students: Sequence[StudentMarks]) -> None:
     lang = language()
-    width = max(shown_width(student.submission.student) for student in students)
+    width = max(compute_width(student.submission.student) for student in students)
     for student in students:
         name = student.submission.student
-        signs = "".join(_sign(mark) for mark in student.marks.values())
-        padding = " " * (width - shown_width(name))
+        signs = "".join(_format_sign(mark) for mark in student.marks.values())
+        padding = " " * (width - compute_width(name))
         points = f"{student.total:g}/{student.possible:g}" if student.submission.is_readable else "–"
         print(f"{name}{padding}  {points:>9}  {signs}".rstrip())
         for note in student.submission.notes:
@@ -237,7 +241,7 @@ def _print_table(students: Sequence[StudentMarks]) -> None:
                 print(f"    {step}: {'; '.join(message.get(lang) for message in mark.messages)}")
 
 
-def _sign(mark: Mark) -> str:
+def _format_sign(mark: Mark) -> str:
     if not mark.is_graded:
         return "?"
     return "✓" if mark.passed else "✗"
@@ -248,9 +252,9 @@ def _print_protections(students: Sequence[StudentMarks]) -> None:
     from linkwright.learning.grading.formats import protections_in_force
     from linkwright.learning.sandbox import PROTECTIONS
 
-    in_force = protections_in_force(students)
+    enforced = protections_in_force(students)
     if not any(mark.protections for student in students for mark in student.marks.values()):
         return
     for protection, meaning in PROTECTIONS.items():
-        if protection.value not in in_force:
+        if protection.value not in enforced:
             print_message(localized(phrase("not enforced on this system: {protection}", protection=meaning)))

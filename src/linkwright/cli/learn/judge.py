@@ -78,7 +78,7 @@ def run_judge(arguments: argparse.Namespace) -> int:
     if arguments.start:
         return _copy_template(exercise, program)
     _require_program(program, phrase("create it from the template of the exercise with --start"))
-    rival = _rival_program(exercise, arguments.rival)
+    rival = _find_rival_program(exercise, arguments.rival)
     if arguments.seeds < 1:
         raise LinkwrightError(Diagnostic("LEARN143", phrase("--seeds must be at least 1")))
     results: list[RunResult] = []
@@ -86,7 +86,7 @@ def run_judge(arguments: argparse.Namespace) -> int:
         for result in judge_program(exercise, program, range(arguments.seeds), rival=rival):
             results.append(result)
             if not arguments.json:
-                print(_run_line(exercise, result), flush=True)
+                print(_format_run(exercise, result), flush=True)
     mean = round(sum(result.score for result in results) / len(results), 1)
     if arguments.json:
         data = {"exercise": exercise.id, "score": mean, "runs": [result.to_data() for result in results]}
@@ -127,7 +127,7 @@ def _require_program(program: Path, hint: Phrase | None = None) -> None:
         raise LinkwrightError(Diagnostic("LEARN142", message, hint=hint))
 
 
-def _rival_program(exercise: Exercise, chosen_program: Path | None) -> Path | None:
+def _find_rival_program(exercise: Exercise, chosen_program: Path | None) -> Path | None:
     """Return the program of the other robot, or None if the exercise has no other robot.
 
     Raises:
@@ -145,14 +145,14 @@ def _rival_program(exercise: Exercise, chosen_program: Path | None) -> Path | No
 
 def run_world(arguments: argparse.Namespace) -> int:
     """Simulate the world of an exercise in real time, with its robot and its judge."""
-    from linkwright.cli.command import parser_for
+    from linkwright.cli.command import create_parser
     from linkwright.cli.sim import run
     from linkwright.learning.judging.exercise import find_exercise
     from linkwright.learning.judging.world import write_world
 
     exercise = find_exercise(arguments.exercise)
     program = (arguments.program or Path(f"{exercise.id}.py")).absolute()
-    rival = _rival_program(exercise, arguments.rival)
+    rival = _find_rival_program(exercise, arguments.rival)
     if not arguments.headless and not program.exists():
         _copy_template(exercise, program)
     with ScratchFolder("exercise") as folder:
@@ -160,25 +160,26 @@ def run_world(arguments: argparse.Namespace) -> int:
         words = [str(arrangement.world)]
         if arrangement.robot is not None:
             words.append(str(arrangement.robot))
-        simulated = parser_for("sim").parse_args(words)
-        vars(simulated).update(vars(arguments), terminal=not arguments.headless)
-        simulated.x, simulated.y, simulated.z, _, _, simulated.Y = arrangement.pose
+        sim_arguments = create_parser("sim").parse_args(words)
+        vars(sim_arguments).update(vars(arguments), terminal=not arguments.headless)
+        sim_arguments.x, sim_arguments.y, sim_arguments.z, _, _, sim_arguments.Y = arrangement.pose
         with _running_rival(exercise, rival):
-            return run(simulated, partial(_show_exercise, exercise, program, rival))
+            return run(sim_arguments, partial(_show_exercise, exercise, program, rival))
 
 
 @contextmanager
 def _running_rival(exercise: Exercise, program: Path | None) -> Iterator[None]:
-    """Run the program of the other robot, if any, in a process with the environment of ``linkwright shell``.
+    """Run the program of the other robot, if there is one.
 
-    It starts with the first command to the learner's robot.
+    The program runs in a process with the environment of ``linkwright shell``. It starts with the first command to the
+    learner's robot.
     """
     if exercise.rival is None or program is None:
         yield
         return
-    shell = [sys.executable, "-m", "linkwright", "shell", "--", sys.executable]
-    waiting = ["-m", "linkwright.cli.learn.rival", f"/{exercise.rival.start}", str(program)]
-    command = [*shell, *waiting, *exercise.rival.ros_arguments, "-p", "use_sim_time:=true"]
+    shell_command = [sys.executable, "-m", "linkwright", "shell", "--", sys.executable]
+    rival_arguments = ["-m", "linkwright.cli.learn.rival", f"/{exercise.rival.start}", str(program)]
+    command = [*shell_command, *rival_arguments, *exercise.rival.ros_arguments, "-p", "use_sim_time:=true"]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL) as process:  # noqa: S603 - the user's own program
         try:
             yield
@@ -206,11 +207,11 @@ def _copy_template(exercise: Exercise, program: Path) -> int:
     return 0
 
 
-def _run_line(exercise: Exercise, result: RunResult) -> str:
-    return localized(phrase("seed {seed}: {figure}", seed=result.seed, figure=_figure(exercise, result)))
+def _format_run(exercise: Exercise, result: RunResult) -> str:
+    return localized(phrase("seed {seed}: {figure}", seed=result.seed, figure=_format_figure(exercise, result)))
 
 
-def _figure(exercise: Exercise, result: RunResult) -> str:
+def _format_figure(exercise: Exercise, result: RunResult) -> str:
     figure = exercise.figure
     value = f"{result.data['figure']:.{figure.decimals}f} {figure.unit}".strip()
     return value if result.data["is_solved"] else f"({value})"
@@ -220,7 +221,7 @@ def _print_table(exercise: Exercise, results: Sequence[RunResult], mean: float) 
     lang = language()
     print(exercise.title.get(lang))
     for result in results:
-        print(f"  {result.seed:>3}  {_figure(exercise, result):>12}  {result.score:>6.1f}")
+        print(f"  {result.seed:>3}  {_format_figure(exercise, result):>12}  {result.score:>6.1f}")
         for reason in result.data["reasons"]:
             print(f"         {reason.get(lang) or reason['en']}")
         if result.error is not None:

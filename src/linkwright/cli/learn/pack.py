@@ -28,17 +28,21 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--systems",
         metavar="SYSTEM,...",
-        type=_names,
+        type=_split_names,
         default=[],
         help="only these systems: windows, macos-arm64, macos-x86_64, linux-x86_64, linux-aarch64 (default: all)",
     )
     parser.add_argument(
-        "--python", metavar="VERSION,...", type=_names, default=[], help="only these versions of Python (default: all)"
+        "--python",
+        metavar="VERSION,...",
+        type=_split_names,
+        default=[],
+        help="only these versions of Python (default: all)",
     )
     parser.add_argument(
         "--extras",
         metavar="EXTRA,...",
-        type=_names,
+        type=_split_names,
         default=["learn"],
         help="the extras (default: learn)",
     )
@@ -53,7 +57,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--models",
         metavar="MODEL,...",
-        type=_names,
+        type=_split_names,
         default=[_ALL],
         help="the models, as `linkwright models list` names them, or none (default: all)",
     )
@@ -66,7 +70,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--docs", metavar="FOLDER", type=Path, help="the site of the documentation, from `make docs`")
 
 
-def _names(text: str) -> list[str]:
+def _split_names(text: str) -> list[str]:
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
@@ -76,8 +80,8 @@ def run(arguments: argparse.Namespace) -> int:
     from linkwright.learning.packing.pack_folder import PackFolder
 
     folder = PackFolder(arguments.folder.expanduser().absolute())
-    problems = [] if arguments.check else _make(folder, arguments)
-    problems += _check(folder)
+    problems = [] if arguments.check else _make_pack(folder, arguments)
+    problems += _check_pack(folder)
     if not any(problem.code.startswith("LEARN") for problem in problems):
         _print_summary(folder, folder.read_settings())
     if problems:
@@ -95,7 +99,7 @@ def _require_packaging() -> None:
         raise LinkwrightError(Diagnostic("LEARN308", phrase("a pack needs the extra 'learn'"), hint=hint))
 
 
-def _make(folder: PackFolder, arguments: argparse.Namespace) -> list[Diagnostic]:
+def _make_pack(folder: PackFolder, arguments: argparse.Namespace) -> list[Diagnostic]:
     from linkwright.learning.packing.making import PackContents, make_pack, world_folders
     from linkwright.learning.packing.pack_folder import PackSettings
     from linkwright.learning.packing.targets import PYTHONS, SYSTEMS
@@ -108,10 +112,10 @@ def _make(folder: PackFolder, arguments: argparse.Namespace) -> list[Diagnostic]
     )
     contents = PackContents(
         own_wheels=arguments.wheel,
-        models=_models(arguments.models),
+        models=_select_models(arguments.models),
         models_source=arguments.models_from,
         worlds=[] if arguments.no_worlds else world_folders(),
-        docs=_docs(arguments.docs),
+        docs=_check_docs_folder(arguments.docs),
     )
     line = ProgressLine()
 
@@ -119,7 +123,10 @@ def _make(folder: PackFolder, arguments: argparse.Namespace) -> list[Diagnostic]
         size = total or entry.megabytes * _BYTES_PER_MB
         line.show(
             phrase(
-                "{name}: {done} of {total} MB", name=entry.name, done=_megabytes(received_bytes), total=_megabytes(size)
+                "{name}: {done} of {total} MB",
+                name=entry.name,
+                done=_format_megabytes(received_bytes),
+                total=_format_megabytes(size),
             )
         )
 
@@ -129,7 +136,7 @@ def _make(folder: PackFolder, arguments: argparse.Namespace) -> list[Diagnostic]
         line.end()
 
 
-def _models(names: list[str]) -> list[ModelEntry]:
+def _select_models(names: list[str]) -> list[ModelEntry]:
     from linkwright.model_files import model_entry, model_table
 
     if names == [_ALL]:
@@ -137,7 +144,7 @@ def _models(names: list[str]) -> list[ModelEntry]:
     return [] if names == [_NONE] else [model_entry(name) for name in names]
 
 
-def _docs(folder: Path | None) -> Path | None:
+def _check_docs_folder(folder: Path | None) -> Path | None:
     """Return the folder of the documentation, or None, after checking that it is a site.
 
     Raises:
@@ -150,13 +157,17 @@ def _docs(folder: Path | None) -> Path | None:
     return folder
 
 
-def _check(folder: PackFolder) -> list[Diagnostic]:
+def _check_pack(folder: PackFolder) -> list[Diagnostic]:
     from linkwright.learning.packing.checking import check_pack
 
     line = ProgressLine()
 
     def progress(received_bytes: int, total: int) -> None:
-        line.show(phrase("checked {done} of {total} MB", done=_megabytes(received_bytes), total=_megabytes(total)))
+        line.show(
+            phrase(
+                "checked {done} of {total} MB", done=_format_megabytes(received_bytes), total=_format_megabytes(total)
+            )
+        )
 
     try:
         return check_pack(folder, progress)
@@ -178,32 +189,32 @@ def _print_summary(folder: PackFolder, settings: PackSettings) -> None:
                     "{system}: Python {pythons}, {megabytes} MB",
                     system=SYSTEMS[system].label,
                     pythons=joined(target.python for target in targets),
-                    megabytes=_megabytes(size),
+                    megabytes=_format_megabytes(size),
                 )
             )
         )
-        lacking: dict[str, list[str]] = {}
+        pythons_by_missing_part: dict[str, list[str]] = {}
         for target in targets:
             for text in settings.missing.get(target.name, {}).get(language(), ()):
-                lacking.setdefault(text, []).append(target.python)
-        for text, pythons in lacking.items():
-            print(localized(_lack(text, pythons, len(targets))))
+                pythons_by_missing_part.setdefault(text, []).append(target.python)
+        for text, pythons in pythons_by_missing_part.items():
+            print(localized(_missing_part_phrase(text, pythons, len(targets))))
     paths = list(folder.files())
     total = sum((folder.path / path).stat().st_size for path in paths)
     text = phrase(
         "{path}: {count} files, {megabytes} MB",
         path=display_path(folder.path),
         count=len(paths),
-        megabytes=_megabytes(total),
+        megabytes=_format_megabytes(total),
     )
     print(localized(text))
 
 
-def _lack(text: str, pythons: list[str], count: int) -> Phrase:
+def _missing_part_phrase(text: str, pythons: list[str], count: int) -> Phrase:
     if len(pythons) == count:
         return phrase("  no package for {part}", part=text)
     return phrase("  no package for {part}: Python {pythons}", part=text, pythons=joined(pythons))
 
 
-def _megabytes(size: int) -> str:
+def _format_megabytes(size: int) -> str:
     return f"{size / _BYTES_PER_MB:.0f}"

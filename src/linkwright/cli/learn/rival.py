@@ -1,7 +1,7 @@
-"""A process that runs the program of the other robot as soon as the learner's robot gets its first command.
+"""Runs the program of the other robot when the learner's robot gets its first command.
 
 Usage: ``python -m linkwright.cli.learn.rival TOPIC PROGRAM [ARGUMENT...]``. In a world in real time, learners start
-their programs by hand, and the other robot must not be laps ahead by then.
+their programs by hand, and the other robot must not have a lead of several laps.
 """
 
 from __future__ import annotations

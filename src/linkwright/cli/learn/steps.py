@@ -38,14 +38,14 @@ def _add_step(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _open(arguments: argparse.Namespace) -> Classroom:
+def _open_classroom(arguments: argparse.Namespace) -> Classroom:
     from linkwright.learning.classroom import enclosing_workspace, open_classroom
 
     workspace = arguments.workspace or enclosing_workspace(Path.cwd())
     return open_classroom(workspace.absolute(), arguments.course)
 
 
-def _step(classroom: Classroom, arguments: argparse.Namespace) -> Step:
+def _find_step(classroom: Classroom, arguments: argparse.Namespace) -> Step:
     return classroom.current_step if arguments.step is None else classroom.course.find_step(arguments.step)
 
 
@@ -56,16 +56,16 @@ def configure_list(parser: argparse.ArgumentParser) -> None:
 
 def run_list(arguments: argparse.Namespace) -> int:
     """Print the lessons and steps of the course."""
-    classroom = _open(arguments)
+    classroom = _open_classroom(arguments)
     lang = language()
     print(classroom.course.title.get(lang))
     for lesson in classroom.course.lessons:
         print(f"\n{lesson.id}: {lesson.title.get(lang)}")
         for step in lesson.steps:
-            noted = classroom.progress.step(step.address)
-            mark = _PASSED if noted.passed is not None else _TAKEN_OVER if noted.taken_over else " "
+            record = classroom.progress.step(step.address)
+            mark = _PASSED if record.passed is not None else _TAKEN_OVER if record.taken_over else " "
             print(f"  {mark} {step.id}: {step.title.get(lang)}")
-    if any(noted.taken_over for noted in classroom.progress.steps.values()):
+    if any(record.taken_over for record in classroom.progress.steps.values()):
         print(f"\n{_TAKEN_OVER} {localized(phrase('solution copied from the course'))}")
     return 0
 
@@ -78,15 +78,15 @@ def configure_show(parser: argparse.ArgumentParser) -> None:
 
 def run_show(arguments: argparse.Namespace) -> int:
     """Print the text of a step."""
-    classroom = _open(arguments)
-    step = _step(classroom, arguments)
-    copied = classroom.open_step(step)
+    classroom = _open_classroom(arguments)
+    step = _find_step(classroom, arguments)
+    created_files = classroom.open_step(step)
     text = step.text(language())
     if step.id == step.lesson.steps[0].id:
         lesson = step.lesson.texts.get(language()) or next(iter(step.lesson.texts.values()))
         print(f"# {lesson.title}\n\n{lesson.introduction}\n")
     print(f"## {text.title}\n\n{text.body}")
-    for path in copied:
+    for path in created_files:
         print(localized(phrase("created {path}", path=display_path(path))), file=sys.stderr)
     return 0
 
@@ -100,8 +100,8 @@ def configure_check(parser: argparse.ArgumentParser) -> None:
 
 def run_check(arguments: argparse.Namespace) -> int:
     """Check a step, and return 1 if it is not passed."""
-    classroom = _open(arguments)
-    step = _step(classroom, arguments)
+    classroom = _open_classroom(arguments)
+    step = _find_step(classroom, arguments)
     result = classroom.check(step)
     if arguments.json:
         print(json.dumps(result.to_data(), ensure_ascii=False))
@@ -113,9 +113,9 @@ def run_check(arguments: argparse.Namespace) -> int:
         if check.message is not None:
             print(f"      {check.message.get(lang)}")
     if result.passed:
-        following = classroom.current_step
-        if following.address != step.address:
-            print(localized(phrase("passed; the next step is {step}", step=following.address)))
+        next_step = classroom.current_step
+        if next_step.address != step.address:
+            print(localized(phrase("passed; the next step is {step}", step=next_step.address)))
         return 0
     if count := len(classroom.steps_to_catch_up(step)):
         command = f"linkwright learn catch-up {step.address}"
@@ -138,7 +138,7 @@ def configure_answer(parser: argparse.ArgumentParser) -> None:
 
 def run_answer(arguments: argparse.Namespace) -> int:
     """Store the answer to a step, and check the step."""
-    classroom = _open(arguments)
+    classroom = _open_classroom(arguments)
     classroom.answer(classroom.course.find_step(arguments.step), arguments.number)
     return run_check(arguments)
 
@@ -151,8 +151,8 @@ def configure_hint(parser: argparse.ArgumentParser) -> None:
 
 def run_hint(arguments: argparse.Namespace) -> int:
     """Print the hints taken so far and the next one."""
-    classroom = _open(arguments)
-    step = _step(classroom, arguments)
+    classroom = _open_classroom(arguments)
+    step = _find_step(classroom, arguments)
     hints = step.text(language()).hints
     if not hints:
         print(localized(phrase("the step '{step}' has no hints", step=step.address)), file=sys.stderr)
@@ -169,8 +169,8 @@ def configure_solution(parser: argparse.ArgumentParser) -> None:
 
 def run_solution(arguments: argparse.Namespace) -> int:
     """Copy the solution of a step into the workspace, and print the requested number, if any."""
-    classroom = _open(arguments)
-    step = _step(classroom, arguments)
+    classroom = _open_classroom(arguments)
+    step = _find_step(classroom, arguments)
     for path in classroom.take_solution(step):
         print(display_path(path))
     if step.right_answer is not None:
@@ -193,8 +193,8 @@ def run_catch_up(arguments: argparse.Namespace) -> int:
     """
     from linkwright.learning.classroom import REPLACED_FOLDER
 
-    classroom = _open(arguments)
-    step = _step(classroom, arguments)
+    classroom = _open_classroom(arguments)
+    step = _find_step(classroom, arguments)
     plan = classroom.plan_catch_up(step)
     for path in sorted(plan.new):
         print(localized(phrase("new: {path}", path=display_path(path))))

@@ -1,4 +1,4 @@
-"""The commands of ROS 2, with the same arguments, output and exit statuses as the originals."""
+"""The commands of ROS 2, with the arguments, output and exit statuses of the originals."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from linkwright.cli.command import main as linkwright
-from linkwright.cli.exit_status import FINDINGS, FINE, status_of
+from linkwright.cli.exit_status import FINDINGS, FINE, run_command
 from linkwright.cli.tools.ros2 import ros2
 from linkwright.diagnostics import LinkwrightError, missing_extra, print_diagnostics
 from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
@@ -27,7 +27,7 @@ def main(name: str, words: Sequence[str]) -> int:
     Returns:
         The exit status.
     """
-    return status_of(lambda: TOOLS[name](words))
+    return run_command(lambda: TOOLS[name](words))
 
 
 def _xacro(words: Sequence[str]) -> int:

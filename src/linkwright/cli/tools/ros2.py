@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from linkwright.cli.command import help_texts
+from linkwright.cli.command import collect_help_texts
 from linkwright.cli.command import main as linkwright
 from linkwright.cli.exit_status import FINE, USAGE
 from linkwright.cli.workbench import OTHER_NAMES
@@ -44,7 +44,7 @@ def ros2(words: Sequence[str]) -> int:
     """Run a subcommand of ``ros2``, and return its exit status."""
     arguments = [word for word in words if word != "--use-python-default-buffering"]
     if not arguments or arguments[0] in ("-h", "--help"):
-        print(_overview())
+        print(_format_overview())
         return FINE
     name = arguments[0]
     if name in COMMANDS:
@@ -58,7 +58,7 @@ def ros2(words: Sequence[str]) -> int:
     return USAGE
 
 
-def _overview() -> str:
+def _format_overview() -> str:
     width = max(map(len, COMMANDS))
     lines = [
         "usage: ros2 [-h] COMMAND ...",
@@ -69,6 +69,8 @@ def _overview() -> str:
     ]
     for name in COMMANDS:
         alias_target = OTHER_NAMES.get(name)
-        lines.append(f"  {name:{width}}  {f'the same as {alias_target}' if alias_target else help_texts()[name]}")
+        lines.append(
+            f"  {name:{width}}  {f'the same as {alias_target}' if alias_target else collect_help_texts()[name]}"
+        )
     lines += ["", "`ros2 COMMAND -h` describes a command."]
     return "\n".join(lines)

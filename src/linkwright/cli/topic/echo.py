@@ -6,10 +6,10 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.echo_format import SEPARATOR, EchoFormat, add_format_arguments, field_path, select
-from linkwright.cli.lookup import absolute, topic_type
+from linkwright.cli.echo_format import SEPARATOR, EchoFormat, add_format_arguments, parse_field_path, select_field
+from linkwright.cli.lookup import find_message_class, make_absolute
 from linkwright.cli.numbers import positive_float
-from linkwright.cli.qos import add_subscription_qos_arguments, fitting_profile
+from linkwright.cli.qos import add_subscription_qos_arguments, create_fitting_profile
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.topic.filters import compile_filter
 
@@ -58,21 +58,21 @@ def configure_echo(parser: argparse.ArgumentParser) -> None:
 
 def run_echo(arguments: argparse.Namespace) -> int:
     """Print messages until the user interrupts the command."""
-    name = absolute(arguments.topic_name)
+    name = make_absolute(arguments.topic_name)
     matches_filter = None if arguments.filter is None else compile_filter(arguments.filter)
-    field = () if arguments.raw else field_path(arguments.field)
+    field = () if arguments.raw else parse_field_path(arguments.field)
     echo_format = EchoFormat.of(arguments, field, message_info=arguments.include_message_info)
 
     async def job(session: Session) -> int:
         from linkwright.graph.endpoints.event_types import SubscriptionEventCallbacks
 
-        message_type = await topic_type(session, name, arguments.message_type, raw=arguments.raw)
+        message_type = await find_message_class(session, name, arguments.message_type, raw=arguments.raw)
         if not arguments.raw:
-            select(message_type(), echo_format.field)
+            select_field(message_type(), echo_format.field)
         write = sys.stdout.write
 
         def show(message: Any, info: MessageInfo) -> None:
-            if matches_filter is not None and not matches_filter(select(message, echo_format.field)):
+            if matches_filter is not None and not matches_filter(select_field(message, echo_format.field)):
                 return
             text = echo_format.text(message, info)
             write(_CLEAR_SEQUENCE + text if arguments.clear else text)
@@ -80,13 +80,15 @@ def run_echo(arguments: argparse.Namespace) -> int:
                 session.finish()
 
         events = SubscriptionEventCallbacks(
-            message_lost=None if arguments.no_lost_messages else session.guard(lambda event: write(lost_text(event)))
+            message_lost=None
+            if arguments.no_lost_messages
+            else session.guard(lambda event: write(format_lost_event(event)))
         )
         session.node.create_subscription(
             message_type,
             name,
-            session.receiver(show),
-            fitting_profile(session.node, name, arguments),
+            session.guard_receiver(show),
+            create_fitting_profile(session.node, name, arguments),
             raw=arguments.raw,
             event_callbacks=events,
         )
@@ -95,7 +97,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
     return run_in_graph(arguments, job)
 
 
-def lost_text(event: Any) -> str:
+def format_lost_event(event: Any) -> str:
     """Return the text that reports lost messages, given an rclpy ``QoSMessageLostInfo``."""
     return (
         "A message was lost!!!\n"

@@ -30,7 +30,7 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
     """
     source = SourceText(_SOURCE_NAME, text)
 
-    def fault(message: Phrase, column: int | None = None, hint: Phrase | None = None) -> LinkwrightError:
+    def create_error(message: Phrase, column: int | None = None, hint: Phrase | None = None) -> LinkwrightError:
         span = source.span(0, len(text)) if column is None else source.span(column)
         return LinkwrightError(Diagnostic("CLI407", message, span, hint=hint, source=source))
 
@@ -38,21 +38,23 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
         tree = ast.parse(text.strip(), _SOURCE_NAME, "eval")
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         column = getattr(error, "offset", None)
-        raise fault(
+        raise create_error(
             phrase("the filter is not a Python expression: {error}", error=foreign(getattr(error, "msg", error))),
             column and column - 1,
         ) from None
     for node in ast.walk(tree):
         if isinstance(node, _FORBIDDEN):
-            raise fault(phrase("a filter cannot contain {name}", name=type(node).__name__.lower()), node.col_offset)
+            raise create_error(
+                phrase("a filter cannot contain {name}", name=type(node).__name__.lower()), node.col_offset
+            )
         if isinstance(node, ast.Attribute) and node.attr.startswith("_"):
-            raise fault(phrase("a filter cannot use '{attr}'", attr=node.attr), node.col_offset)
+            raise create_error(phrase("a filter cannot use '{attr}'", attr=node.attr), node.col_offset)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node.id not in (*_NAMES, "m"):
             bound_names = {
                 node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)
             }
             if node.id not in bound_names:
-                raise fault(
+                raise create_error(
                     phrase("a filter cannot use the name '{id}'", id=node.id),
                     node.col_offset,
                     phrase("the message is 'm', as in 'm.data > 3'"),
@@ -64,7 +66,9 @@ def compile_filter(text: str) -> Callable[[Any], bool]:
             # `eval` is safe here, because the syntax tree was checked above: it contains no private names and only the
             # listed functions.
             return bool(eval(code, {"__builtins__": {}, **_NAMES, "m": message}))  # noqa: S307
-        except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
-            raise fault(phrase("the filter cannot be evaluated for a message: {error}", error=foreign(error))) from None
+        except Exception as error:  # noqa: BLE001 - the user's expression may raise any exception
+            raise create_error(
+                phrase("the filter cannot be evaluated for a message: {error}", error=foreign(error))
+            ) from None
 
     return matches

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.lookup import absolute, topic_type
+from linkwright.cli.lookup import find_message_class, make_absolute
 from linkwright.cli.numbers import positive_int
-from linkwright.cli.qos import add_subscription_qos_arguments, fitting_profile
+from linkwright.cli.qos import add_subscription_qos_arguments, create_fitting_profile
 from linkwright.cli.session import add_session_arguments, run_in_graph
 from linkwright.cli.topic.filters import compile_filter
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
@@ -26,7 +26,7 @@ _RATE_WINDOW_LENGTH = 10_000
 _DELAY_WINDOW_LENGTH = 10_000
 _STAMP_FORMATS = {0: struct.Struct(">iI"), 1: struct.Struct("<iI")}
 """The `struct` formats of a stamp, by the byte order in the second byte of the CDR header."""
-_CDR_HEADER = 4
+_CDR_HEADER_LENGTH = 4
 _SIZE_WINDOW_LENGTH = 100
 _REPORT_PERIOD_S = 1.0
 
@@ -53,11 +53,11 @@ def run_hz(arguments: argparse.Namespace) -> int:
 
     Messages are deserialized only if there is a filter.
     """
-    names = list(dict.fromkeys(map(absolute, arguments.topic_name)))
+    names = list(dict.fromkeys(map(make_absolute, arguments.topic_name)))
     matches_filter = None if arguments.filter is None else compile_filter(arguments.filter)
 
     async def job(session: Session) -> int:
-        from linkwright.cli.topic.rates import RateWindow, rate_table, rate_text
+        from linkwright.cli.topic.rates import RateWindow, format_rate, format_rate_table
 
         windows = {name: RateWindow(arguments.window) for name in names}
         # Use the node's clock only with simulated time, because reading this clock takes longer than counting a
@@ -72,19 +72,19 @@ def run_hz(arguments: argparse.Namespace) -> int:
                 print("time has reset, resetting counters", file=sys.stderr)
 
         for name, window in windows.items():
-            message_type = await topic_type(session, name, wait=True, raw=matches_filter is None)
+            message_type = await find_message_class(session, name, wait=True, raw=matches_filter is None)
             _subscribe(session, arguments, message_type, name, partial(count, window), raw=matches_filter is None)
             if len(names) > 1:
                 print(f"Subscribed to [{name}]")
 
-        def text() -> str | None:
+        def format_report() -> str | None:
             spreads = {name: window.spread() for name, window in windows.items()}
             measured_spreads = {name: spread for name, spread in spreads.items() if spread is not None}
             if len(names) > 1:
-                return rate_table(measured_spreads) if measured_spreads else "no new messages"
-            return rate_text(measured_spreads[names[0]]) if measured_spreads else None
+                return format_rate_table(measured_spreads) if measured_spreads else "no new messages"
+            return format_rate(measured_spreads[names[0]]) if measured_spreads else None
 
-        return await _report_until_finished(session, text)
+        return await _report_until_finished(session, format_report)
 
     return run_in_graph(arguments, job)
 
@@ -99,12 +99,12 @@ def configure_delay(parser: argparse.ArgumentParser) -> None:
 
 def run_delay(arguments: argparse.Namespace) -> int:
     """Print the delay of a topic's messages each second until the user interrupts the command."""
-    name = absolute(arguments.topic_name)
+    name = make_absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
         from linkwright.cli.topic.rates import DelayWindow
 
-        message_type = await topic_type(session, name, wait=True)
+        message_type = await find_message_class(session, name, wait=True)
         fields = message_type.get_fields_and_field_types()
         if fields.get("header") != "std_msgs/Header":
             message = phrase(
@@ -121,13 +121,13 @@ def run_delay(arguments: argparse.Namespace) -> int:
 
         def count(message: Any) -> None:
             if raw:
-                seconds, nanoseconds = _STAMP_FORMATS[message[1] & 1].unpack_from(message, _CDR_HEADER)
+                seconds, nanoseconds = _STAMP_FORMATS[message[1] & 1].unpack_from(message, _CDR_HEADER_LENGTH)
             else:
                 seconds, nanoseconds = message.header.stamp.sec, message.header.stamp.nanosec
             window.add(clock.now_ns(), seconds * NANOSECONDS_PER_SECOND + nanoseconds)
 
         _subscribe(session, arguments, message_type, name, count, raw=raw)
-        return await _report_until_finished(session, window.text)
+        return await _report_until_finished(session, window.format_report)
 
     return run_in_graph(arguments, job)
 
@@ -145,12 +145,12 @@ def run_bw(arguments: argparse.Namespace) -> int:
 
     Messages are not deserialized.
     """
-    name = absolute(arguments.topic_name)
+    name = make_absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
         from linkwright.cli.topic.rates import BandwidthWindow
 
-        message_type = await topic_type(session, name, wait=True, raw=True)
+        message_type = await find_message_class(session, name, wait=True, raw=True)
         window = BandwidthWindow(arguments.window)
 
         def count(data: bytes) -> None:
@@ -158,7 +158,7 @@ def run_bw(arguments: argparse.Namespace) -> int:
 
         _subscribe(session, arguments, message_type, name, count, raw=True)
         print(f"Subscribed to [{name}]")
-        return await _report_until_finished(session, lambda: window.text(time.monotonic_ns()))
+        return await _report_until_finished(session, lambda: window.format_report(time.monotonic_ns()))
 
     return run_in_graph(arguments, job)
 
@@ -195,21 +195,21 @@ def _subscribe(
             command.
         raw: whether the callback receives serialized messages.
     """
-    profile = fitting_profile(session.node, name, arguments)
-    session.node.create_subscription(message_type, name, session.receiver(callback), profile, raw=raw)
+    profile = create_fitting_profile(session.node, name, arguments)
+    session.node.create_subscription(message_type, name, session.guard_receiver(callback), profile, raw=raw)
 
 
-async def _report_until_finished(session: Session, text: Callable[[], str | None]) -> int:
-    """Print the text that `text` returns each second, unless it is None, until the command ends.
+async def _report_until_finished(session: Session, format_report: Callable[[], str | None]) -> int:
+    """Print the report each second, unless it is None, until the command ends.
 
     Returns:
         The exit status.
     """
 
     def report() -> None:
-        line = text()
+        line = format_report()
         if line is not None:
             print(line)
 
-    session.every(_REPORT_PERIOD_S, report)
+    session.call_every(_REPORT_PERIOD_S, report)
     return await session.wait_until_finished() or 0

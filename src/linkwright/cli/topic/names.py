@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.lookup import absolute, visible
+from linkwright.cli.lookup import make_absolute, sort_visible_names
 from linkwright.cli.names_listing import (
     Kind,
     add_count_argument,
@@ -48,12 +48,12 @@ def run_list(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         node = session.node
-        topics = visible(node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics)
+        topics = sort_visible_names(node.get_topic_names_and_types(), hidden=arguments.include_hidden_topics)
         if arguments.verbose and topics and not arguments.count:
             publishers = [(name, types, node.count_publishers(name)) for name, types in topics]
             subscribers = [(name, types, node.count_subscribers(name)) for name, types in topics]
-            print(_endpoint_counts("Published", "publisher", publishers))
-            print(_endpoint_counts("Subscribed", "subscriber", subscribers))
+            print(_format_endpoint_counts("Published", "publisher", publishers))
+            print(_format_endpoint_counts("Subscribed", "subscriber", subscribers))
         else:
             print_names_and_types(topics, arguments)
         return 0
@@ -61,7 +61,7 @@ def run_list(arguments: argparse.Namespace) -> int:
     return run_in_graph(arguments, job, read_only=True)
 
 
-def _endpoint_counts(title: str, kind: str, topics: Sequence[tuple[str, Sequence[str], int]]) -> str:
+def _format_endpoint_counts(title: str, kind: str, topics: Sequence[tuple[str, Sequence[str], int]]) -> str:
     lines = [f"{title} topics:"]
     for name, types, count in topics:
         if count:
@@ -80,21 +80,21 @@ def configure_info(parser: argparse.ArgumentParser) -> None:
 
 def run_info(arguments: argparse.Namespace) -> int:
     """Print information about a topic, as ros2 does."""
-    name = absolute(arguments.topic_name)
+    name = make_absolute(arguments.topic_name)
 
     async def job(session: Session) -> int:
         node = session.node
-        types = _TOPICS.types_of(session, arguments.topic_name)
+        types = _TOPICS.find_types(session, arguments.topic_name)
         end = "\n\n" if arguments.verbose else "\n"
         print(f"Type: {types[0] if len(types) == 1 else types}", end=end)
         print(f"Publisher count: {node.count_publishers(name)}", end=end)
         if arguments.verbose:
             for endpoint in node.get_publishers_info_by_topic(name):
-                print(endpoint_text(endpoint), end=end)
+                print(format_endpoint(endpoint), end=end)
         print(f"Subscription count: {node.count_subscribers(name)}", end=end)
         if arguments.verbose:
             for endpoint in node.get_subscriptions_info_by_topic(name):
-                print(endpoint_text(endpoint), end=end)
+                print(format_endpoint(endpoint), end=end)
         return 0
 
     return run_in_graph(arguments, job, read_only=True)
@@ -124,7 +124,7 @@ def run_type(arguments: argparse.Namespace) -> int:
     return _TOPICS.print_types(arguments, arguments.topic_name, hidden=arguments.include_hidden_topics)
 
 
-def endpoint_text(info: Any) -> str:
+def format_endpoint(info: Any) -> str:
     """Return several lines that describe an endpoint (rclpy ``TopicEndpointInfo``).
 
     The type hash is included only if the endpoint's process announces it. Humble does not announce type hashes.
@@ -140,12 +140,12 @@ def endpoint_text(info: Any) -> str:
         f"Endpoint type: {info.endpoint_type.name}",
         f"GID: {'.'.join(f'{byte:02x}' for byte in info.endpoint_gid)}",
         "QoS profile:",
-        *qos_lines(info.qos_profile),
+        *format_qos_lines(info.qos_profile),
     ]
     return "\n".join(lines)
 
 
-def qos_lines(qos: QoSProfile) -> list[str]:
+def format_qos_lines(qos: QoSProfile) -> list[str]:
     """Return one output line for each policy of a QoS profile."""
     history = qos.history.name
     if history == "KEEP_LAST":
@@ -154,14 +154,14 @@ def qos_lines(qos: QoSProfile) -> list[str]:
         f"  Reliability: {qos.reliability.name}",
         f"  History (Depth): {history}",
         f"  Durability: {qos.durability.name}",
-        f"  Lifespan: {_duration_text(qos.lifespan)}",
-        f"  Deadline: {_duration_text(qos.deadline)}",
+        f"  Lifespan: {_format_duration(qos.lifespan)}",
+        f"  Deadline: {_format_duration(qos.deadline)}",
         f"  Liveliness: {qos.liveliness.name}",
-        f"  Liveliness lease duration: {_duration_text(qos.liveliness_lease_duration)}",
+        f"  Liveliness lease duration: {_format_duration(qos.liveliness_lease_duration)}",
     ]
 
 
-def _duration_text(duration: Any) -> str:
+def _format_duration(duration: Any) -> str:
     nanoseconds = duration.nanoseconds
     if nanoseconds == 0 or nanoseconds >= _INFINITE_DURATION_NS:
         return "Infinite"

@@ -9,11 +9,11 @@ from collections.abc import Callable
 from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
-from linkwright.cli.lookup import absolute
+from linkwright.cli.lookup import make_absolute
 from linkwright.cli.numbers import positive_float, unsigned_int
-from linkwright.cli.qos import add_publisher_qos_arguments, profile
+from linkwright.cli.qos import add_publisher_qos_arguments, create_profile
 from linkwright.cli.session import add_session_arguments, run_in_graph
-from linkwright.cli.values import add_values_arguments, fill, parse_values, read_values
+from linkwright.cli.values import add_values_arguments, fill_message, parse_values, read_values
 
 if TYPE_CHECKING:
     from linkwright.cli.session import Session
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _KEEP_ALIVE_S = 0.1
 _WAITING_NOTICE_PERIOD_S = 1.0
-_MUTUAL_DISCOVERY_DELAY = 0.15
+_MUTUAL_DISCOVERY_DELAY_S = 0.15
 """Seconds until a discovered subscription has also discovered the publisher.
 
 Earlier messages may be lost.
@@ -77,19 +77,19 @@ def run_pub(arguments: argparse.Namespace) -> int:
     """Publish messages the requested number of times, or until the user interrupts the command."""
     from linkwright.messages import get_message
 
-    name = absolute(arguments.topic_name)
+    name = make_absolute(arguments.topic_name)
     message_class = get_message(arguments.message_type)
     text = read_values(arguments)
     messages: list[_MessageWithStamps] = []
     for values in parse_values(text):
         message = message_class()
-        messages.append((message, fill(message, values, text)))
+        messages.append((message, fill_message(message, values, text)))
     times = 1 if arguments.once else arguments.times
     if arguments.yaml_file is not None and not times:
         times = len(messages)
 
     async def job(session: Session) -> int:
-        publisher = session.node.create_publisher(message_class, name, profile(arguments))
+        publisher = session.node.create_publisher(message_class, name, create_profile(arguments))
         required_count = arguments.wait_matching_subscriptions
         if required_count is None:
             required_count = 1 if arguments.once or arguments.times else 0
@@ -97,7 +97,7 @@ def run_pub(arguments: argparse.Namespace) -> int:
             print(f"Timed out waiting for {required_count} matching subscription(s)", file=sys.stderr)
             return 1
         if required_count:
-            await asyncio.sleep(_MUTUAL_DISCOVERY_DELAY)
+            await asyncio.sleep(_MUTUAL_DISCOVERY_DELAY_S)
         print("publisher: beginning loop")
         await _publish(session, publisher, messages, times, arguments)
         await asyncio.sleep(arguments.keep_alive)

@@ -42,7 +42,7 @@ class Spread:
         """The rate in hertz, if the durations are the times between messages."""
         return NANOSECONDS_PER_SECOND / self.mean if self.mean > 0 else 0.0
 
-    def bounds(self) -> str:
+    def format_bounds(self) -> str:
         """Return the line of ``topic hz`` and ``topic delay`` with minimum, maximum and deviation."""
         return (
             f"\tmin: {self.minimum / NANOSECONDS_PER_SECOND:.3f}s max: {self.maximum / NANOSECONDS_PER_SECOND:.3f}s "
@@ -104,7 +104,7 @@ class DelayWindow:
         self._last_time_ns, self._has_new_message = now_ns, True
         self._delays.append(now_ns - stamp_ns)
 
-    def text(self) -> str | None:
+    def format_report(self) -> str | None:
         """Return the output of ``topic delay``, or None before the first message."""
         if not self._delays:
             return None
@@ -112,25 +112,25 @@ class DelayWindow:
             return "no new messages"
         self._has_new_message = False
         spread = Spread.of(self._delays)
-        return f"average delay: {spread.mean / NANOSECONDS_PER_SECOND:.3f}\n{spread.bounds()}"
+        return f"average delay: {spread.mean / NANOSECONDS_PER_SECOND:.3f}\n{spread.format_bounds()}"
 
 
 class BandwidthWindow(TrafficWindow):
     """The sizes of the most recent messages of a topic, for ``topic bw``."""
 
-    def text(self, now_ns: int) -> str | None:
+    def format_report(self, now_ns: int) -> str | None:
         """Return the output of ``topic bw``, or None if fewer than two messages have arrived."""
         traffic = self.traffic(now_ns)
         if traffic is None:
             return None
-        size_text = _size_formatter(traffic.bytes_per_second)
+        size_text = _create_size_formatter(traffic.bytes_per_second)
         sizes = {"mean": traffic.mean_size, "min": traffic.min_size, "max": traffic.max_size}
         figures = " ".join(f"{name}: {size_text(value)}" for name, value in sizes.items())
         return f"{size_text(traffic.bytes_per_second)}/s from {traffic.count} messages\n\tMessage size {figures}"
 
 
-def _size_formatter(bytes_per_second: float) -> Callable[[float], str]:
-    """Return a function that formats byte counts as ros2 does, in a unit chosen for a bandwidth."""
+def _create_size_formatter(bytes_per_second: float) -> Callable[[float], str]:
+    """Return a function that formats byte counts as ros2 does, in the unit for a bandwidth."""
     scale, digits, name = next(unit for limit, unit in _UNITS if bytes_per_second < limit)
     return lambda size: f"{size / scale:.{digits}f} {name}"
 
@@ -138,15 +138,15 @@ def _size_formatter(bytes_per_second: float) -> Callable[[float], str]:
 _UNITS = ((1e3, (1.0, 0, "B")), (1e6, (1e3, 2, "KB")), (math.inf, (1e6, 2, "MB")))
 
 
-def rate_text(spread: Spread) -> str:
+def format_rate(spread: Spread) -> str:
     """Return the output of ``topic hz`` for one topic."""
-    return f"average rate: {spread.rate:.3f}\n{spread.bounds()}"
+    return f"average rate: {spread.rate:.3f}\n{spread.format_bounds()}"
 
 
-_HEADER = ("topic", "rate", "min_delta", "max_delta", "stddev", "window")
+_COLUMN_NAMES = ("topic", "rate", "min_delta", "max_delta", "stddev", "window")
 
 
-def rate_table(spreads: Mapping[str, Spread]) -> str:
+def format_rate_table(spreads: Mapping[str, Spread]) -> str:
     """Return the output of ``topic hz`` for several topics, as a table."""
     rows = [
         (
@@ -159,8 +159,8 @@ def rate_table(spreads: Mapping[str, Spread]) -> str:
         )
         for topic, spread in spreads.items()
     ]
-    widths = [max(len(name), *(len(row[column]) for row in rows)) for column, name in enumerate(_HEADER)]
-    header_line = "   ".join(name.center(width + 2) for name, width in zip(_HEADER, widths, strict=True))
-    separator_line = "=" * (sum(widths) + 3 * (len(_HEADER) - 1))
+    widths = [max(len(name), *(len(row[column]) for row in rows)) for column, name in enumerate(_COLUMN_NAMES)]
+    header_line = "   ".join(name.center(width + 2) for name, width in zip(_COLUMN_NAMES, widths, strict=True))
+    separator_line = "=" * (sum(widths) + 3 * (len(_COLUMN_NAMES) - 1))
     body_lines = ["   ".join(cell.ljust(width + 2) for cell, width in zip(row, widths, strict=True)) for row in rows]
     return "\n".join([header_line, separator_line, *body_lines, ""])

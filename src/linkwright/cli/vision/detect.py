@@ -78,7 +78,7 @@ def run(arguments: argparse.Namespace) -> int:
         raise setting_error("dictionary", arguments.dictionary, hint)
     for note in detector.notes:
         print(note, file=sys.stderr)
-    classes = _checked_classes(detector, arguments.classes) if arguments.classes else None
+    classes = _check_classes(detector, arguments.classes) if arguments.classes else None
     limits = Limits(arguments.threshold, arguments.iou, classes=classes)
     problems: list[Diagnostic] = []
     rows: list[dict[str, object]] = []
@@ -95,20 +95,20 @@ def run(arguments: argparse.Namespace) -> int:
                 "image": name,
                 "width": image.shape[1],
                 "height": image.shape[0],
-                "detections": _detection_rows(detections),
+                "detections": _to_rows(detections),
             }
         )
         if arguments.format == "text":
             _print_detections(name, detections)
         if arguments.output is not None:
-            _write_drawing(image, detections, arguments.output, _unique_name(Path(name).stem, used_names))
+            _write_drawing(image, detections, arguments.output, _choose_unique_name(Path(name).stem, used_names))
     if arguments.format == "json":
         print(json.dumps(rows, indent=2, ensure_ascii=False))
     print_diagnostics(problems, sys.stderr)
     return 1 if problems else 0
 
 
-def _checked_classes(detector: Detector, class_names: list[str]) -> frozenset[str]:
+def _check_classes(detector: Detector, class_names: list[str]) -> frozenset[str]:
     for name in class_names:
         if detector.names and name not in detector.names:
             message = phrase("the detector has no class '{name}'", name=name)
@@ -136,7 +136,7 @@ def _read_image(name: str) -> NDArray[np.uint8]:
     return DecodedImage((pixels >> 8).astype(np.uint8) if pixels.dtype == np.uint16 else pixels).rgb()
 
 
-def _detection_rows(detections: Detections) -> list[dict[str, object]]:
+def _to_rows(detections: Detections) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
     for index in range(len(detections)):
         box = [round(float(value), 2) for value in detections.boxes[index]]
@@ -172,7 +172,7 @@ def _write_drawing(image: NDArray[np.uint8], detections: Detections, folder: Pat
     write_output(folder / f"{stem}_detections.png", file.getvalue())
 
 
-def _unique_name(stem: str, used_names: set[str]) -> str:
+def _choose_unique_name(stem: str, used_names: set[str]) -> str:
     """Return a unique name for a result file, and add it to `used_names`.
 
     If the name `stem` is already in use, a number is appended.

@@ -13,8 +13,8 @@ from typing import Any, NoReturn
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.graph import Node, Parameter
 from linkwright.messages import Duration, get_service
-from linkwright.nodes.answers import wait_for_future, wait_for_service
 from linkwright.nodes.options import SingleNode
+from linkwright.nodes.service_waits import wait_for_future, wait_for_service
 
 _LOG_PERIOD = 10.0
 """The seconds between two log lines about a service that is not available."""

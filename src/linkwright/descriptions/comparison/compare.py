@@ -24,7 +24,7 @@ from linkwright.descriptions.comparison.hardware import ROS2_CONTROL, renamed_ha
 from linkwright.descriptions.comparison.matching import Matches, match
 from linkwright.descriptions.comparison.renames import RenameSearch
 from linkwright.diagnostics import LinkwrightError
-from linkwright.files.git_repository import file_hash
+from linkwright.files.git_repository import compute_file_hash
 from linkwright.loading.lean_dataclasses import dataclass, field
 from linkwright.loading.lean_typing import TypeVar
 from linkwright.urdf import Collision, Joint, Link, Mesh, Robot, Visual
@@ -332,5 +332,5 @@ def _content_difference(old: Path, new: Path) -> tuple[str, str, str]:
     sizes = [path.stat().st_size for path in (old, new)]
     if sizes[0] != sizes[1]:
         return str(sizes[0]), str(sizes[1]), "bytes"
-    first, second = (file_hash(path)[:8] for path in (old, new))
+    first, second = (compute_file_hash(path)[:8] for path in (old, new))
     return first, second, f"(SHA-256), both of {sizes[0]} bytes"

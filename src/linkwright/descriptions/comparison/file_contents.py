@@ -5,7 +5,7 @@ from __future__ import annotations
 import filecmp
 from pathlib import Path
 
-from linkwright.files.git_repository import file_hash, lfs_hash
+from linkwright.files.git_repository import compute_file_hash, read_lfs_hash
 
 
 def has_same_bytes(old: Path, new: Path) -> bool:
@@ -13,12 +13,12 @@ def has_same_bytes(old: Path, new: Path) -> bool:
     try:
         if old.samefile(new) or filecmp.cmp(old, new, shallow=False):
             return True
-        hashes = lfs_hash(old), lfs_hash(new)
-        return any(hashes) and (hashes[0] or file_hash(old)) == (hashes[1] or file_hash(new))
+        hashes = read_lfs_hash(old), read_lfs_hash(new)
+        return any(hashes) and (hashes[0] or compute_file_hash(old)) == (hashes[1] or compute_file_hash(new))
     except OSError:
         return True
 
 
 def content_hash(file: Path) -> str:
     """Return the hash of a file's contents; for a Git LFS pointer, the hash that it contains."""
-    return lfs_hash(file) or file_hash(file)
+    return read_lfs_hash(file) or compute_file_hash(file)

@@ -15,7 +15,7 @@ FORMATS = ("text", "concise", "json", "sarif", "github")
 _Formatter = Callable[[Iterable[Diagnostic]], str]
 
 
-def format_diagnostics(diagnostics: Iterable[Diagnostic], form: str) -> str:
+def format_diagnostics(diagnostics: Iterable[Diagnostic], format_name: str) -> str:
     """Return diagnostics as text that ends with a newline.
 
     The text is empty if there are no diagnostics and the format has one line per diagnostic. Messages are in English
@@ -23,9 +23,9 @@ def format_diagnostics(diagnostics: Iterable[Diagnostic], form: str) -> str:
 
     Args:
         diagnostics: the diagnostics, in the order in which they are shown.
-        form: an item of `FORMATS` except ``text``, which `linkwright.diagnostics.print_diagnostics` writes.
+        format_name: an item of `FORMATS` except ``text``, which `linkwright.diagnostics.print_diagnostics` writes.
     """
-    if form not in FORMATS or form == "text":
-        raise ValueError(f"no format '{form}'")
-    module = import_module(f"linkwright.diagnostics.formats.{form}")
+    if format_name not in FORMATS or format_name == "text":
+        raise ValueError(f"no format '{format_name}'")
+    module = import_module(f"linkwright.diagnostics.formats.{format_name}")
     return cast(_Formatter, module.to_text)(translated(diagnostics, for_programs=True))

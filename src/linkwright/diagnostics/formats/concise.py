@@ -8,15 +8,15 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from linkwright.diagnostics.diagnostic import Diagnostic
-from linkwright.diagnostics.render import display_path, printable
+from linkwright.diagnostics.render import display_path, make_printable
 
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
     """Return diagnostics as text, one per line."""
-    return "".join(f"{_line(diagnostic)}\n" for diagnostic in diagnostics)
+    return "".join(f"{_format_line(diagnostic)}\n" for diagnostic in diagnostics)
 
 
-def _line(diagnostic: Diagnostic) -> str:
+def _format_line(diagnostic: Diagnostic) -> str:
     span = diagnostic.span
     position = ""
     if span is not None:
@@ -24,4 +24,4 @@ def _line(diagnostic: Diagnostic) -> str:
         position = f"{file}:{span.line}:{span.column}: "
     message = " ".join(diagnostic.message.split())
     hint = f" ({' '.join(diagnostic.hint.split())})" if diagnostic.hint else ""
-    return printable(f"{position}{diagnostic.severity.value}[{diagnostic.code}] {message}{hint}")
+    return make_printable(f"{position}{diagnostic.severity.value}[{diagnostic.code}] {message}{hint}")

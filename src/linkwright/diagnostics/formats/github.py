@@ -15,10 +15,10 @@ _COMMANDS = {Severity.ERROR: "error", Severity.WARNING: "warning", Severity.INFO
 
 def to_text(diagnostics: Iterable[Diagnostic]) -> str:
     """Return diagnostics as text, one workflow command per line."""
-    return "".join(f"{_command(diagnostic)}\n" for diagnostic in diagnostics)
+    return "".join(f"{_format_command(diagnostic)}\n" for diagnostic in diagnostics)
 
 
-def _command(diagnostic: Diagnostic) -> str:
+def _format_command(diagnostic: Diagnostic) -> str:
     properties = {}
     span = diagnostic.span
     if span is not None and not span.file.startswith("<"):

@@ -34,19 +34,19 @@ def to_text(diagnostics: Iterable[Diagnostic]) -> str:
                     "driver": {
                         "name": "linkwright",
                         "version": __version__,
-                        "rules": [_rule(code, diagnostic_list) for code in codes],
+                        "rules": [_create_rule(code, diagnostic_list) for code in codes],
                     }
                 },
                 "originalUriBaseIds": {_ROOT_ID: {"uri": Path.cwd().as_uri() + "/"}},
                 "columnKind": "unicodeCodePoints",
-                "results": [_result(diagnostic, codes.index(diagnostic.code)) for diagnostic in diagnostic_list],
+                "results": [_create_result(diagnostic, codes.index(diagnostic.code)) for diagnostic in diagnostic_list],
             }
         ],
     }
     return json.dumps(log, indent=2, ensure_ascii=False) + "\n"
 
 
-def _rule(code: str, diagnostics: Iterable[Diagnostic]) -> dict[str, Any]:
+def _create_rule(code: str, diagnostics: Iterable[Diagnostic]) -> dict[str, Any]:
     """Return the SARIF rule for a code, with the templates of its messages.
 
     The ID of a message is its English template.
@@ -58,7 +58,7 @@ def _rule(code: str, diagnostics: Iterable[Diagnostic]) -> dict[str, Any]:
     return {"id": code, "messageStrings": templates}
 
 
-def _message(diagnostic: Diagnostic) -> dict[str, Any]:
+def _create_message(diagnostic: Diagnostic) -> dict[str, Any]:
     """Return the message of a diagnostic for SARIF (SARIF 2.1.0, 3.11).
 
     The message contains the text, and the template's ID and the arguments for grouping or translation.
@@ -92,17 +92,17 @@ def _escape_braces(text: str) -> str:
     return text.replace("{", "{{").replace("}", "}}")
 
 
-def _result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
+def _create_result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
     result: dict[str, Any] = {
         "ruleId": diagnostic.code,
         "ruleIndex": rule_index,
         "level": _LEVELS[diagnostic.severity],
-        "message": _message(diagnostic),
+        "message": _create_message(diagnostic),
     }
     if diagnostic.span is not None:
-        result["locations"] = [{"physicalLocation": _location(diagnostic.span)}]
+        result["locations"] = [{"physicalLocation": _create_location(diagnostic.span)}]
     related = [
-        {"id": index, "message": {"text": note.message}, "physicalLocation": _location(note.span)}
+        {"id": index, "message": {"text": note.message}, "physicalLocation": _create_location(note.span)}
         for index, note in enumerate(diagnostic.notes)
         if note.span is not None
     ]
@@ -111,9 +111,9 @@ def _result(diagnostic: Diagnostic, rule_index: int) -> dict[str, Any]:
     return result
 
 
-def _location(span: Span) -> dict[str, Any]:
+def _create_location(span: Span) -> dict[str, Any]:
     return {
-        "artifactLocation": _artifact(span.file),
+        "artifactLocation": _create_artifact(span.file),
         "region": {
             "startLine": span.line,
             "startColumn": span.column,
@@ -123,7 +123,7 @@ def _location(span: Span) -> dict[str, Any]:
     }
 
 
-def _artifact(file: str) -> dict[str, str]:
+def _create_artifact(file: str) -> dict[str, str]:
     if file.startswith("<"):
         return {"uri": f"urn:linkwright:{file.strip('<>')}"}
     relative = os.path.relpath(file)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from functools import cache
 
 from linkwright.diagnostics.diagnostic import Diagnostic, Note
-from linkwright.diagnostics.phrase import Phrase, Wording, term
+from linkwright.diagnostics.phrase import Catalog, Phrase, term
 from linkwright.loading.lean_typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def language_of(locale: str) -> str | None:
 
 
 @cache
-def wording(language: str) -> NullTranslations:
+def load_catalog(language: str) -> NullTranslations:
     """Return the catalog of a language.
 
     The catalog is read only once. It is empty if there is no compiled catalog, as in a fresh checkout.
@@ -90,7 +90,7 @@ def labels(lang: str | None = None) -> Mapping[str, str]:
     The labels are in the language `lang`, one of `LANGUAGES`, or by default in the user's language.
     """
     lang = language() if lang is None else lang
-    return {label: label if lang == "en" else term(label).translated_text(wording(lang)) for label in _LABELS}
+    return {label: label if lang == "en" else term(label).translated_text(load_catalog(lang)) for label in _LABELS}
 
 
 def translated(diagnostics: Iterable[Diagnostic], *, for_programs: bool = False) -> Iterable[Diagnostic]:
@@ -112,7 +112,7 @@ def translate(diagnostic: Diagnostic, lang: str) -> Diagnostic:
     """
     if lang == "en":
         return diagnostic
-    catalog = wording(lang)
+    catalog = load_catalog(lang)
     return diagnostic.with_changes(
         message=_translate_text(diagnostic.message, catalog),
         notes=tuple(Note(_translate_text(note.message, catalog), note.span) for note in diagnostic.notes),
@@ -126,13 +126,13 @@ def localized(text: str, lang: str | None = None) -> str:
     A plain string is returned unchanged.
     """
     lang = language() if lang is None else lang
-    return text.translated_text(wording(lang)) if lang != ENGLISH and isinstance(text, Phrase) else text
+    return text.translated_text(load_catalog(lang)) if lang != ENGLISH and isinstance(text, Phrase) else text
 
 
 def translate_phrase(text: Phrase, lang: str) -> str:
     """Return the text of a phrase in a language of `LANGUAGES`, whatever language it is in."""
-    return text.translated_text(wording(lang))
+    return text.translated_text(load_catalog(lang))
 
 
-def _translate_text(text: Phrase, words: Wording) -> Phrase:
-    return text.translated(words) if isinstance(text, Phrase) else text
+def _translate_text(text: Phrase, catalog: Catalog) -> Phrase:
+    return text.translated(catalog) if isinstance(text, Phrase) else text

@@ -13,7 +13,7 @@ import signal
 import sys
 import time
 
-_POLL_S = 0.02
+_POLL_INTERVAL_S = 0.02
 _SIGNAL_STAGES = ((signal.SIGINT, 1.0), (signal.SIGTERM, 0.5), (signal.SIGKILL, 0.0))
 
 
@@ -36,14 +36,14 @@ def main(mark: str) -> None:
             folder = line[1:].rstrip("\n")
         else:
             return
-    end_groups(groups | marked_groups(mark.encode()))
+    end_groups(groups | find_marked_groups(mark.encode()))
     if folder:
         import shutil
 
         shutil.rmtree(folder, ignore_errors=True)
 
 
-def marked_groups(mark: bytes) -> set[int]:
+def find_marked_groups(mark: bytes) -> set[int]:
     """Return the IDs of the process groups with a process whose environment contains the mark.
 
     The result includes groups that the launcher started just before it was killed, without registering them. It is
@@ -54,7 +54,7 @@ def marked_groups(mark: bytes) -> set[int]:
     except OSError:  # only Linux has /proc
         return set()
     pids = [int(entry) for entry in entries if entry.isdigit() and int(entry) != os.getpid()]
-    return {_group_id(pid) for pid in pids if _has_mark(pid, mark)} - {0, os.getpgid(0)}
+    return {_read_group_id(pid) for pid in pids if _has_mark(pid, mark)} - {0, os.getpgid(0)}
 
 
 def _has_mark(pid: int, mark: bytes) -> bool:
@@ -65,7 +65,7 @@ def _has_mark(pid: int, mark: bytes) -> bool:
         return False
 
 
-def _group_id(pid: int) -> int:
+def _read_group_id(pid: int) -> int:
     try:
         return os.getpgid(pid)
     except OSError:
@@ -78,7 +78,7 @@ def end_groups(groups: set[int]) -> None:
         groups = {group for group in groups if send_signal(group, signal_number)}
         deadline = time.monotonic() + seconds
         while groups and time.monotonic() < deadline:
-            time.sleep(_POLL_S)
+            time.sleep(_POLL_INTERVAL_S)
             groups = {group for group in groups if send_signal(group, 0)}
 
 

@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from linkwright.hosting.launch_log import LaunchLog
     from linkwright.launch.engine.guardian import Guardian
 
-_HAS_GROUPS = hasattr(os, "killpg")
-_KILL = getattr(signal, "SIGKILL", signal.SIGTERM)
-_DRAIN_S = 0.2
+_HAS_PROCESS_GROUPS = hasattr(os, "killpg")
+_KILL_SIGNAL = getattr(signal, "SIGKILL", signal.SIGTERM)
+_OUTPUT_DRAIN_S = 0.2
 """The maximum seconds to read output after a process has ended.
 
 Its children may keep the streams open.
@@ -94,18 +94,18 @@ class RunningProcess:
         try:
             await self._start()
         except (OSError, ValueError) as error:
-            self.ended()
-            raise self._start_failure(error) from error
+            self.handle_end()
+            raise self._create_start_error(error) from error
         transport = self._transport
         assert transport is not None
         try:
             await self._ended.wait()
             with contextlib.suppress(asyncio.TimeoutError):
-                await asyncio.wait_for(self._streams_closed.wait(), _DRAIN_S)
+                await asyncio.wait_for(self._streams_closed.wait(), _OUTPUT_DRAIN_S)
         finally:
             # Even after an exception, no member of the process group may outlive the launcher.
             if not self._ended.is_set():
-                self.signal_group(_KILL)
+                self.signal_group(_KILL_SIGNAL)
             transport.close()
         returncode = transport.get_returncode()
         assert returncode is not None
@@ -113,7 +113,7 @@ class RunningProcess:
             self._guardian.release(transport.get_pid())
         self._flush()
         self._report_end(transport.get_pid(), returncode)
-        self._emit(events.ProcessExited(action=plan.action, returncode=returncode, **self._details(transport)))
+        self._emit(events.ProcessExited(action=plan.action, returncode=returncode, **self._collect_details(transport)))
         return returncode
 
     async def stop(self) -> None:
@@ -140,7 +140,7 @@ class RunningProcess:
                 f"'{sent_signal}', "
                 f"escalating to '{next_signal}'",
             )
-            self.signal_group(_KILL if next_signal == "SIGKILL" else signal.SIGTERM)
+            self.signal_group(_KILL_SIGNAL if next_signal == "SIGKILL" else signal.SIGTERM)
 
     def escalate(self) -> None:
         """Shorten the delays before the next signals, because the user repeated the interrupt."""
@@ -162,7 +162,7 @@ class RunningProcess:
 
     def is_group_alive(self) -> bool:
         """Return whether the process or any of its children is still running."""
-        if self._transport is None or not _HAS_GROUPS:
+        if self._transport is None or not _HAS_PROCESS_GROUPS:
             return False
         try:
             os.killpg(self._transport.get_pid(), 0)
@@ -176,12 +176,12 @@ class RunningProcess:
         if transport is None:
             return
         with contextlib.suppress(ProcessLookupError, PermissionError):
-            if _HAS_GROUPS:
+            if _HAS_PROCESS_GROUPS:
                 os.killpg(transport.get_pid(), signal_number)
             elif transport.get_returncode() is None:
                 transport.terminate()
 
-    # --- the start ------------------------------------------------------------------------------------------
+    # --- start ------------------------------------------------------------------------------------------
 
     async def _start(self) -> None:
         plan = self.plan
@@ -190,39 +190,41 @@ class RunningProcess:
         options: dict[str, Any] = {"cwd": plan.folder, "env": environment, "start_new_session": True}
         terminals = _open_pseudo_terminals() if plan.emulate_tty else []
         if terminals:
-            options["stdout"], options["stderr"] = (inner for _, inner in terminals)
+            options["stdout"], options["stderr"] = (slave_fd for _, slave_fd in terminals)
         try:
             if plan.shell:
-                subprocess = loop.subprocess_shell(lambda: _ProcessProtocol(self), " ".join(plan.command), **options)
+                start_coroutine = loop.subprocess_shell(
+                    lambda: _ProcessProtocol(self), " ".join(plan.command), **options
+                )
             else:
-                subprocess = loop.subprocess_exec(lambda: _ProcessProtocol(self), *plan.command, **options)
-            await subprocess
+                start_coroutine = loop.subprocess_exec(lambda: _ProcessProtocol(self), *plan.command, **options)
+            await start_coroutine
         except BaseException:
-            for outer_fd, _ in terminals:
-                os.close(outer_fd)
+            for master_fd, _ in terminals:
+                os.close(master_fd)
             raise
         finally:
-            for _, inner_fd in terminals:
-                os.close(inner_fd)
-        for stream_number, (outer_fd, _) in enumerate(terminals, 1):
-            pipe = os.fdopen(outer_fd, "rb", 0)
+            for _, slave_fd in terminals:
+                os.close(slave_fd)
+        for stream_number, (master_fd, _) in enumerate(terminals, 1):
+            pipe = os.fdopen(master_fd, "rb", 0)
             await loop.connect_read_pipe(partial(_TerminalProtocol, self, stream_number), pipe)
 
-    def started(self, transport: asyncio.SubprocessTransport) -> None:
+    def handle_start(self, transport: asyncio.SubprocessTransport) -> None:
         """Record that the process is running, and emit `ProcessStarted`.
 
         asyncio calls this method before any output arrives.
         """
         self._transport = transport
         self._guardian.watch(transport.get_pid())
-        details = self._details(transport)
+        details = self._collect_details(transport)
         self.plan.action.process_details = details
         self._log.write_info(self.name, f"process started with pid [{transport.get_pid()}]")
         self._emit(events.ProcessStarted(action=self.plan.action, **details))
         if self._is_stopping:  # `stop` was called while the process was being created
             self.signal_group(signal.SIGINT)
 
-    def _details(self, transport: asyncio.SubprocessTransport) -> dict[str, Any]:
+    def _collect_details(self, transport: asyncio.SubprocessTransport) -> dict[str, Any]:
         return {
             "name": self.name,
             "cmd": list(self.plan.command),
@@ -231,7 +233,7 @@ class RunningProcess:
             "pid": transport.get_pid(),
         }
 
-    def _start_failure(self, error: Exception) -> LinkwrightError:
+    def _create_start_error(self, error: Exception) -> LinkwrightError:
         from linkwright.launch.errors.locations import error_at
 
         program = self.plan.command[0]
@@ -271,10 +273,10 @@ class RunningProcess:
     def handle_output(self, stream_number: int, chunk: bytes) -> None:
         """Log output that the process wrote to stdout (1) or stderr (2), and emit it as an event."""
         action = self.plan.action
-        action.wrote(stream_number, chunk)
+        action.record_output(stream_number, chunk)
         event_class = events.ProcessStdout if stream_number == 1 else events.ProcessStderr
         assert self._transport is not None
-        event = event_class(text=chunk, action=action, **self._details(self._transport))
+        event = event_class(text=chunk, action=action, **self._collect_details(self._transport))
         if self._wants_output(event):
             self._emit(event)
         for line in self._lines[stream_number].feed(chunk):
@@ -286,7 +288,7 @@ class RunningProcess:
         if not self._open_streams:
             self._streams_closed.set()
 
-    def ended(self) -> None:
+    def handle_end(self) -> None:
         """Record that the process has ended."""
         self._ended.set()
         self._change.set()
@@ -302,7 +304,7 @@ class RunningProcess:
 
     def _report_end(self, pid: int, returncode: int) -> None:
         is_requested_end = (
-            returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_GROUPS
+            returncode in (-signal.SIGINT, 128 + signal.SIGINT) or not _HAS_PROCESS_GROUPS
         )  # ended by terminate()
         if returncode == 0 or (self._is_stopping and is_requested_end):
             self._log.write_info(self.name, f"process has finished cleanly [pid {pid}]")
@@ -348,7 +350,7 @@ class _ProcessProtocol(asyncio.SubprocessProtocol):
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         assert isinstance(transport, asyncio.SubprocessTransport)
-        self._process.started(transport)
+        self._process.handle_start(transport)
 
     def pipe_data_received(self, fd: int, data: bytes) -> None:
         self._process.handle_output(fd, data)
@@ -357,7 +359,7 @@ class _ProcessProtocol(asyncio.SubprocessProtocol):
         self._process.handle_stream_end(fd)
 
     def process_exited(self) -> None:
-        self._process.ended()
+        self._process.handle_end()
 
 
 class _TerminalProtocol(asyncio.Protocol):
@@ -365,13 +367,13 @@ class _TerminalProtocol(asyncio.Protocol):
 
     def __init__(self, process: RunningProcess, stream_number: int) -> None:
         self._process = process
-        self._number = stream_number
+        self._stream_number = stream_number
 
     def data_received(self, data: bytes) -> None:
-        self._process.handle_output(self._number, data)
+        self._process.handle_output(self._stream_number, data)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        self._process.handle_stream_end(self._number)
+        self._process.handle_stream_end(self._stream_number)
 
 
 def _open_pseudo_terminals() -> list[tuple[int, int]]:

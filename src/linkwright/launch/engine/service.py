@@ -176,7 +176,10 @@ def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
 
 
 class ProcessLaunchService(LaunchService):
-    """A launch service that runs every node as a process, so that tests can observe its output and exit status."""
+    """A launch service that runs every node as a process.
+
+    Tests can therefore observe the output and exit status of each node.
+    """
 
     _isolates_nodes = True
 

@@ -61,8 +61,8 @@ class LaunchSession:
         self._is_visiting = False
         self._wake_event = asyncio.Event()
         self._queue.on_put = self._wake_event.set
-        self._held_futures: set[asyncio.Future[Any]] = set()
-        self._waiting: dict[object, Callable[[], None] | None] = {}
+        self._awaited_futures: set[asyncio.Future[Any]] = set()
+        self._scheduled_calls: dict[object, Callable[[], None] | None] = {}
         self._tasks: set[asyncio.Task[Any]] = set()
         self._process_numbers = count(1)
         self._exception: BaseException | None = None
@@ -146,7 +146,7 @@ class LaunchSession:
         except LinkwrightError as error:
             self.log.write_diagnostics(self._omissions.with_skip_command(error))
             self.fail(entity)
-            self.host.forget_planned()
+            self.host.discard_planned()
             self.shut_down("a launch action failed")
         except KeyboardInterrupt:
             self.interrupt("user interrupted with ctrl-c (SIGINT)")
@@ -229,7 +229,7 @@ class LaunchSession:
         local_values = self.context.get_locals_as_dict()
 
         def run_scheduled() -> None:
-            self._waiting.pop(token, None)
+            self._scheduled_calls.pop(token, None)
             self.emit(event)
             self.context.push_locals()
             self.context.extend_locals(local_values)
@@ -242,21 +242,21 @@ class LaunchSession:
 
         def cancel() -> None:
             handle.cancel()
-            self._waiting.pop(token, None)
+            self._scheduled_calls.pop(token, None)
             self._wake_event.set()
 
         handle = (schedule or self.loop.call_later)(seconds, run_scheduled)
-        self._waiting[token] = cancel if cancel_on_shutdown else None
+        self._scheduled_calls[token] = cancel if cancel_on_shutdown else None
         return cancel
 
     # --- reports from the nodes of this process ---------------------------------------------------------------
 
-    def node_started(self, plan: HostedPlan) -> None:
+    def report_node_start(self, plan: HostedPlan) -> None:
         """Report that a node in the launcher's process is running."""
         plan.owner.process_details = plan.details
         self.emit(events.ProcessStarted(action=plan.owner, **plan.details))
 
-    def node_ended(self, plan: HostedPlan, status: int) -> None:
+    def report_node_end(self, plan: HostedPlan, status: int) -> None:
         """Report the exit status of a node in the launcher's process.
 
         The node has ended or could not start.
@@ -332,13 +332,13 @@ class LaunchSession:
         """Record a failure, and visit the entity again when its robot description can be expanded."""
         self.fail(error.call)
 
-        def again(_text: str) -> None:
-            self.reload.unbind(error.call, again)
+        def visit_again(_text: str) -> None:
+            self.reload.unbind(error.call, visit_again)
             self.clear_failure(error.call)
             self.visit(entity, context)
             self.spawn(self._start_hosted())
 
-        self.reload.bind(error.call, again)
+        self.reload.bind(error.call, visit_again)
         self.reload.report(error.call, error.diagnostics)
 
     # --- events ---------------------------------------------------------------------------------------------
@@ -360,7 +360,9 @@ class LaunchSession:
             await self._wake_event.wait()
 
     def _is_busy(self) -> bool:
-        return bool(self.processes.is_busy or self._tasks or self._waiting or self._held_futures or self.host.is_busy)
+        return bool(
+            self.processes.is_busy or self._tasks or self._scheduled_calls or self._awaited_futures or self.host.is_busy
+        )
 
     def _handle(self, event: events.Event) -> None:
         self.log.write_debug("launch", f"processing event: '{event.name}'")
@@ -372,7 +374,7 @@ class LaunchSession:
                 entities += as_entities(handler.handle(event, context))
             if isinstance(event, events.ProcessExited):
                 context.extend_locals({"event": event})
-                entities += event.action.exited(event, context)
+                entities += event.action.record_exit(event, context)
             for entity in entities:
                 self.visit(entity, context)
         except (Exception, SystemExit) as error:  # noqa: BLE001 - handlers are the launch file's code
@@ -398,7 +400,7 @@ class LaunchSession:
 
     def _begin_shutdown(self, event: events.Shutdown) -> None:
         self.is_ending = True
-        for cancel in tuple(self._waiting.values()):
+        for cancel in tuple(self._scheduled_calls.values()):
             if cancel is not None:
                 cancel()
         self.reload.close()
@@ -418,15 +420,15 @@ class LaunchSession:
 
     def keep_running_until(self, future: asyncio.Future[Any]) -> None:
         """Keep the launch running until a future is done."""
-        if future.done() or future in self._held_futures:
+        if future.done() or future in self._awaited_futures:
             return
-        self._held_futures.add(future)
+        self._awaited_futures.add(future)
 
-        def done(future: asyncio.Future[Any]) -> None:
-            self._held_futures.discard(future)
+        def release_future(future: asyncio.Future[Any]) -> None:
+            self._awaited_futures.discard(future)
             self._wake_event.set()
 
-        future.add_done_callback(done)
+        future.add_done_callback(release_future)
 
     def spawn(self, coroutine: Coroutine[Any, Any, None]) -> None:
         """Run a coroutine in the background.
@@ -437,13 +439,13 @@ class LaunchSession:
         task = self.loop.create_task(coroutine)
         self._tasks.add(task)
 
-        def done(task: asyncio.Task[Any]) -> None:
+        def handle_task_end(task: asyncio.Task[Any]) -> None:
             self._tasks.discard(task)
             self._wake_event.set()
             if not task.cancelled() and task.exception() is not None:
                 self._exception = task.exception()
 
-        task.add_done_callback(done)
+        task.add_done_callback(handle_task_end)
 
     async def _close(self) -> None:
         self.reload.close()

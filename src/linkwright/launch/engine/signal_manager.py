@@ -1,4 +1,4 @@
-"""A manager of signal handlers for users' programs (``launch.utilities.signal_management``)."""
+"""Signal handlers for users' programs (``launch.utilities.signal_management``)."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Errors in launch files: their locations, and the exceptions that programs expect from ROS."""
+"""Errors in launch files: their locations, and the exceptions that ROS raises for them."""

@@ -61,12 +61,12 @@ def as_ros_error(ros_error: Exception | None, *diagnostics: Diagnostic) -> Linkw
     """
     if ros_error is None:
         return LinkwrightError(*diagnostics)
-    error = _combined_class(_constructible_base(type(ros_error)))(*diagnostics)
+    error = _combine_classes(_find_constructible_base(type(ros_error)))(*diagnostics)
     vars(error)["ros_text"] = str(ros_error)
     return error
 
 
-def _constructible_base(kind: type[Exception]) -> type[Exception]:
+def _find_constructible_base(kind: type[Exception]) -> type[Exception]:
     """Return an exception class or its nearest base class that accepts a single string."""
     candidates: list[type[Any]] = [
         candidate for candidate in kind.__mro__ if not issubclass(candidate, LinkwrightError)
@@ -83,7 +83,7 @@ def _constructible_base(kind: type[Exception]) -> type[Exception]:
 _classes: dict[type, type[LinkwrightError]] = {}
 
 
-def _combined_class(kind: type[Exception]) -> type[LinkwrightError]:
+def _combine_classes(kind: type[Exception]) -> type[LinkwrightError]:
     if kind in _classes:
         return _classes[kind]
     if issubclass(kind, LinkwrightError) or issubclass(LinkwrightError, kind):

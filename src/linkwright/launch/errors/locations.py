@@ -179,9 +179,9 @@ class CodeLocation(SourceLocation):
         """
         positions = getattr(self.code, "co_positions", None)
         if positions is not None:
-            positions_of_instruction = next(islice(positions(), self.instruction // 2, None), None)
-            if positions_of_instruction is not None and None not in positions_of_instruction:
-                return self._exact_span(positions_of_instruction, source)
+            instruction_positions = next(islice(positions(), self.instruction // 2, None), None)
+            if instruction_positions is not None and None not in instruction_positions:
+                return self._exact_span(instruction_positions, source)
         text = source.line(self.line) if source else ""
         start = len(text) - len(text.lstrip()) + 1
         return Span(self.file, self.line, start, self.line, max(len(text.rstrip()), start) + 1)
@@ -189,8 +189,8 @@ class CodeLocation(SourceLocation):
     def _exact_span(self, exact_positions: tuple[int, int, int, int], source: SourceText | None) -> Span:
         line, end_line, start, end = exact_positions
         if source:
-            start = _characters(source.line(line), start)
-            end = _characters(source.line(end_line), end)
+            start = _to_character_offset(source.line(line), start)
+            end = _to_character_offset(source.line(end_line), end)
         return Span(self.file, line, start + 1, end_line, end + 1)
 
 
@@ -203,7 +203,7 @@ def read_source(filename: str) -> SourceText | None:
 
 
 def with_location(error: LinkwrightError, location: SourceLocation | None) -> LinkwrightError:
-    """Set the location of all findings of an error to a location, if none of them has a location.
+    """Set the location of all findings of an error, if none of them has one.
 
     Returns:
         The same error.
@@ -237,5 +237,5 @@ def error_at(
     return with_location(as_ros_error(ros_error, Diagnostic(code, message, hint=hint)), location)
 
 
-def _characters(line: str, byte_offset: int) -> int:
+def _to_character_offset(line: str, byte_offset: int) -> int:
     return len(line.encode("utf-8")[:byte_offset].decode("utf-8", errors="replace"))

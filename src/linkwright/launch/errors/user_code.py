@@ -38,13 +38,13 @@ Includes, groups, and functions that return actions increase the depth.
 Python's own limit would be exceeded only slightly later, at an unrelated location."""
 
 _MODULE_PATH = re.compile(r" \((?:/|[A-Z]:|unknown location).*\)$")
-_NO_SELF = re.compile(r"\w+\.\w+\(\) takes 0 positional arguments but 1 was given")
+_MISSING_SELF = re.compile(r"\w+\.\w+\(\) takes 0 positional arguments but 1 was given")
 _JOINED_SUBSTITUTION = re.compile(r'(concatenate str \(not "|operand type\(s\).*)(LaunchConfiguration|Command|Find\w+)')
 _ACTION_FOR_LIST = re.compile(r"^'(Node|ExecuteProcess|IncludeLaunchDescription|\w+Action)' object is not iterable")
-_MODULES = {"Path": ("pathlib",), "glob": ("glob",)}
-_CONSTANTS = {"true": "True", "false": "False", "null": "None", "none": "None"}
-_MAX_MODULES = 3
-_CALL_LINES = 5
+_MODULES_BY_NAME = {"Path": ("pathlib",), "glob": ("glob",)}
+_PYTHON_CONSTANTS = {"true": "True", "false": "False", "null": "None", "none": "None"}
+_MAX_SUGGESTED_MODULES = 3
+_MAX_CALL_LINES = 5
 """The number of lines of a call that are searched for an argument."""
 _ROS_1_MODULES = ("rospy", "roslib")
 _MISSING_ARGUMENT = re.compile(r"\(\) missing \d+ required .*arguments?: (.*)$")
@@ -63,7 +63,7 @@ def explain(error: BaseException, subject: str, fallback: SourceLocation | None 
         The exception itself if it is a LinkwrightError, with the location added if it had none. Otherwise, a new error
             LAUNCH104.
     """
-    user_locations = list(_user_locations(error.__traceback__))
+    user_locations = list(_find_user_locations(error.__traceback__))
     location = user_locations[-1] if user_locations else fallback
     if isinstance(error, LinkwrightError):
         return with_location(error, location)
@@ -102,7 +102,7 @@ def too_deep_error(path: str) -> LinkwrightError:
     return error_at(None, "LAUNCH156", message)
 
 
-def _user_locations(traceback: TracebackType | None) -> Iterable[SourceLocation]:
+def _find_user_locations(traceback: TracebackType | None) -> Iterable[SourceLocation]:
     if traceback is None:
         return
     traceback_entry: TracebackType | None = traceback
@@ -124,11 +124,11 @@ def hint_about(error: BaseException, source: SourceText | None = None, span: Spa
     if isinstance(error, ImportError):
         return _import_hint(error)
     if isinstance(error, NameError):
-        frame = _innermost_frame(error)
+        frame = _find_innermost_frame(error)
         visible_names = {**frame.f_globals, **frame.f_locals} if frame else {}
         name = getattr(error, "name", None)
-        if name in _CONSTANTS:
-            return phrase("did you mean '{name}'?", name=_CONSTANTS[name])
+        if name in _PYTHON_CONSTANTS:
+            return phrase("did you mean '{name}'?", name=_PYTHON_CONSTANTS[name])
         if name and (hint := _scope_hint(name, frame, visible_names)):
             return hint
         return (did_you_mean(name, visible_names) or import_hint(name)) if name else None
@@ -136,36 +136,45 @@ def hint_about(error: BaseException, source: SourceText | None = None, span: Spa
         if hint := _class_hint(error):
             return hint
         name, owner = getattr(error, "name", None), getattr(error, "obj", None)
-        return (did_you_mean(name, _public_names(owner)) or _unset_hint(name, owner, error)) if name else None
+        return (
+            (did_you_mean(name, _find_public_names(owner)) or _unset_attribute_hint(name, owner, error))
+            if name
+            else None
+        )
     if isinstance(error, TypeError):
-        if _NO_SELF.search(str(error)):
+        if _MISSING_SELF.search(str(error)):
             return phrase("the first parameter of a method is self: def NAME(self, ...)")
-        return _keyword_hint(error) or _missing_hint(error, source, span) or _substitution_hint(error)
-    if isinstance(error, ValueError) and "(expected 2)" in str(error) and "launch_arguments" in _text_at(source, span):
+        return _keyword_hint(error) or _missing_argument_hint(error, source, span) or _substitution_hint(error)
+    if (
+        isinstance(error, ValueError)
+        and "(expected 2)" in str(error)
+        and "launch_arguments" in _read_call_text(source, span)
+    ):
         return phrase("write .items() after the dict: launch_arguments={...}.items()")
     return None
 
 
 def _scope_hint(name: str, frame: FrameType | None, visible_names: Mapping[str, object]) -> Phrase | None:
-    """Return a hint about 'self' outside of a method, an attribute without 'self', or a variable without a value.
+    """Return a hint about the scope of an undefined name.
 
-    The result is None if the name has another cause.
+    The name is ``self`` outside of a method, an attribute without ``self``, or a variable without a value. The result
+    is None if the name has another cause.
     """
     if name == "self":
         return phrase("'self' exists only in methods with the parameter self; use the variable that holds the object")
     owner = frame.f_locals.get("self") if frame else None
     if owner is not None and hasattr(owner, name):
         return phrase("write self.{name}", name=name)
-    if any(name == other.lower() and isinstance(value, type) for other, value in visible_names.items()):
+    if any(name == visible_name.lower() and isinstance(value, type) for visible_name, value in visible_names.items()):
         return phrase("no line before this one sets '{name}'; write '{name} = ...'", name=name)
     return None
 
 
-def _text_at(source: SourceText | None, span: Span | None) -> str:
+def _read_call_text(source: SourceText | None, span: Span | None) -> str:
     """Return the lines of a call that failed, or an empty text if they are not known."""
     if source is None or span is None:
         return ""
-    return "\n".join(source.text.splitlines()[span.line - 1 : span.line + _CALL_LINES])
+    return "\n".join(source.text.splitlines()[span.line - 1 : span.line + _MAX_CALL_LINES])
 
 
 def _class_hint(error: AttributeError) -> Phrase | None:
@@ -180,26 +189,29 @@ def _class_hint(error: AttributeError) -> Phrase | None:
         return phrase("call super().__init__('NAME') first in __init__")
     if hasattr(owner, "TYPE_NAME") and name and (hint := _field_hint(name, owner)):
         return hint
-    frame = _innermost_frame(error)
+    frame = _find_innermost_frame(error)
     if frame is not None and callable(frame.f_globals.get(name)) and "self" in frame.f_locals:
         return phrase("'{name}' is a function outside the class; indent it like the other methods", name=name)
     return None
 
 
 def _field_hint(name: str, message: object) -> Phrase | None:
-    """Return a hint about a field of a message: one of an inner message, a similar one, or one of a field's value."""
-    fields = [field for field in _public_names(message) if field.islower()]
-    having = [field for field in fields if hasattr(getattr(message, field), name)]
-    inner = [field for field in having if hasattr(getattr(message, field), "TYPE_NAME")]
-    if not inner and (hint := did_you_mean(name, fields)):
+    """Return a hint about a field that a message lacks.
+
+    The hint names the field of an inner message, a similar field, or an attribute of a field's value.
+    """
+    fields = [field for field in _find_public_names(message) if field.islower()]
+    fields_with_name = [field for field in fields if hasattr(getattr(message, field), name)]
+    message_fields = [field for field in fields_with_name if hasattr(getattr(message, field), "TYPE_NAME")]
+    if not message_fields and (hint := did_you_mean(name, fields)):
         return hint
-    names = [f".{field}.{name}" for field in inner or having[:1]]
+    names = [f".{field}.{name}" for field in message_fields or fields_with_name[:1]]
     return phrase("did you mean {names}?", names=quoted_names(names, " or ")) if names else None
 
 
-def _unset_hint(name: str, owner: object, error: AttributeError) -> Phrase | None:
+def _unset_attribute_hint(name: str, owner: object, error: AttributeError) -> Phrase | None:
     """Return a hint about an attribute that a method reads before it is set, or None."""
-    frame = _innermost_frame(error)
+    frame = _find_innermost_frame(error)
     if frame is None or frame.f_locals.get("self") is not owner or owner is None:
         return None
     return phrase("set self.{name} in __init__, before it is used", name=name)
@@ -208,13 +220,13 @@ def _unset_hint(name: str, owner: object, error: AttributeError) -> Phrase | Non
 def import_hint(name: str) -> Phrase | None:
     """Return a hint with the module from which an undefined name can be imported, or None."""
     from linkwright.messages.presentation import interface_names
-    from linkwright.standins.table import modules_providing
+    from linkwright.standins.table import find_modules_providing
 
-    if name in sys.stdlib_module_names and name not in _MODULES:
+    if name in sys.stdlib_module_names and name not in _MODULES_BY_NAME:
         return phrase("write 'import {name}' at the top of the file", name=name)
-    interfaces = [full for kind in ("msg", "srv", "action") for full in interface_names(kind)]
-    locations = [".".join(full.split("/")[:-1]) for full in interfaces if full.endswith(f"/{name}")]
-    modules = [*_MODULES.get(name, ()), *locations, *modules_providing(name)][:_MAX_MODULES]
+    interfaces = [full_name for kind in ("msg", "srv", "action") for full_name in interface_names(kind)]
+    locations = [".".join(full_name.split("/")[:-1]) for full_name in interfaces if full_name.endswith(f"/{name}")]
+    modules = [*_MODULES_BY_NAME.get(name, ()), *locations, *find_modules_providing(name)][:_MAX_SUGGESTED_MODULES]
     if not modules:
         return None
     return phrase("import it from {modules}", modules=quoted_names(modules, " or "))
@@ -233,7 +245,7 @@ def _substitution_hint(error: TypeError) -> Phrase | None:
     return None
 
 
-def _public_names(owner: object) -> list[str]:
+def _find_public_names(owner: object) -> list[str]:
     """Return the public names of an object, without submodules.
 
     A submodule often has the same name as an object inside it.
@@ -253,7 +265,9 @@ def _import_hint(error: ImportError) -> Phrase | None:
     if missing_attribute:
         name, module = missing_attribute
         return (
-            other_module_hint(error) or did_you_mean(name, _public_names(sys.modules.get(module))) or import_hint(name)
+            other_module_hint(error)
+            or did_you_mean(name, _find_public_names(sys.modules.get(module)))
+            or import_hint(name)
         )
     missing_module = error.name or ""
     parent, _, name = missing_module.rpartition(".")
@@ -266,7 +280,7 @@ def _import_hint(error: ImportError) -> Phrase | None:
         return did_you_mean(name, siblings) or _other_kind_hint(parent)
     if missing_module in _ROS_1_MODULES:
         return phrase("'{module}' is part of ROS 1; in ROS 2 it is 'rclpy'", module=missing_module)
-    packages = {full.split("/")[0] for full in interface_names("msg")}
+    packages = {full_name.split("/")[0] for full_name in interface_names("msg")}
     known_packages = ("launch", "launch_ros", "ament_index_python", "rclpy", *sorted(packages))
     suggestion = did_you_mean(missing_module, known_packages)
     if suggestion or not missing_module:
@@ -281,7 +295,7 @@ def _other_kind_hint(package: str) -> Phrase | None:
     kinds = [
         kind
         for kind in ("msg", "srv", "action")
-        if any(full.partition("/")[0] == package for full in interface_names(kind))
+        if any(full_name.partition("/")[0] == package for full_name in interface_names(kind))
     ]
     if not kinds:
         return None
@@ -295,16 +309,16 @@ def _keyword_hint(error: TypeError) -> Phrase | None:
         The hint; None if the error has another cause or no name is similar.
     """
     match = _UNEXPECTED_ARGUMENT.search(str(error))
-    frame = _innermost_frame(error, users_only=True)
+    frame = _find_innermost_frame(error, users_only=True)
     if not match or frame is None:
         return None
     function, name = match.groups()
-    candidates = _called_objects(frame, function.partition(".")[0])
-    names = {parameter for candidate in candidates for parameter in _parameter_names(candidate)}
+    candidates = _find_called_objects(frame, function.partition(".")[0])
+    names = {parameter for candidate in candidates for parameter in _find_parameter_names(candidate)}
     return did_you_mean(name, names)
 
 
-def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None) -> Phrase | None:
+def _missing_argument_hint(error: TypeError, source: SourceText | None, span: Span | None) -> Phrase | None:
     """Return a hint with the keyword argument that is probably a misspelling of a missing one.
 
     Returns:
@@ -326,21 +340,21 @@ def _missing_hint(error: TypeError, source: SourceText | None, span: Span | None
     return None
 
 
-def _called_objects(frame: FrameType, class_name: str) -> list[Any]:
+def _find_called_objects(frame: FrameType, class_name: str) -> list[Any]:
     """Return the functions and classes in a frame's scope that a failed call may refer to.
 
     These are the functions with the given name, and the classes with this name or with a base class of this name.
     """
     visible_objects = [*frame.f_globals.values(), *frame.f_locals.values()]
     return [
-        function_type
-        for function_type in visible_objects
-        if (inspect.isclass(function_type) and any(base.__name__ == class_name for base in function_type.__mro__))
-        or (inspect.isfunction(function_type) and function_type.__name__ == class_name)
+        visible_object
+        for visible_object in visible_objects
+        if (inspect.isclass(visible_object) and any(base.__name__ == class_name for base in visible_object.__mro__))
+        or (inspect.isfunction(visible_object) and visible_object.__name__ == class_name)
     ]
 
 
-def _parameter_names(callable_object: Any) -> Iterable[str]:
+def _find_parameter_names(callable_object: Any) -> Iterable[str]:
     functions = (
         [vars(base).get("__init__") for base in callable_object.__mro__]
         if inspect.isclass(callable_object)
@@ -353,7 +367,7 @@ def _parameter_names(callable_object: Any) -> Iterable[str]:
                     yield parameter.name
 
 
-def _innermost_frame(error: Exception, *, users_only: bool = False) -> FrameType | None:
+def _find_innermost_frame(error: Exception, *, users_only: bool = False) -> FrameType | None:
     frame = None
     for candidate, _ in walk_tb(error.__traceback__):
         if not users_only or is_user_file(candidate.f_code.co_filename):

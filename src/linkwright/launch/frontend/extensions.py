@@ -27,21 +27,21 @@ from linkwright.packages.readers.entry_points import (
     text_of,
 )
 
-ACTIONS = "launch.frontend.launch_extension"
+ACTION_GROUP = "launch.frontend.launch_extension"
 """The entry point group of modules that expose actions and substitutions on import."""
-PARSERS = "launch.frontend.parser"
+PARSER_GROUP = "launch.frontend.parser"
 """The entry point group of parsers. The names are the languages."""
-_GROUP_NAMES = {ACTIONS: "launch extension", PARSERS: "parser extension"}
+_GROUP_NAMES = {ACTION_GROUP: "launch extension", PARSER_GROUP: "parser extension"}
 _BUILTIN_ENTRY_POINTS = {
-    ACTIONS: {
+    ACTION_GROUP: {
         "actions": "linkwright.launch.model.actions",
         "include": "linkwright.launch.frontend.include",
         "substitutions": "linkwright.launch.model.substitutions",
         "ros": "linkwright.launch.ros",
     },
-    PARSERS: {"xml": "linkwright.launch.frontend.xml:Parser", "yaml": "linkwright.launch.frontend.yaml:Parser"},
+    PARSER_GROUP: {"xml": "linkwright.launch.frontend.xml:Parser", "yaml": "linkwright.launch.frontend.yaml:Parser"},
 }
-_STAND_INS = "linkwright.launch_extensions"
+_STAND_IN_GROUP = "linkwright.launch_extensions"
 """The entry point group of modules that replace launch extensions of the same name if these are not installed."""
 
 
@@ -52,7 +52,7 @@ def load(group: str) -> Iterator[tuple[str, Any]]:
     """
     installed_entry_points = entry_points(group=group)
     builtin_entry_points = (EntryPoint(name, value, group) for name, value in _BUILTIN_ENTRY_POINTS[group].items())
-    stand_in_entry_points = extensions(_STAND_INS).values() if group == ACTIONS else ()
+    stand_in_entry_points = extensions(_STAND_IN_GROUP).values() if group == ACTION_GROUP else ()
     used_stand_ins = (
         entry_point for entry_point in stand_in_entry_points if entry_point.name not in installed_entry_points.names
     )
@@ -73,7 +73,7 @@ def load_workspace_extensions() -> None:
     """Import the launch extensions of the packages in the workspace, each module once."""
     finder = current_finder()
     for package, share in finder.packages().items():
-        for module in _extension_modules(package, share):
+        for module in _find_extension_modules(package, share):
             if (share, module) not in _loaded_modules:
                 _loaded_modules.add((share, module))
                 _import_module(module, finder, share)
@@ -81,22 +81,22 @@ def load_workspace_extensions() -> None:
 
 def _import_module(module: str, finder: PackageFinder, share: Path) -> None:
     try:
-        top = module.partition(".")[0]
-        spec = None if top in sys.modules else find_module(finder, top, share)
+        top_package = module.partition(".")[0]
+        spec = None if top_package in sys.modules else find_module(finder, top_package, share)
         if spec is not None and spec.loader is not None:
-            sys.modules[top] = module_from_spec(spec)
-            spec.loader.exec_module(sys.modules[top])
+            sys.modules[top_package] = module_from_spec(spec)
+            spec.loader.exec_module(sys.modules[top_package])
         importlib.import_module(module)
     except Exception:  # noqa: BLE001 - a broken package must not stop the others
         warnings.warn(f"Failed to load the launch extension: {module}\n{traceback.format_exc()}", stacklevel=3)
 
 
-def _extension_modules(package: str, share: Path) -> Iterator[str]:
+def _find_extension_modules(package: str, share: Path) -> Iterator[str]:
     """Yield the names of the modules with launch extensions in the entry points of a package."""
     if is_installed(share):
         for folder in python_folders(install_prefix(share), package):
             for path in folder.glob("*-info/entry_points.txt"):
-                yield from _modules_in_lines(read_metadata_group(text_of(path), ACTIONS))
+                yield from _parse_module_names(read_metadata_group(text_of(path), ACTION_GROUP))
         return
     for name, read_group in (
         ("setup.py", read_setup_py_group),
@@ -104,11 +104,11 @@ def _extension_modules(package: str, share: Path) -> Iterator[str]:
         ("pyproject.toml", read_pyproject_group),
     ):
         text = text_of(share / name)
-        if ACTIONS in text:
-            yield from _modules_in_lines(read_group(text, ACTIONS))
+        if ACTION_GROUP in text:
+            yield from _parse_module_names(read_group(text, ACTION_GROUP))
 
 
-def _modules_in_lines(lines: list[str]) -> Iterator[str]:
+def _parse_module_names(lines: list[str]) -> Iterator[str]:
     """Yield the names of modules in lines of the form ``name = module:attribute``."""
     for line in lines:
         _, equals, target = line.partition("=")

@@ -37,7 +37,7 @@ def parse_substitution(string_value: str) -> list[Substitution]:
     """
     if not string_value:
         return [TextSubstitution(text=string_value)]
-    return _Reader(string_value, location_of(string_value)).template()
+    return _TextParser(string_value, location_of(string_value)).template()
 
 
 def parse_if_substitutions(value: Any) -> Any:
@@ -49,14 +49,14 @@ def parse_if_substitutions(value: Any) -> Any:
         ValueError: the items of a list have different types.
     """
     if not isinstance(value, list):
-        return _parse_if(value)
-    parsed_items = [_parse_if(item) for item in value]
+        return _parse_item(value)
+    parsed_items = [_parse_item(item) for item in value]
     if len({str if isinstance(item, str) else type(item) for item in parsed_items if not isinstance(item, list)}) > 1:
         raise ValueError("The result is a non-uniform list")
     return parsed_items
 
 
-def _parse_if(value: Any) -> Any:
+def _parse_item(value: Any) -> Any:
     if not isinstance(value, str):
         return value
     substitutions = parse_substitution(value)
@@ -67,11 +67,11 @@ def _parse_if(value: Any) -> Any:
     )
 
 
-class _Reader:
+class _TextParser:
     """A parser of one text into substitutions.
 
     Args:
-        text: the text.
+        text: the text, which may contain ``$(...)``.
         location: the location of the text, or None.
     """
 
@@ -82,28 +82,28 @@ class _Reader:
 
     def template(self) -> list[Substitution]:
         """Parse the entire text, and return its substitutions."""
-        substitutions = self._parse_parts(until="", argument=False)
+        substitutions = self._parse_parts(closing_quote="", is_argument=False)
         assert self._at == len(self._text)
         return substitutions
 
-    def _parse_parts(self, until: str, argument: bool) -> list[Substitution]:
+    def _parse_parts(self, closing_quote: str, is_argument: bool) -> list[Substitution]:
         """Parse the text up to a closing character, and return its substitutions.
 
         Args:
-            until: the closing quote, at which parsing stops; empty outside quotes.
-            argument: whether the text is an unquoted argument, which a space or a parenthesis also ends.
+            closing_quote: the closing quote, at which parsing stops; empty outside quotes.
+            is_argument: whether the text is an unquoted argument, which a space or a parenthesis also ends.
         """
         substitutions: list[Substitution] = []
         start = self._at
         while self._at < len(self._text):
             character = self._text[self._at]
-            if character == until or (argument and character in _ARGUMENT_ENDS):
+            if character == closing_quote or (is_argument and character in _ARGUMENT_ENDS):
                 break
             if self._text.startswith("$(", self._at):
                 self._add_text(substitutions, start)
-                substitutions.append(self._parse_substitution(until))
+                substitutions.append(self._parse_substitution(closing_quote))
                 start = self._at
-            elif argument and not until and character in "'\"":
+            elif is_argument and not closing_quote and character in "'\"":
                 preceding_text = repr(self._text[start : self._at])
                 message = phrase("there is an unexpected quote in an argument, after {before}", before=preceding_text)
                 self._fail(message, phrase("quote the whole argument"))
@@ -114,7 +114,7 @@ class _Reader:
 
     def _add_text(self, substitutions: list[Substitution], start: int) -> None:
         if start < self._at:
-            with reading_markup_at(self._part(start, self._at)):
+            with reading_markup_at(self._location_of_range(start, self._at)):
                 substitutions.append(TextSubstitution(text=replace_escaped_characters(self._text[start : self._at])))
 
     def _parse_substitution(self, quote: str) -> Substitution:
@@ -137,13 +137,13 @@ class _Reader:
                 self._unexpected_character_error(match[0])
             arguments.append(self._parse_argument(quote))
         self._at += 1
-        return instantiate_substitution(match[0], arguments, self._part(start, self._at))
+        return instantiate_substitution(match[0], arguments, self._location_of_range(start, self._at))
 
     def _parse_argument(self, quote: str) -> list[Substitution]:
         opening_quote = self._text[self._at]
         if quote or opening_quote not in "'\"":
             start = self._at
-            substitutions = self._parse_parts(until=quote, argument=True)
+            substitutions = self._parse_parts(closing_quote=quote, is_argument=True)
             if self._at == start:
                 self._fail(
                     phrase("an argument contains an opening parenthesis"),
@@ -152,7 +152,7 @@ class _Reader:
             return substitutions
         start = self._at
         self._at += 1
-        substitutions = self._parse_parts(until=opening_quote, argument=False)
+        substitutions = self._parse_parts(closing_quote=opening_quote, is_argument=False)
         if self._at >= len(self._text):
             self._at = start
             self._fail(
@@ -182,10 +182,10 @@ class _Reader:
             hint or phrase("separate arguments by spaces"),
         )
 
-    def _part(self, start: int, end: int) -> SourceLocation | None:
+    def _location_of_range(self, start: int, end: int) -> SourceLocation | None:
         return self._location.part(start, end) if isinstance(self._location, MarkupLocation) else self._location
 
     def _fail(self, message: Phrase, hint: Phrase) -> NoReturn:
-        location = self._part(self._at, self._at + 1)
+        location = self._location_of_range(self._at, self._at + 1)
         text = phrase("substitution in '{text}' cannot be parsed: {message}", text=self._text, message=message)
         raise error_at(location, "LAUNCH119", text, hint, ros_error=ValueError(text))

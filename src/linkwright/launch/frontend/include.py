@@ -42,7 +42,7 @@ from linkwright.packages import is_substitute
 if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Parser
 
-_FILE_LOCAL = "current_launch_file_path"
+_FILE_PATH_LOCAL = "current_launch_file_path"
 _FOLDER_LOCAL = "current_launch_file_directory"
 
 
@@ -145,17 +145,19 @@ class IncludeLaunchDescription(Action):
         self._check_required(description.get_launch_arguments(), given_names)
         self._check_values(given_names)
         outer_locals = context.get_locals_as_dict()
-        replaced_locals = {name: outer_locals[name] for name in (_FILE_LOCAL, _FOLDER_LOCAL) if name in outer_locals}
-        context.extend_locals(self._file_values())
+        replaced_locals = {
+            name: outer_locals[name] for name in (_FILE_PATH_LOCAL, _FOLDER_LOCAL) if name in outer_locals
+        }
+        context.extend_locals(self._compute_file_locals())
 
-        def leave(context: LaunchContext) -> None:
-            context.remove_locals((_FILE_LOCAL, _FOLDER_LOCAL))
+        def restore_locals(context: LaunchContext) -> None:
+            context.remove_locals((_FILE_PATH_LOCAL, _FOLDER_LOCAL))
             context.extend_locals(replaced_locals)
 
         return [
             *(SetLaunchConfiguration(name, value) for name, value in self._arguments),
             description,
-            OpaqueFunction(function=leave),
+            OpaqueFunction(function=restore_locals),
         ]
 
     def explain_inside(self, error: LinkwrightError) -> LinkwrightError:
@@ -177,7 +179,7 @@ class IncludeLaunchDescription(Action):
         path = self._source.location_path
         return path is not None and not path.exists() and any(is_substitute(folder) for folder in path.parents)
 
-    def _file_values(self) -> dict[str, str]:
+    def _compute_file_locals(self) -> dict[str, str]:
         """Return the locals for the path and folder of the included file.
 
         A description without a file has none.
@@ -186,7 +188,7 @@ class IncludeLaunchDescription(Action):
         if path is None:
             return {}
         folder = str(path.parent) if path.exists() else self._source.location
-        return {_FILE_LOCAL: str(path), _FOLDER_LOCAL: folder}
+        return {_FILE_PATH_LOCAL: str(path), _FOLDER_LOCAL: folder}
 
     def _check_required(self, declared_arguments: Sequence[Any], given_names: list[str]) -> None:
         names = [argument.name for argument in declared_arguments]

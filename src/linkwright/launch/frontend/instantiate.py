@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Parser
 
 
-def _method(parse_methods: dict[str, Any], name: str) -> Any:
+def _find_parse_method(parse_methods: dict[str, Any], name: str) -> Any:
     """Return the parse function of a tag or substitution, or None for an unregistered name.
 
     If the name is not registered, this function first loads the launch extensions in the workspace.
@@ -34,7 +34,7 @@ def instantiate_action(entity: Entity, parser: Parser) -> Action:
     Raises:
         RuntimeError: LAUNCH115, no action has this tag.
     """
-    parse = _method(action_parse_methods, entity.type_name)
+    parse = _find_parse_method(action_parse_methods, entity.type_name)
     location = entity.source_location
     if parse is None:
         raise error_at(
@@ -68,7 +68,7 @@ def instantiate_substitution(
     Raises:
         RuntimeError: LAUNCH119, there is no substitution with this name, or its arguments are wrong.
     """
-    parse = _method(substitution_parse_methods, type_name)
+    parse = _find_parse_method(substitution_parse_methods, type_name)
     if parse is None:
         raise error_at(
             location,

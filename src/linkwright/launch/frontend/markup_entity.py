@@ -81,7 +81,7 @@ class MarkupEntity(Entity):
     def _location_of_part(self, name: str) -> SourceLocation | None:
         return self._location
 
-    def _missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:
+    def _fail_missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:
         unread_names = [candidate for candidate in present if candidate not in self._read_names]
         similar_names = nearest(name, unread_names)
         hint = (

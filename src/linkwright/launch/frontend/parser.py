@@ -39,7 +39,7 @@ class Parser:
         """
         if Parser.extensions_loaded:
             return
-        for _ in extensions.load(extensions.ACTIONS):
+        for _ in extensions.load(extensions.ACTION_GROUP):
             pass
         Parser.extensions_loaded = True
 
@@ -49,7 +49,7 @@ class Parser:
         if Parser.frontend_parsers is not None:
             return
         parsers: dict[str, type[Parser]] = {}
-        for name, parser in extensions.load(extensions.PARSERS):
+        for name, parser in extensions.load(extensions.PARSER_GROUP):
             parsers.setdefault(name, parser)
         Parser.frontend_parsers = dict(sorted(parsers.items()))
 

@@ -29,7 +29,7 @@ from linkwright.launch.model.description import LaunchDescription
 from linkwright.packages.launch_files import is_launch_file_name
 from linkwright.packages.share_layout import source_of
 
-_FUNCTION = "generate_launch_description"
+_FUNCTION_NAME = "generate_launch_description"
 _MODULE_NAME = "python_launch_file"
 
 
@@ -43,16 +43,18 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
     """
     with outside_markup():
         source = read_launch_file(path)
-        module = _run(source, path)
-        function = getattr(module, _FUNCTION, None)
+        module = _run_module(source, path)
+        function = getattr(module, _FUNCTION_NAME, None)
         if not callable(function):
-            hint = did_you_mean(_FUNCTION, vars(module)) or phrase(
-                "define {function}(), which returns a LaunchDescription", function=_FUNCTION
+            hint = did_you_mean(_FUNCTION_NAME, vars(module)) or phrase(
+                "define {function}(), which returns a LaunchDescription", function=_FUNCTION_NAME
             )
             message = phrase(
-                "launch file '{path}' has no function '{function}'", path=display_path(source.name), function=_FUNCTION
+                "launch file '{path}' has no function '{function}'",
+                path=display_path(source.name),
+                function=_FUNCTION_NAME,
             )
-            text = f"launch file at '{path}' does not contain the required function '{_FUNCTION}()'"
+            text = f"launch file at '{path}' does not contain the required function '{_FUNCTION_NAME}()'"
             raise error_at(None, "LAUNCH105", message, hint, ros_error=InvalidPythonLaunchFileError(text))
         try:
             description = function()
@@ -60,18 +62,20 @@ def load_python_launch_file(path: Path) -> LaunchDescription:
             if isinstance(error, SystemExit) and not error.code:
                 raise
             subject = phrase("launch file '{path}'", path=display_path(source.name))
-            raise explain(error, subject, _definition(function, source)) from error
+            raise explain(error, subject, _locate_definition(function, source)) from error
     if not isinstance(description, LaunchDescription):
         message = phrase(
-            "'{function}' returned {kind}, not a LaunchDescription", function=_FUNCTION, kind=_type_phrase(description)
+            "'{function}' returned {kind}, not a LaunchDescription",
+            function=_FUNCTION_NAME,
+            kind=_describe_type(description),
         )
         hint = phrase("end the function with: return LaunchDescription([...])")
         ros_error = InvalidPythonLaunchFileError(message)
-        raise error_at(_definition(function, source), "LAUNCH106", message, hint, ros_error=ros_error)
+        raise error_at(_locate_definition(function, source), "LAUNCH106", message, hint, ros_error=ros_error)
     return description
 
 
-def _definition(function: Callable[..., Any], source: SourceText) -> SourceLocation:
+def _locate_definition(function: Callable[..., Any], source: SourceText) -> SourceLocation:
     """Return the location of the line that defines a function in a launch file.
 
     If the function is defined in another file, the location is the first line of the launch file.
@@ -89,10 +93,10 @@ def load_python_module(path: Path) -> ModuleType:
         LinkwrightError: LAUNCH101 to LAUNCH104, see `load_python_launch_file`.
     """
     with outside_markup():
-        return _run(read_launch_file(path), path)
+        return _run_module(read_launch_file(path), path)
 
 
-def _run(source: SourceText, path: Path) -> ModuleType:
+def _run_module(source: SourceText, path: Path) -> ModuleType:
     """Run a launch file, and return its module with ``__file__`` set to the path.
 
     Messages name the user's original file, even if the path leads to a copy.
@@ -102,7 +106,7 @@ def _run(source: SourceText, path: Path) -> ModuleType:
     except SyntaxError as error:
         raise as_ros_error(error, _syntax_diagnostic(error, source)) from error
     except ValueError as error:  # Python before 3.12 raises this for a null byte
-        raise _error(
+        raise _create_error(
             "LAUNCH103",
             phrase("launch file '{path}' is not Python: {error}", path=display_path(source.name), error=foreign(error)),
         ) from error
@@ -148,7 +152,7 @@ def read_launch_file(path: Path) -> SourceText:
         )
         raise error_at(None, "LAUNCH102", message, ros_error=error) from error
     except UnicodeDecodeError as error:
-        raise _error(
+        raise _create_error(
             "LAUNCH102",
             phrase("launch file '{path}' is not UTF-8: {reason}", path=shown_path, reason=foreign(error.reason)),
         ) from error
@@ -167,9 +171,9 @@ def _syntax_diagnostic(error: SyntaxError, source: SourceText) -> Diagnostic:
     return Diagnostic("LAUNCH103", message, span, hint=hint, source=source)
 
 
-def _type_phrase(value: object) -> Phrase:
+def _describe_type(value: object) -> Phrase:
     return phrase("None") if value is None else phrase("a {type}", type=type(value).__name__)
 
 
-def _error(code: str, message: Phrase, hint: Phrase | None = None) -> LinkwrightError:
+def _create_error(code: str, message: Phrase, hint: Phrase | None = None) -> LinkwrightError:
     return LinkwrightError(Diagnostic(code, message, hint=hint))

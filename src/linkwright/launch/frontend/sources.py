@@ -69,7 +69,7 @@ class LaunchDescriptionSource(Located):
         """
         if self._evaluated_location is None:
             self._evaluated_location = perform_substitutions(context, self._location)
-        return self._get()
+        return self._load()
 
     def try_get_launch_description_without_context(self) -> LaunchDescription | None:
         """Return the description, or None if it is not loaded and its path needs a launch context.
@@ -82,10 +82,10 @@ class LaunchDescriptionSource(Located):
             self._evaluated_location = "".join(
                 part.text for part in self._location if isinstance(part, TextSubstitution)
             )
-            return self._get()
+            return self._load()
         return self._description
 
-    def _get(self) -> LaunchDescription:
+    def _load(self) -> LaunchDescription:
         assert self._evaluated_location is not None
         if self._description is None:
             try:

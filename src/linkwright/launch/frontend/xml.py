@@ -14,7 +14,7 @@ from linkwright.launch.model.markup.values import get_typed_value
 from linkwright.xmltree import Element, parse
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
 
-_SEPARATOR = "-sep"
+_SEPARATOR_SUFFIX = "-sep"
 
 
 class Entity(MarkupEntity):
@@ -60,16 +60,18 @@ class Entity(MarkupEntity):
         if is_list_of_entities(data_type):
             children = [Entity(element, parent=self) for element in self._element.elements(name)]
             if not children and not optional:
-                self._missing(name, {element.tag for element in self._element.elements()}, ros_error)
+                self._fail_missing(name, {element.tag for element in self._element.elements()}, ros_error)
             return children or None
         if name not in attributes:
             if optional:
                 return None
-            self._missing(name, attributes, ros_error)
+            self._fail_missing(name, attributes, ros_error)
         value: Any = LocatedText(attributes[name], _locate_attribute(self._element, name))
-        if name + _SEPARATOR in attributes:
-            self._read_names[name + _SEPARATOR] = None
-            value = [LocatedText(item, value.source_location) for item in value.split(attributes[name + _SEPARATOR])]
+        if name + _SEPARATOR_SUFFIX in attributes:
+            self._read_names[name + _SEPARATOR_SUFFIX] = None
+            value = [
+                LocatedText(item, value.source_location) for item in value.split(attributes[name + _SEPARATOR_SUFFIX])
+            ]
         try:
             return get_typed_value(value, data_type, can_be_str=can_be_str)
         except (TypeError, ValueError):

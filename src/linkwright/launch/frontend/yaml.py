@@ -16,7 +16,7 @@ from linkwright.launch.model.markup.entity import Entity as AnyEntity
 from linkwright.launch.model.markup.entity import LocatedText, is_list_of_entities, location_of
 from linkwright.launch.model.markup.values import is_instance_of
 
-_CHILDREN = "children"
+_CHILDREN_KEY = "children"
 
 _SINGLE_VALUE_ATTRIBUTES = {"include": "file"}
 """Maps tags to the attribute for a single value, as in ``- include: other.launch.py``."""
@@ -48,8 +48,8 @@ class Entity(MarkupEntity):
         self._are_children_read = True
         children = self._element
         if isinstance(children, dict):
-            self._read_names[_CHILDREN] = None
-            if _CHILDREN not in children:
+            self._read_names[_CHILDREN_KEY] = None
+            if _CHILDREN_KEY not in children:
                 text = (
                     f"Expected entity `{self.type_name}` to have children entities."
                     f"That can be a list of subentities or a dictionary with a `children` list element"
@@ -59,14 +59,14 @@ class Entity(MarkupEntity):
                     type_name=self.type_name,
                 )
                 raise error_at(self.source_location, "LAUNCH117", message, ros_error=ValueError(text))
-            children = children[_CHILDREN]
+            children = children[_CHILDREN_KEY]
         if not isinstance(children, list):
             text = f"Expected a dict or list, got {type(children)}:\n---\n{children}\n---"
             message = phrase("'{type_name}' needs a list of actions", type_name=self.type_name)
             raise error_at(self.source_location, "LAUNCH118", message, ros_error=TypeError(text))
-        return [self._child(item) for item in children]
+        return [self._create_child(item) for item in children]
 
-    def _child(self, item: Any) -> AnyEntity:
+    def _create_child(self, item: Any) -> AnyEntity:
         if not isinstance(item, dict) or len(item) != 1:
             text = "Subentities must be a dictionary with only one key, which is the entity type"
             message = phrase(
@@ -109,7 +109,7 @@ class Entity(MarkupEntity):
             if optional:
                 return None
             attributes = self._element if isinstance(self._element, dict) else {}
-            self._missing(name, attributes, f"Can not find attribute '{name}' in Entity '{self.type_name}'")
+            self._fail_missing(name, attributes, f"Can not find attribute '{name}' in Entity '{self.type_name}'")
         value: Any = dict(self._element)[name]
         if is_list_of_entities(data_type):
             if isinstance(value, list) and value and all(isinstance(item, dict) for item in value):
@@ -216,7 +216,7 @@ class _Loader(yaml.SafeLoader):
         return MarkupLocation(self.launch_text, node.start_mark.index, node.end_mark.index)
 
 
-def _text(loader: _Loader, node: yaml.ScalarNode) -> LocatedText:
+def _construct_text(loader: _Loader, node: yaml.ScalarNode) -> LocatedText:
     start, end = node.start_mark.index, node.end_mark.index
     if node.style in ("'", '"'):
         start, end = start + 1, end - 1
@@ -230,7 +230,7 @@ def _construct_mapping(loader: _Loader, node: yaml.MappingNode) -> Any:
     mapping.update(loader.construct_mapping(node))
 
 
-_Loader.add_constructor("tag:yaml.org,2002:str", _text)
+_Loader.add_constructor("tag:yaml.org,2002:str", _construct_text)
 _Loader.add_constructor("tag:yaml.org,2002:map", _construct_mapping)
 
 

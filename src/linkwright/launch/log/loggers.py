@@ -15,14 +15,14 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from linkwright.hosting.launch_log import FILE_FORMATS, FORMATS, log_base, new_log_folder
+from linkwright.hosting.launch_log import FILE_FORMATS, FORMATS, create_log_folder, find_log_base
 from linkwright.launch.log.handlers import FileHandler, ForEachLogger, Handler, StreamHandler, WatchedFileHandler
 
 MAIN_LOG = "launch.log"
 
 _STREAMS = ("stdout", "stderr", "both")
 _DESTINATIONS = frozenset({"screen", "log", "own_log"})
-_OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
+_DESTINATIONS_BY_OUTPUT: Mapping[str, Mapping[str, set[str]]] = {
     "screen": {"both": {"screen"}},
     "log": {"both": {"log"}, "stderr": {"screen"}},
     "both": {"both": {"log", "screen"}},
@@ -32,7 +32,10 @@ _OUTPUTS: Mapping[str, Mapping[str, set[str]]] = {
 
 
 class _ScreenHandler(StreamHandler):
-    """A handler that writes lines to ``sys.stdout``, even after a program has replaced this stream."""
+    """A handler that writes lines to the current ``sys.stdout``.
+
+    A program may replace this stream at any time.
+    """
 
     @property
     def stream(self) -> Any:
@@ -57,15 +60,15 @@ class _MainFileHandler(Handler):
 
 
 def _get_logging_directory() -> str:
-    return os.path.normpath(log_base())
+    return os.path.normpath(find_log_base())
 
 
 def _make_unique_log_dir(*, base_path: str) -> str:
-    return str(new_log_folder(Path(base_path)))
+    return str(create_log_folder(Path(base_path)))
 
 
 def _renew_latest_log_dir(*, log_dir: str) -> bool:  # noqa: ARG001 - ROS's tests replace a function with this signature
-    return True  # `new_log_folder` has already updated the link
+    return True  # `create_log_folder` has already updated the link
 
 
 class LaunchConfig:
@@ -147,8 +150,8 @@ class LaunchConfig:
             screen_format: ``default``, ``default_with_timestamp``, or a format string.
             screen_style: the style of a format string, as in `logging.Formatter`; ``{`` by default.
         """
-        override = os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT")
-        self.screen_formatter = _create_formatter(screen_format, screen_style, override, FORMATS, "screen")
+        overriding_format = os.environ.get("OVERRIDE_LAUNCH_SCREEN_FORMAT")
+        self.screen_formatter = _create_formatter(screen_format, screen_style, overriding_format, FORMATS, "screen")
         if self.screen_handler is not None:
             self.screen_handler.setFormatter(self.screen_formatter)
 
@@ -161,8 +164,8 @@ class LaunchConfig:
             log_format: ``default``, or a format string.
             log_style: the style of a format string, as in `logging.Formatter`; ``{`` by default.
         """
-        override = os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT")
-        self.file_formatter = _create_formatter(log_format, log_style, override, FILE_FORMATS, "log")
+        overriding_format = os.environ.get("OVERRIDE_LAUNCH_LOG_FORMAT")
+        self.file_formatter = _create_formatter(log_format, log_style, overriding_format, FILE_FORMATS, "log")
         for handler in self.file_handlers.values():
             handler.setFormatter(self.file_formatter)
 
@@ -190,10 +193,10 @@ class LaunchConfig:
 
 
 def _create_formatter(
-    format_text: str | None, style: Any, override: str | None, named_formats: Mapping[str, str], kind: str
+    format_text: str | None, style: Any, overriding_format: str | None, named_formats: Mapping[str, str], kind: str
 ) -> logging.Formatter | None:
-    if override:
-        format_text, style = override.encode("latin1").decode("unicode_escape"), "{"
+    if overriding_format:
+        format_text, style = overriding_format.encode("latin1").decode("unicode_escape"), "{"
     if format_text is None:
         return None
     if format_text in named_formats:
@@ -285,9 +288,9 @@ def _add_handler(logger: logging.Logger, handler: logging.Handler, formatter: lo
 
 def _normalize_output_configuration(output_config: Any) -> dict[str, set[str]]:
     normalized: dict[str, set[str]] = {source: set() for source in _STREAMS}
-    if isinstance(output_config, str) and output_config not in _OUTPUTS:
+    if isinstance(output_config, str) and output_config not in _DESTINATIONS_BY_OUTPUT:
         raise ValueError(f'{output_config} is not a valid standard output config i.e. "screen", "log" or "both"')
-    output = _OUTPUTS[output_config] if isinstance(output_config, str) else output_config
+    output = _DESTINATIONS_BY_OUTPUT[output_config] if isinstance(output_config, str) else output_config
     if not isinstance(output, Mapping):
         raise ValueError(f"{output} is not a valid standard output config")  # noqa: TRY004 - as in ROS
     for source, destinations in output.items():

@@ -57,7 +57,7 @@ class Action(LaunchDescriptionEntity):
         return [("Conditionally included: " + str(self.condition), list(self.get_sub_entities()))]
 
     def visit(self, context: LaunchContext) -> Sequence[LaunchDescriptionEntity] | None:
-        """Execute the action if its condition holds, and return the entities to visit next, or None."""
+        """Execute the action if its condition holds, and return the entities to visit next."""
         if self.condition is not None and not self.condition.evaluate(context):
             return None
         next_entities = self.execute(context)

@@ -15,8 +15,8 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 
-_TRUE = ("true", "1")
-_FALSE = ("false", "0")
+_TRUE_TEXTS = ("true", "1")
+_FALSE_TEXTS = ("false", "0")
 
 
 class InvalidConditionExpressionError(Exception):
@@ -78,7 +78,7 @@ class _ExpressionCondition(Condition):
     """The base class of conditions that evaluate an expression."""
 
     def __init__(self, predicate_expression: Any, expected: bool) -> None:
-        expression = normalize_to_list_of_substitutions(_text(predicate_expression))
+        expression = normalize_to_list_of_substitutions(_to_text(predicate_expression))
         super().__init__(predicate=lambda context: evaluate_condition_expression(context, expression) is expected)
         self._expression = expression
 
@@ -108,7 +108,7 @@ class LaunchConfigurationEquals(Condition):
     """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
-        super().__init__(predicate=_equality_predicate(launch_configuration_name, expected_value))
+        super().__init__(predicate=_create_equality_predicate(launch_configuration_name, expected_value))
 
 
 class LaunchConfigurationNotEquals(Condition):
@@ -118,11 +118,11 @@ class LaunchConfigurationNotEquals(Condition):
     """
 
     def __init__(self, launch_configuration_name: str, expected_value: SomeSubstitutionsType | None) -> None:
-        is_equal = _equality_predicate(launch_configuration_name, expected_value)
+        is_equal = _create_equality_predicate(launch_configuration_name, expected_value)
         super().__init__(predicate=lambda context: not is_equal(context))
 
 
-def _equality_predicate(name: str, expected: SomeSubstitutionsType | None) -> Callable[[LaunchContext], bool]:
+def _create_equality_predicate(name: str, expected: SomeSubstitutionsType | None) -> Callable[[LaunchContext], bool]:
     expected_substitutions = None if expected is None else normalize_to_list_of_substitutions(expected)
 
     def evaluate(context: LaunchContext) -> bool:
@@ -142,16 +142,16 @@ def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bo
     Raises:
         InvalidConditionExpressionError: the expression evaluates to any other text.
     """
-    text = perform_substitutions(context, normalize_to_list_of_substitutions(_text(expression)))
+    text = perform_substitutions(context, normalize_to_list_of_substitutions(_to_text(expression)))
     normalized = text.strip().lower()
-    if normalized in _TRUE:
+    if normalized in _TRUE_TEXTS:
         return True
-    if normalized in _FALSE:
+    if normalized in _FALSE_TEXTS:
         return False
-    raise InvalidConditionExpressionError(text, _TRUE, _FALSE)
+    raise InvalidConditionExpressionError(text, _TRUE_TEXTS, _FALSE_TEXTS)
 
 
-def _text(expression: Any) -> Any:
+def _to_text(expression: Any) -> Any:
     return str(expression).lower() if isinstance(expression, bool) else expression
 
 

@@ -343,7 +343,7 @@ class LaunchContext:
         """Register a handler for future events.
 
         Args:
-            event_handler: the handler.
+            event_handler: the handler of future events.
             append: whether to call the handler after the handlers that were registered before. If False, it is called
                 first.
         """

@@ -14,7 +14,7 @@ _MAX_DEPTH = 100
 """The maximum depth of the search, because a file may include itself under a condition."""
 
 
-def declared_arguments(
+def find_declared_arguments(
     entities: Iterable[LaunchDescriptionEntity], conditional_inclusion: bool = False
 ) -> list[DeclareLaunchArgument]:
     """Return the arguments that entities, their children and their includes declare.
@@ -23,15 +23,15 @@ def declared_arguments(
     Declarations under a condition have `conditionally_included` set. Arguments that are declared after a
     `ResetLaunchConfigurations` cannot be set from outside, so they are omitted.
     """
-    return list(_Declarations.by(entities, conditional=conditional_inclusion).arguments.values())
+    return list(_Declarations.of_entities(entities, conditional=conditional_inclusion).arguments.values())
 
 
-def undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
+def find_undeclared_names(entities: Iterable[LaunchDescriptionEntity], names: Iterable[str]) -> list[str]:
     """Return the given names that a launch description does not declare as arguments.
 
     The result is empty if the declarations of some included descriptions are unknown before the launch.
     """
-    declarations = _Declarations.by(entities)
+    declarations = _Declarations.of_entities(entities)
     return [] if declarations.is_incomplete else [name for name in names if name not in declarations.names]
 
 
@@ -54,7 +54,7 @@ class _Declarations:
         self.is_incomplete = False
 
     @classmethod
-    def by(cls, entities: Iterable[LaunchDescriptionEntity], *, conditional: bool = False) -> _Declarations:
+    def of_entities(cls, entities: Iterable[LaunchDescriptionEntity], *, conditional: bool = False) -> _Declarations:
         """Return the declarations of entities and their descendants."""
         declarations = cls()
         with suppress(_TooDeepError):

@@ -187,17 +187,17 @@ class DeclaredSubstitution(Substitution):
             data: the arguments, each a list of substitutions.
 
         Raises:
-            Exception: the number of arguments is wrong; `wrong_count` returns the exception.
+            Exception: the number of arguments is wrong; `wrong_count_error` returns the exception.
         """
         arguments = cls._arguments
         min_count, max_count = sum(argument.is_required for argument in arguments), len(arguments)
         if not min_count <= len(data) <= max_count:
             expected = str(max_count) if min_count == max_count else f"{min_count} or {max_count}"
-            raise cls.wrong_count(f"{expected} argument{'' if max_count == 1 else 's'}", len(data))
+            raise cls.wrong_count_error(f"{expected} argument{'' if max_count == 1 else 's'}", len(data))
         return cls, dict(zip((argument.name for argument in arguments), data, strict=False))
 
     @classmethod
-    def wrong_count(cls, expected: str, argument_count: int) -> Exception:  # noqa: ARG003 - for classes that use it
+    def wrong_count_error(cls, expected: str, argument_count: int) -> Exception:  # noqa: ARG003 - for classes that use it
         """Return the exception for a wrong number of arguments.
 
         As in ROS, the class of the exception depends on the substitution.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from linkwright.diagnostics import phrase
 from linkwright.launch.errors.locations import SourceLocation, error_at
 from linkwright.launch.model.action import Action
-from linkwright.launch.model.declared_arguments import declared_arguments
+from linkwright.launch.model.declared_arguments import find_declared_arguments
 from linkwright.launch.model.entity import LaunchDescriptionEntity
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ class LaunchDescription(LaunchDescriptionEntity):
     """A list of entities in the order of their visits.
 
     Args:
-        initial_entities: the entities.
+        initial_entities: the entities in the order of their visits.
         deprecated_reason: the reason why the description is deprecated, logged on a visit; None if it is not
             deprecated.
     """
@@ -91,7 +91,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         The search omits descriptions that cannot be read before the launch. The first declaration of a name counts. A
         declaration under a condition has its attribute ``conditionally_included`` set.
         """
-        return declared_arguments(self.entities, conditional_inclusion)
+        return find_declared_arguments(self.entities, conditional_inclusion)
 
 
 def _check_entity(entity: Any) -> Any:

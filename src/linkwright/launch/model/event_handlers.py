@@ -62,7 +62,7 @@ class BaseEventHandler:
         return text, list(_as_iterable(self.entities))
 
     def handle(self, event: Any, context: LaunchContext) -> Any:
-        """Make the event a local of the context, and unregister the handler if `handle_once` is set.
+        """Make the event a local of the context, and unregister a handler with `handle_once`.
 
         Subclasses extend this method to return the entities to visit.
         """
@@ -99,7 +99,9 @@ class EventHandler(BaseEventHandler):
 
 
 class _ReactionHandler(BaseEventHandler):
-    """An event handler that visits given entities, or those returned by a function of event and context.
+    """An event handler that visits given entities, or the entities that a function returns.
+
+    The function is called with the event and the context.
 
     Args:
         matcher: called with an event; returns whether the handler accepts the event.

@@ -20,10 +20,10 @@ class ProcessAction(Protocol):
     source_location: SourceLocation | None
     process_details: dict[str, Any] | None
 
-    def wrote(self, stream: int, text: bytes) -> None:
+    def record_output(self, stream: int, text: bytes) -> None:
         """Store output that the process wrote to stdout (1) or stderr (2)."""
 
-    def exited(self, event: ProcessExited, context: Any) -> list[Any]:
+    def record_exit(self, event: ProcessExited, context: Any) -> list[Any]:
         """Record that the process ended, and return the entities to visit next."""
 
 
@@ -216,7 +216,7 @@ class SignalProcess(ProcessTargetedEvent):
     """A request to send a signal to the processes that the matcher accepts.
 
     Attributes:
-        signal: the signal.
+        signal: the signal to send.
         signal_name: the name of the signal, such as ``SIGINT``.
     """
 

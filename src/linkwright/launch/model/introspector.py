@@ -23,10 +23,10 @@ class LaunchIntrospector:
 
 def format_launch_description(description: LaunchDescription) -> str:
     """Return the entities of a description as an indented tree with one entity per line."""
-    return "\n".join([description.describe(), *_tree_lines(description.entities)])
+    return "\n".join([description.describe(), *_format_tree(description.entities)])
 
 
-def _tree_lines(entities: Iterable[Any], depth: int = 1) -> list[str]:
+def _format_tree(entities: Iterable[Any], depth: int = 1) -> list[str]:
     entity_list = list(entities)
     if depth > MAX_NESTING_DEPTH and entity_list:
         raise endless_nesting_error(getattr(entity_list[0], "source_location", None))
@@ -35,7 +35,7 @@ def _tree_lines(entities: Iterable[Any], depth: int = 1) -> list[str]:
         is_last = index == len(entity_list) - 1
         text, children = _describe(entity)
         lines.append(("└── " if is_last else "├── ") + text)
-        lines += [(_INDENT if is_last else "│   ") + line for line in _tree_lines(children, depth + 1)]
+        lines += [(_INDENT if is_last else "│   ") + line for line in _format_tree(children, depth + 1)]
     return lines
 
 

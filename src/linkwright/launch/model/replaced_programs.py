@@ -23,11 +23,11 @@ _INTERPRETERS = ("ruby",)
 
 
 def replaced_programs() -> Mapping[str, EntryPoint]:
-    """Return the entry points of the command-line parsers of replaced programs, by program name."""
+    """Return the entry points of command-line parsers by the name of the replaced program."""
     return extensions("linkwright.replaced_programs")
 
 
-def replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> NodeCommand | None:
+def find_replacing_node(words: Sequence[str], environment: Mapping[str, str]) -> NodeCommand | None:
     """Return the node that replaces the program of a command.
 
     Args:

@@ -33,10 +33,13 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
     for argument in remaining_arguments:
         name, separator, value = argument.partition(":=")
         if separator:
-            if glued := _GLUED_FILE.match(name):
+            if file_without_space := _FILE_WITHOUT_SPACE.match(name):
                 raise _usage_error(
-                    phrase("a space is missing between the file and the argument '{name}' of xacro", name=glued[2]),
-                    phrase("write a space before '{name}:='", name=glued[2]),
+                    phrase(
+                        "a space is missing between the file and the argument '{name}' of xacro",
+                        name=file_without_space[2],
+                    ),
+                    phrase("write a space before '{name}:='", name=file_without_space[2]),
                 )
             if value and not name.startswith("_"):
                 arguments[name] = value
@@ -74,7 +77,7 @@ def parse_xacro_arguments(words: Sequence[str], text: str, folder: Path) -> tupl
     return XacroCall(folder / files[0], tuple(arguments.items())), warning
 
 
-_GLUED_FILE = re.compile(r"(.*\.(?:xacro|urdf))(\w+)$")
+_FILE_WITHOUT_SPACE = re.compile(r"(.*\.(?:xacro|urdf))(\w+)$")
 _SUBSTITUTION_HINT = phrase(
     "the text of a substitution is known only when the launch runs; pass it as it is, without str() or an f-string: "
     "Command(['xacro ', model])"

@@ -1,4 +1,4 @@
-"""The modules ``launch_param_builder`` and ``moveit_configs_utils`` for MoveIt launch files.
+"""The modules ``launch_param_builder`` and ``moveit_configs_utils`` of MoveIt.
 
 Both modules collect parameters from the files of a package. With them, Linkwright can launch the
 ``robot_state_publisher`` and the viewer of such a package. MoveIt's own programs are compiled, and Linkwright does not

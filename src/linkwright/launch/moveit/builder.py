@@ -102,7 +102,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         self.__name = robot_name
         self.__description_parameter = robot_description
         self.__moveit_configs = MoveItConfigs(package_path=self._package_path)
-        self.__urdf, self.__srdf = self.__description_paths()
+        self.__urdf, self.__srdf = self.__find_description_paths()
 
     def robot_description(self, file_path: _Path = None, mappings: _Mappings = None) -> MoveItConfigsBuilder:
         """Read the URDF, or print a warning if its file does not exist.
@@ -128,24 +128,24 @@ class MoveItConfigsBuilder(ParameterBuilder):
 
     def robot_description_kinematics(self, file_path: _Path = None) -> MoveItConfigsBuilder:
         """Read the configuration of the inverse kinematics solvers."""
-        self.__moveit_configs.robot_description_kinematics = self.__load_under(
+        self.__moveit_configs.robot_description_kinematics = self.__load_parameters(
             "_kinematics", file_path, "kinematics.yaml"
         )
         return self
 
     def joint_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
         """Read the joint limits, which replace the limits in the URDF."""
-        self.__moveit_configs.joint_limits = self.__load_under("_planning", file_path, "joint_limits.yaml")
+        self.__moveit_configs.joint_limits = self.__load_parameters("_planning", file_path, "joint_limits.yaml")
         return self
 
     def moveit_cpp(self, file_path: _Path = None) -> MoveItConfigsBuilder:
         """Read the parameters of MoveItCpp."""
-        self.__moveit_configs.moveit_cpp = load_yaml(self.__file(file_path, "moveit_cpp.yaml"))
+        self.__moveit_configs.moveit_cpp = load_yaml(self.__resolve_file(file_path, "moveit_cpp.yaml"))
         return self
 
     def pilz_cartesian_limits(self, file_path: _Path = None) -> MoveItConfigsBuilder:
         """Read Cartesian limits for the Pilz planner."""
-        self.__moveit_configs.pilz_cartesian_limits = self.__load_under(
+        self.__moveit_configs.pilz_cartesian_limits = self.__load_parameters(
             "_planning", file_path, "pilz_cartesian_limits.yaml"
         )
         return self
@@ -173,7 +173,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
             RuntimeError: LAUNCH154, there are several such files, and none has one of these names.
         """
         parameters: Parameters = {"moveit_manage_controllers": moveit_manage_controllers}
-        path = self._package_path / file_path if file_path is not None else self.__controllers()
+        path = self._package_path / file_path if file_path is not None else self.__find_controllers_file()
         if path is not None:
             parameters.update(load_yaml(path) or {})
         self.__moveit_configs.trajectory_execution = parameters
@@ -201,7 +201,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
 
     def sensors_3d(self, file_path: _Path = None) -> MoveItConfigsBuilder:
         """Read the configuration of the 3D sensors for the occupancy map, if there are any."""
-        path = self.__file(file_path, "sensors_3d.yaml")
+        path = self.__resolve_file(file_path, "sensors_3d.yaml")
         content = load_yaml(path) if path.exists() else None
         if content and any(content.get("sensors") or ()):
             self.__moveit_configs.sensors_3d = content
@@ -224,7 +224,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         Raises:
             RuntimeError: LAUNCH154, the default pipeline is not one of the pipelines.
         """
-        folders = [self._package_path / _CONFIG_FOLDER, *_default_folder()]
+        folders = [self._package_path / _CONFIG_FOLDER, *_find_default_folders()]
         names = (
             list(pipelines)
             if pipelines is not None
@@ -273,12 +273,12 @@ class MoveItConfigsBuilder(ParameterBuilder):
             self.planning_scene_monitor()
         if not configs.sensors_3d:
             self.sensors_3d()
-        for existing, file, read_file in (
+        for parameters, file, read_file in (
             (configs.robot_description_kinematics, "kinematics.yaml", self.robot_description_kinematics),
             (configs.joint_limits, "joint_limits.yaml", self.joint_limits),
             (configs.pilz_cartesian_limits, "pilz_cartesian_limits.yaml", self.pilz_cartesian_limits),
         ):
-            if not existing and self.__file(None, file).exists():
+            if not parameters and self.__resolve_file(None, file).exists():
                 read_file()
         return configs
 
@@ -293,13 +293,13 @@ class MoveItConfigsBuilder(ParameterBuilder):
 
     # --- locations of files -----------------------------------------------------------------------------------
 
-    def __file(self, file_path: _Path, default_name: str) -> Path:
+    def __resolve_file(self, file_path: _Path, default_name: str) -> Path:
         return self._package_path / (_CONFIG_FOLDER / default_name if file_path is None else file_path)
 
-    def __load_under(self, suffix: str, file_path: _Path, default_name: str) -> Parameters:
-        return {self.__description_parameter + suffix: load_yaml(self.__file(file_path, default_name))}
+    def __load_parameters(self, suffix: str, file_path: _Path, default_name: str) -> Parameters:
+        return {self.__description_parameter + suffix: load_yaml(self.__resolve_file(file_path, default_name))}
 
-    def __description_paths(self) -> tuple[Path, Path]:
+    def __find_description_paths(self) -> tuple[Path, Path]:
         """Return the paths of the URDF and the SRDF, and store the xacro arguments of the URDF.
 
         The paths come from the file of MoveIt's Setup Assistant, or are derived from the name of the robot.
@@ -322,7 +322,7 @@ class MoveItConfigsBuilder(ParameterBuilder):
         srdf = self._package_path / srdf_settings.get("relative_path", _CONFIG_FOLDER / f"{self.__name}.srdf")
         return urdf, srdf
 
-    def __controllers(self) -> Path | None:
+    def __find_controllers_file(self) -> Path | None:
         folder = self._package_path / _CONFIG_FOLDER
         names = _find_stems([folder], _CONTROLLERS_SUFFIX)
         if len(names) > 1:
@@ -365,6 +365,6 @@ def _find_stems(folders: Sequence[Path], suffix: str) -> list[str]:
     return list(dict.fromkeys(stems))
 
 
-def _default_folder() -> list[Path]:
+def _find_default_folders() -> list[Path]:
     share = current_finder().find("moveit_configs_utils")
     return [] if share is None else [share / "default_configs"]

@@ -40,7 +40,7 @@ def load_file(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
         ParameterBuilderFileNotFoundError: LAUNCH153, the file does not exist.
         LinkwrightError: LAUNCH153, the file cannot be read.
     """
-    text = _text(Path(file_path))
+    text = _read_text(Path(file_path))
     return text if mappings is None else _render_template(text, Path(file_path), mappings)
 
 
@@ -56,7 +56,7 @@ def load_yaml(file_path: str | Path, mappings: Mapping[str, Any] | None = None) 
     import yaml
 
     path = Path(file_path)
-    text = _text(path)
+    text = _read_text(path)
     if mappings or any(mark in text for mark in _TEMPLATE_MARKS):
         text = _render_template(text, path, mappings or {})
     try:
@@ -89,7 +89,7 @@ def get_path(package_name: str, file_path: str | Path) -> str:
     return str(current_finder().share(package_name) / file_path)
 
 
-def _text(path: Path) -> str:
+def _read_text(path: Path) -> str:
     _check_exists(path)
     try:
         return path.read_text(encoding="utf-8")

@@ -57,7 +57,7 @@ def generate_moveit_rviz_launch(moveit_config: MoveItConfigs) -> LaunchDescripti
 
 
 def generate_setup_assistant_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
-    """Return a launch description that starts the Setup Assistant for the configuration package."""
+    """Return a launch description that starts the Setup Assistant for the package."""
     description = LaunchDescription()
     description.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
     name = "moveit_setup_assistant"

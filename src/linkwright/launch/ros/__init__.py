@@ -7,7 +7,7 @@ from linkwright.launch.ros.components import (
     to_parameters_list,
 )
 from linkwright.launch.ros.containers import ComposableNodeContainer, LoadComposableNodes
-from linkwright.launch.ros.executables import Executable, builtin_packages, executables_of, find_executable
+from linkwright.launch.ros.executables import Executable, builtin_packages, find_executable, find_executables
 from linkwright.launch.ros.lifecycle import LifecycleEventManager, LifecycleNode
 from linkwright.launch.ros.lifecycle_events import (
     ChangeState,
@@ -86,8 +86,8 @@ __all__ = [
     "builtin_packages",
     "evaluate_parameter_dict",
     "evaluate_parameters",
-    "executables_of",
     "find_executable",
+    "find_executables",
     "get_composable_node_load_request",
     "get_node_name_count",
     "is_namespace_absolute",

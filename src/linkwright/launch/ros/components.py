@@ -26,7 +26,12 @@ from linkwright.launch.ros.names import (
     prefix_namespace,
 )
 from linkwright.launch.ros.parameter_lists import normalize_parameters
-from linkwright.launch.ros.parameters import FileSource, NodeParameters, own_parameters, scope_parameters
+from linkwright.launch.ros.parameters import (
+    FileSource,
+    NodeParameters,
+    evaluate_own_parameters,
+    evaluate_scope_parameters,
+)
 from linkwright.launch.ros.parsing import Entities, parse_parameters, parse_remappings
 from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
 
@@ -195,13 +200,13 @@ def get_composable_node_load_request(description: ComposableNode, context: Launc
     request.remap_rules = [f"{source}:={target}" for source, target in rules]
     full_name = f"{(namespace or '').rstrip('/')}/{request.node_name}"
     try:
-        scope = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
-        node_parameters = own_parameters(description.parameters or (), context)
+        scope = evaluate_scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
+        node_parameters = evaluate_own_parameters(description.parameters or (), context)
         parameters = NodeParameters([*scope.sources, *node_parameters.sources])
         request.parameters = _make_parameter_messages(context, full_name, parameters.sources)
         parameters.check(context, full_name if request.node_name else None, description.source_location)
         request.extra_arguments = _make_parameter_messages(
-            context, full_name, own_parameters(description.extra_arguments or (), context).sources
+            context, full_name, evaluate_own_parameters(description.extra_arguments or (), context).sources
         )
     except LinkwrightError as error:
         raise with_location(error, description.source_location) from error
@@ -217,7 +222,7 @@ def to_parameters_list(
     """
     full_name = f"{(namespace or '').rstrip('/')}/{node_name.lstrip('/')}"
     full_name = full_name if full_name.startswith("/") else f"/{full_name}"
-    return _read_parameters(context, full_name, own_parameters(tuple(evaluated_parameters), context).sources)
+    return _read_parameters(context, full_name, evaluate_own_parameters(tuple(evaluated_parameters), context).sources)
 
 
 def _make_parameter_messages(context: LaunchContext, full_name: str, sources: Iterable[Any]) -> list[Any]:
@@ -230,7 +235,7 @@ def _read_parameters(context: LaunchContext, full_name: str, sources: Iterable[A
     parameters: list[Any] = []
     for source in sources:
         if isinstance(source, FileSource):
-            values = _file_values(source, context, full_name)
+            values = _read_file_values(source, context, full_name)
         elif isinstance(source, tuple):
             values = dict([source])
         else:
@@ -241,13 +246,13 @@ def _read_parameters(context: LaunchContext, full_name: str, sources: Iterable[A
     return parameters
 
 
-def _file_values(source: FileSource, context: LaunchContext, full_name: str) -> dict[str, Any]:
+def _read_file_values(source: FileSource, context: LaunchContext, full_name: str) -> dict[str, Any]:
     """Return the values that a parameter file has for a node.
 
     As in launch_ros, values under the node's full name override values under patterns.
     """
     try:
-        rules = source.file.rules(context)
+        rules = source.file.read_rules(context)
     except LinkwrightError as error:
         raise _as_runtime_error(error, source.path) from error
     exact_values = {name: value for pattern, values in rules if pattern == full_name for name, value in values.items()}

@@ -33,12 +33,14 @@ if TYPE_CHECKING:
     from linkwright.packages import PackageFinder
 
 _LOGGER_NAME = "launch_ros.actions.load_composable_nodes"
-_CONFIGURE, _ACTIVATE = 1, 3
+_CONFIGURE_TRANSITION, _ACTIVATE_TRANSITION = 1, 3
 
 
 @expose_action("load_composable_node")
 class LoadComposableNodes(Action):
-    """An action that loads nodes into a container, one after another, as soon as the container is available.
+    """An action that loads nodes into a container as soon as the container is available.
+
+    The nodes are loaded one after another.
 
     Args:
         composable_node_descriptions: the nodes to load.
@@ -88,10 +90,10 @@ class LoadComposableNodes(Action):
             if request is not None:
                 requests.append((description, request))
         if requests:
-            name = self._container_name(context)
+            name = self._evaluate_container_name(context)
             context.session.spawn(self._load_in_sequence(context, name, requests))
 
-    def _container_name(self, context: LaunchContext) -> str:
+    def _evaluate_container_name(self, context: LaunchContext) -> str:
         if isinstance(self.__target_container, ComposableNodeContainer):
             return self.__target_container.node_name
         name = make_namespace_absolute(perform_substitutions(context, self.__target_container))
@@ -109,11 +111,11 @@ class LoadComposableNodes(Action):
                 response = await call_service(context, client, request)
                 if response is None:
                     return
-                self._report(context, container, description, request, response)
+                self._log_response(context, container, description, request, response)
         finally:
             launcher.destroy_client(client)
 
-    def _report(
+    def _log_response(
         self, context: LaunchContext, container: str, description: ComposableNode, request: Any, response: Any
     ) -> None:
         log = context.session.log
@@ -201,8 +203,8 @@ class ComposableNodeContainer(Node):
         """
         return super()._may_be_hosted(context, package, executable) and self._find_installed_container(context) is None
 
-    def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
-        return self.__real or super()._executable(finder, package, executable)
+    def _find_executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
+        return self.__real or super()._find_executable(finder, package, executable)
 
     def _find_installed_container(self, context: LaunchContext) -> Executable | None:
         from linkwright.nodes.options import COMPONENTS
@@ -259,13 +261,13 @@ def _monitor_lifecycle_node(context: LaunchContext, description: ComposableLifec
     from linkwright.launch.model.actions import EmitEvent
     from linkwright.launch.ros.lifecycle_events import OnStateTransition
 
-    def change(transition_id: int) -> ChangeState:
+    def request_transition(transition_id: int) -> ChangeState:
         return ChangeState(lifecycle_node_matcher=events.matches_action(description), transition_id=transition_id)
 
-    activation = EmitEvent(event=change(_ACTIVATE))
+    activation = EmitEvent(event=request_transition(_ACTIVATE_TRANSITION))
     context.register_event_handler(
         OnStateTransition(
             target_lifecycle_node=description, goal_state="inactive", entities=[activation], handle_once=True
         )
     )
-    context.emit_event_sync(change(_CONFIGURE))
+    context.emit_event_sync(request_transition(_CONFIGURE_TRANSITION))

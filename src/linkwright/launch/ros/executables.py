@@ -25,7 +25,7 @@ from linkwright.diagnostics import (
     phrase,
 )
 from linkwright.hosting.plans import VIEWER, opens_page
-from linkwright.hosting.rqt_programs import PANEL_PROGRAMS, instead_of_program
+from linkwright.hosting.rqt_programs import PANEL_PROGRAMS, find_replacement
 from linkwright.launch.errors.exceptions import as_ros_error
 from linkwright.launch.errors.unavailable import mark_unavailable
 from linkwright.packages import PackageFinder, PackageNotFoundError, install_prefix, is_installed, is_substitute
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 # The readers of sources and scripts are imported only where they are used. A launch of Linkwright's own nodes does
 # not need them.
 
-BUILT_IN = "built into Linkwright"
+BUILT_IN_TEXT = "built into Linkwright"
 
 
 class Origin(Enum):
@@ -83,7 +83,7 @@ class Executable:
         return [*interpreter_command, str(self.path)] if interpreter_command else python_command([str(self.path)])
 
     def __str__(self) -> str:
-        return BUILT_IN if self.origin is Origin.LINKWRIGHT else str(self.path or self.entry_point)
+        return BUILT_IN_TEXT if self.origin is Origin.LINKWRIGHT else str(self.path or self.entry_point)
 
 
 def is_hosted(package: str | None, executable: str) -> bool:
@@ -110,7 +110,7 @@ def builtin_packages() -> set[str]:
     return {package for package, _ in hosted_executables()}
 
 
-def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]:
+def find_executables(finder: PackageFinder, package: str) -> dict[str, Executable]:
     """Return the programs of a package, by name.
 
     If several programs have the same name, Linkwright's takes precedence, then the installed one, then the one in
@@ -136,21 +136,21 @@ def executables_of(finder: PackageFinder, package: str) -> dict[str, Executable]
         }
         for name, path in programs.scripts.items():
             executables[name] = Executable(package, name, Origin.SOURCE, path)
-    executables.update((executable.name, executable) for executable in _installed_executables(package, share))
+    executables.update((executable.name, executable) for executable in _find_installed_executables(package, share))
     return dict(sorted({**executables, **own_executables}.items()))
 
 
 def find_installed_executable(finder: PackageFinder, package: str, name: str) -> Executable | None:
     """Return an installed program of a package, or None if there is none.
 
-    Unlike `executables_of`, this function does not prefer Linkwright's own programs.
+    Unlike `find_executables`, this function does not prefer Linkwright's own programs.
     """
     share = finder.find(package)
     return (
         None
         if share is None
         else next(
-            (executable for executable in _installed_executables(package, share) if executable.name == name), None
+            (executable for executable in _find_installed_executables(package, share) if executable.name == name), None
         )
     )
 
@@ -165,7 +165,7 @@ def find_executable(finder: PackageFinder, package: str, name: str) -> Executabl
             launch_ros raises one. Errors about third-party programs are marked, see `mark_unavailable`.
     """
     try:
-        executables = executables_of(finder, package)
+        executables = find_executables(finder, package)
     except PackageNotFoundError as error:
         raise _missing_package_error(finder, package, name, error) from error
     executable = executables.get(name)
@@ -176,7 +176,7 @@ def find_executable(finder: PackageFinder, package: str, name: str) -> Executabl
     return executable
 
 
-def _installed_executables(package: str, share: Path) -> Iterable[Executable]:
+def _find_installed_executables(package: str, share: Path) -> Iterable[Executable]:
     folder = install_prefix(share) / "lib" / package
     for parent, folders, files in os.walk(folder):
         folders[:] = sorted(folder for folder in folders if not folder.startswith(".") and folder != "__pycache__")
@@ -247,7 +247,7 @@ def _missing_package_error(
     finder: PackageFinder, package: str, name: str, error: PackageNotFoundError
 ) -> LinkwrightError:
     own_packages, workspace_packages = builtin_packages(), finder.packages()
-    instead = instead_of_program(package)
+    instead = find_replacement(package)
     hint = did_you_mean(package, (*own_packages, *workspace_packages)) or error.diagnostics[0].hint
     message = phrase("package '{package}' of node executable '{name}' was not found", package=package, name=name)
     if instead is not None:
@@ -263,12 +263,12 @@ def _missing_package_error(
 
 
 def _missing_executable_error(
-    finder: PackageFinder, package: str, name: str, present: dict[str, Executable]
+    finder: PackageFinder, package: str, name: str, executables: dict[str, Executable]
 ) -> LinkwrightError:
     share = finder.find(package)
     message = phrase("package '{package}' has no executable '{name}'", package=package, name=name)
     notes: tuple[Note, ...] = ()
-    hint = did_you_mean(name, present)
+    hint = did_you_mean(name, executables)
     runs_without_ros = share is None or is_substitute(share)
     if runs_without_ros:
         message = phrase(
@@ -286,9 +286,9 @@ def _missing_executable_error(
             ),
         )
     if hint is None:
-        hint = phrase("the package has {names}", names=joined(present)) if present else _NO_EXECUTABLES
+        hint = phrase("the package has {names}", names=joined(executables)) if executables else _NO_EXECUTABLES
     error = _lookup_error(message, notes, hint)
-    return mark_unavailable(error) if runs_without_ros and not is_misspelled(name, present) else error
+    return mark_unavailable(error) if runs_without_ros and not is_misspelled(name, executables) else error
 
 
 def _missing_in_sources_error(package: str, name: str, share: Path) -> LinkwrightError:

@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from linkwright.launch.model.context import LaunchContext
     from linkwright.launch.model.markup.entity import Entity, Parser
 
-_CONFIGURE, _ACTIVATE = 1, 3
-_POLL_S = 0.2
+_CONFIGURE_TRANSITION, _ACTIVATE_TRANSITION = 1, 3
+_POLL_INTERVAL_S = 0.2
 _QUEUE_DEPTH = 10
 
 
@@ -101,8 +101,8 @@ async def call_service(context: LaunchContext, client: Any, request: Any) -> Any
     future = client.call_async(request)
     while not future.done():
         if context.is_shutdown:
-            awaited = "service response" if client.service_is_ready() else "service"
-            text = f"Abandoning wait for the '{client.srv_name}' {awaited}, due to shutdown."
+            missing_part = "service response" if client.service_is_ready() else "service"
+            text = f"Abandoning wait for the '{client.srv_name}' {missing_part}, due to shutdown."
             context.session.log.write_warning("launch_ros", text)
             client.remove_pending_request(future)
             return None
@@ -120,7 +120,7 @@ async def _wait_briefly(future: Any) -> None:
             wake_up.set_result(None)
 
     future.add_done_callback(lambda _: loop.call_soon_threadsafe(wake))
-    handle = loop.call_later(_POLL_S, wake)
+    handle = loop.call_later(_POLL_INTERVAL_S, wake)
     try:
         await wake_up
     finally:
@@ -199,16 +199,16 @@ def autostart_actions(action: Any) -> list[Any]:
         transition_id: EmitEvent(
             event=ChangeState(lifecycle_node_matcher=events.matches_action(action), transition_id=transition_id)
         )
-        for transition_id in (_CONFIGURE, _ACTIVATE)
+        for transition_id in (_CONFIGURE_TRANSITION, _ACTIVATE_TRANSITION)
     }
     on_configured = OnStateTransition(
         target_lifecycle_node=action,
         start_state="configuring",
         goal_state="inactive",
-        entities=[change_actions[_ACTIVATE]],
+        entities=[change_actions[_ACTIVATE_TRANSITION]],
     )
     return [
-        RegisterEventHandler(OnProcessStart(target_action=action, on_start=[change_actions[_CONFIGURE]])),
+        RegisterEventHandler(OnProcessStart(target_action=action, on_start=[change_actions[_CONFIGURE_TRANSITION]])),
         RegisterEventHandler(on_configured),
     ]
 

@@ -78,7 +78,7 @@ class LifecycleTransition(Action):
             LinkwrightError: LAUNCH138, a transition ID is not a number, or the state after the transition is unknown.
         """
         names = [perform_substitutions(context, name) for name in self._names]
-        transition_ids = [self._number(perform_substitutions(context, text)) for text in self._ids]
+        transition_ids = [self._parse_transition_id(perform_substitutions(context, text)) for text in self._ids]
         register_actions: list[Action] = []
         request_actions: list[Action] = []
         for name in names:
@@ -102,7 +102,7 @@ class LifecycleTransition(Action):
             context.register_event_handler(error_handler)
         return [*register_actions, *request_actions]
 
-    def _number(self, text: str) -> int:
+    def _parse_transition_id(self, text: str) -> int:
         try:
             transition_id = int(text)
         except ValueError:
@@ -113,7 +113,7 @@ class LifecycleTransition(Action):
         return transition_id
 
     def _create_end_action(self, name: str, reason: str | None = None) -> OpaqueFunction:
-        def end(context: LaunchContext) -> None:
+        def end_sequence(context: LaunchContext) -> None:
             if reason is not None:
                 text = f"Stopping transitions for {name} because '{reason}'"
                 context.session.log.write_info("launch_ros.actions.lifecycle_transition", text)
@@ -121,22 +121,22 @@ class LifecycleTransition(Action):
                 with suppress(ValueError):  # raised if the handler was unregistered after its event
                     context.unregister_event_handler(handler)
 
-        return OpaqueFunction(function=end)
+        return OpaqueFunction(function=end_sequence)
 
 
 def _create_request(name: str, transition_id: int) -> EmitEvent:
     return EmitEvent(event=ChangeState(lifecycle_node_matcher=matches_node_name(name), transition_id=transition_id))
 
 
-def _transition_matcher(name: str, start: str | None, goal: str) -> Any:
+def _transition_matcher(name: str, start_state: str | None, goal_state: str) -> Any:
     full_name = name if name.startswith("/") else f"/{name}"
 
     def matches(event: Event) -> bool:
         return (
             isinstance(event, StateTransition)
             and event.action.node_name == full_name
-            and event.goal_state == goal
-            and start in (None, event.start_state)
+            and event.goal_state == goal_state
+            and start_state in (None, event.start_state)
         )
 
     return matches

@@ -18,7 +18,7 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 
-_COUNTS_NAME = "unique_ros_node_names"
+_COUNTS_GLOBAL = "unique_ros_node_names"
 
 
 def is_root_namespace(ns: str) -> bool:
@@ -84,10 +84,10 @@ def record_node_start(context: Any, node_name: str) -> str | None:
 
 def _node_name_counts(context: Any) -> defaultdict[str, int]:
     try:
-        counts: defaultdict[str, int] = getattr(context.locals, _COUNTS_NAME)
+        counts: defaultdict[str, int] = getattr(context.locals, _COUNTS_GLOBAL)
     except AttributeError:
         counts = defaultdict(int)
-        context.extend_globals({_COUNTS_NAME: counts})
+        context.extend_globals({_COUNTS_GLOBAL: counts})
     return counts
 
 

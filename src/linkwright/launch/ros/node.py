@@ -36,7 +36,7 @@ from linkwright.launch.ros.names import (
 )
 from linkwright.launch.ros.node_extensions import node_extensions
 from linkwright.launch.ros.parameter_lists import normalize_parameters
-from linkwright.launch.ros.parameters import NodeParameters, own_parameters, scope_parameters
+from linkwright.launch.ros.parameters import NodeParameters, evaluate_own_parameters, evaluate_scope_parameters
 from linkwright.launch.ros.parsing import parse_node
 from linkwright.launch.ros.scoping import NAMESPACE, PARAMETERS, REMAPPINGS
 from linkwright.launch.ros.skipped_nodes import record_skipped_node, without_skipped_nodes
@@ -93,7 +93,7 @@ class Node(ExecuteProcess):
     __node_parameters: NodeParameters
     __scope_count: int
     __scratch_folder: Path | None
-    __parameter_words: list[tuple[str, bool]] | None
+    __all_parameter_arguments: list[tuple[str, bool]] | None
 
     def __init__(
         self,
@@ -125,9 +125,9 @@ class Node(ExecuteProcess):
         self.__remappings = [] if remappings is None else list(normalize_remap_rules(remappings))
         self.__arguments = arguments
         self.__ros_arguments = ros_arguments
-        self.__fixed_words = len(self.cmd)
+        self.__fixed_word_count = len(self.cmd)
         self.__own_environment = kwargs.get("env"), kwargs.get("additional_env")
-        self.__forget()
+        self.__reset_results()
         self.hosted = False
 
     @classmethod
@@ -197,18 +197,18 @@ class Node(ExecuteProcess):
         """
         if context.is_shutdown:
             return None
-        package = None if self.__package is None else _text(context, self.__package)
-        executable = _text(context, self.__node_executable)
+        package = None if self.__package is None else _evaluate_text(context, self.__package)
+        executable = _evaluate_text(context, self.__node_executable)
         self.hosted = is_hosted(package, executable) and self._may_be_hosted(context, package, executable)
-        self.__forget()
+        self.__reset_results()
         self._perform_substitutions(context)
         extension_arguments = self.__run_extensions(context)
         if self.hosted:
             assert package is not None
-            process_name = self._host(context, package, executable, extension_arguments)
+            process_name = self._start_hosted(context, package, executable, extension_arguments)
         else:
             self.cmd.extend(normalize_to_list_of_substitutions(argument) for argument in extension_arguments)
-            process_name = self._run(context, package, executable)
+            process_name = self._start_process(context, package, executable)
         if self.is_node_name_fully_specified():
             warning = record_node_start(context, self.node_name)
             if warning is not None:
@@ -235,7 +235,10 @@ class Node(ExecuteProcess):
         return added_arguments
 
     def viewer_config(self, context: LaunchContext) -> Callable[[], RvizConfig] | None:
-        """Return a factory of the viewer's configuration, or None if the command line determines it."""
+        """Return a factory of the viewer's configuration.
+
+        The result is None if the command line determines the configuration.
+        """
         return None
 
     def _perform_substitutions(self, context: LaunchContext) -> None:
@@ -246,17 +249,17 @@ class Node(ExecuteProcess):
             self._expand_names(context)
         except LinkwrightError as error:
             raise with_location(error, self.source_location) from error
-        scoped_parameters = scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
-        node_parameters = own_parameters(self.__parameters, context).without_missing_files(
+        scoped_parameters = evaluate_scope_parameters(context.launch_configurations.get(PARAMETERS) or (), context)
+        node_parameters = evaluate_own_parameters(self.__parameters, context).without_missing_files(
             context, self.source_location
         )
         self.__node_parameters = NodeParameters([*scoped_parameters.sources, *node_parameters.sources])
         try:
-            self.__node_parameters.check(context, self.__name_in_files(context), self.source_location)
+            self.__node_parameters.check(context, self.__find_name_in_files(context), self.source_location)
         except LinkwrightError as error:
             raise with_location(error, self.source_location) from error
         self.__scope_count = len(scoped_parameters.sources)
-        self.__scratch_folder = _scratch_folder(context)
+        self.__scratch_folder = _find_scratch_folder(context)
         rules = [
             *(context.launch_configurations.get(REMAPPINGS) or ()),
             *evaluate_rules(context, self.__remappings),
@@ -266,12 +269,12 @@ class Node(ExecuteProcess):
             self.__extend_command()
         self.__substitutions_performed = True
 
-    def __forget(self) -> None:
+    def __reset_results(self) -> None:
         """Reset the results of an earlier execution of the action.
 
         The action is executed again when the user has fixed a robot description that it needs.
         """
-        del self.cmd[self.__fixed_words :]
+        del self.cmd[self.__fixed_word_count :]
         self.__substitutions_performed = False
         self.__expanded_node_name = self.UNSPECIFIED_NODE_NAME
         self.__expanded_node_namespace = self.UNSPECIFIED_NODE_NAMESPACE
@@ -279,14 +282,14 @@ class Node(ExecuteProcess):
         self.__node_parameters = NodeParameters()
         self.__scope_count = 0
         self.__scratch_folder = None
-        self.__parameter_words = None
+        self.__all_parameter_arguments = None
         self.__expanded_remappings = None
 
     def _expand_names(self, context: LaunchContext) -> None:
         """Evaluate the name and namespace."""
         if self.__node_name is not None:
-            self.__expanded_node_name = check_name(_text(context, self.__node_name))
-        own_namespace = None if self.__node_namespace is None else _text(context, self.__node_namespace)
+            self.__expanded_node_name = check_name(_evaluate_text(context, self.__node_name))
+        own_namespace = None if self.__node_namespace is None else _evaluate_text(context, self.__node_namespace)
         namespace = make_namespace_absolute(
             prefix_namespace(context.launch_configurations.get(NAMESPACE), own_namespace)
         )
@@ -294,13 +297,13 @@ class Node(ExecuteProcess):
             self.__expanded_node_namespace = check_namespace(namespace)
         self.__final_node_name = f"{self.__expanded_node_namespace.rstrip('/')}/{self.__expanded_node_name}"
 
-    def __name_in_files(self, context: LaunchContext) -> str | None:
+    def __find_name_in_files(self, context: LaunchContext) -> str | None:
         """Return the full name with which parameter files refer to the node, or None.
 
         The result is None if the program sets the name, because the name is then unknown. It is also None for a
         container, because the files may apply to other nodes in the container.
         """
-        package = None if self.__package is None else _text(context, self.__package)
+        package = None if self.__package is None else _evaluate_text(context, self.__package)
         if self.__node_name is None or package == _CONTAINER_PACKAGE:
             return None
         namespace = self.__expanded_node_namespace
@@ -314,14 +317,14 @@ class Node(ExecuteProcess):
         Files with the values of dictionaries are written on first access. As in launch_ros, parameters of the scope
         are included only if they are files.
         """
-        if self.__parameter_words is None:
+        if self.__all_parameter_arguments is None:
             folder = self.__scratch_folder if self.__scratch_folder and self.__scratch_folder.is_dir() else None
             node = self.node_name if self.is_node_name_fully_specified() else None
-            self.__parameter_words = self.__node_parameters.arguments(node, folder)
-        scope_arguments = self.__parameter_words[: self.__scope_count]
+            self.__all_parameter_arguments = self.__node_parameters.create_arguments(node, folder)
+        scope_arguments = self.__all_parameter_arguments[: self.__scope_count]
         return [
             *(argument for argument in scope_arguments if argument[1]),
-            *self.__parameter_words[self.__scope_count :],
+            *self.__all_parameter_arguments[self.__scope_count :],
         ]
 
     def __extend_command(self) -> None:
@@ -329,7 +332,7 @@ class Node(ExecuteProcess):
         if self.__expanded_node_namespace != self.UNSPECIFIED_NODE_NAMESPACE:
             arguments += ["-r", _DeferredArgument("ns", lambda: f"__ns:={self.__expanded_node_namespace}")]
         _ = self.__expanded_parameter_arguments
-        for argument, is_file in self.__parameter_words or ():
+        for argument, is_file in self.__all_parameter_arguments or ():
             arguments += ["--params-file" if is_file else "-p", argument]
         for source, target in self.__expanded_remappings or ():
             arguments += ["-r", f"{source}:={target}"]
@@ -343,24 +346,26 @@ class Node(ExecuteProcess):
             return True
         if context.session.isolates_nodes or self.__own_environment[0] is not None:
             return False
-        names = (_text(context, name) for name in self.__own_environment[1] or ())
+        names = (_evaluate_text(context, name) for name in self.__own_environment[1] or ())
         if any(_PROCESS_VARIABLES.match(name) for name in names):
             return False
         return not self.process_description.prefix_arguments(context, [executable])
 
-    def _host(self, context: LaunchContext, package: str, executable: str, added: Sequence[Any]) -> str:
-        from linkwright.nodes.options import default_name
+    def _start_hosted(
+        self, context: LaunchContext, package: str, executable: str, extension_arguments: Sequence[Any]
+    ) -> str:
+        from linkwright.nodes.options import find_default_name
 
         session = context.session
         namespace = self.__expanded_node_namespace
         namespace = "/" if namespace == self.UNSPECIFIED_NODE_NAMESPACE else namespace
         name = None if self.__node_name is None else self.__expanded_node_name
-        arguments = [_text(context, argument) for argument in _as_list(self.__arguments)]
+        arguments = [_evaluate_text(context, argument) for argument in _as_list(self.__arguments)]
         if self.__ros_arguments is not None:
-            arguments += ["--ros-args", *(_text(context, word) for word in _as_list(self.__ros_arguments))]
-        arguments += [_text(context, word) for word in added]
+            arguments += ["--ros-args", *(_evaluate_text(context, word) for word in _as_list(self.__ros_arguments))]
+        arguments += [_evaluate_text(context, word) for word in extension_arguments]
         base_name = self.process_description.base_name(context, [executable])
-        own_name = name or default_name(package, executable)
+        own_name = name or find_default_name(package, executable)
         full_name = f"{namespace.rstrip('/')}/{own_name or executable}"
         if (
             name is None and own_name is not None and package != _CONTAINER_PACKAGE
@@ -377,10 +382,10 @@ class Node(ExecuteProcess):
             self.__expanded_remappings or [],
             arguments,
             self.viewer_config(context),
-            destinations=self._destinations(context),
-            respawns=self._respawn_max_retries if self._convert_value(context, "respawn", self._respawn) else 0,
+            destinations=self._evaluate_destinations(context),
+            respawns=self._respawn_max_retries if self._evaluate_boolean(context, "respawn", self._respawn) else 0,
             respawn_delay=self._respawn_delay or 0.0,
-            parameters_of_others=self.__node_parameters.rules(context),
+            parameters_of_others=self.__node_parameters.read_rules(context),
         )
         self.process_description.final_name = plan.process_name
         self.process_description.final_cmd = plan.details["cmd"]
@@ -389,33 +394,33 @@ class Node(ExecuteProcess):
 
     # --- in a separate process --------------------------------------------------------------------------------
 
-    def _run(self, context: LaunchContext, package: str | None, executable: str) -> str:
+    def _start_process(self, context: LaunchContext, package: str | None, executable: str) -> str:
         arguments = [perform_substitutions(context, argument) for argument in self.cmd[1:]]
-        return self._start(context, [*self._program_command(context, package, executable), *arguments])
+        return self._start(context, [*self._find_program_command(context, package, executable), *arguments])
 
-    def _program_command(self, context: LaunchContext, package: str | None, executable: str) -> list[str]:
+    def _find_program_command(self, context: LaunchContext, package: str | None, executable: str) -> list[str]:
         if package is None:
             return [executable]
         try:
-            return self._executable(context.session.finder, package, executable).command
+            return self._find_executable(context.session.finder, package, executable).command
         except LinkwrightError as error:
             if is_unavailable(error):
                 record_skipped_node(context, executable if self.__node_name is None else self.__expanded_node_name)
             raise with_location(error, self.source_location) from error
 
-    def _executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
+    def _find_executable(self, finder: PackageFinder, package: str, executable: str) -> Executable:
         return find_executable(finder, package, executable)
 
-    def _plan(self, context: LaunchContext, command: list[str]) -> ProcessPlan:
-        plan = super()._plan(context, command)
+    def _create_plan(self, context: LaunchContext, command: list[str]) -> ProcessPlan:
+        plan = super()._create_plan(context, command)
         if self.process_description.name is not None:
             return plan
         # The executable's name is the process's name, even if an interpreter runs it or the node is one of
         # Linkwright's.
-        return replace(plan, name=Path(_text(context, self.__node_executable)).name)
+        return replace(plan, name=Path(_evaluate_text(context, self.__node_executable)).name)
 
-    def _environment(self, context: LaunchContext) -> dict[str, str]:
-        return workspace_environment(context.session.finder, super()._environment(context))
+    def _evaluate_environment(self, context: LaunchContext) -> dict[str, str]:
+        return workspace_environment(context.session.finder, super()._evaluate_environment(context))
 
 
 class _DeferredArgument(Substitution):
@@ -449,11 +454,11 @@ def _as_list(values: Any) -> list[Any]:
     return [values] if isinstance(values, (str, Substitution)) or not isinstance(values, Iterable) else list(values)
 
 
-def _text(context: LaunchContext, value: Any) -> str:
+def _evaluate_text(context: LaunchContext, value: Any) -> str:
     return perform_substitutions(context, normalize_to_list_of_substitutions(value))
 
 
-def _scratch_folder(context: LaunchContext) -> Path | None:
+def _find_scratch_folder(context: LaunchContext) -> Path | None:
     try:
         return context.session.scratch_folder
     except (AttributeError, RuntimeError):  # no launch is running in this context

@@ -94,7 +94,7 @@ class ParameterFile(Located):
             self._evaluated_path = self._write_evaluated_copy(path, context) if self._allows_substitutions else path
         return self._evaluated_path
 
-    def rules(self, context: LaunchContext) -> ParameterRules:
+    def read_rules(self, context: LaunchContext) -> ParameterRules:
         """Return the parameter rules of the file.
 
         Raises:
@@ -104,7 +104,7 @@ class ParameterFile(Located):
 
         if self._rules is None:
             path = self.evaluate(context)
-            source = self._source or _read(path, self.source_location)
+            source = self._source or _read_source(path, self.source_location)
             try:
                 self._rules = parse_parameters(source)
                 self._rules.files.append(str(path))
@@ -128,7 +128,7 @@ class ParameterFile(Located):
 
         from linkwright.launch.ros.parameter_files import substitute_text
 
-        source = _read(path, self.source_location)
+        source = _read_source(path, self.source_location)
         try:
             text = substitute_text(source, context)
         except LinkwrightError as error:
@@ -162,7 +162,7 @@ class ParameterFile(Located):
             raise with_location(located_error, self.source_location) from error
 
 
-def _read(path: Path, location: SourceLocation | None) -> SourceText:
+def _read_source(path: Path, location: SourceLocation | None) -> SourceText:
     name = source_of(str(path))
     shown_path = display_path(name)
     try:

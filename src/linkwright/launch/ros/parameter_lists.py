@@ -21,7 +21,7 @@ from linkwright.launch.model.substitution import (
     perform_substitutions,
 )
 from linkwright.launch.ros.parameter_files import ParameterFile
-from linkwright.launch.ros.parameter_values import Parameter, ParameterValue, parse_yaml_value, uniform
+from linkwright.launch.ros.parameter_values import Parameter, ParameterValue, parse_yaml_value, to_uniform_tuple
 
 Name = tuple[Substitution, ...]
 NormalizedDict = dict[Name, Any]
@@ -227,7 +227,7 @@ def _evaluate_value(context: LaunchContext, name: str, value: Any) -> Any:
             ),
             None,
         )
-        return uniform([_evaluate_text(context, name, item) for item in value], name, location)
+        return to_uniform_tuple([_evaluate_text(context, name, item) for item in value], name, location)
     return value
 
 

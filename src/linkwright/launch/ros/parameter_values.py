@@ -170,7 +170,7 @@ def parse_yaml_value(text: str, name: str, location: SourceLocation | None) -> A
     if isinstance(value, (*SCALARS, bytes)):
         return value
     if isinstance(value, list):
-        return uniform(value, name, location)
+        return to_uniform_tuple(value, name, location)
     message = phrase(
         "parameter '{name}' has no type; read as YAML, its value is {kind}, which is not a parameter type",
         name=name,
@@ -180,7 +180,7 @@ def parse_yaml_value(text: str, name: str, location: SourceLocation | None) -> A
     raise error_at(location, "LAUNCH132", message, STRING_HINT, ros_error=ros_error)
 
 
-def uniform(items: Sequence[Any], name: str, location: SourceLocation | None) -> tuple[Any, ...]:
+def to_uniform_tuple(items: Sequence[Any], name: str, location: SourceLocation | None) -> tuple[Any, ...]:
     """Return the items of a list parameter as a tuple, if they all have the same valid type.
 
     Raises:

@@ -87,7 +87,7 @@ class NodeParameters:
         for source in self.sources:
             if not isinstance(source, FileSource):
                 continue
-            rules = source.file.rules(context)
+            rules = source.file.read_rules(context)
             all_findings = [finding for _, finding in rules.skipped_findings]
             for finding in rules.skipped_findings_for(node) if node else all_findings:
                 context.warn(finding)
@@ -113,14 +113,14 @@ class NodeParameters:
         values_by_name: dict[str, Any] = {}
         for source in self.sources:
             if isinstance(source, FileSource):
-                values_by_name.update(source.file.rules(context).for_node(node))
+                values_by_name.update(source.file.read_rules(context).for_node(node))
             elif isinstance(source, tuple):
                 values_by_name[source[0]] = source[1]
             else:
                 values_by_name.update(source)
         return {name: list(value) if isinstance(value, tuple) else value for name, value in values_by_name.items()}
 
-    def rules(self, context: LaunchContext) -> ParameterRules:
+    def read_rules(self, context: LaunchContext) -> ParameterRules:
         """Return the rules in the files, including the rules for other nodes of the process.
 
         Args:
@@ -132,10 +132,10 @@ class NodeParameters:
         rules = ParameterRules()
         for source in self.sources:
             if isinstance(source, FileSource):
-                rules.add(source.file.rules(context))
+                rules.add(source.file.read_rules(context))
         return rules
 
-    def arguments(self, node: str | None, folder: Path | None) -> list[tuple[str, bool]]:
+    def create_arguments(self, node: str | None, folder: Path | None) -> list[tuple[str, bool]]:
         """Return the command-line arguments that pass the parameters to another process.
 
         Args:
@@ -150,7 +150,7 @@ class NodeParameters:
             if isinstance(source, FileSource):
                 arguments.append((str(source.path), True))
             elif isinstance(source, tuple):
-                arguments.append((rule(*source), False))
+                arguments.append((format_rule(*source), False))
             else:
                 arguments.append((write_parameter_file(source, node, folder), True))
         return arguments
@@ -164,7 +164,7 @@ def _warn(
     context.warn(Diagnostic(code, message, span, severity=Severity.WARNING, hint=hint, source=source))
 
 
-def scope_parameters(items: Iterable[Any], context: LaunchContext) -> NodeParameters:
+def evaluate_scope_parameters(items: Iterable[Any], context: LaunchContext) -> NodeParameters:
     """Return the parameters that `SetParameter` and `SetParametersFromFile` set in a scope."""
     node_parameters = NodeParameters()
     for item in items:
@@ -176,7 +176,7 @@ def scope_parameters(items: Iterable[Any], context: LaunchContext) -> NodeParame
     return node_parameters
 
 
-def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodeParameters:
+def evaluate_own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodeParameters:
     """Evaluate the normalized parameters of a node, and return them.
 
     See `normalize_parameters`.
@@ -196,7 +196,7 @@ def own_parameters(normalized: Sequence[Any], context: LaunchContext) -> NodePar
     return node_parameters
 
 
-def rule(name: str, value: Any) -> str:
+def format_rule(name: str, value: Any) -> str:
     """Return a parameter for the command line in the form ``name:=value``.
 
     The value is written as YAML.

@@ -74,7 +74,9 @@ class _YamlFileSubstitution(Substitution):
 
 
 class RewrittenYaml(_YamlFileSubstitution):
-    """A substitution that copies a parameter file with new values, and evaluates to the copy's path.
+    """A substitution that evaluates to the path of a copy of a parameter file.
+
+    The copy has new values.
 
     Args:
         source_file: the file to copy.
@@ -111,9 +113,9 @@ class RewrittenYaml(_YamlFileSubstitution):
         import yaml
 
         content = self._load(context)
-        values = {name: self._convert(text) for name, text in _evaluate_rewrites(context, self._values).items()}
+        values = {name: self._convert_text(text) for name, text in _evaluate_rewrites(context, self._values).items()}
         content = _replace_texts(content, _evaluate_rewrites(context, self._text_rewrites))
-        present_paths = {".".join(path) for path in _value_paths(content)}
+        present_paths = {".".join(path) for path in _find_value_paths(content)}
         content = _replace_values(content, values, ())
         for path, value in values.items():
             if path not in present_paths and _PARAMETERS_KEY in path.split("."):
@@ -122,7 +124,7 @@ class RewrittenYaml(_YamlFileSubstitution):
         root = "" if self._root_key is None else perform_substitutions(context, self._root_key)
         return _write_file(context, yaml.dump({root: content} if root else content), ".yaml")
 
-    def _convert(self, text: str) -> Any:
+    def _convert_text(self, text: str) -> Any:
         if text.lower() in ("true", "false"):
             return text.lower() == "true"
         if self._convert_types:
@@ -134,7 +136,7 @@ class RewrittenYaml(_YamlFileSubstitution):
         return text
 
 
-def _value_paths(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
+def _find_value_paths(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str, ...]]:
     """Yield the path of each value in nested dictionaries and lists.
 
     A path is a tuple of keys and indices.
@@ -147,14 +149,14 @@ def _value_paths(content: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[str
         yield path
         return
     for key, value in items:
-        yield from _value_paths(value, (*path, str(key)))
+        yield from _find_value_paths(value, (*path, str(key)))
 
 
 def _replace_values(content: Any, values: Mapping[str, Any], path: tuple[str, ...]) -> Any:
     """Return nested dictionaries and lists with some values replaced.
 
     Args:
-        content: the content.
+        content: the nested dictionaries and lists of a YAML file.
         values: maps a key, or a full path with dots, to a new value.
         path: the keys that lead to the content.
     """
@@ -235,7 +237,10 @@ class ReplaceString(_YamlFileSubstitution):
 
 
 class HasNodeParams(_YamlFileSubstitution):
-    """A substitution that evaluates to ``True`` or ``False``: whether a parameter file has parameters for a node."""
+    """A substitution that states whether a parameter file has parameters for a node.
+
+    It evaluates to ``True`` or ``False``.
+    """
 
     def __init__(self, source_file: SomeSubstitutionsType, node_name: str) -> None:
         super().__init__(source_file)
@@ -252,7 +257,7 @@ class HasNodeParams(_YamlFileSubstitution):
 
 
 class LaunchConfigAsBool(Substitution):
-    """A substitution that evaluates to ``True`` or ``False``, depending on the value of a launch configuration.
+    """A substitution that evaluates a launch configuration to ``True`` or ``False``.
 
     The values ``true``, ``on``, ``1`` and ``yes`` count as true.
     """

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import phrase
-from linkwright.hosting.launch_log import log_base
+from linkwright.hosting.launch_log import find_log_base
 from linkwright.launch.errors.locations import error_at
 from linkwright.launch.model.action import Action
 from linkwright.launch.model.context import LaunchContext
@@ -227,7 +227,7 @@ class SetROSLogDir(Action):
         Raises:
             LinkwrightError: LAUNCH136, both the new and the previous folder are relative.
         """
-        folder = Path(log_base(context.environment), perform_substitutions(context, self._log_dir))
+        folder = Path(find_log_base(context.environment), perform_substitutions(context, self._log_dir))
         if not folder.is_absolute():
             message = phrase("the log folder '{folder}' is not an absolute path", folder=folder)
             raise error_at(

@@ -20,7 +20,7 @@ def record_skipped_node(context: LaunchContext, name: str) -> None:
 
 
 def without_skipped_nodes(context: LaunchContext, package: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """Return the parameters of a node, without skipped nodes if the node is a lifecycle manager.
+    """Return the parameters of a node, in which a lifecycle manager has no skipped nodes.
 
     A warning is logged for each removed node.
     """

@@ -30,7 +30,7 @@ class _LaunchRosSubstitution(DeclaredSubstitution):
     """The base class of the substitutions of ``launch_ros``."""
 
     @classmethod
-    def wrong_count(cls, expected: str, argument_count: int) -> Exception:
+    def wrong_count_error(cls, expected: str, argument_count: int) -> Exception:
         """Return an AttributeError for a wrong number of arguments, as ROS does."""
         return AttributeError(f"{cls.__name__} substitution expects {expected}, but got {argument_count}")
 
@@ -93,13 +93,13 @@ class ExecutableInPackage(
         package = perform_substitutions(context, self.package)
         executable = perform_substitutions(context, self.executable)
         try:
-            return str(_executable_path(package, executable))
+            return str(_find_executable_path(package, executable))
         except LinkwrightError as error:
             raise with_location(error, self.source_location) from error
 
 
 class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Parameter(name={name})"):
-    """A substitution that evaluates to the value that `SetParameter` set for a parameter in the scope."""
+    """A substitution that evaluates to the value of a parameter set by `SetParameter`."""
 
     name: Texts = Texts()
     default: AnyOptionalTexts = AnyOptionalTexts(default=None, kw_only=True, read=normalize_default)
@@ -127,7 +127,7 @@ class ParameterSubstitution(_LaunchRosSubstitution, tag="param", shown="Paramete
         return str(scope_values[name])
 
 
-def _executable_path(package: str, executable: str) -> Path:
+def _find_executable_path(package: str, executable: str) -> Path:
     program = find_executable(current_finder(), package, executable)
     if program.path is None:
         from linkwright.packages.programs.entry_scripts import script_for_own_node

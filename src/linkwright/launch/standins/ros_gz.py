@@ -24,7 +24,11 @@ from linkwright.launch.ros.parsing import Entities, parse_parameters
 if TYPE_CHECKING:
     from linkwright.launch.model.markup.entity import Entity, Parser
 
-_CONTAINER = {"container_name": "ros_gz_container", "create_own_container": "False", "use_composition": "False"}
+_CONTAINER_DEFAULTS = {
+    "container_name": "ros_gz_container",
+    "create_own_container": "False",
+    "use_composition": "False",
+}
 
 
 class _SingleNodeAction(Action, ABC):
@@ -41,7 +45,7 @@ class _SingleNodeAction(Action, ABC):
         option_values = {name: kwargs.pop(name, default) for name, default in self.TEXTS.items()}
         super().__init__(**kwargs)
         self._texts = {
-            name: normalize_to_list_of_substitutions(text if isinstance(text, (str, list, tuple)) else _text(text))
+            name: normalize_to_list_of_substitutions(text if isinstance(text, (str, list, tuple)) else _to_text(text))
             for name, text in option_values.items()
         }
 
@@ -61,16 +65,16 @@ class _SingleNodeAction(Action, ABC):
     def execute(self, context: LaunchContext) -> list[Any]:
         """Return the action that starts the node, to be visited next."""
         texts = {name: perform_substitutions(context, text) for name, text in self._texts.items()}
-        node = self._node(texts)
+        node = self._create_node(texts)
         node.source_location = self.source_location
         return [node]
 
     @abstractmethod
-    def _node(self, texts: Mapping[str, str]) -> Node:
+    def _create_node(self, texts: Mapping[str, str]) -> Node:
         """Return the action that starts the node, for the evaluated text options."""
 
 
-def _text(value: Any) -> Any:
+def _to_text(value: Any) -> Any:
     return str(value) if isinstance(value, (bool, int, float)) else value
 
 
@@ -82,9 +86,9 @@ class GzServer(_SingleNodeAction):
         kwargs: ``world_sdf_file`` or ``world_sdf_string``. The options for containers have no effect.
     """
 
-    TEXTS: ClassVar[Mapping[str, str]] = {"world_sdf_file": "", "world_sdf_string": "", **_CONTAINER}
+    TEXTS: ClassVar[Mapping[str, str]] = {"world_sdf_file": "", "world_sdf_string": "", **_CONTAINER_DEFAULTS}
 
-    def _node(self, texts: Mapping[str, str]) -> Node:
+    def _create_node(self, texts: Mapping[str, str]) -> Node:
         world = {name: texts[name] for name in ("world_sdf_file", "world_sdf_string") if texts[name]}
         return Node(package="ros_gz_sim", executable="gzserver", output="screen", parameters=[world])
 
@@ -104,7 +108,7 @@ class GzSpawnModel(_SingleNodeAction):
         **dict.fromkeys(("x", "y", "z", "roll", "pitch", "yaw"), "0.0"),
     }
 
-    def _node(self, texts: Mapping[str, str]) -> Node:
+    def _create_node(self, texts: Mapping[str, str]) -> Node:
         option_flags = {
             "world": "world",
             "file": "file",
@@ -138,7 +142,7 @@ class RosGzBridge(_SingleNodeAction):
         "log_level": "info",
         "use_respawn": "False",
         "bridge_params": "",
-        **_CONTAINER,
+        **_CONTAINER_DEFAULTS,
     }
 
     def __init__(
@@ -161,7 +165,7 @@ class RosGzBridge(_SingleNodeAction):
             kwargs["extra_bridge_params"] = parse_parameters(tags, parser)
         return cls, kwargs
 
-    def _node(self, texts: Mapping[str, str]) -> Node:
+    def _create_node(self, texts: Mapping[str, str]) -> Node:
         return Node(
             package="ros_gz_bridge",
             executable="parameter_bridge",

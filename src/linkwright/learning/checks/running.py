@@ -28,7 +28,7 @@ from linkwright.learning.checks.results import CheckResult, StepResult
 from linkwright.learning.checks.work import Work
 from linkwright.learning.course import CHECKS_FILE, Step, load_lesson
 from linkwright.learning.local_text import LocalText
-from linkwright.process.forked import ForkServer, Program, start_fresh
+from linkwright.process.forked import ForkServer, Program, start_new_process
 from linkwright.process.patience import PatientClock
 from linkwright.process.processors import usable_processors
 
@@ -211,7 +211,7 @@ class CheckProcess:
         self._stop_at_failure = stop_at_failure
         self._time_limit = time_limit
         self._niceness = niceness
-        self._start = partial(start_fresh, PYTHON) if server is None else server.start
+        self._start = partial(start_new_process, PYTHON) if server is None else server.start
         self._process: Program | None = None
         self._is_canceled = False
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, did_you_mean, phrase, quoted_names
-from linkwright.diagnostics.lookalikes import plain_text
+from linkwright.diagnostics.lookalikes import to_ascii_text
 from linkwright.learning.checks.findings import describe_error
 from linkwright.learning.checks.installed import expect_valid_setup
 from linkwright.learning.checks.not_yet import NotYet
@@ -95,7 +95,7 @@ class Work(FileFolder):
         if self._answer is None or not self._answer.strip():
             raise NotYet(phrase("the step has no answer yet"))
         try:
-            return float(plain_text(self._answer.strip()).replace(",", "."))
+            return float(to_ascii_text(self._answer.strip()).replace(",", "."))
         except ValueError:
             raise NotYet(
                 phrase(

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
 from linkwright.diagnostics import LinkwrightError, Phrase, counted, foreign, phrase
-from linkwright.diagnostics.render import printable
+from linkwright.diagnostics.render import make_printable
 from linkwright.learning.course import Course
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.progress import PROGRESS_FILE, Progress, read_progress
@@ -55,7 +55,7 @@ def find_submissions(folders: Sequence[Path], course: Course) -> list[Submission
     submissions = []
     for folder in absolute_folders:
         name = folder.name if counts[folder.name] == 1 else f"{folder.parent.name}/{folder.name}"
-        submissions.append(_open_submission(printable(name), folder, course))
+        submissions.append(_open_submission(make_printable(name), folder, course))
     return submissions
 
 
@@ -130,7 +130,7 @@ def _read_claims(submission: Submission, course: Course) -> None:
     if progress is None:
         submission.note(phrase("there is no {file}, so there are no answers", file=PROGRESS_FILE))
     elif PurePosixPath(progress.course.replace("\\", "/")).name != course.id:
-        name = printable(progress.course)
+        name = make_printable(progress.course)
         submission.note(phrase("{file} belongs to the course '{name}' and was not used", file=PROGRESS_FILE, name=name))
     else:
         submission.progress = progress
@@ -216,4 +216,4 @@ def _entries(folder: Path, left_out: Counter[str]) -> Iterator[tuple[Path, os.st
 
 def _readable(name: str) -> str:
     """Return the name of a file as text that can be printed and written as UTF-8."""
-    return printable(os.fsencode(name).decode("utf-8", "replace"))
+    return make_printable(os.fsencode(name).decode("utf-8", "replace"))

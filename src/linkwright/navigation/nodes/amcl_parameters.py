@@ -16,7 +16,7 @@ from linkwright.navigation.localization.motion_models import (
 from linkwright.navigation.localization.particle_filter import FilterSettings
 from linkwright.navigation.localization.sensor_models import MODELS, BeamSkipping, LaserSettings
 from linkwright.nodes.parameter_tables import declare_table
-from linkwright.nodes.settings import bad_value
+from linkwright.nodes.settings import invalid_value_error
 
 _MOTION_MODELS: dict[str, MotionModel] = {
     "differential": move_differentially,
@@ -121,11 +121,11 @@ def read_parameters(node: Node) -> AmclSettings:
     for name in (*_POSITIVE, *_NON_NEGATIVE):
         value: Any = node.get_parameter(name).value
         if value < 0 or (name in _POSITIVE and value == 0):
-            raise bad_value(name, value, node.get_name())
+            raise invalid_value_error(name, value, node.get_name())
     if parameters.laser_model_type not in MODELS:
-        raise bad_value("laser_model_type", parameters.laser_model_type, node.get_name(), MODELS)
+        raise invalid_value_error("laser_model_type", parameters.laser_model_type, node.get_name(), MODELS)
     if particles.min_particles > particles.max_particles:
-        raise bad_value("min_particles", particles.min_particles, node.get_name())
+        raise invalid_value_error("min_particles", particles.min_particles, node.get_name())
     beam_skipping = None
     if parameters.do_beamskip and parameters.laser_model_type == "likelihood_field_prob":
         beam_skipping = BeamSkipping(

@@ -37,8 +37,8 @@ from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.plugins import get_plugin_type, get_string_list
 from linkwright.nodes.frame_poses import FramePoses
-from linkwright.nodes.settings import bad_value, positive
-from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
+from linkwright.nodes.settings import check_positive, invalid_value_error
+from linkwright.nodes.velocity_topic import VelocityTopic, choose_velocity_types
 
 _DEPTH = 10
 _COSTMAP_TIMEOUT_S = 5.0
@@ -116,14 +116,14 @@ class BehaviorNode(ManagedNode):
         Raises:
             LinkwrightError: a parameter is missing or has an invalid value.
         """
-        self._period = 1.0 / positive(self, "cycle_frequency", self._value("cycle_frequency"))
+        self._period = 1.0 / check_positive(self, "cycle_frequency", self._value("cycle_frequency"))
         costmap_type, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
         self.register(
             self.create_subscription(costmap_type, self._topic_name("costmap"), self._on_costmap, LATCHED_QOS)
         )
         self.register(self.create_subscription(polygon, self._topic_name("footprint"), self._on_footprint, _DEPTH))
         teleop_topic = self._value("cmd_vel_teleop")
-        for message_type in velocity_types(self, teleop_topic, self._publishes_stamped):
+        for message_type in choose_velocity_types(self, teleop_topic, self._publishes_stamped):
             self.register(self.create_subscription(message_type, teleop_topic, self._on_teleop_velocity, _DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._publishes_stamped)
         for plugin in get_string_list(self, "behavior_plugins", list(_BEHAVIOR_TYPES)):
@@ -132,7 +132,7 @@ class BehaviorNode(ManagedNode):
             )
             behavior_by_class = {class_name: (name, action) for name, (class_name, action) in _BEHAVIOR_TYPES.items()}
             if plugin_type not in behavior_by_class:
-                raise bad_value(f"{plugin}.plugin", plugin_type, self.get_name(), list(behavior_by_class))
+                raise invalid_value_error(f"{plugin}.plugin", plugin_type, self.get_name(), list(behavior_by_class))
             name, action = behavior_by_class[plugin_type]
             self.get_logger().info(f"Creating behavior plugin {plugin} of type {plugin_type}")
             self._servers[plugin] = self.register(self._create_server(plugin, name, action))

@@ -27,7 +27,7 @@ from linkwright.navigation.nodes.collision_zones import Zone
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.plugins import get_string_list
 from linkwright.nodes.parameter_tables import ParameterTable
-from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
+from linkwright.nodes.velocity_topic import VelocityTopic, choose_velocity_types
 
 _DEPTH = 10
 _SILENT_SENSOR_ZONE = "invalid source"
@@ -96,7 +96,7 @@ class MonitorNode(ManagedNode):
             self._state = self.register(self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _DEPTH))
         self._output = VelocityTopic(self, parameters.cmd_vel_out_topic, self._is_stamped)
         topic = parameters.cmd_vel_in_topic
-        for message_type in velocity_types(self, topic, self._is_stamped):
+        for message_type in choose_velocity_types(self, topic, self._is_stamped):
             commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
             callback = commander.tracking_callback(self._on_velocity)
             subscription: Subscription[Any] = self.create_subscription(message_type, topic, callback, _DEPTH)

@@ -17,7 +17,7 @@ from linkwright.graph.transforms.core import BufferCore
 from linkwright.messages import get_message
 from linkwright.navigation.behaviors.zones import Points
 from linkwright.navigation.nodes.plugins import get_or_declare
-from linkwright.nodes.settings import bad_value
+from linkwright.nodes.settings import invalid_value_error
 from linkwright.perception.nodes.laser_filters import to_scan
 from linkwright.perception.nodes.pointcloud_to_laserscan import read_points
 from linkwright.perception.scans.projection import points_from_scan
@@ -50,7 +50,7 @@ class Source:
         }
         kind = str(self._value("type", "scan"))
         if kind not in readers:
-            raise bad_value(f"{name}.type", kind, node.get_name(), list(readers))
+            raise invalid_value_error(f"{name}.type", kind, node.get_name(), list(readers))
         message, self._read = readers[kind]
         if kind == "pointcloud":
             self._height_range = float(self._value("min_height", 0.05)), float(self._value("max_height", 0.5))

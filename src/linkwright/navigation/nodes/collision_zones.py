@@ -15,7 +15,7 @@ from linkwright.navigation.behaviors.zones import Circle, Points, Polygon, Shape
 from linkwright.navigation.costmaps.footprints import BadFootprintError, Footprint, parse_footprint
 from linkwright.navigation.following.follower import Velocity
 from linkwright.navigation.nodes.plugins import get_or_declare, get_string_list
-from linkwright.nodes.settings import bad_value
+from linkwright.nodes.settings import invalid_value_error
 
 _ACTIONS = {
     "stop": ZoneAction.STOP,
@@ -54,7 +54,7 @@ class Zone:
         self._sources = get_string_list(node, f"{name}.sources_names", [])
         kind = str(self._value("type", "polygon"))
         if kind not in _TYPES:
-            raise bad_value(f"{name}.type", kind, node.get_name(), _TYPES)
+            raise invalid_value_error(f"{name}.type", kind, node.get_name(), _TYPES)
         if kind == "velocity_polygon":
             self._ranges = [
                 self._read_range(polygon) for polygon in get_string_list(node, f"{name}.velocity_polygons", [])
@@ -113,7 +113,7 @@ class Zone:
     def _read_rule(self) -> ZoneRule:
         action_name = str(self._value("action_type", ""))
         if action_name not in _ACTIONS:
-            raise bad_value(f"{self.name}.action_type", action_name, self._node.get_name(), list(_ACTIONS))
+            raise invalid_value_error(f"{self.name}.action_type", action_name, self._node.get_name(), list(_ACTIONS))
         min_points = int(self._value("min_points", 4))
         if f"{self.name}.max_points" in self._node.undeclared_overrides():  # Humble's parameter.
             min_points = int(self._value("max_points", 3)) + 1
@@ -126,13 +126,13 @@ class Zone:
         values = {name: float(self._value(name, getattr(default_rule, name))) for name in names}
         for name in ("time_before_collision", "simulation_time_step"):
             if values.get(name, 1.0) <= 0.0:
-                raise bad_value(f"{self.name}.{name}", values[name], self._node.get_name())
+                raise invalid_value_error(f"{self.name}.{name}", values[name], self._node.get_name())
         return ZoneRule(default_rule.action, min_points, **values)
 
     def _read_range(self, polygon: str) -> SpeedRange:
         corners = self._corners(f"{polygon}.points")
         if corners is None:
-            raise bad_value(f"{self.name}.{polygon}.points", "", self._node.get_name())
+            raise invalid_value_error(f"{self.name}.{polygon}.points", "", self._node.get_name())
         bounds = [float(self._value(f"{polygon}.{item}", 0.0)) for item in _RANGE_PARAMETERS]
         direction = None
         if self._value("holonomic", False):
@@ -152,7 +152,7 @@ class Zone:
                 return
             topic = str(self._value("polygon_sub_topic", ""))
             if not topic:
-                raise bad_value(f"{self.name}.radius", radius, self._node.get_name())
+                raise invalid_value_error(f"{self.name}.radius", radius, self._node.get_name())
             number = get_message("std_msgs/msg/Float32")
             self._register(self._node.create_subscription(number, topic, self._on_radius, _DEPTH))
             return
@@ -165,7 +165,7 @@ class Zone:
         else:
             topic = str(self._value("polygon_sub_topic", ""))
             if not topic:
-                raise bad_value(f"{self.name}.points", "", self._node.get_name())
+                raise invalid_value_error(f"{self.name}.points", "", self._node.get_name())
             self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
 
     def _corners(self, name: str) -> Footprint | None:
@@ -185,7 +185,7 @@ class Zone:
         try:
             return parse_footprint(value)
         except BadFootprintError:
-            raise bad_value(full_name, value, self._node.get_name()) from None
+            raise invalid_value_error(full_name, value, self._node.get_name()) from None
 
     # --- topics ------------------------------------------------------------------------------------------------------
 

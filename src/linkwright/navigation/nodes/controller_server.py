@@ -34,7 +34,7 @@ from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import poses_from_messages
 from linkwright.navigation.nodes.plugins import get_string_list
 from linkwright.nodes.options import NodeOptions
-from linkwright.nodes.settings import positive
+from linkwright.nodes.settings import check_positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 
 _DEPTH = 10
@@ -88,7 +88,7 @@ class ControllerNode(ManagedNode):
         Raises:
             LinkwrightError: a parameter is missing or has an invalid value.
         """
-        self._frequency = positive(self, "controller_frequency", self._value("controller_frequency"))
+        self._frequency = check_positive(self, "controller_frequency", self._value("controller_frequency"))
         humble_checkers = [self._humble_progress_checker] if self._humble_progress_checker else None
         self._progress = {
             checker: make_progress_checker(self, checker)

@@ -45,7 +45,7 @@ from linkwright.navigation.nodes.managed import ManagedNode
 from linkwright.navigation.nodes.plugins import declare_unused, get_string_list
 from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.parameter_tables import ParameterTable
-from linkwright.nodes.settings import bad_value
+from linkwright.nodes.settings import invalid_value_error
 
 _WARNING_PERIOD_S = 5.0
 _MIN_CORNERS = 3
@@ -263,7 +263,7 @@ class CostmapNode(ManagedNode):
     def _positive_value(self, name: str) -> float:
         value: float = getattr(self._parameter_values, name)
         if not value > 0:
-            raise bad_value(name, value, self.get_name())
+            raise invalid_value_error(name, value, self.get_name())
         return float(value)
 
     def _read_footprint(self) -> Footprint:
@@ -274,7 +274,7 @@ class CostmapNode(ManagedNode):
             return parse_footprint(text)
         except BadFootprintError as error:
             self.get_logger().error(str(error))
-            raise bad_value("footprint", text, self.get_name()) from None
+            raise invalid_value_error("footprint", text, self.get_name()) from None
 
     def _ignore_filters(self) -> None:
         for name in self._filters:

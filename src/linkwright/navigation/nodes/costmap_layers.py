@@ -26,7 +26,7 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.costmap_sources import MapTopic, PointsTopic, RangeTopic, SensorTopic
 from linkwright.navigation.nodes.plugins import declare_unused, get_or_declare, get_string_list
 from linkwright.nodes.parameter_tables import declare_table
-from linkwright.nodes.settings import bad_value
+from linkwright.nodes.settings import invalid_value_error
 
 DEFAULT_LAYERS: Final = {
     "static_layer": "nav2_costmap_2d::StaticLayer",
@@ -181,7 +181,7 @@ def _make_voxel_layer(context: LayerContext, name: str) -> Layer:
     voxels: Voxels = declare_table(context.node, Voxels, name)
     if not 0 < voxels.z_voxels <= MAX_LEVELS:
         valid_counts = [str(count) for count in range(1, MAX_LEVELS + 1)]
-        raise bad_value(f"{name}.z_voxels", voxels.z_voxels, context.node.get_name(), valid_counts)
+        raise invalid_value_error(f"{name}.z_voxels", voxels.z_voxels, context.node.get_name(), valid_counts)
     return VoxelLayer(
         _make_buffers(context, name),
         declare_table(context.node, HeightRange, name),
@@ -198,7 +198,7 @@ def _make_buffers(context: LayerContext, name: str) -> list[ObservationBuffer]:
         prefix = f"{name}.{source}"
         kind = context.value(f"{prefix}.data_type", "LaserScan")
         if kind not in _DATA_TYPES:
-            raise bad_value(f"{prefix}.data_type", kind, context.node.get_name(), _DATA_TYPES)
+            raise invalid_value_error(f"{prefix}.data_type", kind, context.node.get_name(), _DATA_TYPES)
         buffer = ObservationBuffer(declare_table(context.node, Source, prefix))
         topic = PointsTopic(
             context.node,

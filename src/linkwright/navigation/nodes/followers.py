@@ -26,7 +26,7 @@ from linkwright.navigation.following.rotation_shim import RotationShim, Rotation
 from linkwright.navigation.following.sampling import SamplingFollower, SamplingParameters, VelocityLimits
 from linkwright.navigation.nodes.plugins import declare_unused, get_or_declare, get_plugin_type
 from linkwright.nodes.parameter_tables import declare_table
-from linkwright.nodes.settings import bad_value
+from linkwright.nodes.settings import invalid_value_error
 
 DWB, MPPI = "dwb_core/DWBLocalPlanner", "nav2_mppi_controller/MPPIController"
 PURE_PURSUIT = "nav2_regulated_pure_pursuit_controller/RegulatedPurePursuitController"
@@ -151,7 +151,7 @@ def make_progress_checker(node: Node, plugin: str) -> ProgressChecker:
 
 def _make_checker(node: Node, plugin: str, kind: str, factories: dict[str, Callable[[], Any]]) -> Any:
     if kind not in factories:
-        raise bad_value(f"{plugin}.plugin", kind, node.get_name(), list(factories))
+        raise invalid_value_error(f"{plugin}.plugin", kind, node.get_name(), list(factories))
     return factories[kind]()
 
 

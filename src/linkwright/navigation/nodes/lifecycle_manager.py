@@ -17,10 +17,10 @@ from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCON
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_service
 from linkwright.navigation.nodes.bond import TIMEOUT, Bond
-from linkwright.nodes.answers import wait_for_future, wait_for_service
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import bad_value, log_unknown
+from linkwright.nodes.service_waits import wait_for_future, wait_for_service
+from linkwright.nodes.settings import invalid_value_error, log_unknown_parameters
 
 _CHECK_PERIOD_S = 1.0
 
@@ -155,7 +155,7 @@ class LifecycleManager(SingleNode):
         self._logger.info("Creating")
         with handle_start_errors(self._node):
             self._declare_parameters()
-            log_unknown(self._node)
+            log_unknown_parameters(self._node)
         self._state = _State.UNCONFIGURED
         self._command_lock = asyncio.Lock()
         self._tasks: set[asyncio.Task[Any]] = set()
@@ -187,7 +187,7 @@ class LifecycleManager(SingleNode):
         self._names: list[str] = list(names or [])
         duplicates = [name for name in self._names if self._names.count(name) > 1]
         if not self._names or duplicates or "" in self._names:
-            raise bad_value("node_names", self._names, node.get_name())
+            raise invalid_value_error("node_names", self._names, node.get_name())
         declare = node.declare_parameter
         self._autostart: bool = declare("autostart", False).value
         self._bond_timeout: float = declare("bond_timeout", TIMEOUT).value

@@ -11,7 +11,7 @@ from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
 from linkwright.graph.lifecycle.states import ACTIVE, LifecycleState, TransitionCallbackReturn
 from linkwright.navigation.nodes.bond import PERIOD, Bond
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node_with_class, handle_start_errors
-from linkwright.nodes.settings import log_unknown
+from linkwright.nodes.settings import log_unknown_parameters
 
 _SUCCESS = TransitionCallbackReturn.SUCCESS
 
@@ -113,7 +113,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
             return TransitionCallbackReturn.FAILURE
         if not self._has_logged_unknown:
             self._has_logged_unknown = True
-            log_unknown(self)
+            log_unknown_parameters(self)
         return super().on_configure(state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:

@@ -17,9 +17,9 @@ from linkwright.navigation.grids.occupancy import BadGridError, grid_from_messag
 from linkwright.navigation.maps.map_files import FREE_THRESH, OCCUPIED_THRESH, MapSaveSettings, save_map
 from linkwright.navigation.maps.map_yaml import MapMode
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.nodes.answers import wait_for_future
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import log_unknown
+from linkwright.nodes.service_waits import wait_for_future
+from linkwright.nodes.settings import log_unknown_parameters
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _USAGE = """Usage:
@@ -162,7 +162,7 @@ class MapSaver(SingleNode):
             return
         with handle_start_errors(self._node):
             saving = _MapReceiver(self._node)
-            log_unknown(self._node)
+            log_unknown_parameters(self._node)
         try:
             option_values = _parse_options(program_arguments)
         except ValueError as error:

@@ -21,7 +21,7 @@ from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallback
 from linkwright.messages import get_message
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.velocity_smoothing import AxisLimits, smooth_velocities
-from linkwright.nodes.velocity_topic import VelocityTopic, velocity_types
+from linkwright.nodes.velocity_topic import VelocityTopic, choose_velocity_types
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
 _DEPTH = 10
@@ -75,7 +75,7 @@ class _ManagedSmoother(ManagedNode):
         is_stamped = self._is_stamped
         self._output = VelocityTopic(self, "cmd_vel_smoothed", is_stamped)
         commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
-        for message_type in velocity_types(self, "cmd_vel", is_stamped):
+        for message_type in choose_velocity_types(self, "cmd_vel", is_stamped):
             subscription: Subscription[Any] = self.create_subscription(
                 message_type, "cmd_vel", commander.tracking_callback(self._receive), _DEPTH
             )

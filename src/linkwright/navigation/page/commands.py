@@ -16,7 +16,7 @@ from linkwright.diagnostics import Phrase, phrase
 from linkwright.graph import ACTION_STATUS_QOS, Client
 from linkwright.messages import get_message, get_service
 from linkwright.navigation.page.goal_outcome import acceptance_time
-from linkwright.nodes.answers import wait_for_future
+from linkwright.nodes.service_waits import wait_for_future
 from linkwright.page.audience import Page
 from linkwright.page.protocol.navigation import (
     CommandNavigation,

@@ -31,7 +31,7 @@ from linkwright.graph import (
 from linkwright.graph.qos.compatibility import fit
 from linkwright.messages import get_message, interface_names, set_fields
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import arguments_of
+from linkwright.nodes.settings import get_arguments
 
 
 class _Parser(argparse.ArgumentParser):
@@ -51,12 +51,12 @@ class _ExpressionTool(SingleNode, ABC):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._graph = graph
-        self._arguments = self._parser().parse_args(arguments_of(options))
+        self._arguments = self._create_parser().parse_args(get_arguments(options))
         self._node, _ = create_node(graph, options, f"{self.PROGRAM}_{getpid()}")
         self._publisher: Publisher[Any] | None = None
         self._subscription: Subscription[Any] | None = None
         with handle_start_errors(self._node):
-            self._output_class = _message_class(self._arguments.output_type)
+            self._output_class = _import_message_class(self._arguments.output_type)
             self._prepare()
         self._graph_changed = self._node.create_guard_condition(self._subscribe_when_available)
         graph.watch(self._graph_changed.trigger)
@@ -77,7 +77,7 @@ class _ExpressionTool(SingleNode, ABC):
     def _convert(self, message: Any) -> Any:
         """Return the message to publish for an input message."""
 
-    def _parser(self) -> argparse.ArgumentParser:
+    def _create_parser(self) -> argparse.ArgumentParser:
         parser = _Parser(prog=self.PROGRAM, add_help=False)
         for name in ("input", "output_topic", "output_type"):
             parser.add_argument(name)
@@ -95,13 +95,13 @@ class _ExpressionTool(SingleNode, ABC):
     def _subscribe_when_available(self) -> None:
         sources = self._node.get_publishers_info_by_topic(self._arguments.input)
         if self._subscription is None and sources:
-            qos = self._profile([source.qos_profile for source in sources])
+            qos = self._choose_profile([source.qos_profile for source in sources])
             self._publisher = self._node.create_publisher(self._output_class, self._arguments.output_topic, qos)
             self._subscription = self._node.create_subscription(
                 sources[0].topic_type, self._arguments.input, self._receive, qos
             )
 
-    def _profile(self, offers: list[QoSProfile]) -> QoSProfile:
+    def _choose_profile(self, offers: list[QoSProfile]) -> QoSProfile:
         overrides = {
             name: getattr(self._arguments, f"qos_{name}") for name in ("depth", "history", "reliability", "durability")
         }
@@ -118,7 +118,7 @@ class _ExpressionTool(SingleNode, ABC):
     def _receive(self, message: Any) -> None:
         try:
             output = self._convert(message)
-        except Exception as error:  # noqa: BLE001 - the user's expression may raise anything
+        except Exception as error:  # noqa: BLE001 - the user's expression may raise any exception
             self._node.get_logger().error(
                 f"{self._arguments.expression}: {type(error).__name__}: {error}", throttle_duration_sec=5.0
             )
@@ -135,8 +135,8 @@ class Transform(_ExpressionTool):
 
     PROGRAM = "transform"
 
-    def _parser(self) -> argparse.ArgumentParser:
-        parser = super()._parser()
+    def _create_parser(self) -> argparse.ArgumentParser:
+        parser = super()._create_parser()
         parser.add_argument("expression", nargs="?", default="m")
         parser.add_argument("-i", "--import", dest="modules", nargs="+", default=["numpy"])
         parser.add_argument("--field")
@@ -170,8 +170,8 @@ class RelayField(_ExpressionTool):
 
     PROGRAM = "relay_field"
 
-    def _parser(self) -> argparse.ArgumentParser:
-        parser = super()._parser()
+    def _create_parser(self) -> argparse.ArgumentParser:
+        parser = super()._create_parser()
         parser.add_argument("expression")
         return parser
 
@@ -256,7 +256,7 @@ def _compile_expression(text: str, names: Mapping[str, Any]) -> Callable[[Any], 
     return function
 
 
-def _message_class(name: str) -> Any:
+def _import_message_class(name: str) -> Any:
     package, _, type_name = name.replace("/msg/", "/").partition("/")
     return get_message(f"{package}/msg/{type_name}")
 

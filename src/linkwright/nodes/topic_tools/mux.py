@@ -1,4 +1,4 @@
-"""mux and demux of topic_tools: forward one of several inputs, or to one of several outputs."""
+"""mux and demux of topic_tools: forward from one of several topics, or to one of them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from linkwright.graph import Graph, ParameterType
 from linkwright.messages import get_service
 from linkwright.nodes.options import NodeOptions
-from linkwright.nodes.settings import bad_value, declare_required
+from linkwright.nodes.settings import declare_required, invalid_value_error
 from linkwright.nodes.topic_tools.tool import TopicTool
 
 NO_TOPIC = "__none"
@@ -54,7 +54,7 @@ class _Switch(TopicTool):
             declare_required(node, self._CHOICES_PARAMETER, ParameterType.STRING_ARRAY, self.USAGE),
         )
         if not self._topics:
-            raise bad_value(self._CHOICES_PARAMETER, "[]", node.get_name())
+            raise invalid_value_error(self._CHOICES_PARAMETER, "[]", node.get_name())
         selected: str = node.declare_parameter("initial_topic", "").value
         single_topic: str = node.declare_parameter(self._SINGLE_PARAMETER, self._SINGLE_DEFAULT).value
         self._lazy = node.declare_parameter("lazy", False).value

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 from linkwright.graph import Clock, ParameterType, Timer
 from linkwright.messages import serialize
 from linkwright.nodes.options import NodeOptions
-from linkwright.nodes.settings import bad_value, declare_required, options_from_arguments, positive
+from linkwright.nodes.settings import check_positive, declare_required, invalid_value_error, options_from_arguments
 from linkwright.nodes.topic_tools.tool import TopicTool
 
 
@@ -87,13 +87,13 @@ class Throttle(_InputToOutput):
         self._period_ns = 0
         if throttle_type == "messages":
             rate = declare_required(node, "msgs_per_sec", ParameterType.DOUBLE, self.USAGE)
-            self._period_ns = int(1e9 / positive(node, "msgs_per_sec", rate))
+            self._period_ns = int(1e9 / check_positive(node, "msgs_per_sec", rate))
         elif throttle_type == "bytes":
             self._max_bytes: int = declare_required(node, "bytes_per_sec", ParameterType.INTEGER, self.USAGE)
             self._window_ns = int(declare_required(node, "window", ParameterType.DOUBLE, self.USAGE) * 1e9)
             self._sent: deque[tuple[int, int]] = deque()
         else:
-            raise bad_value("throttle_type", throttle_type, node.get_name(), ("messages", "bytes"))
+            raise invalid_value_error("throttle_type", throttle_type, node.get_name(), ("messages", "bytes"))
         self._declare_clock()
         self._last_sent_ns = self._clock.now_ns()
 
@@ -161,7 +161,7 @@ class Delay(_InputToOutput):
     def _declare_parameters(self) -> None:
         self._delay: float = self._node.declare_parameter("delay", 0.0).value
         if not self._delay >= 0.0:
-            raise bad_value("delay", self._delay, self._node.get_name())
+            raise invalid_value_error("delay", self._delay, self._node.get_name())
         self._declare_clock()
 
     def _receive(self, message: Any) -> None:

@@ -17,7 +17,7 @@ from linkwright.graph.endpoints.commander import Commander
 from linkwright.graph.endpoints.drivers import DriverWatch
 from linkwright.graph.qos.compatibility import fit
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import arguments_of, log_unknown, options_from_arguments
+from linkwright.nodes.settings import get_arguments, log_unknown_parameters, options_from_arguments
 from linkwright.nodes.standstill import VELOCITIES, send_stop
 
 
@@ -40,7 +40,7 @@ class TopicTool(SingleNode, ABC):
     _lazy = False
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        options = self._options(options, arguments_of(options))
+        options = self._options(options, get_arguments(options))
         self._graph = graph
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._publisher: Publisher[Any] | None = None
@@ -48,7 +48,7 @@ class TopicTool(SingleNode, ABC):
         self._has_mixed_qos = False
         with handle_start_errors(self._node):
             self._declare()
-            log_unknown(self._node)
+            log_unknown_parameters(self._node)
         self._changed = self._node.create_guard_condition(self._update_endpoints)
         graph.watch(self._changed.trigger)
         self._update_endpoints()
@@ -76,12 +76,12 @@ class TopicTool(SingleNode, ABC):
 
     def _update_endpoints(self) -> None:
         """Create or destroy the publisher and the subscription to match the current graph."""
-        sources = self._sources()
+        sources = self._find_sources()
         if not sources:
             self._stop()
             return
         message_type = sources[0].topic_type
-        qos = self._matching_profile([source.qos_profile for source in sources])
+        qos = self._choose_profile([source.qos_profile for source in sources])
         if not self._matches(self._publisher, self._output, message_type, qos):
             self._stop()
             self._publisher = self._node.create_publisher(message_type, self._output, qos)
@@ -109,10 +109,10 @@ class TopicTool(SingleNode, ABC):
         if self._publisher is not None and self._publisher.type_name in VELOCITIES:
             send_stop(self._node, self._publisher, lost_publisher)
 
-    def _sources(self) -> list[Any]:
+    def _find_sources(self) -> list[Any]:
         return self._node.get_publishers_info_by_topic(self._input)
 
-    def _matching_profile(self, offers: list[QoSProfile]) -> QoSProfile:
+    def _choose_profile(self, offers: list[QoSProfile]) -> QoSProfile:
         qos_match = fit(DEFAULT_QOS, offers)
         if qos_match.mixed and not self._has_mixed_qos:
             for offered_value, fallback_value in qos_match.mixed:

@@ -98,7 +98,7 @@ def other_module_hint(error: ImportError) -> Phrase | None:
     if missing is None:
         return None
     name, module = missing
-    find_providers = getattr(getattr(sys.modules.get(module), "__loader__", None), "providers", None)
+    find_providers = getattr(getattr(sys.modules.get(module), "__loader__", None), "find_providers", None)
     modules = find_providers(name) if find_providers else []
     return phrase("import it from {modules}", modules=quoted_names(modules, " or ")) if modules else None
 

@@ -86,7 +86,7 @@ class OldRobot:
             return
         joint_positions, leaders = self._positions, self._followed_joints
         positions = [joint_positions.get(leaders.get(name, ""), zero) for name, zero in self._zero_positions.items()]
-        batch = self._transforms.conversion_for(tuple(self._zero_positions)).batch(positions, stamp_ns)
+        batch = self._transforms.find_conversion(tuple(self._zero_positions)).batch(positions, stamp_ns)
         self._tf_publisher.publish(TFMessage(batch=batch))
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from linkwright.graph import SENSOR_DATA_QOS, Graph
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import log_unknown, positive
+from linkwright.nodes.settings import check_positive, log_unknown_parameters
 from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.projection import Pinhole, scan_from_depths
 
@@ -39,9 +39,9 @@ class DepthImageToLaserScan(SingleNode):
             self._scan_time: float = node.declare_parameter("scan_time", 0.033).value
             self._range_min: float = node.declare_parameter("range_min", 0.45).value
             self._range_max: float = node.declare_parameter("range_max", 10.0).value
-            self._scan_height = int(positive(node, "scan_height", node.declare_parameter("scan_height", 1).value))
+            self._scan_height = int(check_positive(node, "scan_height", node.declare_parameter("scan_height", 1).value))
             self._frame: str = node.declare_parameter("output_frame", "camera_depth_frame").value
-            log_unknown(node)
+            log_unknown_parameters(node)
         self._publisher = node.create_publisher(get_message("sensor_msgs/msg/LaserScan"), "scan", 10)
         self._subscriptions = LazySubscriptions(
             graph,

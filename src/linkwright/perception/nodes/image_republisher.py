@@ -18,7 +18,7 @@ from linkwright.diagnostics import install_hint
 from linkwright.graph import DEFAULT_QOS, Graph, Node, Publisher, Subscription
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import arguments_of, bad_value, log_unknown, options_from_arguments
+from linkwright.nodes.settings import get_arguments, invalid_value_error, log_unknown_parameters, options_from_arguments
 from linkwright.perception.nodes.image_transports import (
     BadImageError,
     compress_depth,
@@ -61,12 +61,12 @@ class ImageRepublisher(SingleNode):
     WORDS: ClassVar[dict[str, Callable[[str], Any]]] = {"in_transport": str, "out_transport": str}
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        options = options_from_arguments(options, arguments_of(options), self.WORDS, self.USAGE)
+        options = options_from_arguments(options, get_arguments(options), self.WORDS, self.USAGE)
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
             self._in_transport = self._transport("in_transport", "raw")
             out_transport = self._transport("out_transport", "")
-            log_unknown(self._node)
+            log_unknown_parameters(self._node)
         self._publishers: dict[str, Publisher[Any]] = {}
         for transport in [out_transport] if out_transport else _TRANSPORTS:
             topic = transport_topic(self._node, "out", transport)
@@ -81,7 +81,7 @@ class ImageRepublisher(SingleNode):
     def _transport(self, parameter: str, default: str) -> str:
         name: str = self._node.declare_parameter(parameter, default).value
         if name not in (*_TRANSPORTS, default):
-            raise bad_value(parameter, name, self._node.get_name(), _TRANSPORTS)
+            raise invalid_value_error(parameter, name, self._node.get_name(), _TRANSPORTS)
         return name
 
     def _subscribe(self) -> list[Subscription[Any]]:

@@ -24,7 +24,7 @@ from linkwright.geometry.single import (
 from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch, get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import bad_value, log_unknown
+from linkwright.nodes.settings import invalid_value_error, log_unknown_parameters
 from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, WorldFrame, attitude_at_rest
 
 _QUEUE_DEPTH = 5
@@ -58,9 +58,9 @@ class _ImuFilter(SingleNode, ABC):
             standard_deviation: float = declare("orientation_stddev", 0.0).value
             self._covariance = np.eye(3).reshape(9) * standard_deviation**2
             if not self._constant_dt >= 0.0:
-                raise bad_value("constant_dt", self._constant_dt, node.get_name())
+                raise invalid_value_error("constant_dt", self._constant_dt, node.get_name())
             self._filter = self._create_filter()
-            log_unknown(node)
+            log_unknown_parameters(node)
         imu_class, vector_class = get_message("sensor_msgs/msg/Imu"), get_message("geometry_msgs/msg/Vector3Stamped")
         self._publisher = node.create_publisher(imu_class, "imu/data", _QUEUE_DEPTH)
         self._tf_publisher = node.create_publisher(TFMessage, "/tf", TF_QOS) if self._publish_tf else None
@@ -159,7 +159,7 @@ class MadgwickNode(_ImuFilter):
         declare = self._node.declare_parameter
         name: str = declare("world_frame", "enu").value
         if name not in [world.value for world in WorldFrame]:
-            raise bad_value("world_frame", name, self._node.get_name(), [world.value for world in WorldFrame])
+            raise invalid_value_error("world_frame", name, self._node.get_name(), [world.value for world in WorldFrame])
         self._world = WorldFrame(name)
         self._stateless: bool = declare("stateless", False).value
         self._remove_gravity: bool = declare("remove_gravity_vector", False).value
@@ -213,7 +213,7 @@ class ComplementaryNode(_ImuFilter):
         def declare_share(name: str) -> float:
             value: float = declare(name, 0.01).value
             if not 0.0 <= value <= 1.0:
-                raise bad_value(name, value, self._node.get_name())
+                raise invalid_value_error(name, value, self._node.get_name())
             return value
 
         return ComplementaryFilter(

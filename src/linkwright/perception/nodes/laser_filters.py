@@ -21,7 +21,7 @@ from linkwright.loading.extensions import extensions
 from linkwright.messages import Time, get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import log_unknown
+from linkwright.nodes.settings import log_unknown_parameters
 from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.scan import Scan, ScanFilter
 
@@ -51,7 +51,7 @@ class ScanToScanFilterChain(SingleNode):
             self._target_frame: str = node.declare_parameter("tf_message_filter_target_frame", "").value
             node.declare_parameter("tf_message_filter_tolerance", 0.03)  # no effect: scans do not wait
             is_lazy = node.declare_parameter("lazy_subscription", False).value
-            log_unknown(node)
+            log_unknown_parameters(node)
         self._poses = FramePoses(node, "Dropping Scan: Transform unavailable")
         message_class = get_message("sensor_msgs/msg/LaserScan")
         self._publisher = node.create_publisher(message_class, "scan_filtered", _QUEUE_DEPTH)

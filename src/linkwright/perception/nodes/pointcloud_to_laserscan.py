@@ -18,7 +18,7 @@ from linkwright.graph import SENSOR_DATA_QOS, Graph, QoSProfile, ReliabilityPoli
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import log_unknown, positive
+from linkwright.nodes.settings import check_positive, log_unknown_parameters
 from linkwright.perception.nodes.laser_filters import to_scan
 from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.perception.scans.projection import Rays, points_from_scan, scan_from_points
@@ -43,9 +43,9 @@ class _Converter(SingleNode, ABC):
         with handle_start_errors(node):
             self._target_frame: str = node.declare_parameter("target_frame", "").value
             node.declare_parameter("transform_tolerance", 0.01)  # lookups never wait
-            depth = int(positive(node, "queue_size", node.declare_parameter("queue_size", _QUEUE_SIZE).value))
+            depth = int(check_positive(node, "queue_size", node.declare_parameter("queue_size", _QUEUE_SIZE).value))
             input_topic, output_topic = self._declare()
-            log_unknown(node)
+            log_unknown_parameters(node)
         self._poses = FramePoses(node, "Transform failure:")
         self._publisher = node.create_publisher(get_message(self.OUTPUT_TYPE), output_topic, SENSOR_DATA_QOS)
         qos = QoSProfile(depth, ReliabilityPolicy.BEST_EFFORT)
@@ -102,7 +102,7 @@ class PointCloudToLaserScan(_Converter):
             declare_number("max_height", float(np.finfo(np.float64).max)),
         )
         angle_min, angle_max = declare_number("angle_min", -pi), declare_number("angle_max", pi)
-        increment = positive(node, "angle_increment", declare_number("angle_increment", pi / 180.0))
+        increment = check_positive(node, "angle_increment", declare_number("angle_increment", pi / 180.0))
         self._scan_time = declare_number("scan_time", 1.0 / 30.0)
         range_min, range_max = (
             declare_number("range_min", 0.0),

@@ -53,10 +53,10 @@ def robot_scene(models: Pair, old: Description, new: Description, roots: Sequenc
 
 
 def _take_snapshot(models: Pair, old: Description, new: Description) -> Snapshot:
-    from linkwright.viewer.model_snapshot import OldDescription, snapshot_of_model
+    from linkwright.viewer.model_snapshot import OldDescription, take_model_snapshot
 
     library = DescriptionLibrary()
     assert new.robot is not None, "robots are compared"
     old_text = library.store(old, old_description_key(old), models.old.finder)
     compared = OldDescription(models, old_text)
-    return snapshot_of_model(library.store(new), new.robot, library, models.new.finder, compared)
+    return take_model_snapshot(library.store(new), new.robot, library, models.new.finder, compared)

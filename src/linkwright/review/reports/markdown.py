@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 
 from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
-from linkwright.diagnostics.render import printable
+from linkwright.diagnostics.render import make_printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Change, Effect, Figure, Location, Review, Subject
 from linkwright.review.reports.sections import (
@@ -147,7 +147,7 @@ def _details_block(title: str, lines: Iterator[str] | Sequence[str]) -> str:
 def _escape(text: str) -> str:
     """Return a translated text without markup, mentions and references to issues."""
     shown = localized(text) if isinstance(text, Phrase) else text
-    return _SPECIAL.sub(_to_entity, _MENTION.sub("\\1\u200b", printable(" ".join(shown.split()))))
+    return _SPECIAL.sub(_to_entity, _MENTION.sub("\\1\u200b", make_printable(" ".join(shown.split()))))
 
 
 def _to_entity(match: re.Match[str]) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Phrase, counted, phrase
-from linkwright.diagnostics.render import printable
+from linkwright.diagnostics.render import make_printable
 from linkwright.diagnostics.translation import localized
 from linkwright.review.changes import Effect, Review
 from linkwright.review.reports.sections import (
@@ -28,7 +28,7 @@ _NEWLINE = "\N{SYMBOL FOR NEWLINE}"
 
 def as_text(review: Review) -> str:
     """Return the report as text in the user's language, a line for each change."""
-    return "".join(printable(line).replace("\n", _NEWLINE) + "\n" for line in _report_lines(review))
+    return "".join(make_printable(line).replace("\n", _NEWLINE) + "\n" for line in _report_lines(review))
 
 
 def _report_lines(review: Review) -> Iterator[str]:

@@ -20,7 +20,7 @@ from linkwright.graph import LATCHED_QOS, Clock, ClockType, Graph, ParameterType
 from linkwright.graph.endpoints.base import EndpointInfo
 from linkwright.graph.endpoints.commander import Commander
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import bad_value, log_unknown, positive
+from linkwright.nodes.settings import check_positive, invalid_value_error, log_unknown_parameters
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
 from linkwright.speech.engine import EngineOptions, Heard, make_engine
@@ -108,7 +108,7 @@ class VoiceCommander(SingleNode):
         file: str = node.declare_parameter("commands_file", "").value
         self._min_confidence: float = node.declare_parameter("confidence", 0.5).value
         if not 0.0 <= self._min_confidence <= 1.0:
-            raise bad_value("confidence", self._min_confidence, node.get_name())
+            raise invalid_value_error("confidence", self._min_confidence, node.get_name())
         self._create_interfaces: bool = node.declare_parameter("open_listening", False).value
         speed, turn_speed = self._positive("speed", 0.2), self._positive("turn_speed", 0.6)
         silence_timeout, confirmation_timeout = (
@@ -117,7 +117,7 @@ class VoiceCommander(SingleNode):
         )
         stamped: bool | None = node.declare_parameter("stamped", ParameterType.BOOL).value
         frame_id: str = node.declare_parameter("frame_id", "").value
-        log_unknown(node)
+        log_unknown_parameters(node)
 
         commands = read_command_file(Path(file) if file else DEFAULT_FILE)
         publishers: dict[str, Publisher[Any]] = {
@@ -160,8 +160,8 @@ class VoiceCommander(SingleNode):
     def _positive(self, name: str, default: float) -> float:
         value: float = self._node.declare_parameter(name, default).value
         if not isfinite(value):
-            raise bad_value(name, value, self._node.get_name())
-        return positive(self._node, name, value)
+            raise invalid_value_error(name, value, self._node.get_name())
+        return check_positive(self._node, name, value)
 
     def _subscribe_to_texts(self) -> None:
         commander = Commander(self._on_commander_lost)

@@ -155,7 +155,7 @@ class Context:
         """Shut the context down: executors stop spinning, and the nodes leave the graph.
 
         Raises:
-            RclError: the context was not initialized, or was already shut down, by a signal too.
+            RclError: the context was not initialized, or was already shut down, possibly by a signal.
         """
         if not self._initialized:
             raise RclError("Context must be initialized before it can be shutdown")

@@ -1,4 +1,4 @@
-"""The exceptions of rclpy that `linkwright.graph` lacks, and rclpy's names for all exceptions."""
+"""The exceptions of rclpy: those that `linkwright.graph` lacks, and the names of all."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ __all__ = [
     "TimerCancelledError",
     "UnknownROSArgsError",
     "UnsupportedEventTypeError",
-    "name_as_rclpy",
+    "rename_exceptions",
 ]
 
 _EXCEPTION_MODULES = ("rclpy.exceptions", "rclpy.executors", "rclpy._rclpy_pybind11")
@@ -46,7 +46,7 @@ class UnsupportedEventTypeError(RCLError):
     """Raised when the middleware does not support an event type."""
 
 
-def name_as_rclpy() -> None:
+def rename_exceptions() -> None:
     """Rename the exception classes, so that tracebacks and logs show rclpy's names.
 
     For example, they show ``rclpy.exceptions.InvalidNodeNameException``.

@@ -15,7 +15,7 @@ from linkwright.standins.rclpy_api.context import Context, read_ros_arguments
 from linkwright.standins.rclpy_api.defaults import check_initialized, get_default_context
 
 
-def _parameter_overrides(
+def _collect_parameter_overrides(
     node_name: str, namespace: str, remappings: Sequence[tuple[str, str]], command_lines: Sequence[RosArguments]
 ) -> dict[str, Any]:
     """Return the parameter overrides of a node from command lines.
@@ -74,7 +74,7 @@ class Node(GraphNode):
         node_arguments = read_ros_arguments(cli_args or [])
         command_lines = [node_arguments, self.__context.ros_arguments] if use_global_arguments else [node_arguments]
         remappings = [rule for line in command_lines for rule in line.remappings_for(node_name)]
-        overrides = _parameter_overrides(node_name, namespace or "/", remappings, command_lines)
+        overrides = _collect_parameter_overrides(node_name, namespace or "/", remappings, command_lines)
         overrides |= {parameter.name: parameter.value for parameter in parameter_overrides or ()}
         graph = self.__context.graph
         super().__init__(

@@ -135,7 +135,7 @@ def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: floa
     """Run one callback of a node, and wait for it if necessary.
 
     Args:
-        node: the node.
+        node: the node whose callbacks are run.
         executor: the executor; None for the global executor.
         timeout_sec: the maximum time to wait, in seconds; None for no limit.
     """
@@ -154,7 +154,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     """Run the callbacks of a node until its context is shut down.
 
     Args:
-        node: the node.
+        node: the node whose callbacks are run.
         executor: the executor; None for the global executor.
     """
     runner = get_global_executor() if executor is None else executor
@@ -174,7 +174,7 @@ def spin_until_future_complete(
     """Run the callbacks of a node until a future is done.
 
     Args:
-        node: the node.
+        node: the node whose callbacks are run.
         future: the future to wait for.
         executor: the executor; None for the global executor.
         timeout_sec: the maximum time to wait, in seconds; None for no limit.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 class RclpyState:
-    """The default context of a program, its global executor, and the contexts that are not shut down.
+    """The default context, global executor and open contexts of a program.
 
     Args:
         create_graph: creates the graph of a context; None for a graph that joins the network.

@@ -48,8 +48,8 @@ class StandIns:
             return None
         top_level_name, _, submodules = name.partition(".")
         if submodules:
-            return self.interface(name) if submodules.partition(".")[0] in _INTERFACE_KINDS else None
-        if self.has(top_level_name):
+            return self.find_interface_spec(name) if submodules.partition(".")[0] in _INTERFACE_KINDS else None
+        if self.provides(top_level_name):
             if top_level_name not in _ROS_INDEPENDENT and self.has_real_ros():
                 return None
             _make_importable()
@@ -57,9 +57,9 @@ class StandIns:
 
             modules.install()
             return _enable_field_checks(modules.find_spec(name))
-        return self.interface(name) if _may_contain_interfaces(top_level_name) else None
+        return self.find_interface_spec(name) if _may_contain_interfaces(top_level_name) else None
 
-    def interface(self, name: str) -> ModuleSpec | None:
+    def find_interface_spec(self, name: str) -> ModuleSpec | None:
         """Return the spec of an interface module, or None for another module."""
         if self._is_searching or self.has_real_ros():
             return None
@@ -72,7 +72,7 @@ class StandIns:
         finally:
             self._is_searching = False
 
-    def has(self, name: str) -> bool:
+    def provides(self, name: str) -> bool:
         """Return whether a stand-in exists for the name of a top-level module."""
         if self._names is None:
             try:
@@ -106,18 +106,21 @@ class SourceFolders:
             return self._stand_ins.find_spec(name) if self._is_hidden(name) else None
         if kind not in _INTERFACE_KINDS or package not in sys.modules:
             return None
-        return None if getattr(sys.modules[package], "__file__", None) else self._stand_ins.interface(name)
+        return None if getattr(sys.modules[package], "__file__", None) else self._stand_ins.find_interface_spec(name)
 
     def _is_hidden(self, name: str) -> bool:
         """Return whether a folder that is not a Python package hides a stand-in of the same name."""
-        if not self._stand_ins.has(name):
+        if not self._stand_ins.provides(name):
             return False
         spec = PathFinder.find_spec(name)
         return spec is not None and spec.origin is None
 
 
 def _may_contain_interfaces(package: str) -> bool:
-    """Return whether a package may contain interface files, so that Linkwright must be imported."""
+    """Return whether a package may contain interface files.
+
+    If so, Linkwright must be imported.
+    """
     if (
         _is_loaded("linkwright.messages")
         or package.endswith(_INTERFACE_SUFFIXES)
@@ -125,7 +128,9 @@ def _may_contain_interfaces(package: str) -> bool:
     ):
         return True
     shares = [os.path.join(prefix, "share") for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)]
-    return any(os.path.isfile(os.path.join(folder, package, "package.xml")) for folder in (*shares, *_nearby_folders()))
+    return any(
+        os.path.isfile(os.path.join(folder, package, "package.xml")) for folder in (*shares, *_find_nearby_folders())
+    )
 
 
 def _is_loaded(name: str) -> bool:
@@ -137,7 +142,7 @@ def _is_loaded(name: str) -> bool:
     return module is not None and not getattr(module.__spec__, "_initializing", False)
 
 
-def _nearby_folders() -> list[str]:
+def _find_nearby_folders() -> list[str]:
     """Return the folders near the program that may contain packages of its workspace."""
     current = os.getcwd()
     folders = [current, os.path.join(current, "src")]
@@ -210,15 +215,17 @@ def _is_between_messages(traceback: object) -> bool:
 
     Code of the standard library counts as Linkwright's code if Linkwright's code calls it.
     """
-    is_ours, module_count = False, 0
+    is_linkwright_code, module_count = False, 0
     while traceback is not None:
         code = traceback.tb_frame.f_code  # type: ignore[attr-defined]  # as above
         traceback = traceback.tb_next  # type: ignore[attr-defined]
         module_count += code.co_name == "<module>"  # the program itself, and the modules it imports
         if not code.co_filename.endswith(_SIGNALS_PATH):
             is_own_code = code.co_filename.startswith(_LINKWRIGHT_PREFIX)
-            is_ours = is_own_code or (is_ours and code.co_filename.startswith((_STANDARD_LIBRARY_PREFIX, "<")))
-    return module_count > 1 or is_ours
+            is_linkwright_code = is_own_code or (
+                is_linkwright_code and code.co_filename.startswith((_STANDARD_LIBRARY_PREFIX, "<"))
+            )
+    return module_count > 1 or is_linkwright_code
 
 
 _stand_ins = StandIns()

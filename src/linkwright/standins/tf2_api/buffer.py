@@ -9,7 +9,7 @@ from linkwright.standins.tf2_api.interface import BufferInterface
 
 
 class Buffer(transform_waiting.Buffer, BufferInterface):
-    """A transform buffer that can wait for transforms, and transform messages into other frames.
+    """A transform buffer that can wait for transforms and transform messages.
 
     Args:
         cache_time: the duration for which transforms are stored; None for 10 seconds.

@@ -77,7 +77,7 @@ class BufferClient(BufferInterface):
             self._lookup_action.Goal(
                 target_frame=target_frame,
                 source_frame=source_frame,
-                source_time=_time_message(time),
+                source_time=_to_time_message(time),
                 timeout=timeout.to_msg(),
                 advanced=False,
             ),
@@ -102,9 +102,9 @@ class BufferClient(BufferInterface):
             self._lookup_action.Goal(
                 target_frame=target_frame,
                 source_frame=source_frame,
-                source_time=_time_message(source_time),
+                source_time=_to_time_message(source_time),
                 timeout=timeout.to_msg(),
-                target_time=_time_message(target_time),
+                target_time=_to_time_message(target_time),
                 fixed_frame=fixed_frame,
                 advanced=True,
             ),
@@ -138,15 +138,15 @@ class BufferClient(BufferInterface):
     def _request_transform(self, goal: Any, timeout: Duration) -> Any:
         if not self.action_client.server_is_ready():
             raise TimeoutException(phrase("The BufferServer is not ready."))
-        wait_s = (timeout.nanoseconds + self.timeout_padding.nanoseconds) / 1e9
+        timeout_s = (timeout.nanoseconds + self.timeout_padding.nanoseconds) / 1e9
         goal_future = self.action_client.send_goal_async(goal)
-        if not goal_future.wait(wait_s) or goal_future.cancelled():
+        if not goal_future.wait(timeout_s) or goal_future.cancelled():
             raise TimeoutException(_NO_RESPONSE_TEXT.format("in the specified time"))
         goal_handle = goal_future.result()
         if goal_handle is None or not goal_handle.accepted:
             raise TimeoutException(_NO_RESPONSE_TEXT.format("with accepted status"))
         result_future = goal_handle.get_result_async()
-        response = result_future.result() if result_future.wait(wait_s) else None
+        response = result_future.result() if result_future.wait(timeout_s) else None
         if response is None:
             raise TimeoutException(_NO_RESPONSE_TEXT.format("in the specified time"))
         result = response.result
@@ -160,5 +160,5 @@ _NO_RESPONSE_TEXT = phrase(
 )
 
 
-def _time_message(time: Any) -> Any:
+def _to_time_message(time: Any) -> Any:
     return time.to_msg() if isinstance(time, Time) else time

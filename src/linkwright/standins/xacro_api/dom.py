@@ -21,10 +21,10 @@ class DomElement(minidom.Element):
     """A minidom element that records its location.
 
     Attributes:
-        place: the source text and the offset of the element; None if the element was not read from a text.
+        source_position: the source text and the offset of the element; None if the element was not read from a text.
     """
 
-    place: tuple[SourceText, int] | None = None
+    source_position: tuple[SourceText, int] | None = None
 
     def writexml(self, writer: Any, indent: str = "", addindent: str = "", newl: str = "") -> None:
         """Write the element with sorted attributes and without whitespace-only text.
@@ -51,11 +51,11 @@ class DomText(minidom.Text):
     """Character data that is serialized identically in all versions of Python.
 
     Attributes:
-        place: the source text and the offset of the data; None if the data was not read from a text.
+        source_position: the source text and the offset of the data; None if the data was not read from a text.
     """
 
-    __slots__ = ("place",)
-    place: tuple[SourceText, int] | None
+    __slots__ = ("source_position",)
+    source_position: tuple[SourceText, int] | None
 
     def writexml(self, writer: Any, indent: str = "", _addindent: str = "", newl: str = "") -> None:
         """Write the character data, escaped."""
@@ -67,7 +67,7 @@ def escape_text(text: str) -> str:
     return text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;").replace(">", "&gt;")
 
 
-def fill(target: minidom.Document, document: Document) -> None:
+def fill_document(target: minidom.Document, document: Document) -> None:
     """Replace the content of a minidom document with a tree.
 
     A root that is a `DomElement` is reused.
@@ -76,37 +76,37 @@ def fill(target: minidom.Document, document: Document) -> None:
     reusable_root = old_root if isinstance(old_root, DomElement) else None
     for node in list(target.childNodes):
         target.removeChild(node)
-    prolog_nodes = [_dom_leaf(target, node) for node in document.prolog]
+    prolog_nodes = [_create_dom_leaf(target, node) for node in document.prolog]
     target.doctype = None
     if document.doctype is not None:
-        target.doctype = _dom_doctype(document.doctype)
+        target.doctype = _create_dom_doctype(document.doctype)
         prolog_nodes.insert(document.doctype_index, target.doctype)
-    root = _dom_tree(target, document.root, reusable_root)
-    for node in [*prolog_nodes, root, *(_dom_leaf(target, node) for node in document.epilog)]:
+    root = _create_dom_tree(target, document.root, reusable_root)
+    for node in [*prolog_nodes, root, *(_create_dom_leaf(target, node) for node in document.epilog)]:
         target.appendChild(node)
 
 
-def read(document: minidom.Document) -> Document:
+def read_document(document: minidom.Document) -> Document:
     """Convert a minidom document to a tree.
 
-    Nodes that `fill` created keep their locations.
+    Nodes that `fill_document` created keep their locations.
     """
     root = document.documentElement
-    element = _tree_element(root)
+    element = _to_tree_element(root)
     pending: list[tuple[Any, Element]] = [(root, element)]
     while pending:
         original, copy = pending.pop()
         for child in original.childNodes:
             if child.nodeType == minidom.Node.ELEMENT_NODE:
-                child_copy = _tree_element(child)
+                child_copy = _to_tree_element(child)
                 pending.append((child, child_copy))
                 copy.children.append(child_copy)
             else:
-                node = _node(child)
+                node = _to_tree_node(child)
                 if node is not None:
                     copy.children.append(node)
-    place = getattr(root, "place", None)
-    result = Document(element, place[0] if place else None)
+    source_position = getattr(root, "source_position", None)
+    result = Document(element, source_position[0] if source_position else None)
     is_after_root = False
     for child in document.childNodes:
         if child is root:
@@ -114,7 +114,7 @@ def read(document: minidom.Document) -> Document:
         elif child.nodeType == minidom.Node.DOCUMENT_TYPE_NODE:
             result.doctype, result.doctype_index = child.toxml(), len(result.prolog)
         else:
-            node = _node(child)
+            node = _to_tree_node(child)
             if isinstance(node, (Comment, ProcessingInstruction)):
                 (result.epilog if is_after_root else result.prolog).append(node)
     return result
@@ -140,23 +140,23 @@ def is_same(document: minidom.Document, tree: Document) -> bool:
     return True
 
 
-def _dom_tree(owner: minidom.Document, root: Element, reused: DomElement | None) -> DomElement:
-    dom_root, namespaces = _create(owner, root, {}, reused)
+def _create_dom_tree(owner: minidom.Document, root: Element, reused: DomElement | None) -> DomElement:
+    dom_root, namespaces = _create_dom_element(owner, root, {}, reused)
     pending = [(root, dom_root, namespaces)]
     while pending:
         original, dom_parent, namespaces = pending.pop()
         for child in original.children:
             if isinstance(child, Element):
-                dom_child, child_namespaces = _create(owner, child, namespaces, None)
+                dom_child, child_namespaces = _create_dom_element(owner, child, namespaces, None)
                 if child.children:
                     pending.append((child, dom_child, child_namespaces))
                 dom_parent.appendChild(dom_child)
             else:
-                dom_parent.appendChild(_dom_leaf(owner, child))
+                dom_parent.appendChild(_create_dom_leaf(owner, child))
     return dom_root
 
 
-def _create(
+def _create_dom_element(
     owner: minidom.Document, element: Element, namespaces: Mapping[str, str], reused: DomElement | None
 ) -> tuple[DomElement, Mapping[str, str]]:
     """Create the minidom element for an element, without its children.
@@ -179,7 +179,7 @@ def _create(
         for child in list(reused.childNodes):
             reused.removeChild(child)
     node.ownerDocument = owner
-    node.place = (element.source, element.offset) if element.source else None
+    node.source_position = (element.source, element.offset) if element.source else None
     for name, value in element.attributes.items():
         if name in declarations:
             node.setAttributeNS(XMLNS_NAMESPACE, name, value)
@@ -190,12 +190,12 @@ def _create(
     return node, namespaces
 
 
-def _dom_leaf(owner: minidom.Document, node: Node) -> Any:
+def _create_dom_leaf(owner: minidom.Document, node: Node) -> Any:
     if isinstance(node, Text) and not node.cdata:
         dom_text = DomText()
         dom_text.data = node.data
         dom_text.ownerDocument = owner
-        dom_text.place = (node.source, node.offset) if node.source else None
+        dom_text.source_position = (node.source, node.offset) if node.source else None
         return dom_text
     if isinstance(node, Text):
         return owner.createCDATASection(node.data)
@@ -205,7 +205,7 @@ def _dom_leaf(owner: minidom.Document, node: Node) -> Any:
     return owner.createProcessingInstruction(node.target, node.data)
 
 
-def _dom_doctype(text: str) -> minidom.DocumentType:
+def _create_dom_doctype(text: str) -> minidom.DocumentType:
     name = text.split(None, 2)[1].rstrip(">")
     doctype = minidom.parseString(f"{text}<{name}/>").doctype  # noqa: S318 - checked by Linkwright's reader
     assert doctype is not None, "the text is a declaration"
@@ -213,17 +213,17 @@ def _dom_doctype(text: str) -> minidom.DocumentType:
     return doctype
 
 
-def _tree_element(node: Any) -> Element:
+def _to_tree_element(node: Any) -> Element:
     attributes = dict(node.attributes.items())
-    place = getattr(node, "place", None)
-    return Element(node.tagName, attributes, *place) if place else Element(node.tagName, attributes)
+    source_position = getattr(node, "source_position", None)
+    return Element(node.tagName, attributes, *source_position) if source_position else Element(node.tagName, attributes)
 
 
-def _node(node: Any) -> Text | Comment | ProcessingInstruction | None:
+def _to_tree_node(node: Any) -> Text | Comment | ProcessingInstruction | None:
     kind = node.nodeType
     if kind == minidom.Node.TEXT_NODE:
-        place = getattr(node, "place", None)
-        return Text(node.data, *place) if place else Text(node.data)
+        source_position = getattr(node, "source_position", None)
+        return Text(node.data, *source_position) if source_position else Text(node.data)
     if kind == minidom.Node.CDATA_SECTION_NODE:
         return Text(node.data, cdata=True)
     if kind == minidom.Node.COMMENT_NODE:

@@ -85,7 +85,7 @@ class MalformedFileError(MalformedError, DescriptionError):
 
 
 def translate_error(error: LinkwrightError, call: XacroCall | None) -> LinkwrightError:
-    """Convert an error of the engine to an exception that programs written for ``xacro`` expect.
+    """Convert an error of the engine to an exception of the module ``xacro``.
 
     Args:
         error: the error of the engine.

@@ -32,23 +32,23 @@ def eval_text(text: str, symbols: Mapping[str, Any] | None) -> Any:
     Raises:
         XacroException: the string cannot be evaluated.
     """
-    session = _session()
-    return _with_xacro_errors(lambda: session.evaluate(text, _create_scope(session, symbols)))
+    session = _create_session()
+    return _call_with_xacro_errors(lambda: session.evaluate(text, _create_scope(session, symbols)))
 
 
 def safe_eval(expr: str, globals: Mapping[str, Any] | None, locals: Mapping[str, Any] | None = None) -> Any:
-    """Evaluate an expression with the names that are available in descriptions. See `eval_text`.
+    """Evaluate an expression with the names of descriptions. See `eval_text`.
 
     Raises:
         XacroException: the expression cannot be evaluated, or is not allowed.
     """
     from linkwright.xacro.expressions.expression import compile_expression
 
-    session = _session()
+    session = _create_session()
     scope = _create_scope(session, globals)
     if locals is not None:
         scope = Scope(scope, session, _SymbolView(locals, session))
-    return _with_xacro_errors(lambda: compile_expression(expr).evaluate(scope))
+    return _call_with_xacro_errors(lambda: compile_expression(expr).evaluate(scope))
 
 
 def eval_extension(s: str) -> str:
@@ -57,8 +57,8 @@ def eval_extension(s: str) -> str:
     Raises:
         XacroException: the substitution cannot be evaluated.
     """
-    session = _session()
-    return _with_xacro_errors(lambda: substitute(s.removeprefix("$(").removesuffix(")"), session))
+    session = _create_session()
+    return _call_with_xacro_errors(lambda: substitute(s.removeprefix("$(").removesuffix(")"), session))
 
 
 def load_yaml(filename: str) -> Any:
@@ -69,9 +69,9 @@ def load_yaml(filename: str) -> Any:
     Raises:
         XacroException: there is no such file, or the file is not YAML.
     """
-    session = _session()
+    session = _create_session()
     STATE.all_includes.append(abs_filename_spec(filename))
-    return YamlListWrapper.wrap(_with_xacro_errors(lambda: session.load_yaml(filename)))
+    return YamlListWrapper.wrap(_call_with_xacro_errors(lambda: session.load_yaml(filename)))
 
 
 def dotify(mapping: Any = (), **items: Any) -> YamlDictWrapper:
@@ -107,7 +107,7 @@ def is_valid_name(name: str) -> bool:
 
 def create_global_symbols() -> dict[str, Any]:
     """Return the names that xacro provides to expressions, with their values."""
-    return dict(_session().globals.values)
+    return dict(_create_session().globals.values)
 
 
 class ConstructUnits(enum.Enum):
@@ -179,16 +179,16 @@ def _create_scope(session: Session, symbols: Mapping[str, Any] | None) -> Scope:
     return Scope(session.globals, session, _SymbolView({} if symbols is None else symbols, session))
 
 
-def _session() -> Session:
+def _create_session() -> Session:
     file = abs_filename_spec("text")
-    return Inputs(file, STATE.arguments, root_dir=_root_folder()).session()
+    return Inputs(file, STATE.arguments, root_dir=_find_root_folder()).session()
 
 
-def _root_folder() -> str:
+def _find_root_folder() -> str:
     return "" if str(STATE.root_dir) == "." else str(STATE.root_dir)
 
 
-def _with_xacro_errors(evaluate: Callable[[], _Result]) -> _Result:
+def _call_with_xacro_errors(evaluate: Callable[[], _Result]) -> _Result:
     try:
         return evaluate()
     except Fault as fault:

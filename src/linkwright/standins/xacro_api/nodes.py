@@ -159,7 +159,7 @@ def grab_property(elt: Any, table: Table) -> None:
     name = eval_text(name, table)
     if not isinstance(name, str) or not is_valid_name(name) or name.startswith("__"):
         raise XacroException(phrase("'{name}' cannot be the name of a property", name=name))
-    is_removal = _boolean_value(remove, table, default=False)
+    is_removal = _parse_boolean(remove, table, default=False)
     if (value is not None) + (default is not None) + is_removal > 1:
         raise XacroException(
             phrase("the property '{name}' has more than one of 'value', 'default' and 'remove'", name=name)
@@ -176,8 +176,8 @@ def grab_property(elt: Any, table: Table) -> None:
     if value is None:
         Table._setitem(table, f"**{name}", elt, unevaluated=False)
         return
-    target = _target_table(table, scope)
-    if target is table and _boolean_value(lazy, table, default=True):
+    target = _find_target_table(table, scope)
+    if target is table and _parse_boolean(lazy, table, default=True):
         table._setitem(name, value, unevaluated=True)
     else:
         target._setitem(name, eval_text(value, table), unevaluated=False)
@@ -196,11 +196,11 @@ def eval_default_arg(forward_variable: str | None, default: str | None, symbols:
     return eval_text(default, symbols)
 
 
-def _boolean_value(text: str | None, table: Table, *, default: bool) -> bool:
+def _parse_boolean(text: str | None, table: Table, *, default: bool) -> bool:
     return get_boolean_value(eval_text(text, table), text) if text else default
 
 
-def _target_table(table: Table, scope: str | None) -> Table:
+def _find_target_table(table: Table, scope: str | None) -> Table:
     if scope == "global":
         return table.top()
     if scope != "parent":

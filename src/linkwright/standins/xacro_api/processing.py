@@ -83,7 +83,7 @@ def parse(inp: Any, filename: str | Path | None = None) -> minidom.Document:
     except LinkwrightError as error:
         raise translate_error(error, call) from None
     document = XacroDocument()
-    dom.fill(document, tree)
+    dom.fill_document(document, tree)
     document.call = call
     return document
 
@@ -105,10 +105,10 @@ def process_doc(doc: minidom.Document, mappings: Mapping[str, Any] | None = None
         init_stacks(None)
     call = doc.call if isinstance(doc, XacroDocument) else None
     if call is not None:
-        call = XacroCall(call.path, _argument_texts(mappings))
+        call = XacroCall(call.path, _to_argument_texts(mappings))
     file = STATE.filestack[-1] if STATE.filestack else None
-    expansion = _expand(dom.read(doc), file, mappings, call)
-    dom.fill(doc, expansion.document)
+    expansion = _expand(dom.read_document(doc), file, mappings, call)
+    dom.fill_document(doc, expansion.document)
     if isinstance(doc, XacroDocument):
         doc.call, doc.expansion = call, expansion
 
@@ -133,7 +133,7 @@ def process_file(
     STATE.verbosity = options.get("verbosity", STATE.verbosity)
     init_stacks(input_file_name)
     name = os.fspath(input_file_name)
-    call = XacroCall(Path.cwd() / STATE.root_dir / name, _argument_texts(mappings))
+    call = XacroCall(Path.cwd() / STATE.root_dir / name, _to_argument_texts(mappings))
     try:
         tree = _parse_tree(None, Path(STATE.root_dir, name), None)
     except LinkwrightError as error:
@@ -142,7 +142,7 @@ def process_file(
     expansion.document.prolog[:0] = comments = banner(name)
     expansion.document.doctype_index += len(comments)
     document = XacroDocument()
-    dom.fill(document, expansion.document)
+    dom.fill_document(document, expansion.document)
     document.call, document.expansion = call, expansion
     return document
 
@@ -164,7 +164,7 @@ def process(
         mappings: the values of arguments by name.
     """
     document = process_file(input_file_name, mappings=mappings, verbosity=verbosity)
-    return _output_text(document, just_deps=just_deps)
+    return _format_output(document, just_deps=just_deps)
 
 
 def open_output(output_filename: str | Path | None) -> IO[str]:
@@ -197,12 +197,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         sys.exit(_FAILURE_STATUS)
-    output_file.write(_output_text(document, just_deps=options.just_deps))
+    output_file.write(_format_output(document, just_deps=options.just_deps))
     if options.output:
         output_file.close()
 
 
-def _output_text(document: minidom.Document, *, just_deps: bool) -> str:
+def _format_output(document: minidom.Document, *, just_deps: bool) -> str:
     if just_deps and isinstance(document, XacroDocument) and document.expansion is not None:
         return " ".join(map(str, document.expansion.dependencies[1:]))
     text: str = document.toprettyxml(indent="  ")
@@ -227,7 +227,7 @@ def _decode_text(data: bytes, name: str) -> str:
     return decode(io.BytesIO(data).getvalue(), name)
 
 
-def _argument_texts(mappings: Mapping[str, Any] | None) -> tuple[tuple[str, str], ...]:
+def _to_argument_texts(mappings: Mapping[str, Any] | None) -> tuple[tuple[str, str], ...]:
     return tuple((name, str(value)) for name, value in (mappings or {}).items())
 
 
@@ -236,7 +236,7 @@ def _expand(tree: Document, file: str | None, mappings: Mapping[str, Any] | None
     descriptions = current_descriptions()
     packages = descriptions.finder if descriptions is not None else None
     root = "" if str(STATE.root_dir) == os.curdir else str(STATE.root_dir)
-    inputs = Inputs(_TEXT_PATH if file is None else file, dict(_argument_texts(mappings)), packages, root_dir=root)
+    inputs = Inputs(_TEXT_PATH if file is None else file, dict(_to_argument_texts(mappings)), packages, root_dir=root)
     session = StackSession(inputs)
     STATE.arguments = session.arguments
     if descriptions is not None and call is not None:
@@ -268,5 +268,8 @@ def _print_diagnostics(diagnostics: Sequence[Diagnostic]) -> None:
 
 
 def _is_description_message(diagnostic: Diagnostic) -> bool:
-    """Return whether a diagnostic is a message of the description, such as one of ``xacro.message``."""
+    """Return whether a diagnostic is a message from the description itself.
+
+    An example is ``xacro.message``.
+    """
     return diagnostic.code.startswith("XAC7")

@@ -46,11 +46,11 @@ class State:
 STATE = State()
 
 
-def _state_property(name: str) -> property:
-    def change(_: ModuleType, value: Any) -> None:
+def _create_state_property(name: str) -> property:
+    def set_value(_: ModuleType, value: Any) -> None:
         setattr(STATE, name, value)
 
-    return property(lambda _: getattr(STATE, name), change)
+    return property(lambda _: getattr(STATE, name), set_value)
 
 
 class LiveModule(ModuleType):
@@ -59,11 +59,11 @@ class LiveModule(ModuleType):
     Programs can read and set them.
     """
 
-    filestack = _state_property("filestack")
-    macrostack = _state_property("macrostack")
-    root_dir = _state_property("root_dir")
-    verbosity = _state_property("verbosity")
-    all_includes = _state_property("all_includes")
+    filestack = _create_state_property("filestack")
+    macrostack = _create_state_property("macrostack")
+    root_dir = _create_state_property("root_dir")
+    verbosity = _create_state_property("verbosity")
+    all_includes = _create_state_property("all_includes")
 
 
 def share_state() -> None:

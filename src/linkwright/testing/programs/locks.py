@@ -50,7 +50,7 @@ class CooperativeLock:
         """Release the lock.
 
         Raises:
-            RuntimeError: the lock is not taken.
+            RuntimeError: the lock is not acquired.
         """
         if not self._is_locked:
             raise RuntimeError("release unlocked lock")
@@ -76,8 +76,11 @@ class CooperativeLock:
 
 
 class ThreadAwareLock:
-    """The replacement of ``threading.Lock``, which creates the kind of lock that the calling thread needs."""
+    """The replacement of ``threading.Lock``.
+
+    It creates the kind of lock that the calling thread needs.
+    """
 
     def __new__(cls) -> Any:
-        """Return a cooperative lock for a lockstep thread, or an ordinary lock for any other thread."""
+        """Return a cooperative lock for a lockstep thread, or else an ordinary lock."""
         return CooperativeLock() if current_thread() is not None else allocate_lock()

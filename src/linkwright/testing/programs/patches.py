@@ -36,10 +36,10 @@ def install(user: object) -> None:
     """Replace the functions until `uninstall` is called for each installed user."""
     _users.append(user)
     if len(_users) == 1:
-        for owner, name, make in _PATCHES:
+        for owner, name, create_replacement in _PATCHES:
             original = vars(owner)[name]
             _original_values[owner, name] = original
-            setattr(owner, name, make(original))
+            setattr(owner, name, create_replacement(original))
 
 
 def uninstall(user: object) -> None:
@@ -51,10 +51,10 @@ def uninstall(user: object) -> None:
         _original_values.clear()
 
 
-def _reading(read: Callable[[LockstepThread], Any]) -> Callable[[Original], Original]:
+def _clock_patch(read: Callable[[LockstepThread], Any]) -> Callable[[Original], Original]:
     """Return a function that creates the replacement of a clock function."""
 
-    def make(original: Original) -> Original:
+    def create_replacement(original: Original) -> Original:
         @wraps(original)
         def replacement(*args: Any) -> Any:
             thread = current_thread()
@@ -66,16 +66,16 @@ def _reading(read: Callable[[LockstepThread], Any]) -> Callable[[Original], Orig
 
         return replacement
 
-    return make
+    return create_replacement
 
 
-_system_ns = _reading(lambda thread: thread.clock.now_ns())
-_system_s = _reading(lambda thread: thread.clock.now_ns() / NANOSECONDS_PER_SECOND)
-_steady_ns = _reading(lambda thread: thread.clock.steady_ns())
-_steady_s = _reading(lambda thread: thread.clock.steady_ns() / NANOSECONDS_PER_SECOND)
+_system_ns_patch = _clock_patch(lambda thread: thread.clock.now_ns())
+_system_s_patch = _clock_patch(lambda thread: thread.clock.now_ns() / NANOSECONDS_PER_SECOND)
+_steady_ns_patch = _clock_patch(lambda thread: thread.clock.steady_ns())
+_steady_s_patch = _clock_patch(lambda thread: thread.clock.steady_ns() / NANOSECONDS_PER_SECOND)
 
 
-def _polling(original: Original) -> Original:
+def _polling_patch(original: Original) -> Original:
     """Return the replacement of a method that a program may poll."""
 
     @wraps(original)
@@ -88,7 +88,7 @@ def _polling(original: Original) -> Original:
     return replacement
 
 
-def _sleep(original: Original) -> Original:
+def _sleep_patch(original: Original) -> Original:
     @wraps(original)
     def sleep(seconds: float, /) -> None:
         thread = current_thread()
@@ -106,24 +106,24 @@ def _sleep(original: Original) -> Original:
     return sleep
 
 
-def _simple_queue(original: Any) -> Any:
+def _simple_queue_patch(original: Any) -> Any:
     # `_PySimpleQueue` is the implementation in Python, whose locks are replaced.
     return lambda: original() if current_thread() is None else queue._PySimpleQueue()  # type: ignore[attr-defined]
 
 
-def _recursive_lock(original: Original) -> Original:
+def _recursive_lock_patch(original: Original) -> Original:
     # `_RLock` is the implementation in Python, whose lock is replaced.
     return lambda: original() if current_thread() is None else threading._RLock()
 
 
-def _start(original: Original) -> Original:
+def _start_patch(original: Original) -> Original:
     @wraps(original)
     def start(self: threading.Thread) -> None:
         starter = current_thread()
         if starter is not None:
             thread = LockstepThread(starter.turns, starter.owner, is_daemon=self.daemon)
             vars(self)["_linkwright_thread"] = thread
-            vars(self)["run"] = _ending_quietly(self.run)
+            vars(self)["run"] = _end_quietly(self.run)
             starter.owner.add(thread)
             thread.wake()
         original(self)
@@ -131,7 +131,7 @@ def _start(original: Original) -> Original:
     return start
 
 
-def _ending_quietly(run: Callable[[], object]) -> Callable[[], None]:
+def _end_quietly(run: Callable[[], object]) -> Callable[[], None]:
     def run_until_killed() -> None:
         with suppress(EndedByTest):
             run()
@@ -139,12 +139,12 @@ def _ending_quietly(run: Callable[[], object]) -> Callable[[], None]:
     return run_until_killed
 
 
-def _bootstrap(original: Original) -> Original:
+def _bootstrap_patch(original: Original) -> Original:
     """Return the replacement of the function that a new thread runs first."""
 
     @wraps(original)
     def bootstrap(self: threading.Thread) -> None:
-        thread = _lockstep_thread(self)
+        thread = _find_lockstep_thread(self)
         if thread is None:
             original(self)
             return
@@ -157,10 +157,10 @@ def _bootstrap(original: Original) -> Original:
     return bootstrap
 
 
-def _join(original: Original) -> Original:
+def _join_patch(original: Original) -> Original:
     @wraps(original)
     def join(self: threading.Thread, timeout: float | None = None) -> None:
-        thread, current = _lockstep_thread(self), current_thread()
+        thread, current = _find_lockstep_thread(self), current_thread()
         if thread is not None and current is not None and thread is not current:
             thread.ended.add_waiter(current.wake)
             clock = current.clock
@@ -175,21 +175,21 @@ def _join(original: Original) -> Original:
     return join
 
 
-def _is_alive(original: Original) -> Original:
+def _is_alive_patch(original: Original) -> Original:
     @wraps(original)
     def is_alive(self: threading.Thread) -> bool:
-        thread = _lockstep_thread(self)
+        thread = _find_lockstep_thread(self)
         return bool(original(self)) and (thread is None or not thread.ended.ended())
 
     return is_alive
 
 
-def _lockstep_thread(thread: threading.Thread) -> LockstepThread | None:
+def _find_lockstep_thread(thread: threading.Thread) -> LockstepThread | None:
     lockstep_thread: LockstepThread | None = vars(thread).get("_linkwright_thread")
     return lockstep_thread
 
 
-def _select(original: Original) -> Original:
+def _select_patch(original: Original) -> Original:
     """Return a replacement for an event loop's wait for sockets."""
 
     @wraps(original)
@@ -210,7 +210,7 @@ def _select(original: Original) -> Original:
     return select
 
 
-def _set_signal(original: Original) -> Original:
+def _set_signal_patch(original: Original) -> Original:
     @wraps(original)
     def set_signal(number: int, handler: Any, /) -> Any:
         thread = current_thread()
@@ -222,25 +222,25 @@ def _set_signal(original: Original) -> Original:
 
 
 _PATCHES: list[tuple[Any, str, Callable[[Any], Any]]] = [
-    (time, "time", _system_s),
-    (time, "time_ns", _system_ns),
-    (time, "monotonic", _steady_s),
-    (time, "monotonic_ns", _steady_ns),
-    (time, "perf_counter", _steady_s),
-    (time, "perf_counter_ns", _steady_ns),
-    (time, "sleep", _sleep),
-    (threading, "_time", _steady_s),
+    (time, "time", _system_s_patch),
+    (time, "time_ns", _system_ns_patch),
+    (time, "monotonic", _steady_s_patch),
+    (time, "monotonic_ns", _steady_ns_patch),
+    (time, "perf_counter", _steady_s_patch),
+    (time, "perf_counter_ns", _steady_ns_patch),
+    (time, "sleep", _sleep_patch),
+    (threading, "_time", _steady_s_patch),
     (threading, "_allocate_lock", lambda _: ThreadAwareLock),
     (threading, "Lock", lambda _: ThreadAwareLock),
-    (threading, "RLock", _recursive_lock),
-    (threading.Thread, "start", _start),
-    (threading.Thread, "_bootstrap", _bootstrap),
-    (threading.Thread, "join", _join),
-    (threading.Thread, "is_alive", _is_alive),
-    (queue, "time", _steady_s),
-    (queue, "SimpleQueue", _simple_queue),
-    (signal, "signal", _set_signal),
-    (selectors.DefaultSelector, "select", _select),
-    (clocks.Clock, "now", _polling),
-    (executors.SpinningExecutor, "_spin_single", _polling),
+    (threading, "RLock", _recursive_lock_patch),
+    (threading.Thread, "start", _start_patch),
+    (threading.Thread, "_bootstrap", _bootstrap_patch),
+    (threading.Thread, "join", _join_patch),
+    (threading.Thread, "is_alive", _is_alive_patch),
+    (queue, "time", _steady_s_patch),
+    (queue, "SimpleQueue", _simple_queue_patch),
+    (signal, "signal", _set_signal_patch),
+    (selectors.DefaultSelector, "select", _select_patch),
+    (clocks.Clock, "now", _polling_patch),
+    (executors.SpinningExecutor, "_spin_single", _polling_patch),
 ]

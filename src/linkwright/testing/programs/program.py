@@ -41,7 +41,7 @@ class Program:
         self.error: BaseException | None = None
         self.is_interrupted = False
         self._module = ModuleType("__main__")
-        self._folders = _module_folders(Path(self.name)) if _is_path(main) else []
+        self._folders = _find_module_folders(Path(self.name)) if _is_path(main) else []
         self._arguments = [self.name, *arguments]
         self._graphs: list[ProgramGraph] = []
         self._state = RclpyState(partial(self._create_graph, graph))
@@ -69,9 +69,10 @@ class Program:
         return [names for graph in self._graphs for names in graph.node_names]
 
     def interrupt(self) -> None:
-        """Interrupt the program like Ctrl-C: rclpy shuts down, and the main thread gets a KeyboardInterrupt.
+        """Interrupt the program like Ctrl-C.
 
-        rclpy does not shut down if the program disabled this with ``signal_handler_options`` of ``rclpy.init``.
+        rclpy shuts down, and the main thread gets a KeyboardInterrupt. rclpy does not shut down if the program disabled
+        this with ``signal_handler_options`` of ``rclpy.init``.
         """
         self.is_interrupted = True
         if self._state.signal_options & SignalHandlerOptions.SIGINT:
@@ -91,7 +92,10 @@ class Program:
 
     @contextmanager
     def surroundings(self) -> Iterator[None]:
-        """Return a context with the program's arguments, main module, modules and rclpy, for a turn of a thread."""
+        """Set up the program's environment for a turn of a thread, as a context manager.
+
+        The environment consists of the arguments, the main module, the imported modules and rclpy.
+        """
         argv, main_module, path = sys.argv, sys.modules["__main__"], list(sys.path)
         sys.argv, sys.modules["__main__"] = self._arguments, self._module
         sys.path[:0] = self._folders
@@ -122,7 +126,10 @@ class Program:
     # --- running -----------------------------------------------------------------------------------------------------
 
     def run_file(self, path: Path, source: bytes) -> None:
-        """Run a file like ``python FILE``. If the file only defines ``main``, call it like ``ros2 run``."""
+        """Run a file like ``python FILE``.
+
+        If the file only defines ``main``, the function is called as by ``ros2 run``.
+        """
         self._module.__file__ = str(path)
         code = compile(source, str(path), "exec")
         exec(code, vars(self._module))  # noqa: S102  # the user's program
@@ -157,7 +164,7 @@ class Program:
                 self.error = error
 
     def _end_if_done(self) -> None:
-        """End the daemon threads and the context when the last other thread has ended, as in a process."""
+        """End the daemon threads and the context after the last other thread, as in a process."""
         if self.is_running:
             return
         with use_state(self._state):
@@ -178,8 +185,11 @@ def _is_path(main: Main) -> bool:
     return isinstance(main, Path) or (isinstance(main, str) and (main.endswith(".py") or os.sep in main))
 
 
-def _module_folders(path: Path) -> list[str]:
-    """Return the folders of modules that a file can import: its own, and its Python package's parent."""
+def _find_module_folders(path: Path) -> list[str]:
+    """Return the folders of the modules that a file can import.
+
+    They are the folder of the file, and the parent folder of its Python package.
+    """
     folder = path.parent
     package_folder = folder
     while (package_folder / "__init__.py").is_file():

@@ -11,17 +11,17 @@ from linkwright.testing.programs import patches
 from linkwright.testing.programs.program import Main, Program
 from linkwright.testing.programs.threads import BudgetExceededError, Turns
 
-_INTERRUPTED_S = 5.0
+_INTERRUPT_TIMEOUT_S = 5.0
 """The simulated seconds in which a program must end after Ctrl-C, as under ``ros2 launch``."""
 
-_ENDING_STEP_S = 0.1
+_END_STEP_S = 0.1
 
 
 class Programs:
     """The programs in a stepped graph, which are run in its steps and ended with it.
 
     Args:
-        graph: the graph.
+        graph: the stepped graph.
         clock: the clock of the graph.
         on_error: receives the exceptions that end programs.
     """
@@ -74,10 +74,10 @@ class Programs:
                 if program.is_running:
                     program.interrupt()
             await self.settle()
-            remaining_s = _INTERRUPTED_S
+            remaining_s = _INTERRUPT_TIMEOUT_S
             while remaining_s > 0 and any(program.is_running for program in self._programs):
-                await advance(_ENDING_STEP_S)
-                remaining_s -= _ENDING_STEP_S
+                await advance(_END_STEP_S)
+                remaining_s -= _END_STEP_S
             for program in self._programs:
                 program.kill()
             await self.settle()

@@ -1,8 +1,9 @@
-"""Lockstep threads of programs: only one runs at a time, and only while the graph waits for it.
+"""Lockstep threads of programs, one of which runs while the graph waits for it.
 
 The graph gives the turn to a thread. The thread runs until it waits for a lock, an event or the end of a sleep, and
 then returns the turn. A thread can run again after `LockstepThread.wake`, or at the deadline of its wait, which is a
-time of the graph's clock. So two threads never run at the same time, and the order of their turns is reproducible.
+time of the graph's clock. Therefore, two threads never run at the same time, and the order of their turns is
+reproducible.
 """
 
 from __future__ import annotations
@@ -32,10 +33,10 @@ _MAX_POLLS = 200
 
 _POLL_WAIT_NS = 1_000_000
 _KILL_TIMEOUT_S = 2.0
-_PERIOD_S = 0.2
+_CHECK_PERIOD_S = 0.2
 """The interval between two checks of a thread's computing time."""
 
-_GENERATED_CODE = "<"
+_GENERATED_CODE_PREFIX = "<"
 """The beginning of the file name of code without a file, such as the methods of a dataclass."""
 
 _OWN_FOLDERS = (str(Path(__file__).parents[2]), str(Path(threading.__file__).parent))
@@ -45,8 +46,8 @@ class BudgetExceededError(RuntimeError):
     """Raised when a program has computed for longer than its budget without waiting.
 
     Args:
-        message: the message.
-        program: the program.
+        message: the error message.
+        program: the program that exceeded its budget.
     """
 
     def __init__(self, message: str, program: Owner) -> None:
@@ -76,7 +77,7 @@ class LockstepThread:
 
     Args:
         turns: the scheduler of the turns.
-        owner: the program.
+        owner: the program that started the thread.
         is_daemon: whether the program may end while the thread runs.
     """
 
@@ -99,7 +100,10 @@ class LockstepThread:
         return self.turns.clock
 
     def time_after(self, seconds: float) -> int:
-        """Return the steady time of the graph in ns after a number of seconds, rounded up so that time advances."""
+        """Return the steady time of the graph after a number of seconds, in ns.
+
+        The time is rounded up, so that time advances.
+        """
         return self.clock.steady_ns() + math.ceil(seconds * NANOSECONDS_PER_SECOND)
 
     def begin(self) -> None:
@@ -115,10 +119,10 @@ class LockstepThread:
         self.turns.take_back(self)
 
     def wait(self, deadline_ns: int | None = None) -> None:
-        """Give the turn back, and wait until `wake` is called or the steady time reaches a deadline in ns.
+        """Give the turn back, and wait until `wake` is called or a steady time in ns is reached.
 
         Raises:
-            BaseException: what an interruption raises.
+            BaseException: the exception that an interruption raises.
         """
         self._raise_if_killed()
         clock = self.clock
@@ -246,11 +250,11 @@ class Turns:
 
     def _is_returned_within(self, budget_s: float) -> bool:
         """Wait until the turn is returned, and return whether that happened within the budget."""
-        if self._returned.acquire(timeout=min(_PERIOD_S, budget_s)):
+        if self._returned.acquire(timeout=min(_CHECK_PERIOD_S, budget_s)):
             return True
         clock = PatientClock()
-        while clock.read() < budget_s - _PERIOD_S:
-            if self._returned.acquire(timeout=_PERIOD_S):
+        while clock.read() < budget_s - _CHECK_PERIOD_S:
+            if self._returned.acquire(timeout=_CHECK_PERIOD_S):
                 return True
         return False
 
@@ -266,16 +270,19 @@ class Turns:
 
 
 def _describe_place(thread_id: int) -> str:
-    """Return a text with the current file, line and function of a thread, in the user's code if possible."""
-    frames = list(_frames(sys._current_frames().get(thread_id)))
+    """Return a text with the current file, line and function of a thread.
+
+    They are in the user's code if possible.
+    """
+    frames = list(_iterate_frames(sys._current_frames().get(thread_id)))
     if not frames:
         return "at an unknown place"
-    foreign_code = (*_OWN_FOLDERS, _GENERATED_CODE)
+    foreign_code = (*_OWN_FOLDERS, _GENERATED_CODE_PREFIX)
     frame = next((frame for frame in frames if not frame.f_code.co_filename.startswith(foreign_code)), frames[0])
     return f"at {frame.f_code.co_filename}:{frame.f_lineno}, in {frame.f_code.co_name}"
 
 
-def _frames(frame: FrameType | None) -> Iterator[FrameType]:
+def _iterate_frames(frame: FrameType | None) -> Iterator[FrameType]:
     while frame is not None:
         yield frame
         frame = frame.f_back

@@ -20,7 +20,7 @@ from linkwright.graph import DEFAULT_QOS, SENSOR_DATA_QOS, Graph
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import log_unknown, positive
+from linkwright.nodes.settings import check_positive, log_unknown_parameters
 from linkwright.perception.nodes.depthimage_to_laserscan import read_depths
 from linkwright.vision.detectors.drawing import class_color
 from linkwright.vision.nodes.detection_reading import VISION_FORMAT, YOLO_FORMAT, DetectionFormat
@@ -65,17 +65,19 @@ class Detect3DNode(SingleNode):
         declare = node.declare_parameter
         with handle_start_errors(node):
             self._target_frame: str = declare("target_frame", "base_link").value
-            divisor = positive(node, "depth_image_units_divisor", declare("depth_image_units_divisor", 1000).value)
-            self._max_depth_difference = positive(
+            divisor = check_positive(
+                node, "depth_image_units_divisor", declare("depth_image_units_divisor", 1000).value
+            )
+            self._max_depth_difference = check_positive(
                 node, "maximum_detection_threshold", declare("maximum_detection_threshold", 0.3).value
             )
-            self._max_distance = positive(node, "maximum_distance", declare("maximum_distance", 20.0).value)
+            self._max_distance = check_positive(node, "maximum_distance", declare("maximum_distance", 20.0).value)
             self._ground_frame: str = declare("ground_frame", "").value
             image_qos, info_qos = (
                 DEFAULT_QOS if declare(name, 2).value == _RELIABLE else SENSOR_DATA_QOS
                 for name in ("depth_image_reliability", "depth_info_reliability")
             )
-            log_unknown(node)
+            log_unknown_parameters(node)
         self._meters_per_unit = _MILLIMETERS / divisor
         self._poses = FramePoses(node, "the positions of detections are unknown:")
         self._depth_images: deque[Any] = deque(maxlen=_MAX_DEPTH_IMAGES)

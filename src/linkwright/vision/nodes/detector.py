@@ -54,7 +54,7 @@ from linkwright.graph.parameters.parameter import Range
 from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker, decode_image
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import bad_value, log_unknown
+from linkwright.nodes.settings import invalid_value_error, log_unknown_parameters
 from linkwright.perception.nodes.lazy import LazySubscriptions
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
@@ -113,7 +113,7 @@ class DetectorNode(SingleNode):
             self._limits = self._make_limits({}, None)
             self._source = self._image_source(dialect)
             self._qos = self._image_qos()
-            log_unknown(node)
+            log_unknown_parameters(node)
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self.loaded: Future[None] = Future()
         self._names: tuple[str, ...] | None = None
@@ -196,14 +196,14 @@ class DetectorNode(SingleNode):
         transport = self._value("image_transport")
         source = ImageSource.of(self._node.resolve_topic_name(topic), transport)
         if not source.is_supported:
-            raise bad_value("image_transport", transport, self._node.get_name(), ("raw", "compressed"))
+            raise invalid_value_error("image_transport", transport, self._node.get_name(), ("raw", "compressed"))
         return source
 
     def _image_qos(self) -> QoSProfile:
         reliability = self._value("image_reliability")
         policies = {policy.value: policy for policy in ReliabilityPolicy}
         if reliability not in policies:
-            raise bad_value("image_reliability", reliability, self._node.get_name(), ("1", "2"))
+            raise invalid_value_error("image_reliability", reliability, self._node.get_name(), ("1", "2"))
         return QoSProfile(depth=1, reliability=policies[reliability])
 
     def _make_limits(self, new_values: dict[str, Any], detector_classes: Sequence[str] | None) -> Limits:
@@ -222,7 +222,7 @@ class DetectorNode(SingleNode):
             for name in (dialect.threshold, dialect.iou, dialect.max_detections_parameter, _CLASSES_PARAMETER)
         )
         if max_detections < 1:
-            raise bad_value(dialect.max_detections_parameter, max_detections, self._node.get_name())
+            raise invalid_value_error(dialect.max_detections_parameter, max_detections, self._node.get_name())
         return Limits(
             threshold,
             iou,
@@ -243,7 +243,7 @@ class DetectorNode(SingleNode):
             if class_name is None or name == "":
                 continue
             if detector_classes and name not in detector_classes:
-                raise bad_value(_CLASSES_PARAMETER, name, self._node.get_name(), detector_classes)
+                raise invalid_value_error(_CLASSES_PARAMETER, name, self._node.get_name(), detector_classes)
             requested.append(name)
         return frozenset(requested) if requested else None
 

@@ -22,7 +22,7 @@ from linkwright.graph.endpoints.commander import Commander, describe_lost_publis
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import bad_value, log_unknown, positive
+from linkwright.nodes.settings import check_positive, invalid_value_error, log_unknown_parameters
 from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.vision.nodes.nav2_trip import Nav2Trip
 from linkwright.vision.nodes.seen_objects import SeenObject, SeenObjects
@@ -63,7 +63,7 @@ class ObjectSeeker(SingleNode):
         node = self._node
         with handle_start_errors(node):
             self._declare()
-            log_unknown(node)
+            log_unknown_parameters(node)
         self._poses = FramePoses(node, "the position of the robot is unknown:")
         self._seen_objects = SeenObjects(node, self._poses, self._fixed)
         self._request: ObjectRequest | None = None
@@ -111,10 +111,10 @@ class ObjectSeeker(SingleNode):
         self._uses_nav2: bool = self._node.declare_parameter("use_nav2", False).value
         self._language: str = self._node.declare_parameter("language", "en").value
         if self._language not in LANGUAGES:
-            raise bad_value("language", self._language, self._node.get_name(), LANGUAGES)
+            raise invalid_value_error("language", self._language, self._node.get_name(), LANGUAGES)
 
     def _positive(self, name: str, default: float) -> float:
-        return positive(self._node, name, self._node.declare_parameter(name, default).value)
+        return check_positive(self._node, name, self._node.declare_parameter(name, default).value)
 
     def _now_ns(self) -> int:
         return self._node.get_clock().now().nanoseconds

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 from linkwright.graph import Graph, ParameterDescriptor
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import bad_value, log_unknown, positive
+from linkwright.nodes.settings import check_positive, invalid_value_error, log_unknown_parameters
 from linkwright.vision.nodes.detection_reading import VISION_FORMAT, YOLO_FORMAT, DetectionFormat
 from linkwright.vision.places.tracker import Tracker, TrackerSettings
 
@@ -47,7 +47,7 @@ class TrackingNode(SingleNode):
             for name in self.IGNORED:
                 node.declare_parameter(name, None, _ANY_TYPE)
             self._tracker = Tracker(self._settings())
-            log_unknown(node)
+            log_unknown_parameters(node)
         self._array = get_message(self.FORM.image_type)
         self._publisher = node.create_publisher(self._array, "tracking", _QUEUE_DEPTH)
         node.create_subscription(self._array, "detections", self._receive, _QUEUE_DEPTH)
@@ -67,11 +67,11 @@ class TrackingNode(SingleNode):
     def _declare_share(self, name: str, default: float) -> float:
         value: float = self._node.declare_parameter(name, default).value
         if not 0.0 <= value <= 1.0:
-            raise bad_value(name, value, self._node.get_name())
+            raise invalid_value_error(name, value, self._node.get_name())
         return value
 
     def _declare_positive(self, name: str, default: int) -> float:
-        return positive(self._node, name, self._node.declare_parameter(name, default).value)
+        return check_positive(self._node, name, self._node.declare_parameter(name, default).value)
 
     def _receive(self, message: Any) -> None:
         ids = self._tracker.update(self.FORM.read(message), message.header.stamp.nanoseconds / 1e9)

@@ -81,7 +81,7 @@ class DeclareLaunchArgument(Action):
                 default_value=default_value,
                 name=name,
             )
-            hint = self._hint(default_value)
+            hint = self._choice_hint(default_value)
             raise error_at(self.source_location, "LAUNCH112", message, hint, ros_error=RuntimeError(text))
 
     @classmethod
@@ -177,10 +177,10 @@ class DeclareLaunchArgument(Action):
                 name=self._name,
                 value=value,
             )
-            hint = self._hint(str(value))
+            hint = self._choice_hint(str(value))
             raise error_at(self.source_location, "LAUNCH112", message, hint, ros_error=RuntimeError(text))
 
-    def _hint(self, value: str) -> Phrase:
+    def _choice_hint(self, value: str) -> Phrase:
         choices = self._choices or []
         choices_hint = phrase("choose from {names}", names=quoted_names(choices))
         suggestion = did_you_mean(value, choices) if len(choices) > 2 else None

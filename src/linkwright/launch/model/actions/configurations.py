@@ -50,7 +50,10 @@ class PushLaunchConfigurations(Action):
 
 
 class PopLaunchConfigurations(Action):
-    """An action that closes a scope, and restores the launch configurations to their values before the scope."""
+    """An action that closes a scope of launch configurations.
+
+    The configurations get the values that they had before the scope.
+    """
 
     def execute(self, context: LaunchContext) -> None:
         """Close the scope."""

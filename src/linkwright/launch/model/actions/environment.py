@@ -142,7 +142,10 @@ class PushEnvironment(Action):
 
 @expose_action("pop_env")
 class PopEnvironment(Action):
-    """An action that closes a scope, and restores the environment variables to their values before the scope."""
+    """An action that closes a scope of environment variables.
+
+    The variables get the values that they had before the scope.
+    """
 
     def execute(self, context: LaunchContext) -> None:
         """Close the scope."""

@@ -76,7 +76,7 @@ class Executable:
         self.final_cmd = [*self.prefix_arguments(context, command), *command]
         self.final_name = f"{self.base_name(context, self.final_cmd)}-{next(_process_numbers)}"
         self.final_cwd = None if self.cwd is None else perform_substitutions(context, self.cwd)
-        self.final_env = self.environment(context)
+        self.final_env = self.evaluate_environment(context)
 
     apply_context = prepare
 
@@ -93,7 +93,7 @@ class Executable:
         """Return the name of the process in the log, without its number."""
         return Path(command[0]).name if self.name is None else perform_substitutions(context, self.name)
 
-    def environment(self, context: LaunchContext) -> dict[str, str]:
+    def evaluate_environment(self, context: LaunchContext) -> dict[str, str]:
         """Return the evaluated environment of the process."""
         environment = dict(context.environment) if self.env is None else perform_pairs(context, self.env)
         environment.update(perform_pairs(context, self.additional_env or []))

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 OnExit = SomeEntitiesType | Callable[..., Any] | None
 
-_DEFAULT_TIMEOUT = "5"
+_DEFAULT_TIMEOUT_S = "5"
 """The default of `sigterm_timeout` and `sigkill_timeout` in seconds."""
 
 
@@ -124,7 +124,7 @@ class ExecuteLocal(Action):
 
     @property
     def emulate_tty(self) -> Any:
-        """The value of `emulate_tty` that was passed to the constructor: a boolean or substitutions."""
+        """The value of `emulate_tty` as passed to the constructor: a boolean or substitutions."""
         return self._emulate_tty
 
     @property
@@ -198,14 +198,14 @@ class ExecuteLocal(Action):
             self._start(context, [perform_substitutions(context, argument) for argument in self._description.cmd])
         return None
 
-    def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+    def record_exit(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """Record the exit status of the process, and return the entities to visit next."""
         self.return_code = event.returncode
         if self._exit_callback is None:
             return self._on_exit
         return as_entities(self._exit_callback(event, context))
 
-    def wrote(self, stream: int, text: bytes) -> None:
+    def record_output(self, stream: int, text: bytes) -> None:
         """Store output of the process to stdout (1) or stderr (2), if `cached_output` is set."""
         if self._output_chunks is not None:
             self._output_chunks[stream].append(text)
@@ -220,7 +220,7 @@ class ExecuteLocal(Action):
             )
             hint = phrase("create a new action for each start, for example in a function")
             raise error_at(self.source_location, "LAUNCH141", message, hint, ros_error=RuntimeError(text))
-        plan = self._plan(context, command)
+        plan = self._create_plan(context, command)
         name = context.session.assign_process_name(plan.name)
         description = self._description
         description.final_name, description.final_cmd = name, list(plan.command)
@@ -229,7 +229,7 @@ class ExecuteLocal(Action):
         context.session.start_process(plan, name)
         return name
 
-    def _plan(self, context: LaunchContext, command: list[str]) -> ProcessPlan:
+    def _create_plan(self, context: LaunchContext, command: list[str]) -> ProcessPlan:
         description = self._description
         if not command or not command[0].strip():
             raise error_at(self.source_location, "LAUNCH141", phrase("the command of the process is empty"))
@@ -241,17 +241,17 @@ class ExecuteLocal(Action):
             name=description.base_name(context, program),
             command=[*description.prefix_arguments(context, program), *command],
             folder=None if description.cwd is None else perform_substitutions(context, description.cwd),
-            environment=self._environment(context),
+            environment=self._evaluate_environment(context),
             shell=self._shell,
             emulate_tty=self._evaluate_condition(context, "emulate_tty", self._emulate_tty),
-            destinations=self._destinations(context),
+            destinations=self._evaluate_destinations(context),
             output_format=self._output_format,
             log_command=self._log_cmd,
-            respawn=bool(self._convert_value(context, "respawn", self._respawn)),
+            respawn=bool(self._evaluate_boolean(context, "respawn", self._respawn)),
             respawn_delay=self._respawn_delay or 0.0,
             respawn_limit=self._respawn_max_retries,
-            seconds_to_sigterm=self._seconds(context, self._sigterm_timeout, "sigterm_timeout"),
-            seconds_to_sigkill=self._seconds(context, self._sigkill_timeout, "sigkill_timeout"),
+            seconds_to_sigterm=self._evaluate_seconds(context, self._sigterm_timeout, "sigterm_timeout"),
+            seconds_to_sigkill=self._evaluate_seconds(context, self._sigkill_timeout, "sigkill_timeout"),
         )
 
     def _split_argument(self, text: str) -> list[str]:
@@ -263,10 +263,10 @@ class ExecuteLocal(Action):
             )
             raise error_at(self.source_location, "LAUNCH118", message, ros_error=error) from error
 
-    def _environment(self, context: LaunchContext) -> dict[str, str]:
-        return self._description.environment(context)
+    def _evaluate_environment(self, context: LaunchContext) -> dict[str, str]:
+        return self._description.evaluate_environment(context)
 
-    def _destinations(self, context: LaunchContext) -> dict[int, frozenset[str]]:
+    def _evaluate_destinations(self, context: LaunchContext) -> dict[int, frozenset[str]]:
         mode: Any = context.environment.get("OVERRIDE_LAUNCH_PROCESS_OUTPUT") or self._output
         if isinstance(mode, list):
             mode = perform_substitutions(context, mode)
@@ -288,7 +288,7 @@ class ExecuteLocal(Action):
             message = phrase("'{name}' is '{text}', which is neither true nor false", name=name, text=error.text)
             raise error_at(self.source_location, "LAUNCH141", message, ros_error=error) from error
 
-    def _convert_value(self, context: LaunchContext, name: str, value: Any) -> Any:
+    def _evaluate_boolean(self, context: LaunchContext, name: str, value: Any) -> Any:
         try:
             return perform_typed_substitution(context, value, bool)
         except ValueError as error:
@@ -299,7 +299,7 @@ class ExecuteLocal(Action):
             )
             raise error_at(self.source_location, "LAUNCH141", message, ros_error=error) from error
 
-    def _seconds(self, context: LaunchContext, substitutions: list[Substitution], name: str) -> float:
+    def _evaluate_seconds(self, context: LaunchContext, substitutions: list[Substitution], name: str) -> float:
         text = perform_substitutions(context, substitutions)
         try:
             return float(text)
@@ -388,13 +388,13 @@ class ExecuteProcess(ExecuteLocal):
         Returns:
             Whether a node was started.
         """
-        from linkwright.launch.model.replaced_programs import replacing_node
+        from linkwright.launch.model.replaced_programs import find_replacing_node
 
         try:
             arguments = shlex.split(" ".join(command)) if self._shell else command
         except ValueError:
             return False
-        replacement = replacing_node(arguments, context.environment)
+        replacement = find_replacing_node(arguments, context.environment)
         if replacement is None:
             return False
         description = self._description
@@ -408,7 +408,7 @@ class ExecuteProcess(ExecuteLocal):
             dict(replacement.parameters),
             [],
             list(replacement.ros_arguments),
-            destinations=self._destinations(context),
+            destinations=self._evaluate_destinations(context),
         )
         description.final_name, description.final_cmd = plan.process_name, list(arguments)
         context.session.host.schedule_node(plan)
@@ -448,5 +448,5 @@ def _normalize_timeout(timeout: Any, name: str) -> list[Substitution]:
     from linkwright.launch.model.substitutions.configuration import LaunchConfiguration
 
     if timeout is None:
-        return [LaunchConfiguration(name, default=_DEFAULT_TIMEOUT)]
+        return [LaunchConfiguration(name, default=_DEFAULT_TIMEOUT_S)]
     return normalize_to_list_of_substitutions(str(timeout) if isinstance(timeout, (int, float)) else timeout)

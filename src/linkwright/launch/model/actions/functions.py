@@ -12,7 +12,7 @@ from linkwright.launch.model.context import LaunchContext
 
 
 class OpaqueFunction(Action):
-    """An action that calls a function with the launch context, and visits the returned entities.
+    """An action that calls a function, and visits the entities that it returns.
 
     Args:
         function: the function, which is called as ``function(context, *args, **kwargs)``.

@@ -50,7 +50,7 @@ class Log(Action):
         self._msg = normalize_to_list_of_substitutions(msg)
         self._level = normalize_to_list_of_substitutions(level)
         if all(isinstance(substitution, TextSubstitution) for substitution in self._level):
-            _level_number(
+            _parse_level(
                 "".join(part.text for part in self._level if isinstance(part, TextSubstitution)), self._level_location
             )
 
@@ -102,11 +102,11 @@ class Log(Action):
         Raises:
             KeyError: LAUNCH150, there is no such level.
         """
-        level = _level_number(perform_substitutions(context, self._level), self._level_location)
+        level = _parse_level(perform_substitutions(context, self._level), self._level_location)
         context.log(_LOGGER_NAME, level, perform_substitutions(context, self._msg))
 
 
-def _level_number(level: str, location: SourceLocation | None) -> int:
+def _parse_level(level: str, location: SourceLocation | None) -> int:
     if level.upper() in LEVELS:
         return LEVELS[level.upper()]
     from linkwright.diagnostics import did_you_mean
@@ -118,7 +118,7 @@ def _level_number(level: str, location: SourceLocation | None) -> int:
     )
 
 
-class _LogOfLevel(Log):
+class _FixedLevelLog(Log):
     """The base class of actions that write a line at a fixed log level."""
 
     _LEVEL = "INFO"
@@ -129,26 +129,26 @@ class _LogOfLevel(Log):
 
 
 @expose_action("log_info")
-class LogInfo(_LogOfLevel):
+class LogInfo(_FixedLevelLog):
     """An action that writes a line at level INFO."""
 
 
 @expose_action("log_debug")
-class LogDebug(_LogOfLevel):
+class LogDebug(_FixedLevelLog):
     """An action that writes a line at level DEBUG, shown only with ``--debug``."""
 
     _LEVEL = "DEBUG"
 
 
 @expose_action("log_warning")
-class LogWarning(_LogOfLevel):
+class LogWarning(_FixedLevelLog):
     """An action that writes a line at level WARNING."""
 
     _LEVEL = "WARNING"
 
 
 @expose_action("log_error")
-class LogError(_LogOfLevel):
+class LogError(_FixedLevelLog):
     """An action that writes a line at level ERROR.
 
     The launch continues after an error.

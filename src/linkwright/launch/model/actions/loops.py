@@ -28,7 +28,9 @@ if TYPE_CHECKING:
 
 @expose_action("for_each")
 class ForEach(Action):
-    """An action that calls a function for each of several sets of values, and visits the returned entities.
+    """An action that calls a function for each of several sets of values.
+
+    It visits the entities that the function returns.
 
     Args:
         input_values: the sets of values, each a YAML mapping in braces, separated by semicolons.
@@ -99,7 +101,9 @@ class ForEach(Action):
 
 @expose_action("for")
 class ForLoop(Action):
-    """An action that calls a function for each index from 0, and visits the returned entities.
+    """An action that calls a function for each index from 0.
+
+    It visits the entities that the function returns.
 
     Args:
         length: the number of iterations.
@@ -173,16 +177,16 @@ def iteration_entities(
     In these actions, ``$(for-var NAME)`` and ``$(index NAME)`` return the values of the iteration.
     """
 
-    def begin(context: LaunchContext) -> None:
+    def open_scope(context: LaunchContext) -> None:
         context.push_locals()
 
-    def enter(context: LaunchContext) -> None:
+    def set_values(context: LaunchContext) -> None:
         context.extend_locals({local_name(name): str(value) for name, value in values.items()})
 
-    def leave(context: LaunchContext) -> None:
+    def close_scope(context: LaunchContext) -> None:
         context.pop_locals()
 
     # As in ROS, three actions open and close the scope, because users count the entities of a loop. The children are
     # copied for each iteration, because an action such as a node has state.
-    scope_actions = [OpaqueFunction(function=function) for function in (begin, enter, leave)]
+    scope_actions = [OpaqueFunction(function=function) for function in (open_scope, set_values, close_scope)]
     return [*scope_actions[:2], *deepcopy(list(children)), scope_actions[2]]

@@ -43,7 +43,7 @@ def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> di
         kwargs["cmd"] = parse_command_line(entity.get_attr("cmd"), parser)
     for argument, attribute in _SUBSTITUTED_ATTRIBUTES.items():
         if argument not in ignored:
-            value = entity.get_attr(attribute, optional=True, **_reading_options(argument))
+            value = entity.get_attr(attribute, optional=True, **_attribute_options(argument))
             if value is not None:
                 kwargs[argument] = parser.parse_substitution(value) if isinstance(value, str) else value
     for name in _BOOLEAN_ATTRIBUTES:
@@ -72,7 +72,7 @@ def parse_process(entity: Entity, parser: Parser, ignored: frozenset[str]) -> di
     return kwargs
 
 
-def _reading_options(argument: str) -> dict[str, Any]:
+def _attribute_options(argument: str) -> dict[str, Any]:
     """Return the options of `get_attr` for an attribute that may contain substitutions.
 
     In YAML, ``respawn`` may also be a boolean.

@@ -90,11 +90,11 @@ class Test(ExecuteProcess):
             entities.append(self._timer)
         return entities
 
-    def exited(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+    def record_exit(self, event: events.ProcessExited, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """Cancel the timer of the timeout, and return the entities to visit next."""
         if self._timer is not None:
             self._timer.cancel()
-        return super().exited(event, context)
+        return super().record_exit(event, context)
 
 
 class GTest(Test):

@@ -42,7 +42,10 @@ _BOOLEANS_BY_DIGIT = {"1": "true", "0": "false"}
 
 
 def is_typing_list(data_type: Any) -> bool:
-    """Return whether a type is ``List``, ``List[...]`` or ``list[...]``, but not plain ``list``."""
+    """Return whether a type is ``List``, ``List[...]`` or ``list[...]``.
+
+    The plain ``list`` is not such a type.
+    """
     return data_type is typing.List or typing.get_origin(data_type) is list  # noqa: UP006 - users may pass it
 
 
@@ -71,13 +74,13 @@ def is_instance_of_valid_type(value: Any, can_be_str: bool = False) -> bool:
     """
     if not isinstance(value, list):
         return isinstance(value, ScalarTypesTuple)
-    item_types = {_scalar_type(item) for item in value}
+    item_types = {_find_scalar_type(item) for item in value}
     if None in item_types:
         return False
     return len(item_types - {str}) <= 1 if can_be_str else len(item_types) <= 1
 
 
-def _scalar_type(value: Any) -> type | None:
+def _find_scalar_type(value: Any) -> type | None:
     return next((scalar_type for scalar_type in (bool, int, float, str) if isinstance(value, scalar_type)), None)
 
 

@@ -28,7 +28,7 @@ from linkwright.packages import current_finder
 if TYPE_CHECKING:
     from linkwright.hosting.xacro_calls import XacroCall
 
-_STDERR_RULES = ("fail", "warn", "ignore", "capture")
+_STDERR_MODES = ("fail", "warn", "ignore", "capture")
 
 
 class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
@@ -44,9 +44,9 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
     on_stderr: Texts = Texts(default="fail", kw_only=True)
 
     @classmethod
-    def wrong_count(cls, expected: str, argument_count: int) -> Exception:
+    def wrong_count_error(cls, expected: str, argument_count: int) -> Exception:
         """Return a ValueError for a wrong number of arguments, as ROS does."""
-        return ValueError(*super().wrong_count(expected, argument_count).args)
+        return ValueError(*super().wrong_count_error(expected, argument_count).args)
 
     def perform(self, context: LaunchContext) -> str:
         """Run the command, and return its standard output.
@@ -66,14 +66,14 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
             ) from error
         if not arguments:
             raise error_at(self.source_location, "LAUNCH128", phrase("the command is empty"))
-        xacro_arguments = _xacro_arguments(arguments)
+        xacro_arguments = _find_xacro_arguments(arguments)
         if xacro_arguments is not None:
             skipped_count = len(arguments) - len(xacro_arguments)
             argument_text = text.split(None, skipped_count)[skipped_count:]
-            return self._expand(context, xacro_arguments, argument_text[0] if argument_text else "")
+            return self._expand_xacro(context, xacro_arguments, argument_text[0] if argument_text else "")
         return self._run(context, text, arguments)
 
-    def _expand(self, context: LaunchContext, words: list[str], argument_text: str) -> str:
+    def _expand_xacro(self, context: LaunchContext, words: list[str], argument_text: str) -> str:
         try:
             call, warning = parse_xacro_arguments(words, argument_text, Path.cwd())
         except LinkwrightError as error:
@@ -85,14 +85,14 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
                 warning,
                 phrase("put quotes around a path with spaces: Command(['xacro \"', path, '\"'])"),
             )
-        return _expand(context, call)
+        return _expand_call(context, call)
 
     def _run(self, context: LaunchContext, text: str, words: list[str]) -> str:
-        rule = perform_substitutions(context, self.on_stderr)
-        if rule not in _STDERR_RULES:
-            message = phrase("'on_stderr' is '{value}', not one of 'fail', 'warn', 'ignore', 'capture'", value=rule)
+        mode = perform_substitutions(context, self.on_stderr)
+        if mode not in _STDERR_MODES:
+            message = phrase("'on_stderr' is '{value}', not one of 'fail', 'warn', 'ignore', 'capture'", value=mode)
             ros_error = SubstitutionFailure(
-                f"expected 'on_stderr' to be one of: ['fail', 'ignore', 'warn', 'capture'], got '{rule}'"
+                f"expected 'on_stderr' to be one of: ['fail', 'ignore', 'warn', 'capture'], got '{mode}'"
             )
             raise error_at(self.source_location, "LAUNCH129", message, ros_error=ros_error)
         try:
@@ -118,17 +118,17 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
                 f"executed command failed. Command: {text}\nCaptured stderr output: {process.stderr}"
             )
             raise error_at(self.source_location, "LAUNCH129", message, ros_error=ros_error)
-        if process.stderr and rule == "fail":
+        if process.stderr and mode == "fail":
             message = _append_output(phrase("command '{text}' wrote to stderr", text=text), process.stderr)
             hint = phrase("if that is not an error, pass on_stderr='warn' to Command")
             ros_error = SubstitutionFailure(
                 f"executed command showed stderr output. Command: {text}\nCaptured stderr output:\n{process.stderr}"
             )
             raise error_at(self.source_location, "LAUNCH129", message, hint, ros_error=ros_error)
-        if process.stderr and rule == "warn":
+        if process.stderr and mode == "warn":
             message = _append_output(phrase("command '{text}' wrote to stderr", text=text), process.stderr)
             self._warn(context, "LAUNCH129", message)
-        return process.stdout + process.stderr if rule == "capture" else process.stdout
+        return process.stdout + process.stderr if mode == "capture" else process.stdout
 
     def _warn(self, context: LaunchContext, code: str, message: Phrase, hint: Phrase | None = None) -> None:
         source = self.source_location.source() if self.source_location else None
@@ -136,7 +136,7 @@ class Command(DeclaredSubstitution, tag="command", shown="Command({command})"):
         context.warn(Diagnostic(code, message, span, Severity.WARNING, hint=hint, source=source))
 
 
-def _xacro_arguments(words: list[str]) -> list[str] | None:
+def _find_xacro_arguments(words: list[str]) -> list[str] | None:
     """Return the arguments of a ``xacro`` command, or None if the command runs another program."""
     if words[:3] == ["ros2", "run", "xacro"] and words[3:4] == ["xacro"]:
         return words[4:]
@@ -145,10 +145,10 @@ def _xacro_arguments(words: list[str]) -> list[str] | None:
     return None
 
 
-def _expand(context: LaunchContext, call: XacroCall) -> str:
+def _expand_call(context: LaunchContext, call: XacroCall) -> str:
     descriptions = context.descriptions or Descriptions(current_finder())
     text = descriptions.expand(call)
-    context.report_findings(call, descriptions.warnings_of(call))
+    context.report_findings(call, descriptions.get_warnings(call))
     return text
 
 

@@ -114,7 +114,7 @@ class EnvironmentVariable(DeclaredSubstitution, tag="env", shown="EnvVar({name})
 
 
 class LocalSubstitution(Substitution):
-    """The value of a local of the launch context or of its attributes, such as ``event.reason``.
+    """The value of a local of the launch context, or of its attribute, as in ``event.reason``.
 
     Args:
         expression: the name of the local, and names of attributes, separated by dots.

@@ -25,7 +25,7 @@ class PythonExpression(DeclaredSubstitution, tag="eval"):
     """A substitution that evaluates to the value of a Python expression, as text.
 
     Args:
-        expression: the expression.
+        expression: the Python expression, as text or substitutions.
         python_modules: the names of the modules that the expression may use; by default ``math``. The members of
             ``math`` can also be used without the module name.
     """

@@ -51,7 +51,7 @@ class EqualsSubstitution(DeclaredSubstitution, tag="equals"):
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if the texts are equal, otherwise ``false``."""
-        return _text(self._is_equal(context))
+        return _format_boolean(self._is_equal(context))
 
     def _is_equal(self, context: LaunchContext) -> bool:
         left = perform_substitutions(context, self.left)
@@ -70,7 +70,7 @@ class NotEqualsSubstitution(EqualsSubstitution, tag="not-equals"):
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if the texts differ, otherwise ``false``."""
-        return _text(not self._is_equal(context))
+        return _format_boolean(not self._is_equal(context))
 
 
 class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({value})"):
@@ -80,29 +80,35 @@ class NotSubstitution(DeclaredSubstitution, tag="not", shown="NotSubstitution({v
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if the value is false, otherwise ``false``."""
-        return _text(not _evaluate_boolean(self, context, self.value))
+        return _format_boolean(not _evaluate_boolean(self, context, self.value))
 
 
 class AndSubstitution(DeclaredSubstitution, tag="and"):
-    """A substitution that evaluates to ``true`` if two booleans are both true, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if two booleans are both true.
+
+    Otherwise, it evaluates to ``false``.
+    """
 
     left: Texts = Texts()
     right: Texts = Texts()
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if both values are true, otherwise ``false``."""
-        return _text(all(self._truths(context)))
+        return _format_boolean(all(self._evaluate_operands(context)))
 
-    def _truths(self, context: LaunchContext) -> list[bool]:
+    def _evaluate_operands(self, context: LaunchContext) -> list[bool]:
         return [_evaluate_boolean(self, context, operand) for operand in (self.left, self.right)]
 
 
 class OrSubstitution(AndSubstitution, tag="or"):
-    """A substitution that evaluates to ``true`` if at least one of two booleans is true, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if at least one of two booleans is true.
+
+    Otherwise, it evaluates to ``false``.
+    """
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if at least one value is true, otherwise ``false``."""
-        return _text(any(self._truths(context)))
+        return _format_boolean(any(self._evaluate_operands(context)))
 
 
 class _MultiValueSubstitution(Substitution):
@@ -120,7 +126,7 @@ class _MultiValueSubstitution(Substitution):
         """Return a text with the values."""
         return f"{type(self).__name__}({', '.join(map(describe, self._values))})"
 
-    def _truths(self, context: LaunchContext) -> list[bool]:
+    def _evaluate_operands(self, context: LaunchContext) -> list[bool]:
         return [_evaluate_boolean(self, context, value) for value in self._values]
 
 
@@ -137,19 +143,25 @@ expose_substitution("all")(_parse_all)
 
 
 class AnySubstitution(_MultiValueSubstitution):
-    """A substitution that evaluates to ``true`` if at least one of several booleans is true, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if at least one of several booleans is true.
+
+    Otherwise, it evaluates to ``false``.
+    """
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if at least one value is true, otherwise ``false``."""
-        return _text(any(self._truths(context)))
+        return _format_boolean(any(self._evaluate_operands(context)))
 
 
 class AllSubstitution(_MultiValueSubstitution):
-    """A substitution that evaluates to ``true`` if several booleans are all true, otherwise to ``false``."""
+    """A substitution that evaluates to ``true`` if several booleans are all true.
+
+    Otherwise, it evaluates to ``false``.
+    """
 
     def perform(self, context: LaunchContext) -> str:
         """Return ``true`` if all values are true, otherwise ``false``."""
-        return _text(all(self._truths(context)))
+        return _format_boolean(all(self._evaluate_operands(context)))
 
 
 class IfElseSubstitution(
@@ -204,5 +216,5 @@ def _evaluate_boolean(substitution: Substitution, context: LaunchContext, value:
         ) from error
 
 
-def _text(value: bool) -> str:
+def _format_boolean(value: bool) -> str:
     return "true" if value else "false"

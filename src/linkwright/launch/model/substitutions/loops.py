@@ -37,7 +37,7 @@ class ForEachVar(DeclaredSubstitution, tag="for-var", shown="{kind}(name={name},
     default_value: OptionalTexts = OptionalTexts(default=None, kw_only=True)
 
     @classmethod
-    def wrong_count(cls, expected: str, argument_count: int) -> Exception:  # noqa: ARG003 - the interface requires it
+    def wrong_count_error(cls, expected: str, argument_count: int) -> Exception:  # noqa: ARG003 - the interface requires it
         """Return a ValueError for a wrong number of arguments, as ROS does."""
         return ValueError(f"{cls.__name__} substitution expects {expected}")
 

@@ -21,7 +21,7 @@ class StringJoinSubstitution(DeclaredSubstitution, tag="string-join", shown="Str
 
     Args:
         substitutions: the texts, each of which may consist of several substitutions.
-        delimiter: the delimiter.
+        delimiter: the text between two items.
     """
 
     substitutions: TextLists = TextLists()

@@ -16,8 +16,8 @@ import pytest
 from linkwright.launch.engine.service import LaunchService, ProcessLaunchService
 from linkwright.launch.model.context import LaunchContext
 
-_OPTIONS = "_launch_options"
-_SCOPE = "_launch_scope"
+_OPTIONS_ATTRIBUTE = "_launch_options"
+_SCOPE_ATTRIBUTE = "_launch_scope"
 _SCOPES = ("function", "class", "module", "package", "session")
 
 
@@ -68,20 +68,22 @@ def fixture(
     def decorate(function: Callable[..., Any]) -> Any:
         name = kwargs.get("name") or function.__name__
         options = LaunchOptions(name, scope, shutdown_when_idle, auto_shutdown)
-        setattr(function, _OPTIONS, options)
+        setattr(function, _OPTIONS_ATTRIBUTE, options)
         created_fixture: Any = pytest.fixture(*args, **kwargs)(function)
-        setattr(created_fixture, _OPTIONS, options)  # the marker gets this object, and pytest's hook gets the function
+        setattr(
+            created_fixture, _OPTIONS_ATTRIBUTE, options
+        )  # the marker gets this object, and pytest's hook gets the function
         return created_fixture
 
     return decorate if decorated is None else decorate(decorated)
 
 
-def options_of(function: object) -> LaunchOptions | None:
+def get_options(function: object) -> LaunchOptions | None:
     """Return the launch options of a fixture that `fixture` created, or of its function.
 
     The result is None for any other object.
     """
-    options = getattr(function, _OPTIONS, None)
+    options = getattr(function, _OPTIONS_ATTRIBUTE, None)
     return options if isinstance(options, LaunchOptions) else None
 
 
@@ -93,13 +95,13 @@ def _add_fixtures(namespace: MutableMapping[str, Any], scope: str) -> None:
     """
     for name, function in _FUNCTIONS.items():
         existing = namespace.get(name)
-        if existing is None or _SCOPES.index(getattr(existing, _SCOPE, _SCOPES[-1])) < _SCOPES.index(scope):
+        if existing is None or _SCOPES.index(getattr(existing, _SCOPE_ATTRIBUTE, _SCOPES[-1])) < _SCOPES.index(scope):
             namespace[name] = _create_fixture(function, scope)
 
 
 def _create_fixture(function: Callable[..., Any], scope: Any) -> Any:
     created_fixture: Any = pytest.fixture(scope=scope)(function)
-    setattr(created_fixture, _SCOPE, scope)
+    setattr(created_fixture, _SCOPE_ATTRIBUTE, scope)
     return created_fixture
 
 
@@ -118,7 +120,7 @@ def _launch_service(event_loop: asyncio.AbstractEventLoop) -> Iterator[LaunchSer
     """Yield the service that launches the description."""
     service = ProcessLaunchService()
     yield service
-    finish(service, "when the fixture launch_service ended")
+    finish_launch(service, "when the fixture launch_service ended")
 
 
 def _launch_context(launch_service: LaunchService) -> LaunchContext:
@@ -139,7 +141,7 @@ launch_service = _create_fixture(_launch_service, "function")
 launch_context = _create_fixture(_launch_context, "function")
 
 
-def finish(service: LaunchService, phase: str, *, shuts_down: bool = True) -> None:
+def finish_launch(service: LaunchService, phase: str, *, shuts_down: bool = True) -> None:
     """Shut down a running launch, and wait until it has ended.
 
     Args:

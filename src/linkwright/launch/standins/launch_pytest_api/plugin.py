@@ -27,10 +27,10 @@ from linkwright.launch.standins.launch_pytest_api.fixtures import (
     FIXTURES,
     LaunchOptions,
     event_loop,
-    finish,
+    finish_launch,
+    get_options,
     launch_context,
     launch_service,
-    options_of,
 )
 
 if TYPE_CHECKING:
@@ -67,23 +67,23 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_fixture_setup(fixturedef: pytest.FixtureDef[Any], request: SubRequest) -> Generator[None, object, object]:
     """Launch the description of a launch fixture, and wait until tests may start."""
-    options = options_of(fixturedef.func)
+    options = get_options(fixturedef.func)
     if options is None:
         return (yield)
     service = request.getfixturevalue("launch_service")
     loop = request.getfixturevalue("event_loop")
     fixture_value = yield
     phase = f"launch fixture '{options.fixture}'"
-    fixturedef.addfinalizer(functools.partial(finish, service, phase, shuts_down=options.auto_shutdown))
+    fixturedef.addfinalizer(functools.partial(finish_launch, service, phase, shuts_down=options.auto_shutdown))
     try:
-        _launch(service, loop, _description_in(fixture_value, phase), options)
+        _launch(service, loop, _get_description(fixture_value, phase), options)
     except BaseException as error:  # cache the error, so that other tests that use the fixture fail with it
         fixturedef.cached_result = (None, fixturedef.cache_key(request), (error, error.__traceback__))
         raise
     return fixture_value
 
 
-def _description_in(fixture_value: object, phase: str) -> LaunchDescription:
+def _get_description(fixture_value: object, phase: str) -> LaunchDescription:
     """Return the launch description in the value of a launch fixture.
 
     Raises:
@@ -192,7 +192,7 @@ class LaunchTest(pytest.Function):
         else:
             generator = self.test(**arguments)
             if inspect.isasyncgen(generator):
-                loop.run_until_complete(_next(generator))
+                loop.run_until_complete(_advance(generator))
             else:
                 loop.run_until_complete(loop.run_in_executor(None, next, generator, _EXHAUSTED))
             self.started_generator = generator
@@ -208,19 +208,19 @@ class LaunchTest(pytest.Function):
     def _end_launch(self) -> None:
         service = self.funcargs["launch_service"]
         assert isinstance(service, LaunchService)
-        finish(service, f"before test '{self.name}'", shuts_down=self.options.auto_shutdown)
+        finish_launch(service, f"before test '{self.name}'", shuts_down=self.options.auto_shutdown)
 
     def _resume(self, loop: asyncio.AbstractEventLoop, generator: Any) -> None:
         """End the launch, and run the part of the test after the ``yield``."""
         __tracebackhide__ = True
         self._end_launch()
         is_async = inspect.isasyncgen(generator)
-        next_value = loop.run_until_complete(_next(generator)) if is_async else next(generator, _EXHAUSTED)
+        next_value = loop.run_until_complete(_advance(generator)) if is_async else next(generator, _EXHAUSTED)
         if next_value is not _EXHAUSTED:
             pytest.fail("a launch test that is a generator must stop iteration after yielding once", pytrace=False)
 
 
-async def _next(generator: Any) -> object:
+async def _advance(generator: Any) -> object:
     return await anext(generator, _EXHAUSTED)
 
 
@@ -235,11 +235,11 @@ def _as_plain_function(test: Callable[..., Any]) -> Callable[..., Any]:
     """
 
     @functools.wraps(getattr(test, "__func__", test))
-    def plain(*_: object, **__: object) -> None:
+    def plain_test(*_: object, **__: object) -> None:
         raise AssertionError("run by LaunchTest.runtest")
 
     owner = getattr(test, "__self__", None)
-    return plain if owner is None else types.MethodType(plain, owner)
+    return plain_test if owner is None else types.MethodType(plain_test, owner)
 
 
 @pytest.hookimpl(tryfirst=True)
@@ -253,7 +253,7 @@ def pytest_pycollect_makeitem(
     marker = marks[0] if marks else collector.get_closest_marker("launch")
     if marker is None:
         return None
-    options = options_of(marker.kwargs.get("fixture"))
+    options = get_options(marker.kwargs.get("fixture"))
     if options is None:
         return [_mark_skipped(pytest.Function.from_parent(collector, name=name))]
     pytest.mark.usefixtures(options.fixture, *FIXTURES[:2])(obj)

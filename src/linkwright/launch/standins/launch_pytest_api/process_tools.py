@@ -1,4 +1,4 @@
-"""Functions that wait for output or the exit of processes (``launch_pytest.tools.process``).
+"""Functions that wait for output or exits of processes (``launch_pytest.tools.process``).
 
 The arguments of each function are the launch's context, the action that runs the process, and a timeout in seconds, or
 None to wait without limit. The coroutines are for tests that run on the launch's event loop. The functions whose names
@@ -63,8 +63,8 @@ class _Wait:
         """
         event = asyncio.Event()
         with self._listening(event.set):
-            value = self._value()
-            deadline = self._deadline()
+            value = self._evaluate_condition()
+            deadline = self._compute_deadline()
             while not value:
                 try:
                     await asyncio.wait_for(event.wait(), _remaining_seconds(deadline))
@@ -72,7 +72,7 @@ class _Wait:
                     self._on_timeout()
                     break
                 event.clear()
-                value = self._value()
+                value = self._evaluate_condition()
         return value
 
     def run_sync(self) -> Any:
@@ -82,20 +82,20 @@ class _Wait:
         """
         event = threading.Event()
         with self._listening(event.set):
-            value = self._value()
-            deadline = self._deadline()
+            value = self._evaluate_condition()
+            deadline = self._compute_deadline()
             while not value:
                 if not event.wait(_remaining_seconds(deadline)):
                     self._on_timeout()
                     break
                 event.clear()
-                value = self._value()
+                value = self._evaluate_condition()
         return value
 
-    def _deadline(self) -> float | None:
+    def _compute_deadline(self) -> float | None:
         return None if self._timeout is None else time.monotonic() + self._timeout
 
-    def _value(self) -> Any:
+    def _evaluate_condition(self) -> Any:
         return self._has_occurred if self._condition is None else self._condition()
 
     @contextmanager
@@ -122,7 +122,7 @@ def _remaining_seconds(deadline: float | None) -> float | None:
     return None if deadline is None else max(deadline - time.monotonic(), 0.0)
 
 
-def _wait_functions(
+def _create_wait_functions(
     create_wait: Callable[_P, _Wait],
 ) -> tuple[Callable[_P, Coroutine[Any, Any, Any]], Callable[_P, Any]]:
     """Return a coroutine function and a plain function that wait as `create_wait` specifies.
@@ -141,8 +141,8 @@ def _wait_functions(
     return wait, wait_sync
 
 
-def _output_wait(stream: str) -> Callable[..., _Wait]:
-    def wait(
+def _output_wait_factory(stream: str) -> Callable[..., _Wait]:
+    def create_wait(
         launch_context: LaunchContext,
         execute_process_action: ExecuteLocal,
         validate_output: Validate,
@@ -152,14 +152,14 @@ def _output_wait(stream: str) -> Callable[..., _Wait]:
 
         Return the last value of `validate_output`.
         """
-        handler, read = _output_access(execute_process_action, stream)
-        return _Wait(launch_context, handler, timeout, lambda: validate_output(read()))
+        create_handler, read_output = _create_output_access(execute_process_action, stream)
+        return _Wait(launch_context, create_handler, timeout, lambda: validate_output(read_output()))
 
-    return wait
+    return create_wait
 
 
-def _output_assertion_wait(stream: str) -> Callable[..., _Wait]:
-    def wait(
+def _assertion_wait_factory(stream: str) -> Callable[..., _Wait]:
+    def create_wait(
         launch_context: LaunchContext,
         execute_process_action: ExecuteLocal,
         validate_output: Validate,
@@ -169,57 +169,57 @@ def _output_assertion_wait(stream: str) -> Callable[..., _Wait]:
 
         On a timeout, `validate_output` is called once more, and its AssertionError is raised.
         """
-        handler, read = _output_access(execute_process_action, stream)
+        create_handler, read_output = _create_output_access(execute_process_action, stream)
 
-        def holds() -> bool:
+        def is_valid() -> bool:
             try:
-                validate_output(read())
+                validate_output(read_output())
             except AssertionError:
                 return False
             return True
 
-        return _Wait(launch_context, handler, timeout, holds, lambda: validate_output(read()))
+        return _Wait(launch_context, create_handler, timeout, is_valid, lambda: validate_output(read_output()))
 
-    return wait
+    return create_wait
 
 
-def _start_wait(
+def _create_start_wait(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> _Wait:
     """Wait until the process starts, and return whether it started in time."""
 
-    def handler(react: Reaction) -> Handler:
+    def create_handler(react: Reaction) -> Handler:
         return OnProcessStart(target_action=execute_process_action, on_start=react)
 
-    return _Wait(launch_context, handler, timeout)
+    return _Wait(launch_context, create_handler, timeout)
 
 
-def _exit_wait(
+def _create_exit_wait(
     launch_context: LaunchContext, execute_process_action: ExecuteLocal, timeout: float | None = None
 ) -> _Wait:
     """Wait until the process ends, and return whether it ended in time."""
 
-    def handler(react: Reaction) -> Handler:
+    def create_handler(react: Reaction) -> Handler:
         return OnProcessExit(target_action=execute_process_action, on_exit=react)
 
-    return _Wait(launch_context, handler, timeout)
+    return _Wait(launch_context, create_handler, timeout)
 
 
-def _output_access(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
+def _create_output_access(action: ExecuteLocal, stream: str) -> tuple[Callable[[Reaction], Handler], Callable[[], str]]:
     """Return a factory of handlers for the output of a process, and a getter of its output.
 
     `stream` is ``stdout`` or ``stderr``.
     """
 
-    def handler(react: Reaction) -> Handler:
+    def create_handler(react: Reaction) -> Handler:
         return OnProcessIO(target_action=action, **{f"on_{stream}": react})  # type: ignore[arg-type]  # a keyword name
 
-    return handler, getattr(action, f"get_{stream}")
+    return create_handler, getattr(action, f"get_{stream}")
 
 
-wait_for_output, wait_for_output_sync = _wait_functions(_output_wait("stdout"))
-wait_for_stderr, wait_for_stderr_sync = _wait_functions(_output_wait("stderr"))
-assert_output, assert_output_sync = _wait_functions(_output_assertion_wait("stdout"))
-assert_stderr, assert_stderr_sync = _wait_functions(_output_assertion_wait("stderr"))
-wait_for_start, wait_for_start_sync = _wait_functions(_start_wait)
-wait_for_exit, wait_for_exit_sync = _wait_functions(_exit_wait)
+wait_for_output, wait_for_output_sync = _create_wait_functions(_output_wait_factory("stdout"))
+wait_for_stderr, wait_for_stderr_sync = _create_wait_functions(_output_wait_factory("stderr"))
+assert_output, assert_output_sync = _create_wait_functions(_assertion_wait_factory("stdout"))
+assert_stderr, assert_stderr_sync = _create_wait_functions(_assertion_wait_factory("stderr"))
+wait_for_start, wait_for_start_sync = _create_wait_functions(_create_start_wait)
+wait_for_exit, wait_for_exit_sync = _create_wait_functions(_create_exit_wait)

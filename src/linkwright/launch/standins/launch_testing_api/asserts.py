@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from linkwright.launch.model.actions.execute import ExecuteLocal
-from linkwright.launch.standins.launch_testing_api.processes import ProcessRecords, name_of, resolveProcesses
+from linkwright.launch.standins.launch_testing_api.processes import ProcessRecords, get_name, resolveProcesses
 from linkwright.launch.standins.launch_testing_api.text import build_text_match
 from linkwright.standins.terminal_color import remove_ansi_escape_sequences
 
@@ -87,12 +87,12 @@ def assertInStream(
         raise ValueError("Invalid value for stream; must be 'stdout' or 'stderr'")
     match = build_text_match(expected_output)
     for execute_local in matching_actions:
-        output = text_of(proc_output[execute_local], stream)
+        output = join_output(proc_output[execute_local], stream)
         if strip_ansi_escape_sequences:
             output = remove_ansi_escape_sequences(output)
         if match(output if output_filter is None else output_filter(output)) is not None:
             return
-    names = ", ".join(sorted(map(name_of, matching_actions)))
+    names = ", ".join(sorted(map(get_name, matching_actions)))
     raise AssertionError(f"Did not find '{expected_output}' in output for any of the matching processes: {names}")
 
 
@@ -129,7 +129,7 @@ def assertDefaultStream() -> str:
     return "stderr"
 
 
-def text_of(output_events: Sequence[Any], stream: str | None = None) -> str:
+def join_output(output_events: Sequence[Any], stream: str | None = None) -> str:
     """Return the recorded output of a process as one text.
 
     Args:
@@ -152,7 +152,7 @@ def assertSequentialStdout(
         cmd_args: arguments of the process, see `resolveProcesses`.
     """
     (action,) = resolveProcesses(proc_output, process=process, cmd_args=cmd_args)
-    yield SequentialTextChecker([text_of([event]) for event in proc_output[action]])
+    yield SequentialTextChecker([join_output([event]) for event in proc_output[action]])
 
 
 class SequentialTextChecker:

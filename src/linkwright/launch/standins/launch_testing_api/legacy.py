@@ -38,7 +38,7 @@ class LaunchTestService:
 
         Args:
             launch_description: the description to which the action is added.
-            action: the action.
+            action: the action that the tests need.
             exit_allowed: the statuses with which the process may exit before the tests end. True allows any status,
                 and False allows none.
         """
@@ -49,7 +49,7 @@ class LaunchTestService:
             if allowed or context.is_shutdown:
                 return None
             self._statuses.append(event.returncode or 1)
-            return _shutdown(f"{_name(event.action)} fixture process died!")
+            return _create_shutdown(f"{_find_name(event.action)} fixture process died!")
 
         if isinstance(action, ExecuteProcess):
             launch_description.add_action(RegisterEventHandler(OnProcessExit(target_action=action, on_exit=on_exit)))
@@ -66,7 +66,7 @@ class LaunchTestService:
             if event.returncode == 0:
                 return self._handle_pass(test)
             self._statuses.append(event.returncode)
-            return self._failed(test, f"{_name(event.action)} test failed!")
+            return self._handle_failure(test, f"{_find_name(event.action)} test failed!")
 
         def on_completion(event: Any, _: Any) -> Any:
             future = event.action.get_asyncio_future()
@@ -74,7 +74,7 @@ class LaunchTestService:
                 self._tests[test] = _DROPPED
                 return None
             error = None if future is None else future.exception()
-            return self._handle_pass(test) if error is None else self._failed(test, str(error))
+            return self._handle_pass(test) if error is None else self._handle_failure(test, str(error))
 
         handler: Any
         if isinstance(action, ExecuteProcess):
@@ -106,14 +106,14 @@ class LaunchTestService:
             side_effect: ``shutdown`` to end the launch when the test has passed.
         """
         test = f"test_{id(action)}_{test_suffix}"
-        output, collate, matches, patterns = output_test
+        output, append, matches, patterns = output_test
         missing_patterns = list(patterns)
         self._tests[test] = _RUNNING
 
         def on_stdout(event: Any) -> Any:
             nonlocal output
-            output = collate(output, output_filter(event.text) if output_filter else event.text)
-            missing_patterns[:] = [text for text in missing_patterns if not matches(output, text)]
+            output = append(output, output_filter(event.text) if output_filter else event.text)
+            missing_patterns[:] = [pattern for pattern in missing_patterns if not matches(output, pattern)]
             return None if missing_patterns else self._handle_pass(test, side_effect)
 
         def on_exit(*_: Any) -> Any:
@@ -121,7 +121,7 @@ class LaunchTestService:
 
         def on_shutdown(*_: Any) -> None:
             if missing_patterns:
-                self._failed(test, f"not all {_name(action)} output matched!")
+                self._handle_failure(test, f"not all {_find_name(action)} output matched!")
 
         for handler in (
             OnProcessExit(target_action=action, on_exit=on_exit),
@@ -142,23 +142,23 @@ class LaunchTestService:
     def _handle_pass(self, test: str, side_effect: str | None = None) -> Any:
         self._tests[test] = _PASSED
         if side_effect == "shutdown":
-            return [_shutdown("shutdown after test")]
+            return [_create_shutdown("shutdown after test")]
         return self._handle_end(test)
 
-    def _failed(self, test: str, reason: str) -> Any:
+    def _handle_failure(self, test: str, reason: str) -> Any:
         self._tests = {name: _DROPPED if state == _RUNNING else state for name, state in self._tests.items()}
         self._tests[test] = _FAILED
-        return [_shutdown(reason)]
+        return [_create_shutdown(reason)]
 
     def _handle_end(self, test: str) -> Any:
         """Return an action that ends the launch, or None if another test is still running."""
         other_states = [state for name, state in self._tests.items() if name != test]
-        return None if _RUNNING in other_states else [_shutdown("all tests finished")]
+        return None if _RUNNING in other_states else [_create_shutdown("all tests finished")]
 
 
-def _shutdown(reason: str) -> Any:
+def _create_shutdown(reason: str) -> Any:
     return EmitEvent(event=Shutdown(reason=reason))
 
 
-def _name(action: Any) -> str:
+def _find_name(action: Any) -> str:
     return str(action.process_details["name"])

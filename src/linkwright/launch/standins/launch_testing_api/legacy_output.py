@@ -25,13 +25,13 @@ def create_output_lines_filter(
     filtered_patterns: Sequence[bytes] | None = None,
     filtered_rmw_implementation: str | None = None,  # noqa: ARG001  # Linkwright's writes no lines
 ) -> Callable[[bytes], bytes]:
-    """Return a function that removes the lines with certain prefixes or patterns from an output."""
+    """Return a function that removes lines with certain prefixes or patterns from an output."""
     prefixes = tuple(filtered_prefixes or get_default_filtered_prefixes())
     patterns = [
         re.compile(filtered_pattern) for filtered_pattern in filtered_patterns or get_default_filtered_patterns()
     ]
 
-    def filtered(output: bytes) -> bytes:
+    def filter_lines(output: bytes) -> bytes:
         lines = output.splitlines(keepends=True)
         return b"".join(
             line
@@ -39,7 +39,7 @@ def create_output_lines_filter(
             if not line.startswith(prefixes) and not any(pattern.match(line) for pattern in patterns)
         )
 
-    return filtered
+    return filter_lines
 
 
 def create_output_lines_test(expected_lines: Sequence[bytes]) -> _OutputTest:

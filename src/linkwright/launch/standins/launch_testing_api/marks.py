@@ -136,7 +136,7 @@ def _forget_failures(test: Any) -> None:
 
 
 class ReadyAggregator:
-    """A counter that calls a function after the method `ready_fn` has been called a certain number of times.
+    """A counter that calls a function after a certain number of calls of `ready_fn`.
 
     Args:
         ready_fn: the function to call at the end.

@@ -72,7 +72,7 @@ def resolveProcesses(
     matching_actions = [
         execute_local
         for execute_local in actions
-        if process in name_of(execute_local) and _has_arguments(execute_local, arguments)
+        if process in get_name(execute_local) and _has_arguments(execute_local, arguments)
     ]
     if matching_actions and not (strict_proc_matching and len(matching_actions) > 1):
         return matching_actions
@@ -86,7 +86,7 @@ def resolveProcesses(
     )
 
 
-def name_of(action: ExecuteLocal) -> str:
+def get_name(action: ExecuteLocal) -> str:
     """Return the name of an action's process in log lines, or an empty string without one."""
     return str((action.process_details or {}).get("name") or action.process_description.final_name or "")
 

@@ -10,7 +10,7 @@ from linkwright.launch.engine.service import LaunchService
 from linkwright.launch.model import events
 from linkwright.launch.model.actions.execute import ExecuteProcess
 from linkwright.launch.model.description import LaunchDescription
-from linkwright.launch.standins.launch_testing_api.asserts import text_of
+from linkwright.launch.standins.launch_testing_api.asserts import join_output
 from linkwright.launch.standins.launch_testing_api.records import ActiveIoHandler, ActiveProcInfoHandler
 
 
@@ -71,27 +71,27 @@ class ProcessProxy:
     @property
     def stdout(self) -> str:
         """The standard output of the process."""
-        return self._text("stdout")
+        return self._read_output("stdout")
 
     @property
     def stderr(self) -> str:
         """The standard error of the process."""
-        return self._text("stderr")
+        return self._read_output("stderr")
 
     @property
     def output(self) -> str:
         """The output of the process to both streams, in order."""
-        return self._text(None)
+        return self._read_output(None)
 
     @property
     def running(self) -> bool:
         """Whether the process has started and not ended."""
-        return isinstance(self._event, events.ProcessStarted)
+        return isinstance(self._last_event, events.ProcessStarted)
 
     @property
     def terminated(self) -> bool:
         """Whether the process has ended."""
-        return isinstance(self._event, events.ProcessExited)
+        return isinstance(self._last_event, events.ProcessExited)
 
     @property
     def exit_code(self) -> int:
@@ -118,26 +118,26 @@ class ProcessProxy:
             timeout: the timeout in seconds; None to wait without limit.
         """
         _check_callable(condition, "condition")
-        written: str | None = None
+        output: str | None = None
 
-        def is_there() -> bool:
-            nonlocal written
+        def has_arrived() -> bool:
+            nonlocal output
             if not self.running:
                 return False
-            written = self.output
-            return condition is None or bool(condition(written))
+            output = self.output
+            return condition is None or bool(condition(output))
 
         with self._proc_output.io_event:
-            has_succeeded = self._proc_output.io_event.wait_for(is_there, timeout=timeout)
-            return Outcome(has_succeeded, written)
+            has_succeeded = self._proc_output.io_event.wait_for(has_arrived, timeout=timeout)
+            return Outcome(has_succeeded, output)
 
     @property
-    def _event(self) -> object:
+    def _last_event(self) -> object:
         actions = self._proc_info.processes()
         return self._proc_info[self._process_action] if self._process_action in actions else None
 
-    def _text(self, stream: str | None) -> str:
-        text = text_of(self._proc_output[self._process_action], stream)
+    def _read_output(self, stream: str | None) -> str:
+        text = join_output(self._proc_output[self._process_action], stream)
         return text if self._output_filter is None else self._output_filter(text)
 
 

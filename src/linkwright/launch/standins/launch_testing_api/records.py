@@ -15,7 +15,7 @@ from linkwright.launch.model.actions.execute import ExecuteLocal
 from linkwright.launch.standins.launch_testing_api.asserts import assertInStream
 from linkwright.launch.standins.launch_testing_api.processes import (
     NoMatchingProcessException,
-    name_of,
+    get_name,
     resolveProcesses,
 )
 
@@ -53,7 +53,7 @@ class IoHandler:
         Raises:
             KeyError: the process is unknown.
         """
-        return list(self._by_name[key if isinstance(key, str) else name_of(key)])
+        return list(self._by_name[key if isinstance(key, str) else get_name(key)])
 
 
 class ProcInfoHandler:
@@ -75,7 +75,7 @@ class ProcInfoHandler:
 
     def process_names(self) -> list[str]:
         """Return the names of all processes."""
-        return [name_of(action) for action in self._by_action]
+        return [get_name(action) for action in self._by_action]
 
     def __getitem__(self, key: str | ExecuteLocal) -> Any:
         """Return the last event of a process, given a part of its name or its action.
@@ -86,7 +86,7 @@ class ProcInfoHandler:
         if not isinstance(key, str):
             return self._by_action[key]
         for action, event in self._by_action.items():
-            if key in name_of(action):
+            if key in get_name(action):
                 return event
         raise KeyError(key)
 
@@ -170,7 +170,7 @@ class ActiveIoHandler:
             Exception: no process with this name has output.
         """
 
-        def is_there() -> bool:
+        def contains_expected() -> bool:
             try:
                 assertInStream(
                     self._io_handler,  # this thread already holds the lock
@@ -187,7 +187,7 @@ class ActiveIoHandler:
             return True
 
         with self.io_event:
-            has_arrived = self.io_event.wait_for(is_there, timeout=timeout)
+            has_arrived = self.io_event.wait_for(contains_expected, timeout=timeout)
             if not has_arrived:
                 resolveProcesses(self._io_handler, process=process, cmd_args=cmd_args, strict_proc_matching=False)
         return has_arrived

@@ -15,6 +15,8 @@ Case = unittest.TestCase
 
 
 class _TestCases(Protocol):
+    """The interface of a test run."""
+
     def all_cases(self) -> Iterable[Case]:
         """Return the tests of a run."""
 

@@ -77,7 +77,7 @@ class WaitForTopics:
         for name, message_type in self.topic_tuples:
             if name not in self._received:
                 self._received[name] = deque(maxlen=self.messages_received_buffer_length)
-                self._node.create_subscription(message_type, name, self._listener(name), _QUEUE_DEPTH)
+                self._node.create_subscription(message_type, name, self._create_listener(name), _QUEUE_DEPTH)
         if self._trigger is not None:
             self._trigger(self._node, *args, **kwargs)
         with self._arrival:
@@ -119,7 +119,7 @@ class WaitForTopics:
     ) -> None:
         self.shutdown()
 
-    def _listener(self, name: str) -> Callable[[Any], None]:
+    def _create_listener(self, name: str) -> Callable[[Any], None]:
         def on_message(message: Any) -> None:
             with self._arrival:
                 self._received[name].append(message)
@@ -136,7 +136,7 @@ class MessagePump:
     """A thread that runs the callbacks of a node.
 
     Args:
-        node: the node.
+        node: the node whose callbacks are run.
         context: the rclpy context of the node.
     """
 
@@ -169,7 +169,7 @@ class MessagePump:
 
 
 class DataRepublisher:
-    """A republisher that transforms the messages of a topic, and publishes the results on another topic.
+    """A republisher that publishes transformed messages of a topic on another topic.
 
     Args:
         node: the node that subscribes and publishes.

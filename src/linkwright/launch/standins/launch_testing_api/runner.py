@@ -20,7 +20,7 @@ from linkwright.launch.model.actions import RegisterEventHandler
 from linkwright.launch.model.description import LaunchDescription
 from linkwright.launch.model.process_event_handlers import OnProcessExit, OnProcessIO, OnProcessStart
 from linkwright.launch.ros2launch_api import parse_launch_arguments
-from linkwright.launch.standins.launch_testing_api.asserts import text_of
+from linkwright.launch.standins.launch_testing_api.asserts import join_output
 from linkwright.launch.standins.launch_testing_api.records import ActiveIoHandler, ActiveProcInfoHandler
 from linkwright.launch.standins.launch_testing_api.results import FailResult, SkipResult, TestResult
 from linkwright.launch.standins.launch_testing_api.test_runs import TestRun
@@ -137,7 +137,7 @@ class _RunnerWorker:
             name = event.process_name
             heading = f"##### '{name}' output #####"
             print(f"Process '{name}' exited with {event.returncode}", heading, sep="\n")  # type: ignore[attr-defined]  # checked
-            print(text_of(self._proc_output[name]), "#" * len(heading), sep="\n")
+            print(join_output(self._proc_output[name]), "#" * len(heading), sep="\n")
 
 
 class LaunchTestRunner:

@@ -47,7 +47,7 @@ def build_text_match(expected_text: Any, *, strict: bool = False) -> Match:
     if isinstance(expected_text, str) or (hasattr(expected_text, "search") and hasattr(expected_text, "match")):
         return find
     if isinstance(expected_text, Iterable):
-        return _in_order([build_text_match(expectation) for expectation in expected_text], strict=strict)
+        return _build_sequence_match([build_text_match(expectation) for expectation in expected_text], strict=strict)
     raise ValueError("Unknown format for expected text")
 
 
@@ -62,7 +62,7 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
         ValueError: `expected_lines` has another type.
     """
 
-    def fits(line: str) -> bool:
+    def matches(line: str) -> bool:
         if isinstance(expected_lines, str):
             return expected_lines == line if strict else expected_lines in line
         return bool(expected_lines.match(line))
@@ -70,17 +70,19 @@ def build_line_match(expected_lines: Any, *, strict: bool = False) -> Match:
     def find(lines: Sequence[str], start: int = 0) -> Range | None:
         indices = range(start, len(lines))
         if strict:
-            return (start, len(lines)) if all(fits(lines[index]) for index in indices) else None
-        return next(((at, at + 1) for at in indices if fits(lines[at])), None)
+            return (start, len(lines)) if all(matches(lines[index]) for index in indices) else None
+        return next(((index, index + 1) for index in indices if matches(lines[index])), None)
 
     if isinstance(expected_lines, str) or hasattr(expected_lines, "match"):
         return find
     if isinstance(expected_lines, Iterable):
-        return _in_order([build_line_match(expected_line) for expected_line in expected_lines], strict=strict)
+        return _build_sequence_match(
+            [build_line_match(expected_line) for expected_line in expected_lines], strict=strict
+        )
     raise ValueError("Unknown format for expected lines")
 
 
-def _in_order(match_functions: Sequence[Match], *, strict: bool) -> Match:
+def _build_sequence_match(match_functions: Sequence[Match], *, strict: bool) -> Match:
     """Return a function that finds several expectations in order.
 
     If `strict` is set, the matches must be adjacent. If not, other text may be between them.
@@ -167,11 +169,11 @@ def basic_output_filter(
     prefixes = tuple(get_default_filtered_prefixes() if filtered_prefixes is None else filtered_prefixes)
     patterns = [re.compile(filtered_pattern) for filtered_pattern in filtered_patterns or ()]
 
-    def without_them(output: str) -> str:
+    def filter_lines(output: str) -> str:
         lines = output.splitlines(keepends=True)
         remaining_lines = (
             line for line in lines if not line.startswith(prefixes) and not any(p.match(line) for p in patterns)
         )
         return "".join(remaining_lines)
 
-    return without_them
+    return filter_lines

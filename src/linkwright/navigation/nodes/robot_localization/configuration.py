@@ -14,7 +14,7 @@ from linkwright.navigation.estimation.estimator import Timing
 from linkwright.navigation.estimation.kalman import Control, Settings
 from linkwright.navigation.estimation.motion_model import SIZE, Matrix
 from linkwright.navigation.estimation.readings import GRAVITY, UsedFlags
-from linkwright.nodes.settings import bad_value, positive
+from linkwright.nodes.settings import check_positive, invalid_value_error
 
 KINDS = ("odom", "pose", "twist", "imu")
 """The kinds of sensors, in the order of their parameters: ``odom0``, ``odom1``, ..., ``pose0``, ..."""
@@ -104,7 +104,7 @@ def read_configuration(node: Node) -> Configuration:
             same.
     """
     declare = node.declare_parameter
-    frequency = positive(node, "frequency", declare("frequency", 30.0).value)
+    frequency = check_positive(node, "frequency", declare("frequency", 30.0).value)
     timeout: float = declare("sensor_timeout", 1.0 / frequency).value
     smooths_lagged_data: bool = declare("smooth_lagged_data", False).value
     history_seconds: float = declare("history_length", 0.0).value
@@ -161,7 +161,7 @@ def _read_frames(node: Node) -> Frames:
             )
         )
     if frames.world not in (frames.map, frames.odom):
-        raise bad_value("world_frame", frames.world, node.get_name(), (frames.map, frames.odom))
+        raise invalid_value_error("world_frame", frames.world, node.get_name(), (frames.map, frames.odom))
     return frames
 
 

@@ -28,7 +28,7 @@ from linkwright.navigation.nodes.robot_localization.configuration import read_co
 from linkwright.navigation.nodes.robot_localization.sources import Source, SourceContext
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import log_unknown
+from linkwright.nodes.settings import log_unknown_parameters
 
 _INITIAL_VARIANCE = 1e-6
 """The initial variance of the quantities that ``set_pose`` does not set."""
@@ -49,7 +49,7 @@ class EkfNode(SingleNode):
         with handle_start_errors(self._node):
             self._configuration = read_configuration(self._node)
             self._filter = self._make_filter()
-            log_unknown(self._node)
+            log_unknown_parameters(self._node)
         self._estimator = Estimator(self._filter, self._configuration.timing)
         self._is_enabled = self._configuration.is_initially_enabled
         self._is_toggled_on = True

@@ -42,7 +42,7 @@ from linkwright.navigation.estimation.geodesy import (
 from linkwright.navigation.nodes.robot_localization.configuration import check_length
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
-from linkwright.nodes.settings import bad_value, log_unknown, positive
+from linkwright.nodes.settings import check_positive, invalid_value_error, log_unknown_parameters
 
 _KNOWN_COVARIANCE, _GBAS_FIX, _NO_FIX = 3, 2, -1
 _ZONE_LETTERS = "CDEFGHJKLMNPQRSTUVWXX"
@@ -63,7 +63,7 @@ class NavsatTransformNode(SingleNode):
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
             datum = self._declare_parameters()
-            log_unknown(self._node)
+            log_unknown_parameters(self._node)
         self._poses = FramePoses(self._node, "Could not obtain transform:")
         self._zone: UtmZone | None = None
         self._plane: TangentPlane | None = None
@@ -92,7 +92,7 @@ class NavsatTransformNode(SingleNode):
         self._uses_odometry_yaw: bool = declare("use_odometry_yaw", False).value
         self._uses_local_cartesian: bool = declare("use_local_cartesian", False).value
         self._has_datum: bool = declare("wait_for_datum", False).value
-        self._frequency = positive(node, "frequency", declare("frequency", 10.0).value)
+        self._frequency = check_positive(node, "frequency", declare("frequency", 10.0).value)
         for name in ("delay", "transform_timeout"):
             declare(name, 0.0)
         node.declare_parameter("datum", ParameterType.DOUBLE_ARRAY)
@@ -101,7 +101,7 @@ class NavsatTransformNode(SingleNode):
             return None
         check_length("datum", len(datum), (3,))
         if not (abs(datum[0]) <= 90.0 and abs(datum[1]) <= 360.0):
-            raise bad_value("datum", list(datum), node.get_name())
+            raise invalid_value_error("datum", list(datum), node.get_name())
         return [float(number) for number in datum]
 
     def _create_interfaces(self) -> None:

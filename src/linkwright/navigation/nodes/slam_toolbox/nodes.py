@@ -24,7 +24,7 @@ from linkwright.navigation.nodes.slam_toolbox.parameters import read_settings
 from linkwright.navigation.nodes.slam_toolbox.services import ToolboxServices
 from linkwright.navigation.nodes.slam_toolbox.toolbox import Toolbox
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, create_node_with_class, handle_start_errors
-from linkwright.nodes.settings import log_unknown
+from linkwright.nodes.settings import log_unknown_parameters
 
 
 class _ManagedToolbox(ManagedNode):
@@ -87,7 +87,7 @@ class AsyncSlamToolbox(SingleNode):
             for name in ("use_lifecycle_manager", "autostart_node"):  # Jazzy's parameters, which have no effect here.
                 self._node.declare_parameter(name, False)
             self._work = self.open(self._node)
-            log_unknown(self._node)
+            log_unknown_parameters(self._node)
         self._work[0].start()
 
     @classmethod

@@ -13,7 +13,7 @@ from linkwright.navigation.nodes.plugins import get_or_declare
 from linkwright.navigation.slam.poses import FloatArray
 from linkwright.navigation.slam.search import Search
 from linkwright.navigation.slam.settings import MapperSettings
-from linkwright.nodes.settings import positive
+from linkwright.nodes.settings import check_positive
 
 _WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
     "mode": "mapping",
@@ -101,7 +101,7 @@ class _ParameterReader:
         return float(self._value(name, default))
 
     def positive_number(self, name: str, default: float) -> float:
-        return positive(self._node, name, self.number(name, default))
+        return check_positive(self._node, name, self.number(name, default))
 
     def text(self, name: str, default: str) -> str:
         return str(self._value(name, default))

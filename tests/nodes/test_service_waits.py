@@ -6,7 +6,7 @@ import asyncio
 
 from linkwright.graph import Graph
 from linkwright.messages import get_service
-from linkwright.nodes.answers import wait_for_service
+from linkwright.nodes.service_waits import wait_for_service
 
 TRIGGER = "std_srvs/srv/Trigger"
 
