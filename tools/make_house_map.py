@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from linkwright.navigation.grids.ray_counts import ray_counts
+from linkwright.navigation.grids.ray_counts import count_rays
 from linkwright.navigation.maps.map_files import MapSaveSettings, save_map
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
@@ -68,7 +68,7 @@ def _seen(world: World) -> Grid:
         met = distances > 0.0
         # Slightly inside the object, so that a wall on the border of two cells belongs to one of them.
         ends = place + (np.where(met, distances + 0.002, REACH))[:, None] * rays[:, :2]
-        hit, passed = ray_counts(shape, cell, grid.cells_of(ends), met)
+        hit, passed = count_rays(shape, cell, grid.cells_of(ends), met)
         hits += hit
         passes += passed
         for way in ((APART, 0), (-APART, 0), (0, APART), (0, -APART)):

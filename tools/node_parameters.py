@@ -69,7 +69,7 @@ _NEEDED: Mapping[str, dict[str, Any]] = {
 def _zones() -> Iterator[dict[str, Any]]:
     """Yield the parameters of a collision monitor with one zone or one sensor, for each of their types."""
     points = "[[0.1, 0.1], [0.1, -0.1], [-0.1, 0.0]]"
-    for kind, action in product(collision_zones._TYPES, collision_zones._ACTIONS):
+    for kind, action in product(collision_zones._ZONE_TYPES, collision_zones._ACTIONS):
         zone = {"type": kind, "action_type": action, "points": points, "radius": 0.1, "visualize": True}
         zone |= {"velocity_polygons": [_PART]} if kind == "velocity_polygon" else {}
         zone |= {f"{_PART}.points": points}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkwright.geometry.single import IDENTITY, compose, quaternion_from_rpy, quaternion_multiply
-from linkwright.navigation.estimation.motion_model import ANGLES, POSITION, RATES, SIZE, TWIST, VELOCITY, State
+from linkwright.navigation.estimation.motion_model import ANGLES, POSITION, RATES, STATE_SIZE, TWIST, VELOCITY, State
 from linkwright.navigation.estimation.readings import (
     GRAVITY,
     PoseReader,
@@ -16,7 +16,7 @@ from linkwright.navigation.estimation.readings import (
 )
 
 SECOND = 1_000_000_000
-ALL = (True,) * SIZE
+ALL = (True,) * STATE_SIZE
 SIX = np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 
 
@@ -25,7 +25,7 @@ def pose(x=0.0, y=0.0, z=0.0, rpy=(0.0, 0.0, 0.0)):
 
 
 def axes(*names):
-    return tuple(State(index).name in names for index in range(SIZE))
+    return tuple(State(index).name in names for index in range(STATE_SIZE))
 
 
 def names_of(used):
@@ -44,11 +44,11 @@ def test_pose_and_covariance_are_transformed_to_world():
 def test_relative_poses_start_at_first_pose():
     reader = PoseReader(ALL, relative=True)
     first = reader.read(pose(5.0, 1.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, 0)
-    assert first.values == pytest.approx(np.zeros(SIZE))
+    assert first.values == pytest.approx(np.zeros(STATE_SIZE))
     second = reader.read(pose(5.0, 3.0, rpy=(0, 0, pi / 2)), SIX, IDENTITY, SECOND)
     assert second.values[POSITION] == pytest.approx([2.0, 0.0, 0.0])
     reader.reset()
-    assert reader.read(pose(9.0), SIX, IDENTITY, 0).values == pytest.approx(np.zeros(SIZE))
+    assert reader.read(pose(9.0), SIX, IDENTITY, 0).values == pytest.approx(np.zeros(STATE_SIZE))
 
 
 def test_differential_poses_give_velocities():

@@ -15,7 +15,7 @@ from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.planning.planner import PlanError, Problem, Settings, plan, run_to_end
-from linkwright.navigation.planning.potential import NEUTRAL_COST, compute_potential, crossing_prices
+from linkwright.navigation.planning.potential import NEUTRAL_COST, compute_crossing_prices, compute_potential
 from linkwright.navigation.planning.smoothing import Smoothing, smooth_path
 
 RESOLUTION = 0.1
@@ -105,7 +105,7 @@ def test_potential_in_open_space_is_distance():
 
 @pytest.mark.parametrize("seed", range(12))
 def test_potential_matches_dijkstra(seed):
-    price = crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
+    price = compute_crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
     potential, truth = run_to_end(compute_potential(price, (2, 2))), dijkstra(price, (2, 2))
     is_reached = np.isfinite(potential)
     assert np.array_equal(np.isfinite(truth), is_reached)
@@ -126,7 +126,7 @@ def test_potential_reaches_exactly_connected_cells(obstacles):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_heuristic_search_gives_same_cost(seed):
-    price = crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
+    price = compute_crossing_prices(inflated_costmap(rooms(seed)).grid.cells)
     full_potential = run_to_end(compute_potential(price, (2, 2)))
     for heuristic in (False, True):
         directed_potential = run_to_end(compute_potential(price, (2, 2), (57, 57), heuristic=heuristic))
@@ -148,7 +148,7 @@ def test_plan_in_open_space_is_straight():
 @pytest.mark.parametrize("seed", range(25))
 def test_plans_avoid_obstacles_at_near_optimal_cost(seed):
     robot = inflated_costmap(rooms(seed))
-    price = crossing_prices(robot.grid.cells)
+    price = compute_crossing_prices(robot.grid.cells)
     if not np.isfinite(price[[2, 57], [2, 57]]).all():
         return
     truth = dijkstra(price, (2, 2))[57, 57]

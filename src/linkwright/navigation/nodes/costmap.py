@@ -113,12 +113,12 @@ class CostmapNode(ManagedNode):
     @property
     def global_frame(self) -> str:
         """The frame of the costmap."""
-        return self._parameter_values.global_frame
+        return self._get_parameter_values.global_frame
 
     @property
     def robot_base_frame(self) -> str:
         """The frame of the robot."""
-        return self._parameter_values.robot_base_frame
+        return self._get_parameter_values.robot_base_frame
 
     @property
     def layered(self) -> LayeredCostmap:
@@ -147,7 +147,7 @@ class CostmapNode(ManagedNode):
     @property
     def uses_radius(self) -> bool:
         """Whether the robot is round, because the parameter ``footprint`` is empty."""
-        return self._parameter_values.footprint.replace(" ", "") in {"", "[]"}
+        return self._get_parameter_values.footprint.replace(" ", "") in {"", "[]"}
 
     @property
     def is_current(self) -> bool:
@@ -162,7 +162,9 @@ class CostmapNode(ManagedNode):
         return self.transform_pose((0.0, 0.0, 0.0), self.robot_base_frame)
 
     def transform_pose(self, pose: Pose, frame: str, time_ns: int = 0) -> Pose | None:
-        """Transform a pose to the frame of the costmap, or return None if no transform is available.
+        """Transform a pose to the frame of the costmap.
+
+        Returns None if no transform is available.
 
         Args:
             pose: x, y (meters) and yaw (radians).
@@ -197,21 +199,24 @@ class CostmapNode(ManagedNode):
         self._layer_context = LayerContext(self, self.transforms, self.global_frame, self._on_map)
         self._ignore_filters()
         make_layers(self._layer_context, get_string_list(self, "plugins", list(DEFAULT_LAYERS)))
-        resolution = self._positive_value("resolution")
-        rows, columns = (max(1, int(self._positive_value(name) / resolution)) for name in ("height", "width"))
+        resolution = self._get_positive_value("resolution")
+        rows, columns = (max(1, int(self._get_positive_value(name) / resolution)) for name in ("height", "width"))
         cells = np.zeros((rows, columns), np.uint8)
         grid = Grid(
-            cells=cells, resolution=resolution, x=self._parameter_values.origin_x, y=self._parameter_values.origin_y
+            cells=cells,
+            resolution=resolution,
+            x=self._get_parameter_values.origin_x,
+            y=self._get_parameter_values.origin_y,
         )
         self._layered = LayeredCostmap(
             grid,
             list(self._layer_context.layers.values()),
             footprint,
-            is_rolling=self._parameter_values.rolling_window,
-            track_unknown=self._parameter_values.track_unknown_space,
-            footprint_padding=self._parameter_values.footprint_padding,
+            is_rolling=self._get_parameter_values.rolling_window,
+            track_unknown=self._get_parameter_values.track_unknown_space,
+            footprint_padding=self._get_parameter_values.footprint_padding,
         )
-        always_full = self._parameter_values.always_send_full_costmap
+        always_full = self._get_parameter_values.always_send_full_costmap
         self._publisher = self.register(
             CostmapPublisher(self, self._layered, self.global_frame, always_full=always_full)
         )
@@ -257,19 +262,19 @@ class CostmapNode(ManagedNode):
     # --- updates ------------------------------------------------------------------------------------------------------
 
     @property
-    def _parameter_values(self) -> CostmapParameters:
+    def _get_parameter_values(self) -> CostmapParameters:
         return self._table.values
 
-    def _positive_value(self, name: str) -> float:
-        value: float = getattr(self._parameter_values, name)
+    def _get_positive_value(self, name: str) -> float:
+        value: float = getattr(self._get_parameter_values, name)
         if not value > 0:
             raise bad_value(name, value, self.get_name())
         return float(value)
 
     def _read_footprint(self) -> Footprint:
-        text = self._parameter_values.footprint
+        text = self._get_parameter_values.footprint
         if self.uses_radius:
-            return circle(self._positive_value("robot_radius"))
+            return circle(self._get_positive_value("robot_radius"))
         try:
             return parse_footprint(text)
         except BadFootprintError as error:
@@ -285,14 +290,14 @@ class CostmapNode(ManagedNode):
 
     def _begin_updates(self) -> None:
         self.end_cycles()
-        frequency = self._parameter_values.update_frequency
+        frequency = self._get_parameter_values.update_frequency
         if frequency > 0.0:
             self.begin_cycles(1.0 / frequency, self._run_cycle)
 
     def _run_cycle(self) -> None:
         if not self.update() or self._publisher is None:
             return
-        frequency, now_ns = self._parameter_values.publish_frequency, self.now_ns()
+        frequency, now_ns = self._get_parameter_values.publish_frequency, self.now_ns()
         if frequency <= 0.0:
             return
         if self._last_published_ns is None or not 0 <= now_ns - self._last_published_ns < 1e9 / frequency:
@@ -316,7 +321,7 @@ class CostmapNode(ManagedNode):
         if layered is None or layered.is_rolling:
             return
         old_grid = layered.costmap.grid
-        new_grid = _axis_aligned_grid(grid) if frame == self.global_frame else grid
+        new_grid = _make_axis_aligned_grid(grid) if frame == self.global_frame else grid
         if (old_grid.rows, old_grid.columns, old_grid.resolution, old_grid.x, old_grid.y) != (
             new_grid.rows,
             new_grid.columns,
@@ -343,7 +348,7 @@ class CostmapNode(ManagedNode):
         names = {parameter.name for parameter in changed}
         if names & {"footprint", "robot_radius", "footprint_padding"}:
             try:
-                layered.padding = self._parameter_values.footprint_padding
+                layered.padding = self._get_parameter_values.footprint_padding
                 layered.footprint = self._read_footprint()
             except LinkwrightError as error:
                 self.log_error(error)
@@ -445,7 +450,7 @@ def _adapt_tf_remapping(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
     return source, join(server.get_namespace(), target)
 
 
-def _axis_aligned_grid(grid: Grid) -> Grid:
+def _make_axis_aligned_grid(grid: Grid) -> Grid:
     """Return an axis-aligned grid that contains another grid.
 
     Only the size, origin and resolution of the result are meaningful.
