@@ -148,7 +148,7 @@ class SeekingRobot(SteppedSimulation):
         camera = make_camera_model(_WIDTH, _HEIGHT, info.k)
         if self._visible and x > RADIUS:
             corners = np.array([[-y - RADIUS, -z - RADIUS, x], [-y + RADIUS, -z + RADIUS, x]])
-            pixels = camera.pixels(corners).ravel() + self._rng.normal(0, 0.7, 4)
+            pixels = camera.pixels_from_points(corners).ravel() + self._rng.normal(0, 0.7, 4)
             left, top, right, bottom = np.clip(pixels, 0, [_WIDTH, _HEIGHT] * 2)
             if right - left > 5 and bottom - top > 5:
                 array.detections.append(detection(header, left, top, right, bottom, self._object_name))
