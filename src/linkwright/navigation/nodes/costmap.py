@@ -113,12 +113,12 @@ class CostmapNode(ManagedNode):
     @property
     def global_frame(self) -> str:
         """The frame of the costmap."""
-        return self._get_parameter_values.global_frame
+        return self._parameter_values.global_frame
 
     @property
     def robot_base_frame(self) -> str:
         """The frame of the robot."""
-        return self._get_parameter_values.robot_base_frame
+        return self._parameter_values.robot_base_frame
 
     @property
     def layered(self) -> LayeredCostmap:
@@ -147,7 +147,7 @@ class CostmapNode(ManagedNode):
     @property
     def uses_radius(self) -> bool:
         """Whether the robot is round, because the parameter ``footprint`` is empty."""
-        return self._get_parameter_values.footprint.replace(" ", "") in {"", "[]"}
+        return self._parameter_values.footprint.replace(" ", "") in {"", "[]"}
 
     @property
     def is_current(self) -> bool:
@@ -205,18 +205,18 @@ class CostmapNode(ManagedNode):
         grid = Grid(
             cells=cells,
             resolution=resolution,
-            x=self._get_parameter_values.origin_x,
-            y=self._get_parameter_values.origin_y,
+            x=self._parameter_values.origin_x,
+            y=self._parameter_values.origin_y,
         )
         self._layered = LayeredCostmap(
             grid,
             list(self._layer_context.layers.values()),
             footprint,
-            is_rolling=self._get_parameter_values.rolling_window,
-            track_unknown=self._get_parameter_values.track_unknown_space,
-            footprint_padding=self._get_parameter_values.footprint_padding,
+            is_rolling=self._parameter_values.rolling_window,
+            track_unknown=self._parameter_values.track_unknown_space,
+            footprint_padding=self._parameter_values.footprint_padding,
         )
-        always_full = self._get_parameter_values.always_send_full_costmap
+        always_full = self._parameter_values.always_send_full_costmap
         self._publisher = self.register(
             CostmapPublisher(self, self._layered, self.global_frame, always_full=always_full)
         )
@@ -262,17 +262,17 @@ class CostmapNode(ManagedNode):
     # --- updates ------------------------------------------------------------------------------------------------------
 
     @property
-    def _get_parameter_values(self) -> CostmapParameters:
+    def _parameter_values(self) -> CostmapParameters:
         return self._table.values
 
     def _get_positive_value(self, name: str) -> float:
-        value: float = getattr(self._get_parameter_values, name)
+        value: float = getattr(self._parameter_values, name)
         if not value > 0:
             raise bad_value(name, value, self.get_name())
         return float(value)
 
     def _read_footprint(self) -> Footprint:
-        text = self._get_parameter_values.footprint
+        text = self._parameter_values.footprint
         if self.uses_radius:
             return circle(self._get_positive_value("robot_radius"))
         try:
@@ -290,14 +290,14 @@ class CostmapNode(ManagedNode):
 
     def _begin_updates(self) -> None:
         self.end_cycles()
-        frequency = self._get_parameter_values.update_frequency
+        frequency = self._parameter_values.update_frequency
         if frequency > 0.0:
             self.begin_cycles(1.0 / frequency, self._run_cycle)
 
     def _run_cycle(self) -> None:
         if not self.update() or self._publisher is None:
             return
-        frequency, now_ns = self._get_parameter_values.publish_frequency, self.now_ns()
+        frequency, now_ns = self._parameter_values.publish_frequency, self.now_ns()
         if frequency <= 0.0:
             return
         if self._last_published_ns is None or not 0 <= now_ns - self._last_published_ns < 1e9 / frequency:
@@ -348,7 +348,7 @@ class CostmapNode(ManagedNode):
         names = {parameter.name for parameter in changed}
         if names & {"footprint", "robot_radius", "footprint_padding"}:
             try:
-                layered.padding = self._get_parameter_values.footprint_padding
+                layered.padding = self._parameter_values.footprint_padding
                 layered.footprint = self._read_footprint()
             except LinkwrightError as error:
                 self.log_error(error)

@@ -10,7 +10,7 @@ from math import atan2, degrees, hypot
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.diagnostics.translation import CHINESE, ENGLISH, localized
-from linkwright.images.color_words import COLOR_WORD_SPELLINGS, find_color_word, words_of
+from linkwright.images.color_words import COLOR_WORD_SPELLINGS, find_color_word, split_into_words
 
 _CHINESE_COLORS = {
     "红": "red", "橙": "orange", "橘": "orange", "黄": "yellow", "绿": "green", "青": "cyan", "蓝": "blue",
@@ -118,7 +118,7 @@ class ObjectRequest:
             aspect_ratio: the width divided by the height.
             score: the score of the detection; for a patch of a color, the fraction of its box that it fills.
         """
-        words = words_of(name)
+        words = split_into_words(name)
         class_color = find_color_word(name)
         class_noun = " ".join(word for word in words if word not in COLOR_WORD_SPELLINGS)
         if self.color is not None and self.color != (class_color or color):
@@ -167,7 +167,7 @@ def parse_request(text: str) -> ObjectRequest | None:
         normalized = (
             _VERBS.sub("", f"{' '.join(normalized.split())} ", count=1) if _VERBS.match(normalized) else normalized
         )
-        words = [word for word in words_of(normalized) if word not in _FILLER_WORDS]
+        words = [word for word in split_into_words(normalized) if word not in _FILLER_WORDS]
         color = next((COLOR_WORD_SPELLINGS[word] for word in words if word in COLOR_WORD_SPELLINGS), None)
         noun = " ".join(word for word in words if word not in COLOR_WORD_SPELLINGS and word not in ("thing", "one"))
         return ObjectRequest(normalize_object_name(noun), color, " ".join(words)) if color or noun else None
@@ -196,7 +196,7 @@ def describe_sightings(sightings: Iterable[Sighting], language: str) -> str:
 
 def add_color_to_name(name: str, color: str | None, language: str) -> str:
     """Return the name of an object with its color: *red ball*, 红色的球."""
-    words = [word for word in words_of(name) if word not in COLOR_WORD_SPELLINGS]
+    words = [word for word in split_into_words(name) if word not in COLOR_WORD_SPELLINGS]
     color_word = find_color_word(name) or color
     noun = " ".join(words)
     if language != CHINESE:
