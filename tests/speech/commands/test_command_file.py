@@ -85,7 +85,9 @@ def test_unknown_text_matches_no_command(commands: CommandSet, text: str) -> Non
 @pytest.mark.parametrize("language", ["en", "zh"])
 def test_engine_phrases_match_commands_and_stay_below_limit(commands: CommandSet, language: str) -> None:
     phrases = commands.phrases(language)
-    assert [text for text in phrases if commands.match_command(text) is None and commands.parse_answer(text) is None] == []
+    assert [
+        text for text in phrases if commands.match_command(text) is None and commands.parse_answer(text) is None
+    ] == []
     assert len(phrases) == len(set(phrases)) < 500
     assert {"en": "turn left ninety degrees", "zh": "左转九十度"}[language] in phrases
 
