@@ -14,7 +14,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from gazebo_models import MODELS, model_config
+from gazebo_models import MODELS, format_model_config
 from gazebo_sdf import (
     BLACK,
     BLUE,
@@ -58,7 +58,7 @@ GROUND = """\
       </link>
     </model>"""
 
-AROUND = """\
+PHYSICS_AND_SCENE = """\
     <physics type="ode">
       <max_step_size>0.001</max_step_size>
       <real_time_factor>1</real_time_factor>
@@ -86,14 +86,17 @@ AROUND = """\
     </light>"""
 
 
-def world(name: str, things: Sequence[Model | Include]) -> str:
+def world(name: str, objects: Sequence[Model | Include]) -> str:
     """Return a world with ground, light and the given objects."""
-    parts = [AROUND, GROUND, *(thing.xml() for thing in things)]
+    parts = [PHYSICS_AND_SCENE, GROUND, *(thing.xml() for thing in objects)]
     return sdf(f'  <world name="{name}">\n\n' + "\n\n".join(parts) + "\n\n  </world>")
 
 
 def wall(name: str, start: Point, end: Point, height: float, thickness: float) -> Part:
-    """Return a wall between two points on the ground, which extends beyond both by half its thickness."""
+    """Return a wall between two points on the ground.
+
+    It extends beyond both by half its thickness.
+    """
     length = math.dist(start, end) + thickness
     pose = Pose(
         (start[0] + end[0]) / 2, (start[1] + end[1]) / 2, height / 2, math.atan2(end[1] - start[1], end[0] - start[0])
@@ -114,7 +117,7 @@ def rectangle(left: float, right: float, low: float, high: float) -> list[Line]:
 
 
 def obstacles() -> list[Model | Include]:
-    """Return a room of 10 m x 8 m with pillars, blocks, a ramp and two crates that can be pushed."""
+    """Return a room of 10 m x 8 m with pillars, blocks, a ramp and two movable crates."""
     blocks = [
         (2.5, 1.5, 0.8, 0.5, 0.6, 0.5, RED),
         (-2.2, 2.4, 1.2, 0.4, 0.8, -0.3, BLUE),
@@ -196,20 +199,20 @@ def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Includ
 
     The robot starts in one corner and leaves at the opposite one.
     """
-    chance = random.Random(seed)
-    here, seen = (0, 0), {(0, 0)}
-    way, open_between = [here], set()
-    while way:
-        here = way[-1]
-        steps = [(here[0] + dx, here[1] + dy) for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1))]
-        new = [step for step in steps if step not in seen and all(0 <= value < size for value in step)]
-        if not new:
-            way.pop()
+    generator = random.Random(seed)
+    cell_position, visited = (0, 0), {(0, 0)}
+    path, open_between = [cell_position], set()
+    while path:
+        cell_position = path[-1]
+        steps = [(cell_position[0] + dx, cell_position[1] + dy) for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+        unvisited = [step for step in steps if step not in visited and all(0 <= value < size for value in step)]
+        if not unvisited:
+            path.pop()
             continue
-        chosen = new[int(chance.random() * len(new))]
-        open_between |= {(here, chosen), (chosen, here)}
-        seen.add(chosen)
-        way.append(chosen)
+        next_position = unvisited[int(generator.random() * len(unvisited))]
+        open_between |= {(cell_position, next_position), (next_position, cell_position)}
+        visited.add(next_position)
+        path.append(next_position)
     lines: list[Line] = []
     for line in range(size + 1):
         # Walls along x below row `line`, and along y left of column `line`; the exit is the right side of the last
@@ -218,23 +221,23 @@ def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Includ
         left = [((line - 1, at), (line, at)) not in open_between for at in range(size)]
         if line == size:
             left[-1] = False
-        lines += [((low, fixed), (high, fixed)) for fixed, low, high in _runs(line, below, cell)]
-        lines += [((fixed, low), (fixed, high)) for fixed, low, high in _runs(line, left, cell)]
+        lines += [((low, fixed), (high, fixed)) for fixed, low, high in _iterate_wall_spans(line, below, cell)]
+        lines += [((fixed, low), (fixed, high)) for fixed, low, high in _iterate_wall_spans(line, left, cell)]
     finish = box("finish", (0.9, 0.9, 0.002), Pose(size * cell, (size - 1) * cell, 0.001), GREEN, solid=False)
     return [walls(lines, 0.6, 0.08), Model("finish", [finish])]
 
 
-def _runs(line: int, closed: Sequence[bool], cell: float) -> Iterator[tuple[float, float, float]]:
+def _iterate_wall_spans(line: int, closed: Sequence[bool], cell: float) -> Iterator[tuple[float, float, float]]:
     """Yield the position of a grid line, and the start and end of each of its walls, in meters.
 
     Cell 0 is centered at 0.
     """
     start = None
-    for at, wanted in enumerate([*closed, False]):
-        if wanted:
-            start = at if start is None else start
+    for index, is_wall in enumerate([*closed, False]):
+        if is_wall:
+            start = index if start is None else start
         elif start is not None:
-            yield (line - 0.5) * cell, (start - 0.5) * cell, (at - 0.5) * cell
+            yield (line - 0.5) * cell, (start - 0.5) * cell, (index - 0.5) * cell
             start = None
 
 
@@ -278,7 +281,10 @@ def playground() -> list[Model | Include]:
 
 
 def line_track(steps: int = 120) -> list[Model | Include]:
-    """Return a closed black line of 5 cm on a white floor, along x at the origin, with two cones beside it."""
+    """Return a closed black line of 5 cm on a white floor, with two cones beside it.
+
+    At the origin, the line is along x.
+    """
 
     def point(at: int) -> Point:
         t = 2 * math.pi * at / steps
@@ -314,7 +320,7 @@ def generate() -> dict[str, str]:
     files = {f"worlds/{name}.world": world(name, make()) for name, make in WORLDS.items()}
     for name, (make, description) in MODELS.items():
         model, meshes = make()
-        files[f"models/{name}/model.config"] = model_config(name, description)
+        files[f"models/{name}/model.config"] = format_model_config(name, description)
         files[f"models/{name}/model.sdf"] = sdf(model.xml("  "))
         files |= {f"models/{name}/meshes/{file}": text for file, text in meshes.items()}
     return files
