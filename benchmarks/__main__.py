@@ -1,4 +1,6 @@
-"""``python -m benchmarks [--list] [--write] [NAME ...]``: run all measurements, or those named (`xacro`, `dds`, ...).
+"""Run all measurements, or the named ones, such as ``xacro`` and ``dds``.
+
+Usage: ``python -m benchmarks [--list] [--write] [NAME ...]``
 
 With ``--list``, only their names and subjects are printed. With ``--write``, the figures are also written to
 ``docs/benchmarks.md`` and its Chinese version.
