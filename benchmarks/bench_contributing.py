@@ -21,10 +21,10 @@ def rows() -> list[Row]:
     """
     with tempfile.TemporaryDirectory() as folder:
         clone = Path(folder) / "clone"
-        before = _get_processor_seconds()
+        start_seconds = _get_processor_seconds()
         _run_program("git", "clone", "--quiet", "--no-hardlinks", str(ROOT), str(clone))
         _run_program("make", "--directory", str(clone), "test-base", f"ARGS={TESTS}", f"PYTHON={sys.executable}")
-        seconds = _get_processor_seconds() - before
+        seconds = _get_processor_seconds() - start_seconds
         size = sum(path.lstat().st_blocks * 512 for path in clone.rglob("*")) / 1e6
     what = f"clone, make test-base ARGS={TESTS}"
     return [Row(f"{what}: processor", seconds, "s", "40 s"), Row(f"{what}: disk", size, "MB", "300 MB")]

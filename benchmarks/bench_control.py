@@ -149,7 +149,7 @@ def measure_bare_loop() -> CycleTimes:
 
 def summarize(times: list[int], cpu_s: float, real_s: float) -> CycleTimes:
     """Return the result for the times of updates."""
-    over = sorted((after - before) / 1e3 - 1e6 / RATE_HZ for before, after in pairwise(times))
+    over = sorted((time_ns - previous_ns) / 1e3 - 1e6 / RATE_HZ for previous_ns, time_ns in pairwise(times))
     return CycleTimes(len(times) / real_s, 100.0 * cpu_s / real_s, over[len(over) * 99 // 100], over[-1])
 
 

@@ -101,15 +101,15 @@ async def _measure_round_trip() -> float:
     """Return the microseconds from `publish` until a task that waits for the message continues."""
     graph = Graph(on_log=lambda _record: None)
     node = graph.create_node("node")
-    came = asyncio.Event()
-    node.create_subscription(String, "ping", lambda _message: came.set(), 1)
+    has_arrived = asyncio.Event()
+    node.create_subscription(String, "ping", lambda _message: has_arrived.set(), 1)
     pinger = node.create_publisher(String, "ping", 1)
     message, trips = String(), []
     for _ in range(PING_COUNT):
-        came.clear()
+        has_arrived.clear()
         begin = time.perf_counter_ns()
         pinger.publish(message)
-        await came.wait()
+        await has_arrived.wait()
         trips.append((time.perf_counter_ns() - begin) / 1000)
     await graph.close()
     return statistics.median(trips)
@@ -119,12 +119,12 @@ async def _measure_many_nodes() -> tuple[float, float]:
     """Return the milliseconds and kilobytes per node among many nodes."""
     graph = Graph(on_log=lambda _record: None)
     graph.create_node("first")
-    before, begin = _get_resident_kb(), time.perf_counter()
+    start_kb, begin = _get_resident_kb(), time.perf_counter()
     for number in range(NODE_COUNT):
         graph.create_node(f"node_{number}")
-    seconds, after = time.perf_counter() - begin, _get_resident_kb()
+    seconds, end_kb = time.perf_counter() - begin, _get_resident_kb()
     await graph.close()
-    return seconds / NODE_COUNT * 1000, (after - before) / NODE_COUNT
+    return seconds / NODE_COUNT * 1000, (end_kb - start_kb) / NODE_COUNT
 
 
 def _get_resident_kb() -> float:

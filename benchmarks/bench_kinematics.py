@@ -40,17 +40,21 @@ def rows() -> list[Row]:
             _make_pinocchio_call(text, tree, many[:FEW_CONFIGURATIONS]),
         )
         times = measure_side_by_side(calls, ROUNDS)
-        others = {
+        peer_times = {
             name: times[name] / CONFIGURATION_COUNT * 1e6 if name in times else None for name in ("numpy", "urchin")
         }
         slow = measure_side_by_side({"pinocchio": one_by_one}, ROUNDS)
-        others["pinocchio"] = slow["pinocchio"] / FEW_CONFIGURATIONS * 1e6 if slow else None
+        peer_times["pinocchio"] = slow["pinocchio"] / FEW_CONFIGURATIONS * 1e6 if slow else None
         size = f"{links} links, {len(tree.joint_names)} joints"
-        mine = times["ours"] / CONFIGURATION_COUNT * 1e6
-        table.append(Row(f"{size}, each of {CONFIGURATION_COUNT} configurations", mine, "us", target, others))
+        microseconds = times["ours"] / CONFIGURATION_COUNT * 1e6
+        table.append(
+            Row(f"{size}, each of {CONFIGURATION_COUNT} configurations", microseconds, "us", target, peer_times)
+        )
         single = measure_side_by_side({"ours": lambda tree=tree, one=many[0]: tree.forward(one)}, ROUNDS, repeat=300)
-        others = {"pinocchio": others["pinocchio"]}
-        table.append(Row(f"{size}, a single configuration", single["ours"] * 1e6, "us", "20 us, aiming at 15", others))
+        peer_times = {"pinocchio": peer_times["pinocchio"]}
+        table.append(
+            Row(f"{size}, a single configuration", single["ours"] * 1e6, "us", "20 us, aiming at 15", peer_times)
+        )
     return table
 
 
@@ -58,11 +62,11 @@ class _PlainKinematics:
     """A loop over joints, which computes all configurations of a joint at once."""
 
     def __init__(self, robot: Robot, tree: KinematicTree) -> None:
-        above = parent_joints(robot)
-        index = {name: place for place, name in enumerate(tree.link_names)}
+        joint_by_child = parent_joints(robot)
+        index = {name: index_in_tree for index_in_tree, name in enumerate(tree.link_names)}
         self._steps = []
         for name in tree.link_names[1:]:
-            joint = above[name]
+            joint = joint_by_child[name]
             column = tree.joint_names.index(joint.name) if joint.name in tree.joint_names else None
             still = KinematicTree(robot).forward(np.zeros(len(tree.joint_names)))
             origin = np.linalg.inv(still[index[joint.parent]]) @ still[index[name]]
@@ -96,7 +100,7 @@ def _make_urchin_call(text: str, tree: KinematicTree, many: Any) -> Callable[[],
         path = Path(folder) / "robot.urdf"
         path.write_text(text, encoding="utf-8")
         robot = urchin.URDF.load(str(path), lazy_load_meshes=True)
-    positions = {name: many[:, place] for place, name in enumerate(tree.joint_names)}
+    positions = {name: many[:, column] for column, name in enumerate(tree.joint_names)}
     return lambda: np.stack(list(robot.link_fk_batch(cfgs=positions).values()), axis=1)
 
 

@@ -51,14 +51,19 @@ _ISOLATED_SIGNS = ("Spinning until stopped",)
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
     with tempfile.TemporaryDirectory(prefix="linkwright-bench-") as folder:
-        four = _write_file(folder, "four", "FOUR")
-        alike = _write_file(folder, "alike", "[frames(number) for number in range(4)]")
+        four_nodes_file = _write_file(folder, "four", "FOUR")
+        frames_file = _write_file(folder, "alike", "[frames(number) for number in range(4)]")
         many = _write_file(folder, "many", f"[frames(number) for number in range({MANY_NODES})]")
         return [
-            Row("four nodes up, from the command", _measure_median_start(_STARTED_SIGNS, 4, four), "s", "0.5 s"),
+            Row(
+                "four nodes up, from the command",
+                _measure_median_start(_STARTED_SIGNS, 4, four_nodes_file),
+                "s",
+                "0.5 s",
+            ),
             Row(
                 "four nodes up, each in a process of its own",
-                _measure_median_start(_ISOLATED_SIGNS, 4, "--isolate", alike, runs=3),
+                _measure_median_start(_ISOLATED_SIGNS, 4, "--isolate", frames_file, runs=3),
                 "s",
             ),
             Row(
@@ -93,10 +98,10 @@ def _measure(signs: tuple[str, ...], count: int, *words: str) -> tuple[float, fl
         [LINKWRIGHT, "launch", *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment
     ) as process:
         assert process.stdout is not None
-        seen = 0
+        sign_count = 0
         for line in process.stdout:
-            seen += any(sign in line for sign in signs)
-            if seen == count:
+            sign_count += any(sign in line for sign in signs)
+            if sign_count == count:
                 break
         up = time.perf_counter() - begin
         begin = time.perf_counter()

@@ -65,16 +65,16 @@ def map_house(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
 
         toolbox._step_guard.callback = timed
         house.drive(test, house.TOUR)
-        here = test.robot_pose()
-        true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
-        told = relative_pose(true, compose(toolbox._map_to_odom, drift.pose))
-        odometry = relative_pose(true, drift.pose)
+        true_transform = test.robot_pose()
+        true_pose = np.array((true_transform[0], true_transform[1], rpy_from_quaternion(true_transform[3:])[2]))
+        pose_error = relative_pose(true_pose, compose(toolbox._map_to_odom, drift.pose))
+        odometry = relative_pose(true_pose, drift.pose)
         occupied = house.occupied_centers(toolbox.grid())
         near = occupied[house.distances(walls, occupied) < 0.2]
         return _Tour(
             float(np.hypot(odometry[0], odometry[1])),
-            float(np.hypot(told[0], told[1])),
-            abs(float(told[2])),
+            float(np.hypot(pose_error[0], pose_error[1])),
+            abs(float(pose_error[2])),
             house.distances(solid, near),
             steps,
             len(toolbox.mapper.scans),

@@ -89,11 +89,15 @@ def make_messages() -> dict[str, Any]:
 def make_rosbags_object(store: Any, message: Any) -> Any:
     """Return the same message as an object of rosbags."""
 
-    def value(kind: FieldType, given: Any) -> Any:
+    def value(kind: FieldType, field_value: Any) -> Any:
         if kind.primitive is None:
-            one = kind.container is Container.ONE
-            return make_rosbags_object(store, given) if one else [make_rosbags_object(store, item) for item in given]
-        return np.array(given, kind.primitive.dtype) if kind.is_numeric_array else given
+            is_single = kind.container is Container.ONE
+            return (
+                make_rosbags_object(store, field_value)
+                if is_single
+                else [make_rosbags_object(store, item) for item in field_value]
+            )
+        return np.array(field_value, kind.primitive.dtype) if kind.is_numeric_array else field_value
 
     values = {field.name: value(field.type, getattr(message, field.name)) for field in message._definition.fields}
     return store.types[message.TYPE_NAME](**values)
@@ -146,8 +150,8 @@ def rows() -> list[Row]:
     state, tf = make_cyclone_types()
     plain = {JointState: state, TFMessage: tf}
     for what, message in make_messages().items():
-        name, data, theirs = message.TYPE_NAME, serialize(message), make_rosbags_object(store, message)
-        assert bytes(store.serialize_cdr(theirs, name)) == data
+        name, data, rosbags_message = message.TYPE_NAME, serialize(message), make_rosbags_object(store, message)
+        assert bytes(store.serialize_cdr(rosbags_message, name)) == data
         cls = type(message)
         struct = plain.get(cls)
         other = make_cyclone_object(struct, message) if struct else None
@@ -155,7 +159,7 @@ def rows() -> list[Row]:
             _measure_row(
                 f"{what}: written",
                 lambda m=message: serialize(m),
-                rosbags=lambda o=theirs, n=name: store.serialize_cdr(o, n),
+                rosbags=lambda o=rosbags_message, n=name: store.serialize_cdr(o, n),
                 cyclonedds=other.serialize if other else None,
             )
         )
@@ -224,8 +228,8 @@ def _measure_row(
     for name, call in peers.items():
         if call is not None:
             times |= measure_side_by_side({name: call}, rounds, _choose_repeat_count(call))
-    others = {name: times[name] * MICROSECONDS_PER_SECOND for name, call in peers.items() if call is not None}
-    return Row(what, times["ours"] * MICROSECONDS_PER_SECOND, "µs", "", others)
+    peer_times = {name: times[name] * MICROSECONDS_PER_SECOND for name, call in peers.items() if call is not None}
+    return Row(what, times["ours"] * MICROSECONDS_PER_SECOND, "µs", "", peer_times)
 
 
 def _choose_repeat_count(call: Callable[[], object]) -> int:

@@ -47,9 +47,9 @@ def make_rooms(size: int) -> NDArray[np.int8]:
         cells[wall : wall + _WALL_CELLS] = 100
         cells[:, wall : wall + _WALL_CELLS] = 100
     for wall in walls:
-        for beside in range(_ROOMS_PER_SIDE):
+        for door_index in range(_ROOMS_PER_SIDE):
             for part in (cells, cells.T):
-                door = beside * room + int(rng.integers(_CORNER_CELLS, room - _DOOR_CELLS - _CORNER_CELLS))
+                door = door_index * room + int(rng.integers(_CORNER_CELLS, room - _DOOR_CELLS - _CORNER_CELLS))
                 part[wall : wall + _WALL_CELLS, door : door + _DOOR_CELLS] = 0
     return cells
 
@@ -87,14 +87,14 @@ def _measure_rooms(size: int, promised: str) -> list[Row]:
     costmap = layered.costmap.copy()
     table.append(Row(f"costmap of {what}, a scan", measure_milliseconds(_update_with_scan, layered, buffer), "ms"))
     end, middle = (size - 25) * _RESOLUTION_M, (size / 2 + 30) * _RESOLUTION_M
-    taken = measure_milliseconds(_plan_path, costmap, end, turns=3)
-    table.append(Row(f"plan over {what}, corner to corner", taken, "ms", promised))
+    milliseconds = measure_milliseconds(_plan_path, costmap, end, turns=3)
+    table.append(Row(f"plan over {what}, corner to corner", milliseconds, "ms", promised))
     table.append(
         Row(f"plan over {what}, to the middle", measure_milliseconds(_plan_path, costmap, middle, turns=3), "ms")
     )
     path = _plan_path(costmap, end)
-    taken = measure_milliseconds(smooth_path, path[:, :2], Smoothing(), costmap)
-    table.append(Row(f"smoothing {len(path)} poses", taken, "ms"))
+    milliseconds = measure_milliseconds(smooth_path, path[:, :2], Smoothing(), costmap)
+    table.append(Row(f"smoothing {len(path)} poses", milliseconds, "ms"))
     return table
 
 

@@ -271,9 +271,9 @@ def measure_rest(browser: Browser, model: Path) -> list[Row]:
         page.set_viewport_size({"width": 1600, "height": 1200})
         open_every_panel(page)
         time.sleep(3)
-        before, core = count_frames(page), CoreShare(process)
+        old_frames, core = count_frames(page), CoreShare(process)
         time.sleep(5)
-        drawn, share = count_frames(page) - before, core.share
+        drawn, share = count_frames(page) - old_frames, core.share
     return [
         Row("page, nothing moves, all panels open, frames drawn in 5 s", drawn, "", "0"),
         Row("server, nothing moves, nobody watches", alone, CORE_UNIT),

@@ -145,20 +145,20 @@ async def _measure_spawning(count: int) -> Row:
     """Measure the processor time of adding robots to a running simulator, one after another."""
     graph = Graph(on_log=lambda _: None)
     simulator = Simulator(graph, NodeOptions(parameters={"world": str(WORLDS / "empty.world"), "usual_names": True}))
-    text, here = _make_robot(_LASER), asyncio.Event()
+    text, is_spawned = _make_robot(_LASER), asyncio.Event()
     begin = time.process_time()
     for number in range(count):
         row, column = divmod(number, 10)
-        place = (row * _ROBOT_SPACING_M, column * _ROBOT_SPACING_M, 0.12, 0.0, 0.0, 0.0, 1.0)
-        spawn = partial(simulator.services.spawn, text, f"mbot{number}", place, f"mbot{number}")
+        pose = (row * _ROBOT_SPACING_M, column * _ROBOT_SPACING_M, 0.12, 0.0, 0.0, 0.0, 1.0)
+        spawn = partial(simulator.services.spawn, text, f"mbot{number}", pose, f"mbot{number}")
         simulator.server.exchange.post(spawn)
     loop = asyncio.get_running_loop()
-    simulator.server.exchange.post(lambda: loop.call_soon_threadsafe(here.set))
-    await here.wait()
-    taken = time.process_time() - begin
+    simulator.server.exchange.post(lambda: loop.call_soon_threadsafe(is_spawned.set))
+    await is_spawned.wait()
+    seconds = time.process_time() - begin
     simulator.close()
     await graph.close()
-    return Row(f"{count} mbots with laser come to a running world", taken, "s", "5 s" if count == 100 else "")
+    return Row(f"{count} mbots with laser come to a running world", seconds, "s", "5 s" if count == 100 else "")
 
 
 def _measure_command() -> Iterator[Row]:
@@ -191,48 +191,48 @@ async def _measure_case(case: Case) -> Row:
             bullet.close()
     ours, *others = (statistics.median(turn) * 1000 * NANOSECONDS_PER_SECOND / _TURN_NS for turn in turns if turn)
     names = ("MuJoCo", "pybullet")
-    beside: dict[str, float | None] = dict(zip(names, others, strict=False))
-    return Row(case.what, ours, "ms", case.target, beside | ({"pybullet": None} if case.bullet and not bullet else {}))
+    peers: dict[str, float | None] = dict(zip(names, others, strict=False))
+    return Row(case.what, ours, "ms", case.target, peers | ({"pybullet": None} if case.bullet and not bullet else {}))
 
 
 async def _take_turns(
     graph: Graph, server: SimulationServer, bullet: BulletWorld | None
 ) -> tuple[list[float], list[float], list[float]]:
     """Return the processor times of each turn of ours, of MuJoCo and of Bullet, in seconds."""
-    ours, alone, there = [], [], []
+    our_seconds, mujoco_seconds, bullet_seconds = [], [], []
     begin = time.monotonic()
     for number in range(MAX_TURNS):
         if number >= _MIN_TURNS and time.monotonic() - begin > _MAX_DURATION_S:
             break
         gc.collect()  # before each of both: it leaves the processor's caches cold
-        ours.append(await _run_turn(graph, server))
+        our_seconds.append(await _run_turn(graph, server))
         gc.collect()
-        alone.append(_run_mujoco_turn(server.simulation))
+        mujoco_seconds.append(_run_mujoco_turn(server.simulation))
         if bullet is not None:
-            there.append(_time_call(lambda: _advance_bullet(bullet)))
-    return ours, alone, there
+            bullet_seconds.append(_time_call(lambda: _advance_bullet(bullet)))
+    return our_seconds, mujoco_seconds, bullet_seconds
 
 
 @contextmanager
-def _use_renderer(way: str) -> Iterator[None]:
+def _use_renderer(renderer: str) -> Iterator[None]:
     """Render images with a given renderer in the context."""
-    before = os.environ.get("MUJOCO_GL")
-    if way:
-        os.environ["MUJOCO_GL"] = way
+    old_renderer = os.environ.get("MUJOCO_GL")
+    if renderer:
+        os.environ["MUJOCO_GL"] = renderer
     try:
         yield
     finally:
-        if way:
+        if renderer:
             del os.environ["MUJOCO_GL"]
-            if before is not None:
-                os.environ["MUJOCO_GL"] = before
+            if old_renderer is not None:
+                os.environ["MUJOCO_GL"] = old_renderer
 
 
 def _make_robot(arguments: Mapping[str, str], pixels: tuple[int, int] = (640, 480)) -> str:
     """Return the description of mbot."""
     text = str(expand(MBOT, arguments, packages={"my_robot_description": SHIPPED}))
-    for name, usual, wanted in zip(("width", "height"), (640, 480), pixels, strict=True):
-        text = text.replace(f"<{name}>{usual}<", f"<{name}>{wanted}<")
+    for name, old_size, new_size in zip(("width", "height"), (640, 480), pixels, strict=True):
+        text = text.replace(f"<{name}>{old_size}<", f"<{name}>{new_size}<")
     return text.replace("<update_rate>50<", "<update_rate>100<")
 
 
@@ -247,8 +247,8 @@ def _make_server(graph: Graph, case: Case) -> SimulationServer:
         robot = read_entity(_make_robot(case.arguments or {}, case.pixels), loaded.finder, library).model
         for number in range(case.robots):
             row, column = divmod(number, 10)
-            place = (row * _ROBOT_SPACING_M, column * _ROBOT_SPACING_M, 0.12, 0.0, 0.0, 0.0, 1.0)
-            server.spawn(robot, f"mbot{number}", place, f"mbot{number}" if number else "")
+            pose = (row * _ROBOT_SPACING_M, column * _ROBOT_SPACING_M, 0.12, 0.0, 0.0, 0.0, 1.0)
+            server.spawn(robot, f"mbot{number}", pose, f"mbot{number}" if number else "")
     box = read_entity(_BOX, loaded.finder, library).model
     for number in range(case.boxes):
         row, column = divmod(number, 40)

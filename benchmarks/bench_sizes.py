@@ -144,18 +144,20 @@ def cases() -> Iterator[Case]:
 
 def rows(names: Sequence[str] = ()) -> list[SizeRow]:
     """Measure, and print each row to standard error as soon as it is complete."""
-    wanted = [
+    selected_cases = [
         case for case in cases() if not names or any(name in f"{case.command}: {case.object_kind}" for name in names)
     ]
     with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(_measure_row, wanted))
+        return list(pool.map(_measure_row, selected_cases))
 
 
 def _measure_row(case: Case) -> SizeRow:
     figures: list[Figure | None] = []
     for count in SIZES:
-        before = figures[-1] if figures else None
-        is_long = bool(figures) and (before is None or before.is_refused or before.seconds > _MAX_S_BEFORE_LARGER_SIZE)
+        previous_figure = figures[-1] if figures else None
+        is_long = bool(figures) and (
+            previous_figure is None or previous_figure.is_refused or previous_figure.seconds > _MAX_S_BEFORE_LARGER_SIZE
+        )
         figures.append(None if is_long else _measure_figure(case, count))
     bare = _measure_figure(case, _SINGLE_OBJECT)
     assert bare is not None
@@ -195,13 +197,13 @@ _LIMIT_MESSAGE_START = "error[XAC60"
 """The beginning of a message about a limit."""
 
 
-def _make_description_case(command: str, thing: str, text: Callable[[int], str], ending: str = "urdf") -> Case:
+def _make_description_case(command: str, object_kind: str, text: Callable[[int], str], ending: str = "urdf") -> Case:
     def make(folder: Path, count: int) -> list[str]:
         path = folder / f"made.{ending}"
         path.write_text(text(count), encoding="utf-8")
         return [LINKWRIGHT, *command.replace("OUT", "out").split(), path.name]
 
-    return Case(command, thing, make)
+    return Case(command, object_kind, make)
 
 
 def _make_robot(count: int, *, chain: bool) -> str:

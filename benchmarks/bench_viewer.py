@@ -72,7 +72,7 @@ class Cost:
     pages: list[ReceivedTransforms]
 
 
-def receive_as_page(url: str, ready: Any, stop: Any, told: Any) -> None:
+def receive_as_page(url: str, ready: Any, stop: Any, results: Any) -> None:
     """Act as a page in another process, and record the received transforms."""
 
     async def be_a_page() -> None:
@@ -88,7 +88,7 @@ def receive_as_page(url: str, ready: Any, stop: Any, told: Any) -> None:
                 if message.type is aiohttp.WSMsgType.BINARY:
                     (stamp,) = struct.unpack_from("<d", message.data, 16)
                     ages.append(1e3 * (time.time() - stamp))
-            told.put(ReceivedTransforms(len(ages) / (time.perf_counter() - begin), ages))
+            results.put(ReceivedTransforms(len(ages) / (time.perf_counter() - begin), ages))
 
     asyncio.run(be_a_page())
 
@@ -105,10 +105,10 @@ async def measure_cost(links: int, pages: int | None) -> Cost:
     async with start_viewer(graph, library) as viewer:
         description = graph.create_node("describer").create_publisher(String, "robot_description", DESCRIPTION_QOS)
         description.publish(String(data=make_tree_robot(links)))
-        stop, told = spawn.Event(), spawn.Queue()
+        stop, results = spawn.Event(), spawn.Queue()
         url = viewer.url.replace("/?", "/ws?")
         readies = [spawn.Event() for _ in range(pages)]
-        processes = [spawn.Process(target=receive_as_page, args=(url, ready, stop, told)) for ready in readies]
+        processes = [spawn.Process(target=receive_as_page, args=(url, ready, stop, results)) for ready in readies]
         for process in processes:
             process.start()
         for ready in readies:
@@ -116,11 +116,11 @@ async def measure_cost(links: int, pages: int | None) -> Cost:
         await call_at_rate(RATE_HZ, publish, 1.0)
         share = await _measure_load(publish)
         stop.set()
-        heard = [await asyncio.to_thread(told.get) for _ in processes]
+        received = [await asyncio.to_thread(results.get) for _ in processes]
         for process in processes:
             await asyncio.to_thread(process.join)
     await graph.close()
-    return Cost(share, heard)
+    return Cost(share, received)
 
 
 async def _measure_load(publish: Callable[[int], None]) -> float:
@@ -200,7 +200,7 @@ def measure_growth() -> float:
 
     clock = get_message("rosgraph_msgs/msg/Clock")()
     process = psutil.Process()
-    before = 0
+    start_bytes = 0
     for tick in range(61 * 60 * 100):
         now_ns = tick * 10_000_000
         clock.clock.sec, clock.clock.nanosec = divmod(now_ns, 1_000_000_000)
@@ -215,9 +215,9 @@ def measure_growth() -> float:
                 poses = np.array([pose] * len(parts))
                 keep(topic, TFMessage(batch=TransformBatch(("odom",) * len(parts), tuple(parts), now_ns, poses)))
         if tick == 60 * 100:  # the first minute fills caches
-            before = process.memory_info().rss
+            start_bytes = process.memory_info().rss
     history.close()
-    return (process.memory_info().rss - before) / 1e6
+    return (process.memory_info().rss - start_bytes) / 1e6
 
 
 def measure_growth_in_new_process() -> Row:

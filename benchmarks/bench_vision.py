@@ -54,8 +54,8 @@ def _measure_one_image() -> Iterator[Row]:
     unpacker, ranges = Unpacker(), RangeFinder()
     for encoding in ("rgb8", "bgr8"):
         message.encoding = encoding
-        taken = _measure_milliseconds(lambda: decode_image(unpacker.image(message, "raw"), ranges).rgb())
-        yield Row(f"a picture of {encoding} taken from its message", taken, "ms")
+        milliseconds = _measure_milliseconds(lambda: decode_image(unpacker.image(message, "raw"), ranges).rgb())
+        yield Row(f"a picture of {encoding} taken from its message", milliseconds, "ms")
     for model in MODELS:
         detector = make_detector(model, DetectorOptions())
         detections = detector.detect(image, Limits())
@@ -131,22 +131,22 @@ async def _count_detections(pid: int) -> tuple[int, float, float, float]:
     try:
         node = graph.create_node("benchmark")
 
-        def came(message: Any) -> None:
+        def receive(message: Any) -> None:
             stamps.append(message.header.stamp.nanoseconds)
 
-        node.create_subscription("vision_msgs/msg/Detection2DArray", "/yolo/detections", came, 10)
+        node.create_subscription("vision_msgs/msg/Detection2DArray", "/yolo/detections", receive, 10)
         deadline = time.monotonic() + _START_TIMEOUT_S
         while len(stamps) < 30:
             if time.monotonic() > deadline:
                 raise RuntimeError("no detections came: start the launch file by hand and see what it says")
             await asyncio.sleep(0.1)
         stamps.clear()
-        before, began = _get_processor_seconds(pid), time.monotonic()
+        start_processor_s, began = _get_processor_seconds(pid), time.monotonic()
         await asyncio.sleep(_DURATION_S)
-        spent, seconds = _get_processor_seconds(pid) - before, time.monotonic() - began
+        processor_s, seconds = _get_processor_seconds(pid) - start_processor_s, time.monotonic() - began
         gaps = np.diff(stamps)
         share = 100.0 * len(gaps) * float(gaps.min()) / float(gaps.sum())
-        return len(stamps), seconds, spent, share
+        return len(stamps), seconds, processor_s, share
     finally:
         await graph.close()
 

@@ -72,8 +72,8 @@ def enroll_speaker(speaker: voices.Speaker, folder: Path) -> EnrolledEngine:
     words, rng = Words(), np.random.default_rng(1)
     for name in voices.COMMANDS[speaker.language]:
         for speed, pitch in ENROLLED_VARIANTS:
-            said = voices.make_clip(voices.say(speaker, name, speed=speed, pitch=pitch), rng, level=3000.0)
-            for finding in enroll(words, name, said):
+            samples = voices.make_clip(voices.say(speaker, name, speed=speed, pitch=pitch), rng, level=3000.0)
+            for finding in enroll(words, name, samples):
                 print(f"{speaker.voice}, '{name}': {finding.message}")
     words.write(_get_words_file(speaker, folder))
     return _make_engine(speaker, folder)
@@ -89,9 +89,9 @@ def _make_engine(speaker: voices.Speaker, folder: Path) -> EnrolledEngine:
 
 def recognize(engine: EnrolledEngine, samples: Samples) -> Iterator[tuple[float, Heard]]:
     """Yield the recognized words of a sound, each with the seconds of sound processed so far."""
-    for at in range(0, len(samples), BLOCK_LENGTH):
-        for heard in engine.hear(samples[at : at + BLOCK_LENGTH]):
-            yield (at + BLOCK_LENGTH) / RATE, heard
+    for start in range(0, len(samples), BLOCK_LENGTH):
+        for heard in engine.hear(samples[start : start + BLOCK_LENGTH]):
+            yield (start + BLOCK_LENGTH) / RATE, heard
     for heard in engine.finish():
         yield len(samples) / RATE, heard
 
@@ -102,9 +102,9 @@ def iterate_clips(speaker: voices.Speaker, decibels: float | None, seed: int) ->
     commands: Iterable[str] = voices.COMMANDS[speaker.language]
     for name in commands:
         for turn, (speed, pitch) in enumerate(SPOKEN_VARIANTS):
-            said = voices.say(speaker, name, speed=speed, pitch=pitch)
+            speech = voices.say(speaker, name, speed=speed, pitch=pitch)
             kind, level = ("pink", "white")[turn // 2], (800.0, 3000.0)[turn % 2]
-            yield name, voices.make_clip(said, rng, kind=kind, decibels=decibels, level=level)
+            yield name, voices.make_clip(speech, rng, kind=kind, decibels=decibels, level=level)
     for turn, text in enumerate(voices.OTHER_WORDS[speaker.language]):
         speed, pitch = SPOKEN_VARIANTS[turn % len(SPOKEN_VARIANTS)]
         kind = ("pink", "white")[turn % 2]
@@ -131,7 +131,7 @@ def judge_clips(
         if name is None and not others:
             continue
         heard = list(recognize(engine, samples))
-        acted = [one.text for _, one in heard if one.text and (one.final or one.text == stop)]
+        acted = [result.text for _, result in heard if result.text and (result.final or result.text == stop)]
         if name is None:
             tally.others += 1
             tally.false += bool(acted)
@@ -141,7 +141,7 @@ def judge_clips(
         tally.wrong += any(text != name for text in acted)
         if name == stop and name in acted:
             end = len(samples) / RATE - 0.5
-            tally.delays.append(next(at for at, one in heard if one.text == name) - end)
+            tally.delays.append(next(end_time for end_time, result in heard if result.text == name) - end)
 
 
 def rows() -> list[Row]:
@@ -178,10 +178,12 @@ def _tally_conditions(speaker: voices.Speaker, folder: Path) -> dict[str, _Tally
         results[about] = _Tally()
         judge_clips(recognizer, speaker, decibels, results[about])
     results[_OTHER_VOICE] = _Tally()
-    alike = [
-        one for one in voices.list_installed() if (one.program, one.language) == (speaker.program, speaker.language)
+    similar_speakers = [
+        candidate
+        for candidate in voices.list_installed()
+        if (candidate.program, candidate.language) == (speaker.program, speaker.language)
     ]
-    other = alike[(alike.index(speaker) + 1) % len(alike)]
+    other = similar_speakers[(similar_speakers.index(speaker) + 1) % len(similar_speakers)]
     if other != speaker:
         judge_clips(recognizer, other, None, results[_OTHER_VOICE], others=False)
     return results
@@ -210,17 +212,21 @@ def _measure_reading(speakers: list[voices.Speaker], folder: Path) -> list[Row]:
     """Measure false commands in texts that enrolled voices read."""
     rng = np.random.default_rng(12)
     engines = {speaker: _make_engine(speaker, folder) for speaker in speakers}
-    commands, stops, seconds, spent = 0, 0, 0.0, 0.0
-    for speaker, said in voices.iterate_reading(_SOUND_S, speakers):
+    commands, stops, seconds, processor_s = 0, 0, 0.0, 0.0
+    for speaker, speech in voices.iterate_reading(_SOUND_S, speakers):
         begun = time.process_time()
-        heard = [one for _, one in recognize(engines[speaker], voices.make_clip(said, rng, level=2000.0)) if one.text]
-        spent += time.process_time() - begun
-        seconds += len(said) / RATE
-        commands += sum(one.final for one in heard)
-        stops += sum(not one.final and one.text == voices.STOP[speaker.language] for one in heard)
+        heard = [
+            result
+            for _, result in recognize(engines[speaker], voices.make_clip(speech, rng, level=2000.0))
+            if result.text
+        ]
+        processor_s += time.process_time() - begun
+        seconds += len(speech) / RATE
+        commands += sum(result.final for result in heard)
+        stops += sum(not result.final and result.text == voices.STOP[speaker.language] for result in heard)
     about = f"{seconds / 60:.0f} minutes of reading by enrolled voices"
     return [
         Row(f"{about}: commands", commands, "", "0"),
         Row(f"{about}: stops while it is being said", stops, ""),
-        Row("the same: of a core", 100 * spent / seconds, "%"),
+        Row("the same: of a core", 100 * processor_s / seconds, "%"),
     ]

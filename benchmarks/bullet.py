@@ -82,7 +82,7 @@ def make_bullet_world(urdf: str, robots: int, boxes: int) -> BulletWorld | None:
 def _suppress_output() -> Iterator[None]:
     """Suppress Bullet's messages about links without mass, which bypass Python's streams."""
     sys.stdout.flush()
-    kept = [os.dup(number) for number in (1, 2)]
+    saved_descriptors = [os.dup(number) for number in (1, 2)]
     with Path(os.devnull).open("w") as nothing:
         for number in (1, 2):
             os.dup2(nothing.fileno(), number)
@@ -90,6 +90,6 @@ def _suppress_output() -> Iterator[None]:
         yield
     finally:
         ctypes.CDLL(None).fflush(None)
-        for number, before in zip((1, 2), kept, strict=True):
-            os.dup2(before, number)
-            os.close(before)
+        for number, saved_descriptor in zip((1, 2), saved_descriptors, strict=True):
+            os.dup2(saved_descriptor, number)
+            os.close(saved_descriptor)

@@ -75,8 +75,8 @@ class Scene:
     @property
     def make_config(self) -> RvizConfig:
         """Return the .rviz file."""
-        others = _ROBOT if self.links else ""
-        return RvizConfig.parse(_FILE.format(cls=self.display, topic=TOPIC, others=others, frame=FRAME))
+        robot_display = _ROBOT if self.links else ""
+        return RvizConfig.parse(_FILE.format(cls=self.display, topic=TOPIC, robot_display=robot_display, frame=FRAME))
 
 
 def make_clouds(points: int = 100_000) -> list[Any]:

@@ -155,12 +155,12 @@ def receive(kind: str, seconds: float, _rate: float) -> Result:
     count, first, last, cpu = 0, 0.0, 0.0, 0.0
     limit = time.monotonic() + seconds + 20
     while time.monotonic() < limit and not (count and time.perf_counter() - last > 1.0):
-        taken = sum(1 for sample in reader.take(256) if isinstance(sample, IdlStruct))
-        if taken:
+        sample_count = sum(1 for sample in reader.take(256) if isinstance(sample, IdlStruct))
+        if sample_count:
             last = time.perf_counter()
             if not count:
                 first, cpu = last, time.process_time()
-            count += taken
+            count += sample_count
         else:
             time.sleep(0.001)
     return Result(count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9))

@@ -157,12 +157,12 @@ async def receive_ours(kind: str, seconds: float) -> Result:
 
 async def _until_quiet(count: Callable[[], int], seconds: float) -> None:
     """Wait until messages have arrived and then stopped, or until none arrive for too long."""
-    limit, seen = time.monotonic() + seconds + 20, 0
+    limit, last_count = time.monotonic() + seconds + 20, 0
     while time.monotonic() < limit:
         await asyncio.sleep(0.7)
-        if count() and count() == seen:
+        if count() and count() == last_count:
             return
-        seen = count()
+        last_count = count()
 
 
 def main() -> None:

@@ -44,8 +44,8 @@ def _load_sdk(kind: str, *, listens: bool) -> tuple[Any, dict[str, Any]]:
     if sdk is None:
         raise SystemExit("zenoh-ros2-sdk is not installed")
     name = TYPES[kind]
-    given = {"topic": TOPIC, "msg_type": name, "msg_definition": schema_of(name), "type_hash": type_hash(name)}
-    return sdk, given
+    arguments = {"topic": TOPIC, "msg_type": name, "msg_definition": schema_of(name), "type_hash": type_hash(name)}
+    return sdk, arguments
 
 
 def make_fields(kind: str, types: Any) -> dict[str, Any]:
@@ -71,8 +71,8 @@ def make_fields(kind: str, types: Any) -> dict[str, Any]:
 
 def send(kind: str, seconds: float, rate: float) -> Result:
     """Publish messages at a rate for some seconds."""
-    sdk, given = _load_sdk(kind, listens=False)
-    publisher = sdk.ROS2Publisher(**given)
+    sdk, arguments = _load_sdk(kind, listens=False)
+    publisher = sdk.ROS2Publisher(**arguments)
     message = make_fields(kind, publisher.session_mgr.store.types)
     limit = time.monotonic() + 10.0
     while not publisher.pub.matching_status.matching and time.monotonic() < limit:
@@ -101,8 +101,8 @@ def receive(kind: str, seconds: float, _rate: float) -> Result:
             first, cpu = last, time.process_time()
         count += 1
 
-    sdk, given = _load_sdk(kind, listens=True)
-    subscriber = sdk.ROS2Subscriber(callback=received, **given)
+    sdk, arguments = _load_sdk(kind, listens=True)
+    subscriber = sdk.ROS2Subscriber(callback=received, **arguments)
     limit = time.monotonic() + seconds + 20
     while time.monotonic() < limit and not (count and time.perf_counter() - last > 1.0):
         time.sleep(0.1)

@@ -89,9 +89,9 @@ async def listen(robots: int) -> None:
         await asyncio.sleep(0.2)
     print("ready", flush=True)
     await asyncio.to_thread(sys.stdin.readline)
-    before = dict(counts)
+    old_counts = dict(counts)
     await asyncio.to_thread(sys.stdin.readline)
-    heard = {topic: counts[topic] - before[topic] for topic in counts}
+    heard = {topic: counts[topic] - old_counts[topic] for topic in counts}
     print(json.dumps({"heard": heard, "nodes": len(node.get_node_names())}), flush=True)
     await graph.close()
 
@@ -101,9 +101,11 @@ def measure(robots: int) -> dict[str, float]:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         port = taken.getsockname()[1]
-    at = f'["tcp/127.0.0.1:{port}"]'
-    router_settings = f"listen/endpoints={at};connect/endpoints=[]"
-    session_settings = f'mode="client";connect/endpoints={at};listen/endpoints=[];scouting/multicast/enabled=false'
+    endpoints = f'["tcp/127.0.0.1:{port}"]'
+    router_settings = f"listen/endpoints={endpoints};connect/endpoints=[]"
+    session_settings = (
+        f'mode="client";connect/endpoints={endpoints};listen/endpoints=[];scouting/multicast/enabled=false'
+    )
     common = {**os.environ, "ROS_DOMAIN_ID": DOMAIN}
 
     def start(settings: str, *words: str) -> subprocess.Popen[str]:
@@ -137,17 +139,20 @@ def measure(robots: int) -> dict[str, float]:
         discovery = settle(used)
         assert listener.stdin is not None
         print(file=listener.stdin, flush=True)
-        before = get_processor_times(used)
+        start_times = get_processor_times(used)
         time.sleep(DURATION_S)
-        spent = {pid: seconds - before[pid] for pid, seconds in get_processor_times(used).items()}
+        processor_times = {pid: seconds - start_times[pid] for pid, seconds in get_processor_times(used).items()}
         memory = {pid: process.memory_info().rss / 1e6 for pid, process in used.items()}
         heard = json.loads(listener.communicate("\n")[0])
     return {
         "robots": robots,
         "joined within, s": joined,
         "processor until all is discovered, s": discovery,
-        "processor of a robot, % of a core": 100 * (sum(spent.values()) - spent[router.pid]) / DURATION_S / robots,
-        "router for a robot, % of a core": 100 * spent[router.pid] / DURATION_S / robots,
+        "processor of a robot, % of a core": 100
+        * (sum(processor_times.values()) - processor_times[router.pid])
+        / DURATION_S
+        / robots,
+        "router for a robot, % of a core": 100 * processor_times[router.pid] / DURATION_S / robots,
         "memory of a robot, MB": (sum(memory.values()) - memory[router.pid]) / robots,
         "router for a robot, MB": memory[router.pid] / robots,
         "nodes seen": heard["nodes"],
@@ -162,13 +167,13 @@ def get_processor_times(used: dict[int, psutil.Process]) -> dict[int, float]:
 
 def settle(used: dict[int, psutil.Process]) -> float:
     """Wait until the traffic of discovery has settled, and return the traffic until then."""
-    before, last = sum(get_processor_times(used).values()), float("inf")
+    old_total, last_increase = sum(get_processor_times(used).values()), float("inf")
     while True:
         time.sleep(SAMPLE_S)
         total = sum(get_processor_times(used).values())
-        if total - before >= 0.8 * last:
-            return before
-        before, last = total, total - before
+        if total - old_total >= 0.8 * last_increase:
+            return old_total
+        old_total, last_increase = total, total - old_total
 
 
 def main() -> None:

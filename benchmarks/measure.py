@@ -47,17 +47,17 @@ class Row:
 
     def cells(self) -> tuple[str, str, str, str]:
         """Return the quantity, our figure, the promised figure, and the peers with their ratios."""
-        others = [
+        peers = [
             f"{name} not measured" if value is None else f"{name} {value:.4g} {self.unit}{self._format_ratio(value)}"
             for name, value in self.peers.items()
         ]
         shown = f"{self.ours:.3g}" if abs(self.ours) < 1000 else f"{self.ours:.0f}"
-        return self.what, f"{shown} {self.unit}", self.target, ", ".join(others)
+        return self.what, f"{shown} {self.unit}", self.target, ", ".join(peers)
 
     def line(self) -> str:
         """Return the line for the terminal."""
-        what, ours, target, others = self.cells()
-        return f"{what:58} {ours:>12}   {f'(promised: {target})  ' if target else ''}{others}"
+        what, ours, target, peers = self.cells()
+        return f"{what:58} {ours:>12}   {f'(promised: {target})  ' if target else ''}{peers}"
 
     def _format_ratio(self, value: float) -> str:
         return f" ({value / self.ours:.1f}x)" if self.ours else ""

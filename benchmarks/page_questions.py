@@ -138,9 +138,9 @@ def count_images(page: PlainPage) -> int:
 
 def measure_rate(counted: Callable[[PlainPage], int], page: PlainPage, seconds: float) -> float:
     """Return the increase of a counter per second."""
-    before, begin = counted(page), time.perf_counter()
+    old_count, begin = counted(page), time.perf_counter()
     time.sleep(seconds)
-    return (counted(page) - before) / (time.perf_counter() - begin)
+    return (counted(page) - old_count) / (time.perf_counter() - begin)
 
 
 def measure_transform_age(pages: list[PlainPage], times: int) -> float:

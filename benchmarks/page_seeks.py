@@ -102,18 +102,20 @@ def _create_recording(storage: str, gigabytes: float) -> Iterator[tuple[Path, fl
             writer.add_topic("/scan", "sensor_msgs/msg/LaserScan", [DEFAULT_QOS])
             for number in range(count):
                 stamp = _START_S * _SECOND_NS + number * _SECOND_NS // _RATE_HZ
-                at = number / _RATE_HZ
-                batch = TransformBatch(("base",), ("tip",), stamp, np.array([[at, 0, 0, 0, 0, 0, 1.0]]))
+                time_s = number / _RATE_HZ
+                batch = TransformBatch(("base",), ("tip",), stamp, np.array([[time_s, 0, 0, 0, 0, 0, 1.0]]))
                 writer.write("/tf", stamp, serialize(TFMessage(batch=batch)))
                 picture = image(width=_WIDTH, height=_HEIGHT, encoding="rgb8", step=3 * _WIDTH)
                 picture.header.frame_id = "tip"
                 picture.header.stamp.sec, picture.header.stamp.nanosec = divmod(stamp, _SECOND_NS)
-                picture.data = bytes([16 * (int(at + 0.02) % _SHADE_COUNT)]) * _IMAGE_BYTES
+                picture.data = bytes([16 * (int(time_s + 0.02) % _SHADE_COUNT)]) * _IMAGE_BYTES
                 writer.write("/camera", stamp, serialize(picture))
                 if number % 3 == 0:
-                    ranges = np.full(720, 2.0 + at % 5, dtype=np.float32)
-                    seen = scan(angle_min=-3.14, angle_max=3.14, angle_increment=0.0087, range_max=30.0, ranges=ranges)
-                    seen.header = picture.header
-                    writer.write("/scan", stamp, serialize(seen))
+                    ranges = np.full(720, 2.0 + time_s % 5, dtype=np.float32)
+                    laser_scan = scan(
+                        angle_min=-3.14, angle_max=3.14, angle_increment=0.0087, range_max=30.0, ranges=ranges
+                    )
+                    laser_scan.header = picture.header
+                    writer.write("/scan", stamp, serialize(laser_scan))
         (file,) = [path for path in (Path(folder) / "drive").iterdir() if path.suffix in (".mcap", ".db3")]
         yield file, (count - 1) / _RATE_HZ

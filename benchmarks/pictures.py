@@ -75,13 +75,13 @@ def subscribe(reliable: bool, depth: int, counter: Path) -> None:
     import rclpy
     from sensor_msgs.msg import Image
 
-    came, cpu = 0, 0.0
+    received_count, cpu = 0, 0.0
 
     def on_picture(_: Image) -> None:
-        nonlocal came, cpu
+        nonlocal received_count, cpu
         cpu = cpu or time.process_time()
-        came += 1
-        counter.write_text(f"{came} {time.process_time() - cpu}")
+        received_count += 1
+        counter.write_text(f"{received_count} {time.process_time() - cpu}")
 
     rclpy.init()
     node = rclpy.create_node("looking")
@@ -114,24 +114,24 @@ def measure(pair: tuple[str, str], reliable: bool, depth: int, rate: float, seco
         ends.callback(reader.kill)
         writer = start_program(pair[0], "publish", kind, str(depth), str(rate), str(seconds))
         ends.callback(writer.kill)
-        seen, since, hung = "0 0", time.monotonic(), False
+        last_received, since, hung = "0 0", time.monotonic(), False
         while writer.poll() is None:
             time.sleep(0.2)  # a reader that hangs cannot report, so its file is polled
-            came = counter.read_text() or seen
-            if came != seen:
-                seen, since = came, time.monotonic()
-            hung = hung or (seen != "0 0" and time.monotonic() - since > HANG_TIMEOUT_S)
+            received = counter.read_text() or last_received
+            if received != last_received:
+                last_received, since = received, time.monotonic()
+            hung = hung or (last_received != "0 0" and time.monotonic() - since > HANG_TIMEOUT_S)
         sent, sending = ((writer.stdout.read() if writer.stdout else "") or "0 0").split()
-        came, receiving = counter.read_text().split()
+        received, receiving = counter.read_text().split()
     return {
         "pair": " to ".join(pair),
         "kind": kind,
         "depth": depth,
         "rate": rate,
         "sent": int(sent),
-        "came": int(came),
+        "came": int(received),
         "sender_ms": round(1e3 * float(sending) / max(int(sent), 1), 2),
-        "receiver_ms": round(1e3 * float(receiving) / max(int(came), 1), 2),
+        "receiver_ms": round(1e3 * float(receiving) / max(int(received), 1), 2),
         "hung": hung,
     }
 

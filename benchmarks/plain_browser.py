@@ -84,10 +84,10 @@ class PlainPage:
 
     def evaluate(self, function: str) -> Any:
         """Return the result of a JavaScript function without arguments."""
-        told = self._socket.call("Runtime.evaluate", expression=f"({function})()", returnByValue=True)
-        if "exceptionDetails" in told:
-            raise RuntimeError(told["exceptionDetails"]["text"])
-        return told["result"].get("value")
+        result = self._socket.call("Runtime.evaluate", expression=f"({function})()", returnByValue=True)
+        if "exceptionDetails" in result:
+            raise RuntimeError(result["exceptionDetails"]["text"])
+        return result["result"].get("value")
 
     def wheel(self, x: float, y: float, distance: float) -> None:
         """Turn the mouse wheel at a position of the page."""
@@ -141,10 +141,10 @@ class Socket:
 def run_browser(program: str, flags: tuple[str, ...]) -> Iterator[PlainBrowser]:
     """Run a Chromium with a temporary profile."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        own = ("--headless", "--remote-debugging-port=0", f"--user-data-dir={profile}", "--no-first-run")
+        own_flags = ("--headless", "--remote-debugging-port=0", f"--user-data-dir={profile}", "--no-first-run")
         # In the locale C, the browser reports a language that Intl does not know.
         environment = os.environ | {"LC_ALL": "en_US.UTF-8"}
-        words = [program, *flags, *own, "about:blank"]
+        words = [program, *flags, *own_flags, "about:blank"]
         process = subprocess.Popen(words, stderr=subprocess.PIPE, env=environment, text=True)
         try:
             assert process.stderr is not None

@@ -123,7 +123,7 @@ def _describe_machine() -> str:
 
 
 def _list_versions() -> str:
-    listed = [f"- Linkwright {__version__}"]
-    listed += [f"- {name} {metadata.version(name)}" for name in ("cyclonedds", "rosbags")]
-    listed += [f"- {name} {peers.get_version(name) or '-'}" for name in peers.REQUIREMENTS]
-    return "\n".join(listed) + "\n"
+    lines = [f"- Linkwright {__version__}"]
+    lines += [f"- {name} {metadata.version(name)}" for name in ("cyclonedds", "rosbags")]
+    lines += [f"- {name} {peers.get_version(name) or '-'}" for name in peers.REQUIREMENTS]
+    return "\n".join(lines) + "\n"

@@ -149,12 +149,14 @@ def write_robot_with_mesh(folder: Path, kind: str) -> Path:
     corners = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.1))
     faces = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
     if kind == "stl":
-        rows = (struct.pack("<12fH", *[0.0] * 3, *(part for at in face for part in corners[at]), 0) for face in faces)
+        rows = (
+            struct.pack("<12fH", *[0.0] * 3, *(part for index in face for part in corners[index]), 0) for face in faces
+        )
         (folder / "part.stl").write_bytes(bytes(80) + struct.pack("<I", len(faces)) + b"".join(rows))
     else:
         points = " ".join(str(part) for corner in corners for part in corner)
-        places = " ".join(str(at) for face in faces for at in face)
-        (folder / "part.dae").write_text(_COLLADA.format(points=points, places=places), encoding="utf-8")
+        indices = " ".join(str(index) for face in faces for index in face)
+        (folder / "part.dae").write_text(_COLLADA.format(points=points, indices=indices), encoding="utf-8")
     robot = folder / f"robot_{kind}.urdf"
     robot.write_text(_ONE_LINK.replace("KIND", kind), encoding="utf-8")
     return robot

@@ -101,11 +101,13 @@ class WatchedProcess:
     def sample(self, since: float) -> None:
         """Add a sample of its memory, threads and file descriptors."""
         with suppress(psutil.Error):
-            seen = psutil.Process(self.process.pid)
-            known = seen.memory_info()
+            watched_process = psutil.Process(self.process.pid)
+            known = watched_process.memory_info()
             # The system loads and drops pages of files, such as libraries, at any time.
             memory = (known.rss - getattr(known, "shared", 0)) / 1e6
-            self.samples.append((time.monotonic() - since, memory, seen.num_threads(), seen.num_fds()))
+            self.samples.append(
+                (time.monotonic() - since, memory, watched_process.num_threads(), watched_process.num_fds())
+            )
 
     def listen(self) -> None:
         """Read its output until it ends, and store the figures in it."""
@@ -176,9 +178,9 @@ class Soak:
             yield
         finally:
             # End the talker first, and wait for messages on their way: the listener must receive all of them.
-            for each in sorted(self._watched, key=lambda each: each.name != "talker"):
-                self._end(each)
-                if each.name == "talker":
+            for watched in sorted(self._watched, key=lambda watched: watched.name != "talker"):
+                self._end(watched)
+                if watched.name == "talker":
                     time.sleep(4.0)
 
     def _start(self, name: str, words: list[str], more: Mapping[str, str]) -> None:
@@ -193,7 +195,7 @@ class Soak:
         self._watched.append(watched)
 
     def _end(self, watched: WatchedProcess) -> None:
-        below = _find_descendants(watched.process.pid)
+        descendants = _find_descendants(watched.process.pid)
         if watched.process.poll() is not None:
             self.faults.append(f"{watched.name} had ended with status {watched.process.returncode}")
             return
@@ -207,7 +209,7 @@ class Soak:
             return
         if status != (130 if watched.name == "launcher" else 0):
             self.faults.append(f"{watched.name} ended with status {status}")
-        _, left = psutil.wait_procs(below, timeout=3.0)
+        _, left = psutil.wait_procs(descendants, timeout=3.0)
         for orphan in left:
             self.faults.append(f"{watched.name} left process {orphan.pid} behind")
             orphan.kill()
@@ -259,8 +261,10 @@ class Soak:
     def _sample_processes(self, passed: float) -> None:
         for watched in self._watched:
             if watched.process.poll() is not None:
-                said = watched.errors.read_text()[-2000:]
-                raise SystemExit(f"{said}\n{watched.name} ended with {watched.process.returncode} after {passed:.0f} s")
+                error_text = watched.errors.read_text()[-2000:]
+                raise SystemExit(
+                    f"{error_text}\n{watched.name} ended with {watched.process.returncode} after {passed:.0f} s"
+                )
         if sys.stderr.isatty():
             listener = self._find_process("listener")
             text = (
@@ -303,14 +307,14 @@ class Soak:
             if growth is None:
                 print(f"{watched.name:10} too short a run to tell")
                 continue
-            seen = ", ".join(
+            counts = ", ".join(
                 f"{name.rpartition('/')[2]} {count}" for name, count in watched.report.get("seen", {}).items()
             )
             print(
                 f"{watched.name:10} {growth.last_megabytes:6.1f} MB "
                 f"{growth.megabytes:+6.2f} MB {growth.slope:+6.2f} MB/h "
                 f"{growth.last_threads:4.0f}{growth.threads:+5.0f} "
-                f"{growth.last_descriptors:4.0f}{growth.descriptors:+4.0f}  {seen}"
+                f"{growth.last_descriptors:4.0f}{growth.descriptors:+4.0f}  {counts}"
             )
         delays = self._find_process("listener").delays
         latency = f"99 of 100 messages within {statistics.median(delays):.2f} ms (median of 2 s)" if delays else "-"

@@ -128,11 +128,11 @@ class RandomEditor:
 
     def _edit(self, file: Path) -> None:
         text, choice = self._texts[file], self._random.random()
-        at = self._random.randrange(len(text) + 1)
+        offset = self._random.randrange(len(text) + 1)
         if choice < 0.6:
-            text = text[:at] + self._random.choice(_TEXT_PIECES) + text[at:]
+            text = text[:offset] + self._random.choice(_TEXT_PIECES) + text[offset:]
         elif choice < 0.85:
-            text = text[:at] + text[at + self._random.randrange(1, 30) :]
+            text = text[:offset] + text[offset + self._random.randrange(1, 30) :]
         else:
             text = file.read_text(encoding="utf-8", errors="replace")
         self._texts[file] = text
@@ -185,13 +185,13 @@ async def run(folder: Path, files: list[Path], seconds: float, seed: int) -> lis
     await client.stop()
     warm = [memory for at, memory in samples if _WARM_UP_SHARE <= at / seconds < 2 * _WARM_UP_SHARE]
     last = [memory for at, memory in samples if at / seconds >= 1 - _WARM_UP_SHARE]
-    before, after = statistics.median(warm), statistics.median(last)
+    start_memory, end_memory = statistics.median(warm), statistics.median(last)
     slowest, middle = max(typist.seconds), statistics.median(typist.seconds)
-    print(f"memory: {before:.0f} MB after the warm-up, {after:.0f} MB at the end")
+    print(f"memory: {start_memory:.0f} MB after the warm-up, {end_memory:.0f} MB at the end")
     print(f"answers: {len(typist.seconds)}, median {1000 * middle:.0f} ms, slowest {1000 * slowest:.0f} ms")
     faults = [f"{count} times {error}" for error, count in typist.errors.most_common()]
-    if after - before > max(_MAX_GROWTH_MB, _MAX_GROWTH_SHARE * before):
-        faults.append(f"the memory has grown by {after - before:.0f} MB")
+    if end_memory - start_memory > max(_MAX_GROWTH_MB, _MAX_GROWTH_SHARE * start_memory):
+        faults.append(f"the memory has grown by {end_memory - start_memory:.0f} MB")
     if slowest > _MAX_RESPONSE_S:
         faults.append(f"an answer took {slowest:.1f} s")
     return faults

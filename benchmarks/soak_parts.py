@@ -206,9 +206,9 @@ class Client(Part):
 
     @staticmethod
     def _answer(future: Any, what: str) -> Any:
-        came = threading.Event()
-        future.add_done_callback(lambda _: came.set())
-        if not came.wait(RESPONSE_TIMEOUT_S):
+        has_response = threading.Event()
+        future.add_done_callback(lambda _: has_response.set())
+        if not has_response.wait(RESPONSE_TIMEOUT_S):
             raise TimeoutError(f"no answer: {what}")
         return future.result()
 
@@ -227,8 +227,8 @@ class Client(Part):
         self.seen["goals"] += 1
 
     def _check_parameter(self, number: int) -> None:
-        wanted = Parameter("speed", value=number)
-        self._answer(self._parameters.set_parameters([wanted]), "set")
+        parameter = Parameter("speed", value=number)
+        self._answer(self._parameters.set_parameters([parameter]), "set")
         values = self._answer(self._parameters.get_parameters(["speed"]), "get").values
         if values[0].integer_value != number:
             self.record_failure(f"parameter was set to {number} and is {values[0].integer_value}")

@@ -35,15 +35,15 @@ def show_arm(server: Any) -> None:
         write_arm_sweep(Path(folder), 30)
         for number in range(len(ARM_LENGTHS)):
             name += f"/link_{number}"
-            place = (0.0, 0.0, ARM_LENGTHS[number - 1] if number else 0.0)
-            joints.append(server.scene.add_frame(name, show_axes=False, position=place))
+            position = (0.0, 0.0, ARM_LENGTHS[number - 1] if number else 0.0)
+            joints.append(server.scene.add_frame(name, show_axes=False, position=position))
             mesh = trimesh.load(str(Path(folder) / f"link_{number}.stl"))
             color = (25 * (3 + number), 153, 204)
             server.scene.add_mesh_simple(f"{name}/shape", mesh.vertices, mesh.faces, color=color)
-    for at in _iterate_ticks(_ARM_RATE):
+    for seconds in _iterate_ticks(_ARM_RATE):
         with server.atomic():
             for number, joint in enumerate(joints[1:], start=1):
-                half = math.sin(at) / 2
+                half = math.sin(seconds) / 2
                 joint.wxyz = (math.cos(half), math.sin(half) * (number % 2), 0.0, math.sin(half) * (1 - number % 2))
 
 

@@ -99,8 +99,8 @@ def say(speaker: Speaker, text: str, *, speed: float = 1.0, pitch: float = 1.0) 
     if not path.exists():
         _CLIP_FOLDER.mkdir(parents=True, exist_ok=True)
         draft = path.with_suffix(".draft.wav")
-        words, given = _make_command(speaker, text, speed, pitch, draft)
-        subprocess.run(words, input=given, check=True, capture_output=True, text=True)
+        words, standard_input = _make_command(speaker, text, speed, pitch, draft)
+        subprocess.run(words, input=standard_input, check=True, capture_output=True, text=True)
         draft.replace(path)
     samples = read_wav(path)
     loud = np.flatnonzero(np.abs(samples.astype(int)) > 40)
@@ -112,8 +112,8 @@ def make_noise(kind: str, count: int, rng: np.random.Generator) -> np.ndarray:
     if kind == "white":
         return rng.normal(size=count)
     if kind == "hum":
-        at = np.arange(count) / RATE
-        hum = sum(np.sin(2 * np.pi * 50 * k * at + k) / k for k in range(1, 12))
+        times = np.arange(count) / RATE
+        hum = sum(np.sin(2 * np.pi * 50 * k * times + k) / k for k in range(1, 12))
     else:
         spectrum = np.fft.rfft(rng.normal(size=count))
         hum = np.fft.irfft(spectrum / np.sqrt(np.maximum(np.arange(len(spectrum)), 20 * count / RATE)), count)
@@ -143,13 +143,15 @@ def make_clip(
 def make_music(seconds: float, rng: np.random.Generator) -> Samples:
     """Return chords of plucked harmonic tones, half a second each, with a beat."""
     count = RATE // 2
-    at = np.arange(count) / RATE
+    times = np.arange(count) / RATE
     parts = []
     for _ in range(int(seconds * 2)):
         root = 110 * 2 ** (rng.integers(0, 13) / 12)
         tones = [root * 2 ** (step / 12) for step in (0, 4 if rng.random() < 0.5 else 3, 7, 12)]
-        chord = sum(np.sin(2 * np.pi * tone * k * at) / k**1.5 for tone in tones for k in range(1, 8)) * np.exp(-3 * at)
-        beat = rng.normal(size=count) * np.exp(-40 * at)
+        chord = sum(np.sin(2 * np.pi * tone * k * times) / k**1.5 for tone in tones for k in range(1, 8)) * np.exp(
+            -3 * times
+        )
+        beat = rng.normal(size=count) * np.exp(-40 * times)
         parts.append(600 * chord + 1500 * beat)
     return to_samples(np.concatenate(parts) / 32_768.0)
 
@@ -161,10 +163,10 @@ def iterate_reading(seconds: float, speakers: Sequence[Speaker]) -> Iterator[tup
     able = [speaker for speaker in speakers if speaker.language in READING_TEXTS]
     while able and left > 0:
         speaker = able[turn % len(able)]
-        said = say(speaker, READING_TEXTS[speaker.language], speed=0.85 + 0.05 * (turn // len(able) % 7))
-        left -= len(said)
+        samples = say(speaker, READING_TEXTS[speaker.language], speed=0.85 + 0.05 * (turn // len(able) % 7))
+        left -= len(samples)
         turn += 1
-        yield speaker, said
+        yield speaker, samples
 
 
 def _get_program(speaker: Speaker) -> str:

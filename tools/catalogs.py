@@ -93,8 +93,10 @@ class Source:
 
     def _record_rule(self, node: ast.ClassDef, place: str) -> None:
         """Record the title of a rule, which is a class with a code."""
-        given = {ast.unparse(statement.targets[0]) for statement in node.body if isinstance(statement, ast.Assign)}
-        if "code" in given:
+        attribute_names = {
+            ast.unparse(statement.targets[0]) for statement in node.body if isinstance(statement, ast.Assign)
+        }
+        if "code" in attribute_names:
             title = cleandoc(ast.get_docstring(node) or "").partition("\n")[0]
             self.titles.setdefault(title.rstrip("."), place)
 
@@ -230,8 +232,8 @@ def format_catalog(catalog: Catalog) -> str:
     text = BytesIO()
     write_po(text, catalog, width=0, include_lineno=False)
     head, _, entries = text.getvalue().decode("utf-8").partition("\n\n")
-    kept = [line for line in head.splitlines() if not line.startswith(_DATED_FIELDS)]
-    return "\n".join(kept) + "\n\n" + entries
+    kept_lines = [line for line in head.splitlines() if not line.startswith(_DATED_FIELDS)]
+    return "\n".join(kept_lines) + "\n\n" + entries
 
 
 def compile_catalogs() -> None:
@@ -260,11 +262,11 @@ def main(words: list[str]) -> int:
     source = Source()
     all_problems = list(source.problems)
     for path in sorted(FOLDER.glob("*.po")):
-        kept = format_catalog(update_catalog(read_catalog(path), source))
+        new_text = format_catalog(update_catalog(read_catalog(path), source))
         if words == ["update"]:
-            path.write_text(kept, encoding="utf-8")
+            path.write_text(new_text, encoding="utf-8")
         problems = list(find_problems(read_catalog(path), source))
-        if not problems and path.read_text(encoding="utf-8") != kept:
+        if not problems and path.read_text(encoding="utf-8") != new_text:
             problems.append("its entries stand otherwise than `python tools/catalogs.py update` puts them: run it")
         all_problems += [f"{path.name}: {problem}" for problem in problems]
     for problem in dict.fromkeys(all_problems):

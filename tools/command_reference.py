@@ -82,14 +82,14 @@ def _describe_for_completion(parser: argparse.ArgumentParser) -> dict[str, objec
         for action in list_arguments(parser)
         for name in (action.option_strings if len(action.option_strings) < 2 else _list_shown_names(action))
     }
-    below = {
+    subcommands = {
         subparser.prog.rpartition(" ")[2]: _describe_for_completion(subparser)
         for subparser, _ in _iterate_subcommands(parser)
     }
-    if below:
-        return {"options": options, "below": below}
-    places = [_describe_values(action) for action in list_arguments(parser) if not action.option_strings]
-    return {"options": options, "places": places}
+    if subcommands:
+        return {"options": options, "below": subcommands}
+    positional_values = [_describe_values(action) for action in list_arguments(parser) if not action.option_strings]
+    return {"options": options, "places": positional_values}
 
 
 def _describe_values(action: argparse.Action) -> dict[str, object]:
@@ -120,9 +120,11 @@ def _format_section(parser: argparse.ArgumentParser, help_text: str) -> Iterator
 
 def list_arguments(parser: argparse.ArgumentParser) -> list[argparse.Action]:
     """Return the positional arguments of a command, then its options without ``--help``."""
-    listed = [action for action in parser._actions if action.help != argparse.SUPPRESS]
-    listed = [action for action in listed if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction)]
-    return [a for a in listed if not a.option_strings] + [a for a in listed if a.option_strings]
+    actions = [action for action in parser._actions if action.help != argparse.SUPPRESS]
+    actions = [
+        action for action in actions if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction)
+    ]
+    return [a for a in actions if not a.option_strings] + [a for a in actions if a.option_strings]
 
 
 def format_usage(parser: argparse.ArgumentParser) -> str:

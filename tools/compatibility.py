@@ -141,12 +141,12 @@ def _format_module(module: table.Module, words: Words) -> Iterator[str]:
     yield f"### {module.name}\n"
     if module.since:
         yield words.whole.format(since=module.since.capitalize()) + "\n"
-    own = [name for name in module.public if _is_own(module, name)]
-    now = [name for name in own if not module.names[name].since]
+    own_names = [name for name in module.public if _is_own(module, name)]
+    now = [name for name in own_names if not module.names[name].since]
     if now:
         yield _format_names(now) + "\n"
-    for since in sorted({module.names[name].since for name in own} - {""}):
-        later = [name for name in own if module.names[name].since == since]
+    for since in sorted({module.names[name].since for name in own_names} - {""}):
+        later = [name for name in own_names if module.names[name].since == since]
         yield f"- {words.later.format(since=since.capitalize())}: {_format_names(later)}"
     for title, remarks in ((words.absent, module.absent), (words.differs, module.differs)):
         for remark in dict.fromkeys(remarks.values()):

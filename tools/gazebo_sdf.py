@@ -138,11 +138,11 @@ class Model:
 
     def xml(self, indent: str = "    ") -> str:
         """Return the model as an element of a world or of a separate file."""
-        place = [] if self.pose == Pose() else [f"{indent}  <pose>{self.pose}</pose>"]
+        pose_rows = [] if self.pose == Pose() else [f"{indent}  <pose>{self.pose}</pose>"]
         rows = [
             f'{indent}<model name="{self.name}">',
             *([f"{indent}  <static>true</static>"] if self.body is None else []),
-            *place,
+            *pose_rows,
             f'{indent}  <link name="link">',
             *([self.body.xml(indent + "    ")] if self.body else []),
             *(part.xml(indent + "    ") for part in self.parts),

@@ -187,8 +187,8 @@ def write_output(text: LessonText, step: Step, run_for_output: str) -> None:
     section, block = content[start:end], f"```text\n{run_for_output}\n```"
     changed, count = re.subn(r"```text\n.*?```", lambda _: block, section, count=1, flags=re.DOTALL)
     if not count:
-        before, picture, after = section.partition("\n![")
-        changed = f"{before}\n{block}\n{picture}{after}"
+        text_before, picture, text_after = section.partition("\n![")
+        changed = f"{text_before}\n{block}\n{picture}{text_after}"
     text.path.write_text(content[:start] + changed + content[end:], encoding="utf-8")
 
 

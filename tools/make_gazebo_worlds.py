@@ -106,14 +106,14 @@ def wall(name: str, start: Point, end: Point, height: float, thickness: float) -
 
 def walls(lines: Iterable[Line], height: float, thickness: float) -> Model:
     """Return all walls of a building as one static model."""
-    parts = [wall(f"wall_{at}", *ends, height, thickness) for at, ends in enumerate(lines, start=1)]
+    parts = [wall(f"wall_{index}", *ends, height, thickness) for index, ends in enumerate(lines, start=1)]
     return Model("walls", parts)
 
 
 def rectangle(left: float, right: float, low: float, high: float) -> list[Line]:
     """Return the four sides of a rectangle in x and y, in meters."""
     corners = [(left, low), (right, low), (right, high), (left, high)]
-    return [(corners[at], corners[(at + 1) % 4]) for at in range(4)]
+    return [(corners[index], corners[(index + 1) % 4]) for index in range(4)]
 
 
 def obstacles() -> list[Model | Include]:
@@ -127,10 +127,12 @@ def obstacles() -> list[Model | Include]:
     ]
     pillars = [(1.0, 2.9), (-1.2, -1.2), (3.2, 2.8), (-3.9, 0.7), (3.4, -2.9)]
     parts = [
-        box(f"block_{at}", (x_size, y_size, tall), Pose(x, y, tall / 2, yaw), color)
-        for at, (x, y, x_size, y_size, tall, yaw, color) in enumerate(blocks, start=1)
+        box(f"block_{index}", (x_size, y_size, tall), Pose(x, y, tall / 2, yaw), color)
+        for index, (x, y, x_size, y_size, tall, yaw, color) in enumerate(blocks, start=1)
     ]
-    parts += [cylinder(f"pillar_{at}", 0.15, 1.2, Pose(x, y, 0.6), GRAY) for at, (x, y) in enumerate(pillars, start=1)]
+    parts += [
+        cylinder(f"pillar_{index}", 0.15, 1.2, Pose(x, y, 0.6), GRAY) for index, (x, y) in enumerate(pillars, start=1)
+    ]
     ramp = box("ramp", (1.2, 0.9, 0.05), Pose(-3.6, 3.0, 0.08, pitch=-0.12), WOOD)
     return [
         walls(rectangle(-5, 5, -4, 4), 1.0, 0.15),
@@ -170,8 +172,8 @@ def house() -> list[Model | Include]:
             box("wash_basin", (0.5, 0.4, 0.8), Pose(4.6, 1.3, 0.40), WHITE),
             box("table_top", (1.0, 1.0, 0.05), Pose(3.0, -2.6, 0.72), WOOD),
             *(
-                cylinder(f"table_leg_{at}", 0.03, 0.70, Pose(3.0 + x, -2.6 + y, 0.35), WOOD)
-                for at, (x, y) in enumerate(((0.45, 0.45), (-0.45, 0.45), (-0.45, -0.45), (0.45, -0.45)), start=1)
+                cylinder(f"table_leg_{index}", 0.03, 0.70, Pose(3.0 + x, -2.6 + y, 0.35), WOOD)
+                for index, (x, y) in enumerate(((0.45, 0.45), (-0.45, 0.45), (-0.45, -0.45), (0.45, -0.45)), start=1)
             ),
         ],
     )
@@ -217,12 +219,12 @@ def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Includ
     for line in range(size + 1):
         # Walls along x below row `line`, and along y left of column `line`; the exit is the right side of the last
         # cell.
-        below = [((at, line - 1), (at, line)) not in open_between for at in range(size)]
-        left = [((line - 1, at), (line, at)) not in open_between for at in range(size)]
+        has_wall_below = [((index, line - 1), (index, line)) not in open_between for index in range(size)]
+        has_wall_left = [((line - 1, index), (line, index)) not in open_between for index in range(size)]
         if line == size:
-            left[-1] = False
-        lines += [((low, fixed), (high, fixed)) for fixed, low, high in _iterate_wall_spans(line, below, cell)]
-        lines += [((fixed, low), (fixed, high)) for fixed, low, high in _iterate_wall_spans(line, left, cell)]
+            has_wall_left[-1] = False
+        lines += [((low, fixed), (high, fixed)) for fixed, low, high in _iterate_wall_spans(line, has_wall_below, cell)]
+        lines += [((fixed, low), (fixed, high)) for fixed, low, high in _iterate_wall_spans(line, has_wall_left, cell)]
     finish = box("finish", (0.9, 0.9, 0.002), Pose(size * cell, (size - 1) * cell, 0.001), GREEN, solid=False)
     return [walls(lines, 0.6, 0.08), Model("finish", [finish])]
 
@@ -243,7 +245,9 @@ def _iterate_wall_spans(line: int, closed: Sequence[bool], cell: float) -> Itera
 
 def playground() -> list[Model | Include]:
     """Return a yard with objects to detect: a slalom of cones, balls, crates, people and signs."""
-    slalom = [Include("traffic_cone", f"cone_{at}", Pose(1.5 + 1.2 * at, 0.35 * (-1) ** at)) for at in range(1, 5)]
+    slalom = [
+        Include("traffic_cone", f"cone_{index}", Pose(1.5 + 1.2 * index, 0.35 * (-1) ** index)) for index in range(1, 5)
+    ]
     colored = [
         Model(
             f"{word}_ball",
@@ -286,16 +290,16 @@ def line_track(steps: int = 120) -> list[Model | Include]:
     At the origin, the line is along x.
     """
 
-    def point(at: int) -> Point:
-        t = 2 * math.pi * at / steps
+    def point(index: int) -> Point:
+        t = 2 * math.pi * index / steps
         return 3.0 * math.sin(t), 1.6 * (1 - math.cos(t)) + 0.35 * (math.cos(3 * t) - 1)
 
     pieces = []
-    for at in range(steps):
-        (x, y), (next_x, next_y) = point(at), point(at + 1)
+    for index in range(steps):
+        (x, y), (next_x, next_y) = point(index), point(index + 1)
         length = math.dist((x, y), (next_x, next_y)) + 0.01
         pose = Pose((x + next_x) / 2, (y + next_y) / 2, 0.003, math.atan2(next_y - y, next_x - x))
-        pieces.append(box(f"piece_{at + 1}", (length, 0.05, 0.002), pose, BLACK, solid=False))
+        pieces.append(box(f"piece_{index + 1}", (length, 0.05, 0.002), pose, BLACK, solid=False))
     floor = box("floor", (8.0, 6.0, 0.002), Pose(0, 1.6, 0.001), WHITE, solid=False)
     return [
         Model("floor", [floor]),

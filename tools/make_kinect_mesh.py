@@ -112,15 +112,17 @@ def loft(rings: Sequence[Sequence[Vector]]) -> list[Triangle]:
     count = len(rings[0])
     for lower, upper in pairwise(rings):
         faces = []
-        for at in range(count):
-            after = (at + 1) % count
-            faces.append(unit(cross(subtract(lower[after], lower[at]), subtract(upper[at], lower[at]))))
-        for at in range(count):
-            after = (at + 1) % count
-            here = smooth_normal(faces[at - 1], faces[at], faces[at])
-            there = smooth_normal(faces[at], faces[after], faces[at])
-            triangles.append(Triangle((lower[at], lower[after], upper[after]), (here, there, there)))
-            triangles.append(Triangle((lower[at], upper[after], upper[at]), (here, there, here)))
+        for index in range(count):
+            next_index = (index + 1) % count
+            faces.append(unit(cross(subtract(lower[next_index], lower[index]), subtract(upper[index], lower[index]))))
+        for index in range(count):
+            next_index = (index + 1) % count
+            normal = smooth_normal(faces[index - 1], faces[index], faces[index])
+            next_normal = smooth_normal(faces[index], faces[next_index], faces[index])
+            triangles.append(
+                Triangle((lower[index], lower[next_index], upper[next_index]), (normal, next_normal, next_normal))
+            )
+            triangles.append(Triangle((lower[index], upper[next_index], upper[index]), (normal, next_normal, normal)))
     return triangles + make_cap(list(reversed(rings[0]))) + make_cap(list(rings[-1]))
 
 
@@ -135,7 +137,7 @@ def make_cap(ring: list[Vector]) -> list[Triangle]:
     """Return a flat, convex end: a fan over a ring that is counterclockwise from outside."""
     normal = unit(cross(subtract(ring[1], ring[0]), subtract(ring[2], ring[0])))
     normals = (normal, normal, normal)
-    return [Triangle((ring[0], ring[at], ring[at + 1]), normals) for at in range(1, len(ring) - 1)]
+    return [Triangle((ring[0], ring[index], ring[index + 1]), normals) for index in range(1, len(ring) - 1)]
 
 
 def make_body() -> Part:
@@ -242,9 +244,9 @@ def format_geometry(part: Part) -> str:
     indices = []
     for triangle in part.triangles:
         for corner, normal in zip(triangle.corners, triangle.normals, strict=True):
-            at = positions.setdefault(round_vector(corner), len(positions))
+            point_index = positions.setdefault(round_vector(corner), len(positions))
             facing = normals.setdefault(round_vector(normal), len(normals))
-            indices.append(f"{at} {facing}")
+            indices.append(f"{point_index} {facing}")
     rows = "\n".join("          " + "  ".join(indices[start : start + 3]) for start in range(0, len(indices), 3))
     name = part.name
     return "\n".join(

@@ -205,9 +205,9 @@ def _record_nodes() -> Declarations:
     declarations: Declarations = {}
     for package, executable in EXECUTABLES:
         if not executable.endswith(_EXCLUDED_EXECUTABLES) and not package.startswith(_EXCLUDED_PACKAGES):
-            for given in _VARIANTS.get(executable) or [_REQUIRED_PARAMETERS.get(executable, {})]:
-                with _record_declarations(declarations, given):
-                    _start_node((package, executable), given, ParameterRules())
+            for parameters in _VARIANTS.get(executable) or [_REQUIRED_PARAMETERS.get(executable, {})]:
+                with _record_declarations(declarations, parameters):
+                    _start_node((package, executable), parameters, ParameterRules())
     return {node: _remove_plugin_parameters(declarations[node]) for node in sorted(declarations) if declarations[node]}
 
 
@@ -224,25 +224,27 @@ def _remove_plugin_parameters(parameters: Mapping[str, dict[str, Any]]) -> dict[
 
 def _iterate_plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the type of each plugin, the nodes and parameters that list it, and its parameters."""
-    for executable, node, listed, kind in _iterate_plugins():
-        names: Any = _PLUGIN if listed.endswith("_plugin") else [_PLUGIN]
-        given = {listed: names, f"{_PLUGIN}.plugin": kind}
-        others = ParameterRules()
+    for executable, node, list_parameter, kind in _iterate_plugins():
+        names: Any = _PLUGIN if list_parameter.endswith("_plugin") else [_PLUGIN]
+        parameter_values = {list_parameter: names, f"{_PLUGIN}.plugin": kind}
+        rules = ParameterRules()
         if node != executable:
-            given[f"{_PLUGIN}.observation_sources"] = _ITEM
-            for name, value in given.items():
-                others.set(f"/{node}/{node}", name, value)
+            parameter_values[f"{_PLUGIN}.observation_sources"] = _ITEM
+            for name, value in parameter_values.items():
+                rules.set(f"/{node}/{node}", name, value)
         package = next(package for package, name in EXECUTABLES if name == executable)
         declarations: Declarations = {}
-        with _record_declarations(declarations, given):
-            _start_node((package, executable), {} if node != executable else given, others)
-        own = declarations[node]
-        names_of_plugin = [name for name in own if name.startswith(f"{_PLUGIN}.")]
-        parameters = {name.removeprefix(f"{_PLUGIN}.").replace(_ITEM, "*"): own[name] for name in names_of_plugin}
+        with _record_declarations(declarations, parameter_values):
+            _start_node((package, executable), {} if node != executable else parameter_values, rules)
+        node_parameters = declarations[node]
+        names_of_plugin = [name for name in node_parameters if name.startswith(f"{_PLUGIN}.")]
+        parameters = {
+            name.removeprefix(f"{_PLUGIN}.").replace(_ITEM, "*"): node_parameters[name] for name in names_of_plugin
+        }
         parameters.pop("plugin", None)
         for name, record in parameters.items():
             record |= {"keys": ["observation_sources"]} if "*" in name else {}
-        yield kind, {"node": node, "listed": listed, "parameters": parameters}
+        yield kind, {"node": node, "listed": list_parameter, "parameters": parameters}
 
 
 def _add_descriptions(owner: str, parameters: dict[str, dict[str, Any]], texts: Mapping[str, Any]) -> None:

@@ -175,9 +175,9 @@ def _find_row(page: Page, panel: str, path: str) -> Locator:
     tree = page.get_by_role("tree", name=panel).first
     *parents, name = path.split("/")
     for parent in parents:
-        above = tree.get_by_role("treeitem").filter(has=page.get_by_text(parent, exact=True)).first
-        if above.get_attribute("aria-expanded") == "false":
-            above.locator(".twist").click()
+        parent_row = tree.get_by_role("treeitem").filter(has=page.get_by_text(parent, exact=True)).first
+        if parent_row.get_attribute("aria-expanded") == "false":
+            parent_row.locator(".twist").click()
     rows = tree.get_by_role("treeitem").filter(has=page.get_by_text(name, exact=True))
     return rows.filter(has=page.locator("input, select")).last  # a status has a row with the same name
 

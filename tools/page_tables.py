@@ -178,8 +178,10 @@ def extras(chinese: bool) -> str:
         brought = dict.fromkeys(
             requirement.name for requirement in _iterate_requirements(name) if requirement.name != PROJECT["name"]
         )
-        own = [f"`{other}`" for requirement in _iterate_requirements(name) for other in sorted(requirement.extras)]
-        rows.append(f"| `{name}` | {purpose} | {('、' if chinese else ', ').join([*own, *brought])} |")
+        engine_extras = [
+            f"`{other}`" for requirement in _iterate_requirements(name) for other in sorted(requirement.extras)
+        ]
+        rows.append(f"| `{name}` | {purpose} | {('、' if chinese else ', ').join([*engine_extras, *brought])} |")
     return "\n".join(rows)
 
 
@@ -293,13 +295,13 @@ def main(words: Sequence[str]) -> int:
     """Write the pages, or with ``--check`` report whether they are current."""
     status = 0
     for page in PAGES:
-        before = page.read_text(encoding="utf-8")
-        after = refresh_page(before, page.parent.name == "zh")
-        if before != after and "--check" in words:
+        old_text = page.read_text(encoding="utf-8")
+        new_text = refresh_page(old_text, page.parent.name == "zh")
+        if old_text != new_text and "--check" in words:
             print(f"{page} is stale: run python tools/page_tables.py", file=sys.stderr)
             status = 1
-        elif before != after:
-            page.write_text(after, encoding="utf-8", newline="\n")
+        elif old_text != new_text:
+            page.write_text(new_text, encoding="utf-8", newline="\n")
     return status
 
 

@@ -134,7 +134,9 @@ def main(words: list[str]) -> int:
         plain = " ".join(text.split())
         refusals = [(match.strip(), refusal.plain) for refusal in refused if (match := refusal.matches(plain))]
         if refusals and not _is_accepted(accepted, path, plain):
-            problems += [f"{path.relative_to(ROOT)}:{line}: '{match}'; write: {better}" for match, better in refusals]
+            problems += [
+                f"{path.relative_to(ROOT)}:{line}: '{match}'; write: {suggestion}" for match, suggestion in refusals
+            ]
     if not words:
         problems += [f"{row.path}: no text needs the exception '{row.words}'" for row in accepted if not row.used]
     for problem in problems:

@@ -68,7 +68,9 @@ def generate() -> dict[str, str]:
     """
     names = [iter_module.name for iter_module in pkgutil.iter_modules(protocol.__path__)]
     modules = {name: importlib.import_module(f"{protocol.__name__}.{name}") for name in names}
-    file_by_name = {own: _get_file_name(name) for name, module in modules.items() for own in _list_own_names(module)}
+    file_by_name = {
+        own_name: _get_file_name(name) for name, module in modules.items() for own_name in _list_own_names(module)
+    }
     files = {
         f"{_get_file_name(name)}.ts": _format_module(name, module, file_by_name)
         for name, module in modules.items()
@@ -100,16 +102,16 @@ def _format_module(name: str, module: ModuleType, file_by_name: Mapping[str, str
     aliases = {value: alias for alias, value in vars(module).items() if _is_alias(value)}
     declared: list[str] = []
     used: set[str] = set()
-    for own in _list_own_names(module):
-        value = getattr(module, own)
+    for own_name in _list_own_names(module):
+        value = getattr(module, own_name)
         if isinstance(value, int):
-            declared += ["", f"export const {own} = {value};"]
+            declared += ["", f"export const {own_name} = {value};"]
         elif _is_alias(value):
-            declared += ["", *_format_union(own, format_type(value, {}).split(" | "))]
+            declared += ["", *_format_union(own_name, format_type(value, {}).split(" | "))]
         else:
             hints = typing.get_type_hints(value)
             comment = (value.__doc__ or "").strip().split("\n")[0]
-            declared += ["", f"/** {comment} */", f"export interface {own} {{"]
+            declared += ["", f"/** {comment} */", f"export interface {own_name} {{"]
             for field in value.__struct_fields__:
                 used |= set(_iterate_names(hints[field], aliases))
                 declared.append(f"  {field}: {format_type(hints[field], aliases)};")

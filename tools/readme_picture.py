@@ -131,14 +131,14 @@ def edit(film: Film, model: Path, name: str, values: tuple[str, ...], seen: str)
         values: the values of the property.
         seen: the JavaScript expression for the quantity in the page that becomes the value.
     """
-    for before, after in pairwise(values):
+    for old_value, new_value in pairwise(values):
         text = model.read_text(encoding="utf-8")
-        old, new = (f'<xacro:property name="{name}" value="{value}"/>' for value in (before, after))
+        old, new = (f'<xacro:property name="{name}" value="{value}"/>' for value in (old_value, new_value))
         film.line = f"{model.name}:  {old}"
         film.record(500)
         model.write_text(text.replace(old, new), encoding="utf-8")
         film.line = f"{model.name}:  {new}"
-        wait_until(film.page, f"Math.abs({seen} - {after}) < 1e-6 && lw.ready")
+        wait_until(film.page, f"Math.abs({seen} - {new_value}) < 1e-6 && lw.ready")
         film.record(700)
 
 

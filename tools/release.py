@@ -141,10 +141,10 @@ def install_distributions(files: list[Path], name: str, extras: str = "") -> Pat
     python = environment / ("Scripts" if os.name == "nt" else "bin") / "python"
     run_program(_find_uv(), "venv", "--quiet", "--clear", "--python", sys.executable, environment)
     names = [file.name.partition("-")[0].replace("_", "-") for file in files]
-    wanted = [f"{name} @ {file.resolve().as_uri()}" for name, file in zip(names, files, strict=True)]
-    wanted[-1] = wanted[-1].replace(" @", f"{extras} @", 1)
+    requirements = [f"{name} @ {file.resolve().as_uri()}" for name, file in zip(names, files, strict=True)]
+    requirements[-1] = requirements[-1].replace(" @", f"{extras} @", 1)
     constraints = ("--constraints", SCRATCH / "constraints.txt")
-    run_program(_find_uv(), "pip", "install", "--quiet", "--python", python, *constraints, *wanted)
+    run_program(_find_uv(), "pip", "install", "--quiet", "--python", python, *constraints, *requirements)
     return python
 
 
@@ -228,10 +228,10 @@ def begin_version(version: str, root: Path = ROOT) -> None:
     changelog = root / release_notes.CHANGELOG.name
     text = release_notes.begin_section(changelog.read_text(encoding="utf-8"), version, today, read_version(root))
     changelog.write_text(text, encoding="utf-8")
-    before = read_version(root)
+    old_version = read_version(root)
     for file, named in ((VERSION, '"{}"'), (RECIPE, '"{}"'), (PROJECT, '"linkwright-core=={}"')):
         source = (root / file).read_text(encoding="utf-8")
-        (root / file).write_text(source.replace(named.format(before), named.format(version)), encoding="utf-8")
+        (root / file).write_text(source.replace(named.format(old_version), named.format(version)), encoding="utf-8")
 
 
 def _find_uv() -> str:

@@ -73,8 +73,10 @@ def print_table(findings_by_target: dict[Path, list[Diagnostic]]) -> None:
 
 def print_sample(findings: dict[Path, list[Diagnostic]], code: str) -> None:
     """Print a sample of the findings of a code: one per robot, then the second per robot, ..."""
-    mine = [[diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in findings.values()]
-    picked = [of_robot[turn] for turn in range(_SAMPLE_SIZE) for of_robot in mine if len(of_robot) > turn]
+    matching = [
+        [diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in findings.values()
+    ]
+    picked = [of_robot[turn] for turn in range(_SAMPLE_SIZE) for of_robot in matching if len(of_robot) > turn]
     for finding in picked[:_SAMPLE_SIZE]:
         print(
             f"{finding.severity.value}[{finding.code}] {finding.span or '-'}: {finding.message} ({finding.hint or '-'})"

@@ -58,8 +58,8 @@ def _format_default(value: Any) -> str | None:
 
 
 def _iterate_parameters(library: str, texts: Any) -> Iterator[dict[str, Any]]:
-    meanings, given = texts["parameters"], extensions(PLUGINS).get(library)
-    cls = None if given is None else plugin_class(library)
+    meanings, extension = texts["parameters"], extensions(PLUGINS).get(library)
+    cls = None if extension is None else plugin_class(library)
     format_table: Any = getattr(cls, "PARAMETERS", None)
     types = {} if format_table is None else _types(format_table)
     for field in () if format_table is None else fields(format_table):

@@ -91,21 +91,21 @@ def _translate_navigation(items: list[Any], folder: Path, titles: dict[str, str]
     """
     pages: list[Any] = []
     for item in items:
-        title, below = next(iter(item.items())) if isinstance(item, dict) else ("", item)
-        if isinstance(below, list):
-            children = _translate_navigation(below, folder, titles)
+        title, value = next(iter(item.items())) if isinstance(item, dict) else ("", item)
+        if isinstance(value, list):
+            children = _translate_navigation(value, folder, titles)
             pages += [{titles[title]: children}] if children else []
-        elif (folder / below).exists():
-            path = f"{CHINESE}/{below}"
+        elif (folder / value).exists():
+            path = f"{CHINESE}/{value}"
             pages.append({titles[title]: path} if title in titles else path)
     return pages
 
 
 def _find_translation(page: Page, language: str) -> Page:
-    own = page.file.src_uri.removeprefix(f"{CHINESE}/")
+    path = page.file.src_uri.removeprefix(f"{CHINESE}/")
     prefix = f"{CHINESE}/" if language == CHINESE else ""
     pages = {other.file.src_uri: other for other in _navigation[language].pages}
-    candidates = (own, f"{own.partition('/')[0]}.md", INDEX)
+    candidates = (path, f"{path.partition('/')[0]}.md", INDEX)
     return next(pages[prefix + name] for name in candidates if prefix + name in pages)
 
 
