@@ -46,7 +46,7 @@ class GeneratedFiles(BuildHookInterface):
         import standin_stubs
 
         catalogs.compile_catalogs()
-        standin_stubs.write()
+        standin_stubs.write_stubs()
         if self.target_name == "sdist":
             build_data["artifacts"] += ["src/linkwright/page/built/**", "src/linkwright/standins/stubs/**"]
         elif version == "editable":
@@ -83,4 +83,4 @@ class Metadata(MetadataHookInterface):
             pinned = f"linkwright-core=={engine_build.version()}"
             needed: list[str] = metadata["dependencies"]
             needed[needed.index(pinned)] = f"linkwright-core @ {CORE.as_uri()}"
-        metadata["readme"] = {"content-type": "text/markdown", "text": package_readme.package_readme()}
+        metadata["readme"] = {"content-type": "text/markdown", "text": package_readme.make_package_readme()}

@@ -1,4 +1,6 @@
-"""``python -m benchmarks [--list] [--write] [NAME ...]``: run all measurements, or those named (`xacro`, `dds`, ...).
+"""Run all measurements, or the named ones, such as ``xacro`` and ``dds``.
+
+Usage: ``python -m benchmarks [--list] [--write] [NAME ...]``
 
 With ``--list``, only their names and subjects are printed. With ``--write``, the figures are also written to
 ``docs/benchmarks.md`` and its Chinese version.
@@ -20,8 +22,8 @@ from benchmarks.robots import has_corpus
 
 def main() -> int:
     """Run the measurements in this process, one after another, and print a table for each."""
-    here = Path(__file__).parent
-    known = sorted(path.stem.removeprefix("bench_") for path in here.glob("bench_*.py"))
+    folder = Path(__file__).parent
+    known = sorted(path.stem.removeprefix("bench_") for path in folder.glob("bench_*.py"))
     names = [word for word in sys.argv[1:] if word not in ("--write", "--list")] or known
     unknown = sorted(set(names) - set(known))
     if unknown:
@@ -29,8 +31,8 @@ def main() -> int:
         return 2
     if "--list" in sys.argv:
         for name in names:
-            said = ast.get_docstring(ast.parse((here / f"bench_{name}.py").read_text(encoding="utf-8"))) or ""
-            print(f"{name:12} {said.partition(chr(10))[0]}")
+            docstring = ast.get_docstring(ast.parse((folder / f"bench_{name}.py").read_text(encoding="utf-8"))) or ""
+            print(f"{name:12} {docstring.partition(chr(10))[0]}")
         return 0
     print(f"Python {platform.python_version()}, {platform.system()} {platform.machine()}")
     results: dict[str, Sequence[Measured]] = {}

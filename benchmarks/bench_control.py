@@ -1,9 +1,10 @@
 """Measure ros2_control_node at 1 kHz: updates per second, jitter, and processor load.
 
-Run it with ``python -m benchmarks control``. Twelve joints of ``mock_components``, a joint_trajectory_controller that
-holds them and a joint_state_broadcaster, asked for 1,000 updates a second; once nobody listens, once somebody in this
-process listens to ``/joint_states``. "A bare loop" is a Python program that does nothing but sleep until the next beat:
-what the machine allows. All take turns of two seconds, so that they meet the same machine, and the median turn counts.
+Run it with ``python -m benchmarks control``. The node has twelve joints of ``mock_components``, a
+joint_trajectory_controller that holds them and a joint_state_broadcaster, and runs 1,000 updates per second, without
+and with a subscription to ``/joint_states`` in this process. "A bare loop" is a Python program that only sleeps until
+the next update, which shows what the machine allows. All run in turns of two seconds under the same conditions, and the
+median turn is reported.
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ from linkwright.graph.parameters.parameter import ParameterRules
 from linkwright.nodes.options import NodeOptions
 
 JOINTS = [f"joint{number}" for number in range(12)]
-RATE = 1000
+RATE_HZ = 1000
 TURNS = 5
-_SECONDS = 2.0
+_TURN_S = 2.0
 _CYCLES = 5000
 _TRAJECTORY = "joint_trajectory_controller/JointTrajectoryController"
 _BROADCASTER = "joint_state_broadcaster/JointStateBroadcaster"
@@ -49,7 +50,7 @@ class CycleTimes:
     longest_us: float
 
 
-def robot() -> str:
+def make_robot() -> str:
     """Return a chain of joints with position commands, positions and velocities."""
     links = '<link name="base"/>' + "".join(f'<link name="{joint}_link"/>' for joint in JOINTS)
     parents = ["base", *(f"{joint}_link" for joint in JOINTS)]
@@ -68,11 +69,11 @@ def robot() -> str:
     )
 
 
-def started(graph: Graph) -> Ros2ControlNode:
+def start_node(graph: Graph) -> Ros2ControlNode:
     """Return the node with both controllers active."""
     parameters = {
-        "robot_description": robot(),
-        "update_rate": RATE,
+        "robot_description": make_robot(),
+        "update_rate": RATE_HZ,
         "broadcaster": {"type": _BROADCASTER},
         "arm": {"type": _TRAJECTORY},
     }
@@ -93,12 +94,14 @@ def started(graph: Graph) -> Ros2ControlNode:
     return node
 
 
-async def controlled(*, listened: bool) -> tuple[CycleTimes, float]:
+async def measure_controller(*, listened: bool) -> tuple[CycleTimes, float]:
     """Return the result of a turn, and the microseconds of a cycle without pauses."""
     graph = Graph()
-    node = started(graph)
+    node = start_node(graph)
     if listened:
-        graph.create_node("audience").create_subscription("sensor_msgs/msg/JointState", "/joint_states", nothing, 10)
+        graph.create_node("audience").create_subscription(
+            "sensor_msgs/msg/JointState", "/joint_states", ignore_message, 10
+        )
     manager, times = node._manager, list[int]()
     cycle = manager.cycle
     node._timer.cancel()  # the clock restarts, so its first updates would be early
@@ -119,34 +122,34 @@ async def controlled(*, listened: bool) -> tuple[CycleTimes, float]:
         times.clear()
         gc.collect()
         begun, start = time.monotonic(), time.process_time()
-        await asyncio.sleep(_SECONDS)
-        beats = judged(times, time.process_time() - start, time.monotonic() - begun)
+        await asyncio.sleep(_TURN_S)
+        beats = summarize(times, time.process_time() - start, time.monotonic() - begun)
     node.close()
     await graph.close()
     return beats, alone_us
 
 
-def nothing(message: object) -> None:
+def ignore_message(message: object) -> None:
     """Do nothing with a message."""
 
 
-def bare() -> CycleTimes:
+def measure_bare_loop() -> CycleTimes:
     """Return the result of a loop that only sleeps."""
     times = list[int]()
     begun, start = time.monotonic(), time.process_time()
     due = begun
-    while due < begun + _SECONDS:
-        due += 1.0 / RATE
+    while due < begun + _TURN_S:
+        due += 1.0 / RATE_HZ
         left = due - time.monotonic()
         if left > 0.0:
             time.sleep(left)
         times.append(time.monotonic_ns())
-    return judged(times, time.process_time() - start, time.monotonic() - begun)
+    return summarize(times, time.process_time() - start, time.monotonic() - begun)
 
 
-def judged(times: list[int], cpu_s: float, real_s: float) -> CycleTimes:
+def summarize(times: list[int], cpu_s: float, real_s: float) -> CycleTimes:
     """Return the result for the times of updates."""
-    over = sorted((after - before) / 1e3 - 1e6 / RATE for before, after in pairwise(times))
+    over = sorted((time_ns - previous_ns) / 1e3 - 1e6 / RATE_HZ for previous_ns, time_ns in pairwise(times))
     return CycleTimes(len(times) / real_s, 100.0 * cpu_s / real_s, over[len(over) * 99 // 100], over[-1])
 
 
@@ -156,10 +159,10 @@ def rows() -> list[Row]:
     cycles: dict[str, list[float]] = {"nobody": [], "somebody": []}
     for _ in range(TURNS):
         for name in ("nobody", "somebody"):
-            beats, alone_us = asyncio.run(controlled(listened=name == "somebody"))
+            beats, alone_us = asyncio.run(measure_controller(listened=name == "somebody"))
             turns[name].append(beats)
             cycles[name].append(alone_us)
-        turns["bare"].append(bare())
+        turns["bare"].append(measure_bare_loop())
     table = []
     for name, about in (("nobody", "nobody listens"), ("somebody", "/joint_states is listened to")):
 

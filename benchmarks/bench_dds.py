@@ -1,7 +1,8 @@
-"""Measure the transports between two processes: joint states, transforms and images over DDS and Zenoh.
+"""Measure the transport of joint states, transforms and images between two processes.
 
-Beside us over DDS: us over Zenoh, `cyclonedds` alone with its IdlStructs, and zenoh-ros2-sdk, which goes over Zenoh.
-Run it with ``python -m benchmarks dds``. Messages are received as objects, ours in an event loop as the launcher's.
+Linkwright over DDS is compared with Linkwright over Zenoh, with `cyclonedds` alone and its IdlStructs, and with
+zenoh-ros2-sdk over Zenoh. Run it with ``python -m benchmarks dds``. Messages are received as objects, by Linkwright in
+an event loop, as in the launcher.
 """
 
 from __future__ import annotations
@@ -18,15 +19,15 @@ from benchmarks.measure import ROOT, Row
 
 DOMAIN = "67"
 ROUNDS = 3
-SECONDS = 2.0
+DURATION_S = 2.0
 LIBRARIES = {"ours": "", "ours over Zenoh": "ours over Zenoh", "plain": "cyclonedds alone", "zenoh": "zenoh-ros2-sdk"}
 """Maps the key of a library to its name in the table."""
 
 
-def measured(library: str, kind: str, rate: float) -> dict[str, float] | None:
+def measure(library: str, kind: str, rate: float) -> dict[str, float] | None:
     """Return the results of both sides, or None for a library that does not run here."""
     name, _, over = library.partition(" over ")
-    words = (name, kind, str(SECONDS), str(rate))
+    words = (name, kind, str(DURATION_S), str(rate))
     middleware = "rmw_zenoh_cpp" if over == "Zenoh" else "rmw_cyclonedds_cpp"
     environment = {**os.environ, "ROS_DOMAIN_ID": DOMAIN, "RMW_IMPLEMENTATION": middleware}
     sides = [
@@ -53,13 +54,13 @@ def measured(library: str, kind: str, rate: float) -> dict[str, float] | None:
     }
 
 
-def medians(kind: str, rate: float) -> dict[str, dict[str, float]]:
+def measure_medians(kind: str, rate: float) -> dict[str, dict[str, float]]:
     """Return the medians of several runs of each library, in turns."""
-    libraries = [name for name in LIBRARIES if name != "zenoh" or peers.version("zenoh_ros2_sdk") is not None]
+    libraries = [name for name in LIBRARIES if name != "zenoh" or peers.get_version("zenoh_ros2_sdk") is not None]
     runs: dict[str, list[dict[str, float]]] = {library: [] for library in libraries}
     for _ in range(ROUNDS):
         for library in libraries:
-            result = measured(library, kind, rate)
+            result = measure(library, kind, rate)
             if result is not None:
                 runs[library].append(result)
     return {
@@ -69,7 +70,7 @@ def medians(kind: str, rate: float) -> dict[str, dict[str, float]]:
     }
 
 
-def table(what: str, kind: str, rate: float, promised: str, share: str = "", *, aged: bool = False) -> list[Row]:
+def make_rows(what: str, kind: str, rate: float, promised: str, share: str = "", *, aged: bool = False) -> list[Row]:
     """Return the rows of one kind of message.
 
     Args:
@@ -80,7 +81,7 @@ def table(what: str, kind: str, rate: float, promised: str, share: str = "", *, 
         share: the share of a core that each side may use.
         aged: whether the age of received messages is measured.
     """
-    results = medians(kind, rate)
+    results = measure_medians(kind, rate)
 
     def row(name: str, figure: str, unit: str, target: str) -> Row:
         beside = {
@@ -104,11 +105,11 @@ def table(what: str, kind: str, rate: float, promised: str, share: str = "", *, 
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
     return [
-        *table("JointState of 12 joints, unpaced", "joints", 0.0, "30000"),
-        *table("JointState of 12 joints at 1 kHz", "joints", 1000.0, "1000", aged=True),
-        *table("TF of 100 transforms at 500 Hz, as arrays", "transforms", 500.0, "500", "100"),
-        *table("TF of 100 transforms at 500 Hz, as objects", "objects", 500.0, "500", "100"),
-        *table("TF of 100 transforms, unpaced, as objects", "objects", 0.0, ""),
-        *table("images 640x480 RGB at 60 Hz", "images", 60.0, "60", "10", aged=True),
-        *table("images 640x480 RGB, unpaced", "images", 0.0, ""),
+        *make_rows("JointState of 12 joints, unpaced", "joints", 0.0, "30000"),
+        *make_rows("JointState of 12 joints at 1 kHz", "joints", 1000.0, "1000", aged=True),
+        *make_rows("TF of 100 transforms at 500 Hz, as arrays", "transforms", 500.0, "500", "100"),
+        *make_rows("TF of 100 transforms at 500 Hz, as objects", "objects", 500.0, "500", "100"),
+        *make_rows("TF of 100 transforms, unpaced, as objects", "objects", 0.0, ""),
+        *make_rows("images 640x480 RGB at 60 Hz", "images", 60.0, "60", "10", aged=True),
+        *make_rows("images 640x480 RGB, unpaced", "images", 0.0, ""),
     ]

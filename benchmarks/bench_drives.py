@@ -1,8 +1,8 @@
 """Measure the controllers of drives: the cost of an update, and of a hundred robots.
 
-Run it with ``python -m benchmarks drives``. The processor's time of updates alone, in one process: wheels tell what
-they do, limits hold, and for a hundred robots the figure is the time of a simulated second at 100 Hz, of which 1000 ms
-are real time on one processor.
+Run it with ``python -m benchmarks drives``. The figures are processor times of updates in one process, with state
+feedback of the wheels and with limits. For a hundred robots, the figure is the time of a simulated second at 100 Hz,
+where 1000 ms are real time on one processor.
 """
 
 from __future__ import annotations
@@ -42,19 +42,24 @@ _DRIVE, _STEER = (
     "diff_drive_controller/DiffDriveController",
     "ackermann_steering_controller/AckermannSteeringController",
 )
-_LISTENED = {"drive/odom": "nav_msgs/msg/Odometry", "tf": "tf2_msgs/msg/TFMessage"}
+_SUBSCRIBED_TOPICS = {"drive/odom": "nav_msgs/msg/Odometry", "tf": "tf2_msgs/msg/TFMessage"}
 
 
 class _Fleet:
-    """Active controllers of one type, in a namespace each, with references that another controller sets."""
+    """Active controllers of one type, each in its own namespace.
+
+    Another controller sets their references.
+    """
 
     def __init__(self, graph: Graph, type_name: str, parameters: Mapping[str, Any], count: int) -> None:
         self._graph = graph
         self._exchange = Exchange()
         self._time = 0
-        self._controllers = [self._made(type_name, parameters, f"/robot{number}") for number in range(count)]
+        self._controllers = [
+            self._create_controller(type_name, parameters, f"/robot{number}") for number in range(count)
+        ]
 
-    def _made(self, type_name: str, parameters: Mapping[str, Any], namespace: str) -> Controller[Any]:
+    def _create_controller(self, type_name: str, parameters: Mapping[str, Any], namespace: str) -> Controller[Any]:
         node = self._graph.create_node("drive", namespace=namespace, parameters=parameters)
         controller = controller_class(type_name)(
             ControllerContext("drive", ControllerNode(node, self._exchange), _RATE)
@@ -63,8 +68,8 @@ class _Fleet:
         asked, measured = controller.command_interfaces(), controller.state_interfaces()
         assert not isinstance(asked, Interfaces)
         assert not isinstance(measured, Interfaces)
-        controller.commands = [CommandInterface(*_parts(name)) for name in asked]
-        controller.states = [StateInterface(*_parts(name), 0.1) for name in measured]
+        controller.commands = [CommandInterface(*_split_name(name)) for name in asked]
+        controller.states = [StateInterface(*_split_name(name), 0.1) for name in measured]
         controller.references = [
             CommandInterface("drive", reference_interface) for reference_interface in controller.reference_interfaces()
         ]
@@ -73,7 +78,7 @@ class _Fleet:
         return controller
 
     def update(self, count: int) -> float:
-        """Return the processor time of a number of updates of each controller and of their publications, in seconds."""
+        """Return the processor time of updates of each controller with their publications, in s."""
         gc.collect()
         begin = time.process_time()
         for _ in range(count):
@@ -85,38 +90,41 @@ class _Fleet:
         return time.process_time() - begin
 
 
-def _parts(name: str) -> tuple[str, str]:
+def _split_name(name: str) -> tuple[str, str]:
     component, _, kind = name.rpartition("/")
     return component, kind
 
 
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
-    return asyncio.run(_rows())
+    return asyncio.run(_measure_rows())
 
 
-async def _rows() -> list[Row]:
+async def _measure_rows() -> list[Row]:
     one = [
-        Row(f"{name}, an update", await _seconds(kind, parameters, 1, 5000, {}) / 5000 * 1e6, "us")
+        Row(f"{name}, an update", await _measure_seconds(kind, parameters, 1, 5000, {}) / 5000 * 1e6, "us")
         for name, kind, parameters in (
             ("diff_drive_controller", _DRIVE, _DIFFERENTIAL),
             ("ackermann_steering_controller", _STEER, _CAR),
         )
     ]
     hundred = [
-        Row(what, await _seconds(_DRIVE, _DIFFERENTIAL, _ROBOTS, int(_RATE), topics) * 1000.0, "ms", target)
+        Row(what, await _measure_seconds(_DRIVE, _DIFFERENTIAL, _ROBOTS, int(_RATE), topics) * 1000.0, "ms", target)
         for what, topics, target in (
             ("100 diff_drive_controllers at 100 Hz, nobody listens", {}, "2000 ms"),
-            ("the same, odometry and transforms of all are heard", _LISTENED, "2000 ms"),
+            ("the same, odometry and transforms of all are heard", _SUBSCRIBED_TOPICS, "2000 ms"),
         )
     ]
     return one + hundred
 
 
-async def _seconds(
+async def _measure_seconds(
     type_name: str, parameters: Mapping[str, Any], robots: int, updates: int, topics: Mapping[str, str]
 ) -> float:
-    """Return the processor time of updates of robots whose topics have subscribers, in s: the median turn."""
+    """Return the processor time of updates of robots, in s: the median turn.
+
+    The topics of the robots have subscribers.
+    """
     graph = Graph(on_log=lambda _: None)
     fleet = _Fleet(graph, type_name, parameters, robots)
     listener = graph.create_node("listener")

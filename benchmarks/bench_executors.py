@@ -1,7 +1,7 @@
-"""Measure the executors: messages per second in one process, and the latency from publish to callback.
+"""Measure the executors: messages per second, and the latency from publish to callback.
 
-Run it with ``python -m benchmarks executors``. "Copied" is what the nodes of rclpy's stand-in pay for being able to
-fill the same message again after it was published.
+Run it with ``python -m benchmarks executors``. "Copied" means that messages are copied when they are published, so that
+a program can fill the same message again, as with rclpy's stand-in.
 """
 
 from __future__ import annotations
@@ -18,13 +18,15 @@ from linkwright.graph import Graph
 from linkwright.graph.executors import MultiThreadedExecutor, ReentrantCallbackGroup, SingleThreadedExecutor
 from linkwright.messages import String
 
-MESSAGES = 200_000
-LATENCIES = 2_000
-QUEUE = 1_000
+MESSAGE_COUNT = 200_000
+LATENCY_COUNT = 2_000
+QUEUE_DEPTH = 1_000
 ROUNDS = 3
 
 
-def messages_per_second(executor: SingleThreadedExecutor | MultiThreadedExecutor, *, reentrant: bool = False) -> float:
+def measure_messages_per_second(
+    executor: SingleThreadedExecutor | MultiThreadedExecutor, *, reentrant: bool = False
+) -> float:
     """Return the rate of messages that are published in batches of the queue's size."""
     graph = Graph(threads=True)
     node = graph.create_node("bench", start_parameter_services=False, enable_rosout=False)
@@ -35,18 +37,18 @@ def messages_per_second(executor: SingleThreadedExecutor | MultiThreadedExecutor
         received += 1
 
     group = ReentrantCallbackGroup() if reentrant else None
-    node.create_subscription(String, "chatter", receive, QUEUE, callback_group=group)
-    publisher = node.create_publisher(String, "chatter", QUEUE)
+    node.create_subscription(String, "chatter", receive, QUEUE_DEPTH, callback_group=group)
+    publisher = node.create_publisher(String, "chatter", QUEUE_DEPTH)
     executor.add_node(node)
     message = String(data="hello")
     spinner = threading.Thread(target=executor.spin) if isinstance(executor, MultiThreadedExecutor) else None
     start = time.perf_counter()
     if spinner is not None:
         spinner.start()
-    for batch in range(0, MESSAGES, QUEUE):
-        for _ in range(QUEUE):
+    for batch in range(0, MESSAGE_COUNT, QUEUE_DEPTH):
+        for _ in range(QUEUE_DEPTH):
             publisher.publish(message)
-        while received < batch + QUEUE:
+        while received < batch + QUEUE_DEPTH:
             if spinner is None:
                 executor.spin_once(0)
             else:
@@ -56,10 +58,10 @@ def messages_per_second(executor: SingleThreadedExecutor | MultiThreadedExecutor
     if spinner is not None:
         spinner.join()
     graph.close_threadsafe()
-    return MESSAGES / seconds
+    return MESSAGE_COUNT / seconds
 
 
-def spinning_messages_per_second(*, copies: bool = False) -> float:
+def measure_spinning_messages_per_second(*, copies: bool = False) -> float:
     """Return the rate inside one ``spin`` if each callback publishes the next message.
 
     Args:
@@ -76,7 +78,7 @@ def spinning_messages_per_second(*, copies: bool = False) -> float:
     def receive(_message: String) -> None:
         nonlocal received
         received += 1
-        if received < MESSAGES:
+        if received < MESSAGE_COUNT:
             publisher.publish(message)
         else:
             executor.shutdown()
@@ -88,10 +90,10 @@ def spinning_messages_per_second(*, copies: bool = False) -> float:
     executor.spin()
     seconds = time.perf_counter() - start
     graph.close_threadsafe()
-    return MESSAGES / seconds
+    return MESSAGE_COUNT / seconds
 
 
-def latencies_us() -> list[float]:
+def measure_latencies_us() -> list[float]:
     """Return the latencies from publish in one thread to the callback in a waiting thread."""
     graph = Graph(threads=True)
     node = graph.create_node("bench", start_parameter_services=False, enable_rosout=False)
@@ -104,7 +106,7 @@ def latencies_us() -> list[float]:
     spinner.start()
     latencies = []
     message = String(data="hello")
-    for number in range(LATENCIES):
+    for number in range(LATENCY_COUNT):
         time.sleep(0.0005)
         start = time.perf_counter_ns()
         publisher.publish(message)
@@ -117,7 +119,7 @@ def latencies_us() -> list[float]:
     return latencies
 
 
-def in_same_thread_us() -> float:
+def measure_in_same_thread_us() -> float:
     """Return the time from publish to the callback in one ``spin_once`` of the same thread."""
     graph = Graph(threads=True)
     node = graph.create_node("bench", start_parameter_services=False, enable_rosout=False)
@@ -128,7 +130,7 @@ def in_same_thread_us() -> float:
     executor.add_node(node)
     latencies = []
     message = String(data="hello")
-    for number in range(LATENCIES):
+    for number in range(LATENCY_COUNT):
         start = time.perf_counter_ns()
         publisher.publish(message)
         executor.spin_once(0)
@@ -139,7 +141,7 @@ def in_same_thread_us() -> float:
 
 
 def run_user_program() -> tuple[float, float]:
-    """Return messages per second, and the latency in microseconds, of a program that uses rclpy's stand-in."""
+    """Return messages per second and the latency in us of a program with rclpy's stand-in."""
     from linkwright.standins import activate
 
     activate()
@@ -156,23 +158,23 @@ def run_user_program() -> tuple[float, float]:
         nonlocal received
         received += 1
 
-    node.create_subscription(UsersString, "chatter", receive, QUEUE)
-    publisher = node.create_publisher(UsersString, "chatter", QUEUE)
+    node.create_subscription(UsersString, "chatter", receive, QUEUE_DEPTH)
+    publisher = node.create_publisher(UsersString, "chatter", QUEUE_DEPTH)
     executor = UsersExecutor()
     executor.add_node(node)
     message = UsersString(data="hello")
     start = time.perf_counter()
-    for batch in range(0, MESSAGES, QUEUE):
-        for _ in range(QUEUE):
+    for batch in range(0, MESSAGE_COUNT, QUEUE_DEPTH):
+        for _ in range(QUEUE_DEPTH):
             publisher.publish(message)
-        while received < batch + QUEUE:
+        while received < batch + QUEUE_DEPTH:
             executor.spin_once(0)
-    rate = MESSAGES / (time.perf_counter() - start)
+    rate = MESSAGE_COUNT / (time.perf_counter() - start)
     start = time.perf_counter()
-    for _ in range(LATENCIES):
+    for _ in range(LATENCY_COUNT):
         publisher.publish(message)
         executor.spin_once(0)
-    latency = (time.perf_counter() - start) / LATENCIES * 1e6
+    latency = (time.perf_counter() - start) / LATENCY_COUNT * 1e6
     node.destroy_node()
     rclpy.shutdown()
     return rate, latency
@@ -188,16 +190,18 @@ def rows() -> list[Row]:
     return [
         Row("small messages, a program over rclpy, spin_once", users_rate / 1000, "1000/s", "200"),
         Row("one message, a program over rclpy, spin_once", users_latency, "us", "20"),
-        rate("small messages, one thread, spin", spinning_messages_per_second, "200"),
+        rate("small messages, one thread, spin", measure_spinning_messages_per_second, "200"),
         rate(
-            "small messages, one thread, copied as for rclpy", lambda: spinning_messages_per_second(copies=True), "200"
+            "small messages, one thread, copied as for rclpy",
+            lambda: measure_spinning_messages_per_second(copies=True),
+            "200",
         ),
-        rate("small messages, one thread, spin_once", lambda: messages_per_second(SingleThreadedExecutor())),
-        rate("small messages, four threads, exclusive", lambda: messages_per_second(MultiThreadedExecutor(4))),
+        rate("small messages, one thread, spin_once", lambda: measure_messages_per_second(SingleThreadedExecutor())),
+        rate("small messages, four threads, exclusive", lambda: measure_messages_per_second(MultiThreadedExecutor(4))),
         rate(
             "small messages, four threads, reentrant",
-            lambda: messages_per_second(MultiThreadedExecutor(4), reentrant=True),
+            lambda: measure_messages_per_second(MultiThreadedExecutor(4), reentrant=True),
         ),
-        Row("one message, publish to callback, same thread", in_same_thread_us(), "us", "20"),
-        Row("one message, publish to callback, a thread that waits", statistics.median(latencies_us()), "us"),
+        Row("one message, publish to callback, same thread", measure_in_same_thread_us(), "us", "20"),
+        Row("one message, publish to callback, a thread that waits", statistics.median(measure_latencies_us()), "us"),
     ]

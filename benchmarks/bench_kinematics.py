@@ -1,7 +1,7 @@
-"""Measure forward kinematics of all links, for many configurations and for one, and in other libraries.
+"""Measure forward kinematics of all links for one and many configurations, and its peers.
 
-Run it with ``python -m benchmarks kinematics``. Every figure is the time of one configuration until the frames of all
-links are arrays in Python. "numpy" is the loop over joints that one would write oneself.
+Run it with ``python -m benchmarks kinematics``. Every figure is the time per configuration until the frames of all
+links are arrays in Python. "numpy" is a simple loop over joints.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ from typing import Any
 import numpy as np
 
 from benchmarks import peers
-from benchmarks.measure import Row, show, side_by_side
-from benchmarks.robots import detailed_robot
+from benchmarks.measure import Row, measure_side_by_side, show
+from benchmarks.robots import make_detailed_robot
 from linkwright.descriptions import load
 from linkwright.kinematics import KinematicTree
 from linkwright.urdf import Robot, parent_joints
 
-CONFIGURATIONS = 10_000
-FEW = 200
+CONFIGURATION_COUNT = 10_000
+FEW_CONFIGURATIONS = 200
 """The number of configurations for libraries that process them one by one."""
 ROUNDS = 9
 
@@ -30,41 +30,50 @@ def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
     table = []
     for links, moving, target in ((23, 12, "2 us, aiming at 1"), (88, 45, "10 us, aiming at 5")):
-        text = detailed_robot(links, moving)
+        text = make_detailed_robot(links, moving)
         tree = KinematicTree(load(text))
-        many = np.random.default_rng(0).uniform(-1, 1, (CONFIGURATIONS, len(tree.joint_names)))
+        many = np.random.default_rng(0).uniform(-1, 1, (CONFIGURATION_COUNT, len(tree.joint_names)))
         calls = {"ours": lambda tree=tree, many=many: tree.forward(many)}
-        calls["numpy"] = _Plain(load(text), tree).all(many)
-        calls["urchin"], one_by_one = _urchin(text, tree, many), _pinocchio(text, tree, many[:FEW])
-        times = side_by_side(calls, ROUNDS)
-        others = {name: times[name] / CONFIGURATIONS * 1e6 if name in times else None for name in ("numpy", "urchin")}
-        slow = side_by_side({"pinocchio": one_by_one}, ROUNDS)
-        others["pinocchio"] = slow["pinocchio"] / FEW * 1e6 if slow else None
+        calls["numpy"] = _PlainKinematics(load(text), tree).make_call(many)
+        calls["urchin"], one_by_one = (
+            _make_urchin_call(text, tree, many),
+            _make_pinocchio_call(text, tree, many[:FEW_CONFIGURATIONS]),
+        )
+        times = measure_side_by_side(calls, ROUNDS)
+        peer_times = {
+            name: times[name] / CONFIGURATION_COUNT * 1e6 if name in times else None for name in ("numpy", "urchin")
+        }
+        slow = measure_side_by_side({"pinocchio": one_by_one}, ROUNDS)
+        peer_times["pinocchio"] = slow["pinocchio"] / FEW_CONFIGURATIONS * 1e6 if slow else None
         size = f"{links} links, {len(tree.joint_names)} joints"
-        mine = times["ours"] / CONFIGURATIONS * 1e6
-        table.append(Row(f"{size}, each of {CONFIGURATIONS} configurations", mine, "us", target, others))
-        single = side_by_side({"ours": lambda tree=tree, one=many[0]: tree.forward(one)}, ROUNDS, repeat=300)
-        others = {"pinocchio": others["pinocchio"]}
-        table.append(Row(f"{size}, a single configuration", single["ours"] * 1e6, "us", "20 us, aiming at 15", others))
+        microseconds = times["ours"] / CONFIGURATION_COUNT * 1e6
+        table.append(
+            Row(f"{size}, each of {CONFIGURATION_COUNT} configurations", microseconds, "us", target, peer_times)
+        )
+        single = measure_side_by_side({"ours": lambda tree=tree, one=many[0]: tree.forward(one)}, ROUNDS, repeat=300)
+        peer_times = {"pinocchio": peer_times["pinocchio"]}
+        table.append(
+            Row(f"{size}, a single configuration", single["ours"] * 1e6, "us", "20 us, aiming at 15", peer_times)
+        )
     return table
 
 
-class _Plain:
-    """A loop over joints, each with all configurations at once."""
+class _PlainKinematics:
+    """A loop over joints, which computes all configurations of a joint at once."""
 
     def __init__(self, robot: Robot, tree: KinematicTree) -> None:
-        above = parent_joints(robot)
-        index = {name: place for place, name in enumerate(tree.link_names)}
+        joint_by_child = parent_joints(robot)
+        index = {name: index_in_tree for index_in_tree, name in enumerate(tree.link_names)}
         self._steps = []
         for name in tree.link_names[1:]:
-            joint = above[name]
+            joint = joint_by_child[name]
             column = tree.joint_names.index(joint.name) if joint.name in tree.joint_names else None
             still = KinematicTree(robot).forward(np.zeros(len(tree.joint_names)))
             origin = np.linalg.inv(still[index[joint.parent]]) @ still[index[name]]
             self._steps.append((index[name], index[joint.parent], origin, column))
         self._links = len(tree.link_names)
 
-    def all(self, positions: Any) -> Callable[[], object]:
+    def make_call(self, positions: Any) -> Callable[[], object]:
         def run() -> object:
             frames = np.empty((len(positions), self._links, 4, 4))
             frames[:, 0] = np.eye(4)
@@ -83,20 +92,20 @@ class _Plain:
         return run
 
 
-def _urchin(text: str, tree: KinematicTree, many: Any) -> Callable[[], object] | None:
-    urchin = peers.load("urchin")
+def _make_urchin_call(text: str, tree: KinematicTree, many: Any) -> Callable[[], object] | None:
+    urchin = peers.load_module("urchin")
     if urchin is None:
         return None
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.urdf"
         path.write_text(text, encoding="utf-8")
         robot = urchin.URDF.load(str(path), lazy_load_meshes=True)
-    positions = {name: many[:, place] for place, name in enumerate(tree.joint_names)}
+    positions = {name: many[:, column] for column, name in enumerate(tree.joint_names)}
     return lambda: np.stack(list(robot.link_fk_batch(cfgs=positions).values()), axis=1)
 
 
-def _pinocchio(text: str, tree: KinematicTree, few: Any) -> Callable[[], object] | None:
-    pinocchio = peers.load("pinocchio")
+def _make_pinocchio_call(text: str, tree: KinematicTree, few: Any) -> Callable[[], object] | None:
+    pinocchio = peers.load_module("pinocchio")
     if pinocchio is None:
         return None
     model = pinocchio.buildModelFromXML(text)

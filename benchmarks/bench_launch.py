@@ -1,7 +1,7 @@
-"""Measure launches: from the command to the last started node, in one process, isolated, and many at once.
+"""Measure launches, from the command to the last started node.
 
-Times are wall times of the whole program as a user meets it, `linkwright` started anew each time with a warm file
-cache.
+Nodes run in one process or isolated, and few or many of them are launched. Times are wall times of the whole program as
+for a user: each run is a new `linkwright` process with a warm file cache.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from pathlib import Path
 
 from benchmarks.measure import LINKWRIGHT, Row
 
-RUNS = 9
-MANY = 500
+RUN_COUNT = 9
+MANY_NODES = 500
 
 _HEAD = """
 from launch import LaunchDescription
@@ -44,40 +44,53 @@ FOUR = [
 def generate_launch_description():
     return LaunchDescription(%s)
 """
-_STARTED = ("started in the launcher's process", "process started with pid")
-_ISOLATED = ("Spinning until stopped",)
+_STARTED_SIGNS = ("started in the launcher's process", "process started with pid")
+_ISOLATED_SIGNS = ("Spinning until stopped",)
 
 
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
     with tempfile.TemporaryDirectory(prefix="linkwright-bench-") as folder:
-        four = _file(folder, "four", "FOUR")
-        alike = _file(folder, "alike", "[frames(number) for number in range(4)]")
-        many = _file(folder, "many", f"[frames(number) for number in range({MANY})]")
+        four_nodes_file = _write_file(folder, "four", "FOUR")
+        frames_file = _write_file(folder, "alike", "[frames(number) for number in range(4)]")
+        many = _write_file(folder, "many", f"[frames(number) for number in range({MANY_NODES})]")
         return [
-            Row("four nodes up, from the command", _median(_STARTED, 4, four), "s", "0.5 s"),
-            Row("four nodes up, each in a process of its own", _median(_ISOLATED, 4, "--isolate", alike, runs=3), "s"),
-            Row(f"{MANY} nodes up, from the command", _median(_STARTED, MANY, many, runs=3), "s"),
-            Row(f"{MANY} nodes down, from Ctrl-C", _ended(_STARTED, MANY, many), "s"),
+            Row(
+                "four nodes up, from the command",
+                _measure_median_start(_STARTED_SIGNS, 4, four_nodes_file),
+                "s",
+                "0.5 s",
+            ),
+            Row(
+                "four nodes up, each in a process of its own",
+                _measure_median_start(_ISOLATED_SIGNS, 4, "--isolate", frames_file, runs=3),
+                "s",
+            ),
+            Row(
+                f"{MANY_NODES} nodes up, from the command",
+                _measure_median_start(_STARTED_SIGNS, MANY_NODES, many, runs=3),
+                "s",
+            ),
+            Row(f"{MANY_NODES} nodes down, from Ctrl-C", _measure_end(_STARTED_SIGNS, MANY_NODES, many), "s"),
         ]
 
 
-def _file(folder: str, name: str, entities: str) -> str:
+def _write_file(folder: str, name: str, entities: str) -> str:
     path = Path(folder, f"{name}.launch.py")
     path.write_text(_HEAD % entities, encoding="utf-8")
     return str(path)
 
 
-def _median(signs: tuple[str, ...], count: int, *words: str, runs: int = RUNS) -> float:
-    return statistics.median(_measured(signs, count, *words)[0] for _ in range(runs))
+def _measure_median_start(signs: tuple[str, ...], count: int, *words: str, runs: int = RUN_COUNT) -> float:
+    return statistics.median(_measure(signs, count, *words)[0] for _ in range(runs))
 
 
-def _ended(signs: tuple[str, ...], count: int, *words: str) -> float:
-    return statistics.median(_measured(signs, count, *words)[1] for _ in range(3))
+def _measure_end(signs: tuple[str, ...], count: int, *words: str) -> float:
+    return statistics.median(_measure(signs, count, *words)[1] for _ in range(3))
 
 
-def _measured(signs: tuple[str, ...], count: int, *words: str) -> tuple[float, float]:
-    """Return the seconds from the command to `count` lines with the signs, and from Ctrl-C to the end."""
+def _measure(signs: tuple[str, ...], count: int, *words: str) -> tuple[float, float]:
+    """Return the seconds from the command until `count` lines have signs, and from Ctrl-C to the end."""
     environment = {**os.environ, "ROS_DOMAIN_ID": "89"}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
     begin = time.perf_counter()
@@ -85,10 +98,10 @@ def _measured(signs: tuple[str, ...], count: int, *words: str) -> tuple[float, f
         [LINKWRIGHT, "launch", *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment
     ) as process:
         assert process.stdout is not None
-        seen = 0
+        sign_count = 0
         for line in process.stdout:
-            seen += any(sign in line for sign in signs)
-            if seen == count:
+            sign_count += any(sign in line for sign in signs)
+            if sign_count == count:
                 break
         up = time.perf_counter() - begin
         begin = time.perf_counter()

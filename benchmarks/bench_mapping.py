@@ -1,8 +1,8 @@
-"""Measure mapping of a house with odometry of several qualities: errors of pose and walls, and cost of a scan.
+"""Measure mapping of a house: the errors of poses and walls, and the cost of a scan.
 
-Run it with ``python -m benchmarks mapping``. mbot drives through all rooms in lock-step with the mapper, the tour of
-``tests/navigation/nodes/house.py``. Odometry is made worse by a scale, a turn that comes with the way, and noise. Where
-it says that the robot is at the end is the peer "odometry". Costs are times of the processor, of this thread.
+Run it with ``python -m benchmarks mapping``. mbot drives through all rooms in lockstep with the mapper, along the tour
+of ``tests/navigation/nodes/house.py``. Odometry has a scale error, a rotation in proportion to the distance, and noise.
+The peer "odometry" is the final pose by odometry alone. Costs are processor times of this thread.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from linkwright.navigation.nodes.slam_toolbox.nodes import AsyncSlamToolbox
 from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.nodes import NodeOptions
 
-QUALITIES = {
+ODOMETRY_QUALITIES = {
     "exact": (1.0, 0.0, 0.0),
     "2 %, 0.01 rad/m": (1.02, 0.01, 0.02),
     "5 %, 0.05 rad/m": (1.05, 0.05, 0.1),
@@ -33,17 +33,20 @@ QUALITIES = {
 
 @dataclass
 class _Tour:
-    """The result of a tour: errors in m and rad, and the seconds of each step of the mapper and of each scan."""
+    """The result of a tour.
 
-    odometry_off: float
-    pose_off: float
-    turned_off: float
-    walls_off: np.ndarray
+    Errors are in m and rad, times in s for each step of the mapper and each scan.
+    """
+
+    odometry_error: float
+    pose_error: float
+    yaw_error: float
+    wall_errors: np.ndarray
     step_s: list[float]
     scans: int
 
 
-def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
+def map_house(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
     """Drive through the house and map it, and return the result."""
     walls, solid = house.upright_faces(), house.upright_faces(("walls", "furniture"))
     steps: list[float] = []
@@ -62,16 +65,16 @@ def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
 
         toolbox._step_guard.callback = timed
         house.drive_through(test, house.TOUR_POINTS)
-        here = test.robot_pose()
-        true = np.array((here[0], here[1], rpy_from_quaternion(here[3:])[2]))
-        told = relative_pose(true, compose(toolbox._map_to_odom, drift.pose))
-        odometry = relative_pose(true, drift.pose)
+        true_transform = test.robot_pose()
+        true_pose = np.array((true_transform[0], true_transform[1], rpy_from_quaternion(true_transform[3:])[2]))
+        pose_error = relative_pose(true_pose, compose(toolbox._map_to_odom, drift.pose))
+        odometry = relative_pose(true_pose, drift.pose)
         occupied = house.occupied_centers(toolbox.grid())
         near = occupied[house.distances_to_faces(walls, occupied) < 0.2]
         return _Tour(
             float(np.hypot(odometry[0], odometry[1])),
-            float(np.hypot(told[0], told[1])),
-            abs(float(told[2])),
+            float(np.hypot(pose_error[0], pose_error[1])),
+            abs(float(pose_error[2])),
             house.distances_to_faces(solid, near),
             steps,
             len(toolbox.mapper.scans),
@@ -81,14 +84,20 @@ def toured(scale: float, yaw_per_meter: float, noise: float) -> _Tour:
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
     table = []
-    for name, quality in QUALITIES.items():
-        tour = toured(*quality)
+    for name, quality in ODOMETRY_QUALITIES.items():
+        tour = map_house(*quality)
         about = f"odometry {name}"
         table += [
-            Row(f"{about}: pose off at the end", 100 * tour.pose_off, "cm", "", {"odometry": 100 * tour.odometry_off}),
-            Row(f"{about}: turned off at the end", float(np.degrees(tour.turned_off)), "deg"),
-            Row(f"{about}: walls off, mean", 100 * float(tour.walls_off.mean()), "cm"),
-            Row(f"{about}: walls off, most", 100 * float(tour.walls_off.max()), "cm", "5"),
+            Row(
+                f"{about}: pose off at the end",
+                100 * tour.pose_error,
+                "cm",
+                "",
+                {"odometry": 100 * tour.odometry_error},
+            ),
+            Row(f"{about}: turned off at the end", float(np.degrees(tour.yaw_error)), "deg"),
+            Row(f"{about}: walls off, mean", 100 * float(tour.wall_errors.mean()), "cm"),
+            Row(f"{about}: walls off, most", 100 * float(tour.wall_errors.max()), "cm", "5"),
             Row(f"{about}: a scan", 1e3 * sum(tour.step_s) / tour.scans, "ms"),
             Row(f"{about}: longest step", 1e3 * max(tour.step_s), "ms", "20"),
         ]

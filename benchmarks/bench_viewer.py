@@ -1,7 +1,7 @@
 """Measure the load of the viewer, and the latency from a slider to a page.
 
-Run it with ``python -m benchmarks viewer``. The page is a WebSocket client in a process of its own, which answers as a
-browser's socket does but draws nothing. "Viewer" is the cost with the viewer less that of the same publishers alone.
+Run it with ``python -m benchmarks viewer``. The page is a WebSocket client in a separate process, which responds as a
+browser does but draws nothing. "Viewer" is the cost with the viewer minus the cost of the publishers alone.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ import aiohttp
 import numpy as np
 import psutil
 
-from benchmarks.data_scenes import Frames, at_rate
+from benchmarks.data_scenes import FramePublisher, call_at_rate
 from benchmarks.measure import ROOT, Row
-from benchmarks.robots import tree_robot
+from benchmarks.robots import make_tree_robot
 from linkwright.bag import History
 from linkwright.bag.stillness import content_of
 from linkwright.descriptions import DescriptionLibrary
@@ -38,14 +38,14 @@ from linkwright.packages import PackageFinder
 from linkwright.rviz import RvizConfig
 from linkwright.viewer import Viewer
 
-LINKS = 500
-RATE = 30
-SECONDS = 6.0
-MOVES = 60
+LINK_COUNT = 500
+RATE_HZ = 30
+DURATION_S = 6.0
+MOVE_COUNT = 60
 
 
 @asynccontextmanager
-async def viewer_of(graph: Graph, library: DescriptionLibrary) -> AsyncIterator[Viewer]:
+async def start_viewer(graph: Graph, library: DescriptionLibrary) -> AsyncIterator[Viewer]:
     """Yield a started viewer of a robot with the root ``link_0``."""
     config = RvizConfig.for_model("link_0")
     viewer = Viewer(graph, library=library, finder=PackageFinder(), config=config, port=0)
@@ -57,8 +57,8 @@ async def viewer_of(graph: Graph, library: DescriptionLibrary) -> AsyncIterator[
 
 
 @dataclass
-class Heard:
-    """The transforms that a page received: the rate in Hz, and their age at reception in milliseconds."""
+class ReceivedTransforms:
+    """The transforms that a page received: the rate in Hz, and their age at reception in ms."""
 
     rate: float
     ages: list[float]
@@ -69,10 +69,10 @@ class Cost:
     """The load in percent of a core, and the transforms that each page received."""
 
     share: float
-    pages: list[Heard]
+    pages: list[ReceivedTransforms]
 
 
-def listen(url: str, ready: Any, stop: Any, told: Any) -> None:
+def receive_as_page(url: str, ready: Any, stop: Any, results: Any) -> None:
     """Act as a page in another process, and record the received transforms."""
 
     async def be_a_page() -> None:
@@ -88,52 +88,55 @@ def listen(url: str, ready: Any, stop: Any, told: Any) -> None:
                 if message.type is aiohttp.WSMsgType.BINARY:
                     (stamp,) = struct.unpack_from("<d", message.data, 16)
                     ages.append(1e3 * (time.time() - stamp))
-            told.put(Heard(len(ages) / (time.perf_counter() - begin), ages))
+            results.put(ReceivedTransforms(len(ages) / (time.perf_counter() - begin), ages))
 
     asyncio.run(be_a_page())
 
 
-async def cost(links: int, pages: int | None) -> Cost:
-    """Return the cost of moving frames with a number of open pages, or without a viewer for None."""
+async def measure_cost(links: int, pages: int | None) -> Cost:
+    """Return the cost of moving frames with a number of pages, or without a viewer for None."""
     graph = Graph(on_log=lambda _: None)
-    publish = Frames(graph, links).publish
+    publish = FramePublisher(graph, links).publish
     if pages is None:
-        await at_rate(RATE, publish, 0.5)
-        return Cost(await _measured(publish), [])
+        await call_at_rate(RATE_HZ, publish, 0.5)
+        return Cost(await _measure_load(publish), [])
     spawn = multiprocessing.get_context("spawn")
     library = DescriptionLibrary()
-    async with viewer_of(graph, library) as viewer:
+    async with start_viewer(graph, library) as viewer:
         description = graph.create_node("describer").create_publisher(String, "robot_description", DESCRIPTION_QOS)
-        description.publish(String(data=tree_robot(links)))
-        stop, told = spawn.Event(), spawn.Queue()
+        description.publish(String(data=make_tree_robot(links)))
+        stop, results = spawn.Event(), spawn.Queue()
         url = viewer.url.replace("/?", "/ws?")
         readies = [spawn.Event() for _ in range(pages)]
-        processes = [spawn.Process(target=listen, args=(url, ready, stop, told)) for ready in readies]
+        processes = [spawn.Process(target=receive_as_page, args=(url, ready, stop, results)) for ready in readies]
         for process in processes:
             process.start()
         for ready in readies:
             await asyncio.to_thread(ready.wait)
-        await at_rate(RATE, publish, 1.0)
-        share = await _measured(publish)
+        await call_at_rate(RATE_HZ, publish, 1.0)
+        share = await _measure_load(publish)
         stop.set()
-        heard = [await asyncio.to_thread(told.get) for _ in processes]
+        received = [await asyncio.to_thread(results.get) for _ in processes]
         for process in processes:
             await asyncio.to_thread(process.join)
     await graph.close()
-    return Cost(share, heard)
+    return Cost(share, received)
 
 
-async def _measured(publish: Callable[[int], None]) -> float:
+async def _measure_load(publish: Callable[[int], None]) -> float:
     cpu, wall = time.process_time(), time.perf_counter()
-    await at_rate(RATE, publish, SECONDS)
+    await call_at_rate(RATE_HZ, publish, DURATION_S)
     return 100 * (time.process_time() - cpu) / (time.perf_counter() - wall)
 
 
-async def slider_latencies(joints: int) -> list[float]:
-    """Return the milliseconds from a slider move to the transforms in the page, with all nodes in one process."""
+async def measure_slider_latencies(joints: int) -> list[float]:
+    """Return the ms from slider moves to the transforms in the page.
+
+    All nodes are in one process.
+    """
     graph, library = Graph(on_log=lambda _: None), DescriptionLibrary()
-    text = tree_robot(joints)
-    async with viewer_of(graph, library) as viewer:
+    text = make_tree_robot(joints)
+    async with start_viewer(graph, library) as viewer:
         panel = JointStatePublisherGui(graph, NodeOptions(library=library)).panel
         viewer.attach_joint_panel(panel)
         RobotStatePublisher(graph, NodeOptions(parameters={"robot_description": text}, library=library))
@@ -141,10 +144,10 @@ async def slider_latencies(joints: int) -> list[float]:
             aiohttp.ClientSession() as session,
             session.ws_connect(viewer.url.replace("/?", "/ws?"), max_msg_size=0) as socket,
         ):
-            await _drained(socket)
+            await _drain(socket)
             name = panel.sliders()[0].name
             delays = []
-            for turn in range(MOVES):
+            for turn in range(MOVE_COUNT):
                 await asyncio.sleep(0.05 + 0.01 * (turn % 7))
                 start = time.perf_counter()
                 await socket.send_str(json.dumps({"type": "set_joint", "name": name, "position": 0.01 * (turn + 1)}))
@@ -155,12 +158,14 @@ async def slider_latencies(joints: int) -> list[float]:
     return delays
 
 
-async def opening(joints: int) -> tuple[float, int]:
-    """Return the milliseconds until the last opening message, and the size of these messages in bytes."""
+async def measure_opening(joints: int) -> tuple[float, int]:
+    """Return the ms until the last opening message, and the size of these messages in bytes."""
     graph, library = Graph(on_log=lambda _: None), DescriptionLibrary()
-    async with viewer_of(graph, library) as viewer:
+    async with start_viewer(graph, library) as viewer:
         JointStatePublisherGui(graph, NodeOptions(library=library))
-        RobotStatePublisher(graph, NodeOptions(parameters={"robot_description": tree_robot(joints)}, library=library))
+        RobotStatePublisher(
+            graph, NodeOptions(parameters={"robot_description": make_tree_robot(joints)}, library=library)
+        )
         await asyncio.sleep(0.5)
         start, size = time.perf_counter(), 0
         address = viewer.url.replace("/?", "/ws?")
@@ -176,7 +181,7 @@ async def opening(joints: int) -> tuple[float, int]:
     return took, size
 
 
-async def _drained(socket: aiohttp.ClientWebSocketResponse) -> None:
+async def _drain(socket: aiohttp.ClientWebSocketResponse) -> None:
     try:
         while True:
             await socket.receive(timeout=0.5)
@@ -184,7 +189,7 @@ async def _drained(socket: aiohttp.ClientWebSocketResponse) -> None:
         return
 
 
-def growth() -> float:
+def measure_growth() -> float:
     """Return the growth of the process in MB in an hour of a simulated robot at rest."""
     now_ns = 0
     history = History(256_000_000, lambda: now_ns)
@@ -195,7 +200,7 @@ def growth() -> float:
 
     clock = get_message("rosgraph_msgs/msg/Clock")()
     process = psutil.Process()
-    before = 0
+    start_bytes = 0
     for tick in range(61 * 60 * 100):
         now_ns = tick * 10_000_000
         clock.clock.sec, clock.clock.nanosec = divmod(now_ns, 1_000_000_000)
@@ -210,25 +215,28 @@ def growth() -> float:
                 poses = np.array([pose] * len(parts))
                 keep(topic, TFMessage(batch=TransformBatch(("odom",) * len(parts), tuple(parts), now_ns, poses)))
         if tick == 60 * 100:  # the first minute fills caches
-            before = process.memory_info().rss
+            start_bytes = process.memory_info().rss
     history.close()
-    return (process.memory_info().rss - before) / 1e6
+    return (process.memory_info().rss - start_bytes) / 1e6
 
 
-def standing() -> Row:
-    """Measure `growth` in a new process, because this process can reuse memory of earlier measurements."""
+def measure_growth_in_new_process() -> Row:
+    """Measure `measure_growth` in a new process.
+
+    This process could reuse memory of earlier measurements.
+    """
     program = "from benchmarks.bench_viewer import growth; print(growth())"
     result = subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT, capture_output=True, text=True)
     return Row("growth in an hour of a simulated robot at rest", float(result.stdout), "MB", "2")
 
 
-def moving(links: int, target: str, pages: tuple[tuple[int, str], ...]) -> list[Row]:
+def measure_moving_frames(links: int, target: str, pages: tuple[tuple[int, str], ...]) -> list[Row]:
     """Measure the cost and the age of moving frames with no page, one page and many pages."""
-    what = f"{links} links at {RATE} Hz"
-    alone = asyncio.run(cost(links, None)).share
+    what = f"{links} links at {RATE_HZ} Hz"
+    alone = asyncio.run(measure_cost(links, None)).share
     table = [Row(f"publisher alone, {what}", alone, "% of a core")]
     for count, label in pages:
-        costs = asyncio.run(cost(links, count))
+        costs = asyncio.run(measure_cost(links, count))
         table.append(Row(f"viewer, {what}, {label}", costs.share - alone, "% of a core", target if count == 1 else ""))
         if count:
             oldest = max(statistics.median(page.ages) for page in costs.pages)
@@ -239,14 +247,14 @@ def moving(links: int, target: str, pages: tuple[tuple[int, str], ...]) -> list[
 
 def rows() -> list[Row]:
     """Measure, and return the rows of the table."""
-    table = moving(12, "3", ((1, "one page"),))
-    table += moving(LINKS, "5", ((0, "nobody watches"), (1, "one page"), (4, "four pages")))
-    for joints in (5, LINKS):
-        delays = asyncio.run(slider_latencies(joints))
+    table = measure_moving_frames(12, "3", ((1, "one page"),))
+    table += measure_moving_frames(LINK_COUNT, "5", ((0, "nobody watches"), (1, "one page"), (4, "four pages")))
+    for joints in (5, LINK_COUNT):
+        delays = asyncio.run(measure_slider_latencies(joints))
         table.append(
             Row(f"slider to page, {joints} joints ({max(delays):.3g} at most)", statistics.median(delays), "ms")
         )
-        took, size = asyncio.run(opening(joints))
+        took, size = asyncio.run(measure_opening(joints))
         table.append(Row(f"page opens, {joints} joints, {size / 1024:.0f} KiB", took, "ms"))
-    table.append(standing())
+    table.append(measure_growth_in_new_process())
     return table

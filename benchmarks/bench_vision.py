@@ -1,9 +1,9 @@
-"""Measure detectors and their node: the processor time for a 640x480 image, and images per second.
+"""Measure detectors and their node: the processor time per image, and images per second.
 
-Run it with ``python -m benchmarks vision``. Times are the processor's, of all threads, so that other programs change
-them little; images a second are counted where they come out, at ``/yolo/detections`` of
-``my_robot_vision detect.launch.py``, and mean something only on a quiet machine. The processor's time of that whole
-launch for each of them means something everywhere: 30 a second on two processors leave 66 ms.
+Run it with ``python -m benchmarks vision``. Times are processor times of all threads, so other programs have little
+influence. Images per second are counted at ``/yolo/detections`` of ``my_robot_vision detect.launch.py``, and are only
+meaningful on a quiet machine. The processor time per image of that launch is meaningful on every machine: 30 images per
+second on two processors leave 66 ms.
 """
 
 from __future__ import annotations
@@ -36,43 +36,45 @@ from linkwright.vision.nodes.detection_messages import image_message, vision_mes
 from linkwright.wire.dds import join
 
 MODELS = ("colors", "things")
-_PICTURES = 60
-_SECONDS = 20.0
-_START_SECONDS = 120.0
+_IMAGE_COUNT = 60
+_DURATION_S = 20.0
+_START_TIMEOUT_S = 120.0
 _DOMAIN = "187"
-_SIZE = (480, 640)
+_IMAGE_SHAPE = (480, 640)
 
 
 def rows() -> list[Row]:
     """Measure one image in this process, then the launch file in a separate process."""
-    return [*_one_image(), *(row for model in MODELS for row in _beside_the_simulation(model))]
+    return [*_measure_one_image(), *(row for model in MODELS for row in _measure_launch(model))]
 
 
-def _one_image() -> Iterator[Row]:
-    image = _scene()
+def _measure_one_image() -> Iterator[Row]:
+    image = _make_scene()
     message = image_message(get_message("std_msgs/msg/Header")(frame_id="camera"), image)
     unpacker, ranges = Unpacker(), RangeFinder()
     for encoding in ("rgb8", "bgr8"):
         message.encoding = encoding
-        taken = _milliseconds(lambda: decode_image(unpacker.image(message, "raw"), ranges).rgb())
-        yield Row(f"a picture of {encoding} taken from its message", taken, "ms")
+        milliseconds = _measure_milliseconds(lambda: decode_image(unpacker.image(message, "raw"), ranges).rgb())
+        yield Row(f"a picture of {encoding} taken from its message", milliseconds, "ms")
     for model in MODELS:
         detector = make_detector(model, DetectorOptions())
         detections = detector.detect(image, Limits())
-        yield Row(f"{model}: found in it", _milliseconds(partial(detector.detect, image, Limits())), "ms", "33")
+        yield Row(f"{model}: found in it", _measure_milliseconds(partial(detector.detect, image, Limits())), "ms", "33")
         yield Row(
             f"{model}: {len(detections)} detections as a message",
-            _milliseconds(partial(vision_message, message.header, detections)),
+            _measure_milliseconds(partial(vision_message, message.header, detections)),
             "ms",
         )
-        yield Row(f"{model}: the picture with boxes", _milliseconds(partial(draw_detections, image, detections)), "ms")
+        yield Row(
+            f"{model}: the picture with boxes", _measure_milliseconds(partial(draw_detections, image, detections)), "ms"
+        )
 
 
-def _scene() -> NDArray[np.uint8]:
+def _make_scene() -> NDArray[np.uint8]:
     """Return a constant image of plain objects on a floor, with camera noise."""
     cv2 = load_opencv()
-    image = np.full((*_SIZE, 3), 150, np.uint8)
-    image[: _SIZE[0] // 2] = (150, 175, 205)
+    image = np.full((*_IMAGE_SHAPE, 3), 150, np.uint8)
+    image[: _IMAGE_SHAPE[0] // 2] = (150, 175, 205)
     cv2.circle(image, (200, 300), 50, (200, 20, 30), -1)
     cv2.rectangle(image, (400, 250), (480, 330), (220, 120, 20), -1)
     cv2.circle(image, (550, 300), 30, (20, 160, 40), -1)
@@ -81,20 +83,20 @@ def _scene() -> NDArray[np.uint8]:
     return noisy
 
 
-def _milliseconds(call: Callable[[], object]) -> float:
+def _measure_milliseconds(call: Callable[[], object]) -> float:
     """Return the processor time of one call in ms, the median of many."""
     call()
     times = []
-    for _ in range(_PICTURES):
+    for _ in range(_IMAGE_COUNT):
         began = time.process_time()
         call()
         times.append(time.process_time() - began)
     return statistics.median(times) * 1000.0
 
 
-def _beside_the_simulation(model: str) -> Iterator[Row]:
-    with _launched(model) as process:
-        images, seconds, processor, share = asyncio.run(_counted(process.pid))
+def _measure_launch(model: str) -> Iterator[Row]:
+    with _start_launch(model) as process:
+        images, seconds, processor, share = asyncio.run(_count_detections(process.pid))
     about = f"{model}, beside the simulation:"
     yield Row(f"{about} detections a second", images / seconds, "/s", "30")
     yield Row(f"{about} pictures of the camera with detections", share, "%")
@@ -102,7 +104,7 @@ def _beside_the_simulation(model: str) -> Iterator[Row]:
 
 
 @contextmanager
-def _launched(model: str) -> Iterator[subprocess.Popen[bytes]]:
+def _start_launch(model: str) -> Iterator[subprocess.Popen[bytes]]:
     words = [LINKWRIGHT, "launch", "my_robot_vision", "detect.launch.py", f"model:={model}", "--no-open"]
     process = subprocess.Popen(
         words,
@@ -117,8 +119,8 @@ def _launched(model: str) -> Iterator[subprocess.Popen[bytes]]:
         process.wait()
 
 
-async def _counted(pid: int) -> tuple[int, float, float, float]:
-    """Return the count of detections, the seconds, the processor time, and the share of images with detections.
+async def _count_detections(pid: int) -> tuple[int, float, float, float]:
+    """Return the number of detections, the duration, the CPU time, and the share with detections.
 
     The number of images follows from their stamps, which are one period apart.
     """
@@ -129,27 +131,27 @@ async def _counted(pid: int) -> tuple[int, float, float, float]:
     try:
         node = graph.create_node("benchmark")
 
-        def came(message: Any) -> None:
+        def receive(message: Any) -> None:
             stamps.append(message.header.stamp.nanoseconds)
 
-        node.create_subscription("vision_msgs/msg/Detection2DArray", "/yolo/detections", came, 10)
-        deadline = time.monotonic() + _START_SECONDS
+        node.create_subscription("vision_msgs/msg/Detection2DArray", "/yolo/detections", receive, 10)
+        deadline = time.monotonic() + _START_TIMEOUT_S
         while len(stamps) < 30:
             if time.monotonic() > deadline:
                 raise RuntimeError("no detections came: start the launch file by hand and see what it says")
             await asyncio.sleep(0.1)
         stamps.clear()
-        before, began = _processor_seconds(pid), time.monotonic()
-        await asyncio.sleep(_SECONDS)
-        spent, seconds = _processor_seconds(pid) - before, time.monotonic() - began
+        start_processor_s, began = _get_processor_seconds(pid), time.monotonic()
+        await asyncio.sleep(_DURATION_S)
+        processor_s, seconds = _get_processor_seconds(pid) - start_processor_s, time.monotonic() - began
         gaps = np.diff(stamps)
         share = 100.0 * len(gaps) * float(gaps.min()) / float(gaps.sum())
-        return len(stamps), seconds, spent, share
+        return len(stamps), seconds, processor_s, share
     finally:
         await graph.close()
 
 
-def _processor_seconds(pid: int) -> float:
+def _get_processor_seconds(pid: int) -> float:
     """Return the user and system time of all threads of a process."""
     fields = Path(f"/proc/{pid}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

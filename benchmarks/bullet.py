@@ -13,15 +13,17 @@ from pathlib import Path
 
 from benchmarks import peers
 
-_STEP = 0.001
-_BESIDE = 1.5
+_STEP_S = 0.001
+_ROBOT_SPACING_M = 1.5
 """The distance between adjacent robots in meters."""
-_WHEELS = ("left_wheel_joint", "right_wheel_joint")
-_TORQUE = 5.0
+_WHEEL_JOINTS = ("left_wheel_joint", "right_wheel_joint")
+_TORQUE_NM = 5.0
 
 
 class BulletWorld:
-    """A plane with robots at rest, and boxes of 0.25 m and 1 kg; bodies never sleep, by Bullet's default.
+    """A plane with robots at rest, and boxes of 0.25 m and 1 kg.
+
+    By Bullet's default, bodies never sleep.
 
     Args:
         urdf: the robot's description, with shapes only.
@@ -32,7 +34,7 @@ class BulletWorld:
     def __init__(self, bullet: types.ModuleType, urdf: str, robots: int, boxes: int) -> None:
         self._bullet = bullet
         self._client = bullet.connect(bullet.DIRECT)
-        bullet.setTimeStep(_STEP, self._client)
+        bullet.setTimeStep(_STEP_S, self._client)
         bullet.setGravity(0, 0, -9.81, self._client)
         plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=self._client)
         bullet.createMultiBody(0, plane, physicsClientId=self._client)
@@ -49,10 +51,12 @@ class BulletWorld:
     def _add_robot(self, path: Path, number: int) -> None:
         bullet, client = self._bullet, self._client
         row, column = divmod(number, 10)
-        robot = bullet.loadURDF(str(path), [row * _BESIDE, column * _BESIDE, 0.12], physicsClientId=client)
+        robot = bullet.loadURDF(
+            str(path), [row * _ROBOT_SPACING_M, column * _ROBOT_SPACING_M, 0.12], physicsClientId=client
+        )
         for joint in range(bullet.getNumJoints(robot, client)):
             name = bullet.getJointInfo(robot, joint, client)[1].decode()
-            force = _TORQUE if name in _WHEELS else 0.0
+            force = _TORQUE_NM if name in _WHEEL_JOINTS else 0.0
             bullet.setJointMotorControl2(
                 robot, joint, bullet.VELOCITY_CONTROL, targetVelocity=0, force=force, physicsClientId=client
             )
@@ -67,18 +71,18 @@ class BulletWorld:
         self._bullet.disconnect(self._client)
 
 
-def bullet_world(urdf: str, robots: int, boxes: int) -> BulletWorld | None:
+def make_bullet_world(urdf: str, robots: int, boxes: int) -> BulletWorld | None:
     """Return a world in Bullet, or None if pybullet is not installed."""
-    with _silence():
-        bullet = peers.load("pybullet")
+    with _suppress_output():
+        bullet = peers.load_module("pybullet")
         return None if bullet is None else BulletWorld(bullet, urdf, robots, boxes)
 
 
 @contextmanager
-def _silence() -> Iterator[None]:
+def _suppress_output() -> Iterator[None]:
     """Suppress Bullet's messages about links without mass, which bypass Python's streams."""
     sys.stdout.flush()
-    kept = [os.dup(number) for number in (1, 2)]
+    saved_descriptors = [os.dup(number) for number in (1, 2)]
     with Path(os.devnull).open("w") as nothing:
         for number in (1, 2):
             os.dup2(nothing.fileno(), number)
@@ -86,6 +90,6 @@ def _silence() -> Iterator[None]:
         yield
     finally:
         ctypes.CDLL(None).fflush(None)
-        for number, before in zip((1, 2), kept, strict=True):
-            os.dup2(before, number)
-            os.close(before)
+        for number, saved_descriptor in zip((1, 2), saved_descriptors, strict=True):
+            os.dup2(saved_descriptor, number)
+            os.close(saved_descriptor)

@@ -1,7 +1,9 @@
-"""What a viewer is measured with that shows data: ``python -m benchmarks.data_scenes NAME`` publishes and shows it.
+"""Scenes with one display of data, with which viewers are measured.
 
-The program prints the page's address as `linkwright` does, and ends with Ctrl-C. The messages are made before, so that
-what the process costs is what sending them through the viewer costs.
+Usage: ``python -m benchmarks.data_scenes NAME``, which publishes and shows a scene.
+
+The program prints the page's address as `linkwright` does, and ends with Ctrl-C. The messages are created in advance,
+so the cost of the process is the cost of sending them through the viewer.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from benchmarks.robots import tree_robot
+from benchmarks.robots import make_tree_robot
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import DESCRIPTION_QOS, TF_QOS, Graph
 from linkwright.messages import String, TFMessage, TransformBatch, get_message
@@ -26,8 +28,8 @@ from linkwright.viewer import Viewer
 
 TOPIC = "/data"
 FRAME = "link_0"
-KINDS = 8
-"""Different messages that are sent in turns, so that each shows something new."""
+MESSAGE_COUNT = 8
+"""The number of different messages that are sent in turn, so that each shows something new."""
 
 _FILE = """\
 Visualization Manager:
@@ -71,22 +73,22 @@ class Scene:
     frame_rate: float = 30.0
 
     @property
-    def config(self) -> RvizConfig:
+    def make_config(self) -> RvizConfig:
         """Return the .rviz file."""
-        others = _ROBOT if self.links else ""
-        return RvizConfig.parse(_FILE.format(cls=self.display, topic=TOPIC, others=others, frame=FRAME))
+        robot_display = _ROBOT if self.links else ""
+        return RvizConfig.parse(_FILE.format(cls=self.display, topic=TOPIC, robot_display=robot_display, frame=FRAME))
 
 
-def clouds(points: int = 100_000) -> list[Any]:
+def make_clouds(points: int = 100_000) -> list[Any]:
     """Return clouds like a lidar's: points of a wavy floor, each with an intensity."""
     chance = np.random.default_rng(1)
     messages = []
-    for turn in range(KINDS):
+    for turn in range(MESSAGE_COUNT):
         array = np.zeros(points, dtype=[("x", "f4"), ("y", "f4"), ("z", "f4"), ("intensity", "f4")])
         array["x"], array["y"] = chance.uniform(-5, 5, points), chance.uniform(-5, 5, points)
         array["z"] = 0.3 * np.sin(array["x"] + turn) * np.cos(array["y"])
         array["intensity"] = array["z"]
-        message = _stamped("sensor_msgs/msg/PointCloud2", height=1, width=points, point_step=16, is_dense=True)
+        message = _make_message("sensor_msgs/msg/PointCloud2", height=1, width=points, point_step=16, is_dense=True)
         field = get_message("sensor_msgs/msg/PointField")
         message.fields = [
             field(name=name, offset=4 * at, datatype=field.FLOAT32, count=1)
@@ -97,11 +99,11 @@ def clouds(points: int = 100_000) -> list[Any]:
     return messages
 
 
-def markers(count: int = 1000) -> list[Any]:
+def make_markers(count: int = 1000) -> list[Any]:
     """Return arrays of moving cubes."""
     marker, color = get_message("visualization_msgs/msg/Marker"), get_message("std_msgs/msg/ColorRGBA")
     messages = []
-    for turn in range(KINDS):
+    for turn in range(MESSAGE_COUNT):
         array = get_message("visualization_msgs/msg/MarkerArray")()
         for number in range(count):
             cube = marker(ns="bench", id=number, type=marker.CUBE, color=color(r=1.0, g=number / count, b=0.2, a=1.0))
@@ -115,26 +117,26 @@ def markers(count: int = 1000) -> list[Any]:
     return messages
 
 
-def images(width: int = 640, height: int = 480) -> list[Any]:
+def make_images(width: int = 640, height: int = 480) -> list[Any]:
     """Return images of a camera that pans over a textured wall."""
     chance = np.random.default_rng(2)
     rough = chance.uniform(0, 255, (height // 8, width // 8, 3))
     wall = np.kron(rough, np.ones((8, 8, 1))) + chance.normal(0, 6, (height, width, 3))
     pixels = np.clip(wall, 0, 255).astype(np.uint8)
     messages = []
-    for turn in range(KINDS):
-        message = _stamped("sensor_msgs/msg/Image", width=width, height=height, encoding="rgb8", step=3 * width)
+    for turn in range(MESSAGE_COUNT):
+        message = _make_message("sensor_msgs/msg/Image", width=width, height=height, encoding="rgb8", step=3 * width)
         message.data = np.roll(pixels, 8 * turn, axis=1).tobytes()
         messages.append(message)
     return messages
 
 
-def scans(beams: int = 720) -> list[Any]:
+def make_scans(beams: int = 720) -> list[Any]:
     """Return scans of a slightly irregular round room."""
     angles = np.linspace(-np.pi, np.pi, beams, endpoint=False)
     messages = []
-    for turn in range(KINDS):
-        message = _stamped("sensor_msgs/msg/LaserScan", angle_min=-np.pi, angle_max=np.pi, range_max=30.0)
+    for turn in range(MESSAGE_COUNT):
+        message = _make_message("sensor_msgs/msg/LaserScan", angle_min=-np.pi, angle_max=np.pi, range_max=30.0)
         message.angle_increment = 2 * np.pi / beams
         message.ranges = (4 + np.sin(3 * angles + 0.2 * turn)).astype(np.float32).tolist()
         messages.append(message)
@@ -142,20 +144,20 @@ def scans(beams: int = 720) -> list[Any]:
 
 
 SCENES = {
-    "points": Scene("PointCloud2", clouds, rate=10),
-    "markers": Scene("MarkerArray", markers, rate=10),
-    "image": Scene("Image", images, rate=30),
-    "scan": Scene("LaserScan", scans, rate=10, links=500),
+    "points": Scene("PointCloud2", make_clouds, rate=10),
+    "markers": Scene("MarkerArray", make_markers, rate=10),
+    "image": Scene("Image", make_images, rate=30),
+    "scan": Scene("LaserScan", make_scans, rate=10, links=500),
 }
 
 
-def _stamped(name: str, **values: Any) -> Any:
+def _make_message(name: str, **values: Any) -> Any:
     message = get_message(name)(**values)
     message.header.frame_id = FRAME
     return message
 
 
-class Frames:
+class FramePublisher:
     """Publishes a tree of moving frames, all in one message."""
 
     def __init__(self, graph: Graph, links: int) -> None:
@@ -165,14 +167,14 @@ class Frames:
         self._poses = np.tile([0.1, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0], (links - 1, 1))
 
     def publish(self, turn: int) -> None:
-        """Publish where they are in a turn."""
+        """Publish the poses of the frames in a turn."""
         poses = self._poses.copy()
         poses[:, 2] = 0.01 * turn
         self._tf.publish(TFMessage(batch=TransformBatch(self._parents, self._children, time.time_ns(), poses)))
 
 
-async def at_rate(rate: float, act: Callable[[int], object], seconds: float = float("inf")) -> None:
-    """Call with 0, 1, 2, ... so often a second."""
+async def call_at_rate(rate: float, act: Callable[[int], object], seconds: float = float("inf")) -> None:
+    """Call a function with 0, 1, 2, ... at a rate per second."""
     start, turn = time.perf_counter(), 0
     while turn < seconds * rate:
         act(turn)
@@ -183,17 +185,17 @@ async def at_rate(rate: float, act: Callable[[int], object], seconds: float = fl
 async def show(scene: Scene) -> None:
     """Publish and show until Ctrl-C."""
     graph, library = Graph(on_log=lambda _: None), DescriptionLibrary()
-    viewer = Viewer(graph, library=library, finder=PackageFinder(), config=scene.config, port=0)
+    viewer = Viewer(graph, library=library, finder=PackageFinder(), config=scene.make_config, port=0)
     await viewer.start()
     node = graph.create_node("sensor")
     messages = scene.messages()
     publisher = node.create_publisher(type(messages[0]), TOPIC, 10)
-    tasks = [at_rate(scene.rate, lambda turn: publisher.publish(messages[turn % len(messages)]))]
+    tasks = [call_at_rate(scene.rate, lambda turn: publisher.publish(messages[turn % len(messages)]))]
     if scene.links:
         node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(
-            String(data=tree_robot(scene.links))
+            String(data=make_tree_robot(scene.links))
         )
-        tasks.append(at_rate(scene.frame_rate, Frames(graph, scene.links).publish))
+        tasks.append(call_at_rate(scene.frame_rate, FramePublisher(graph, scene.links).publish))
     ended = asyncio.Event()
     asyncio.get_running_loop().add_signal_handler(signal.SIGINT, ended.set)
     running = [asyncio.ensure_future(task) for task in tasks]

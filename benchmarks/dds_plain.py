@@ -17,7 +17,7 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-from benchmarks.dds_sides import HEIGHT, JOINTS, TRANSFORMS, WIDTH, Result, paced, renew
+from benchmarks.dds_sides import HEIGHT, JOINT_COUNT, TRANSFORM_COUNT, WIDTH, Result, renew, send_paced
 from linkwright.wire.dds.settings import read_settings
 
 QOS = Qos(Policy.Reliability.Reliable(duration(milliseconds=100)), Policy.History.KeepAll)
@@ -106,61 +106,61 @@ class Image(IdlStruct):
     data: types.sequence[types.uint8]
 
 
-def message(kind: str) -> Any:
+def make_message(kind: str) -> Any:
     """Return a message with the same content as `dds_sides.ours`."""
     header = Header(Time(0, 0), "base_link")
     if kind == "joints":
-        names = [f"joint_{number}" for number in range(JOINTS)]
-        return JointState(header, names, [0.1] * JOINTS, [0.2] * JOINTS, [0.3] * JOINTS)
+        names = [f"joint_{number}" for number in range(JOINT_COUNT)]
+        return JointState(header, names, [0.1] * JOINT_COUNT, [0.2] * JOINT_COUNT, [0.3] * JOINT_COUNT)
     if kind in ("transforms", "objects"):
         transform = Transform(Vector3(0.0, 0.0, 0.0), Quaternion(0.0, 0.0, 0.0, 1.0))
         return TFMessage(
-            transforms=[TransformStamped(header, f"link_{number}", transform) for number in range(TRANSFORMS)]
+            transforms=[TransformStamped(header, f"link_{number}", transform) for number in range(TRANSFORM_COUNT)]
         )
     return Image(header, HEIGHT, WIDTH, "rgb8", 0, 3 * WIDTH, bytes(3 * WIDTH * HEIGHT))
 
 
 class _Side:
-    """A participant in the domain that ours would be in, with the same settings."""
+    """A participant in the same domain and with the same settings as Linkwright's."""
 
     def __init__(self, kind: str) -> None:
         number = int(os.environ["ROS_DOMAIN_ID"])
         self.domain = Domain(number, read_settings().configurations[0])
         self.participant = DomainParticipant(number)
-        self.topic = Topic(self.participant, f"plain_{kind}", type(message(kind)))
+        self.topic = Topic(self.participant, f"plain_{kind}", type(make_message(kind)))
 
 
 def send(kind: str, seconds: float, rate: float) -> Result:
-    """Write for a time."""
+    """Write samples at a rate for some seconds."""
     side = _Side(kind)
     writer = DataWriter(side.participant, side.topic, QOS)
     while not writer.get_matched_subscriptions():
         time.sleep(0.01)
-    sample = message(kind)
+    sample = make_message(kind)
     numbers = itertools.count()
 
     def write() -> None:
         renew(sample, next(numbers))
         writer.write(sample)
 
-    result = paced(write, seconds, rate)
+    result = send_paced(write, seconds, rate)
     time.sleep(1.0)
     return result
 
 
 def receive(kind: str, seconds: float, _rate: float) -> Result:
-    """Take samples until none are left."""
+    """Take samples until no more arrive."""
     side = _Side(kind)
     reader = DataReader(side.participant, side.topic, QOS)
     count, first, last, cpu = 0, 0.0, 0.0, 0.0
     limit = time.monotonic() + seconds + 20
     while time.monotonic() < limit and not (count and time.perf_counter() - last > 1.0):
-        taken = sum(1 for sample in reader.take(256) if isinstance(sample, IdlStruct))
-        if taken:
+        sample_count = sum(1 for sample in reader.take(256) if isinstance(sample, IdlStruct))
+        if sample_count:
             last = time.perf_counter()
             if not count:
                 first, cpu = last, time.process_time()
-            count += taken
+            count += sample_count
         else:
             time.sleep(0.001)
     return Result(count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9))

@@ -1,10 +1,12 @@
-"""The two processes of a measurement over DDS or Zenoh: one sends, one receives; each prints what it found as JSON.
+"""The sending and the receiving process of a measurement over DDS or Zenoh.
 
-``python -m benchmarks.dds_sides send|receive ours|plain|zenoh KIND SECONDS RATE``; a rate of 0 is as fast as it goes.
-Kinds are `joints`, `transforms` (received as arrays, as a tf buffer reads them), `objects` (the same received as Python
-objects) and `images`. `ours` goes over what RMW_IMPLEMENTATION says; `plain` stands for `cyclonedds` alone with its own
-IdlStructs, `zenoh` for zenoh-ros2-sdk. Each message is another one than the last: its stamp and a position change. From
-the stamp the receiver tells how old it is.
+Each process prints its result as JSON.
+
+Usage: ``python -m benchmarks.dds_sides send|receive ours|plain|zenoh KIND SECONDS RATE``; a rate of 0 means as fast as
+possible. Kinds are `joints`, `transforms` (received as arrays, as by a tf buffer), `objects` (transforms received as
+Python objects) and `images`. `ours` uses the transport of RMW_IMPLEMENTATION, `plain` is `cyclonedds` alone with its
+own IdlStructs, and `zenoh` is zenoh-ros2-sdk. Each message differs from the previous one in its stamp and a position.
+The receiver computes the age of a message from its stamp.
 """
 
 from __future__ import annotations
@@ -26,8 +28,8 @@ from linkwright.graph.qos.profile import HistoryPolicy, QoSProfile
 from linkwright.messages import get_message
 from linkwright.wire.joining import join
 
-JOINTS = 12
-TRANSFORMS = 100
+JOINT_COUNT = 12
+TRANSFORM_COUNT = 100
 WIDTH, HEIGHT = 640, 480
 LOSSLESS = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 TOPIC = "/measured"
@@ -50,17 +52,17 @@ class Result:
     latency: float = 0.0
 
 
-def ours(kind: str) -> Any:
+def make_message(kind: str) -> Any:
     """Return a message of a kind as an object of Linkwright."""
     if kind == "joints":
         message = get_message("sensor_msgs/msg/JointState")()
-        message.name = [f"joint_{number}" for number in range(JOINTS)]
-        message.position = [0.1] * JOINTS
-        message.velocity = [0.2] * JOINTS
-        message.effort = [0.3] * JOINTS
+        message.name = [f"joint_{number}" for number in range(JOINT_COUNT)]
+        message.position = [0.1] * JOINT_COUNT
+        message.velocity = [0.2] * JOINT_COUNT
+        message.effort = [0.3] * JOINT_COUNT
     elif kind in ("transforms", "objects"):
         message = get_message("tf2_msgs/msg/TFMessage")()
-        for number in range(TRANSFORMS):
+        for number in range(TRANSFORM_COUNT):
             transform = get_message("geometry_msgs/msg/TransformStamped")()
             transform.header.frame_id = "base_link"
             transform.child_frame_id = f"link_{number}"
@@ -74,28 +76,28 @@ def ours(kind: str) -> Any:
 
 def renew(message: Any, count: int) -> None:
     """Change the stamp and a value of a message of any library."""
-    stamp = _stamp(message)
+    stamp = _get_stamp(message)
     stamp.sec, stamp.nanosec = divmod(time.time_ns(), 1_000_000_000)
     if hasattr(message, "position"):
         message.position[0] = float(count)
 
 
-def age(message: Any) -> float:
+def get_age(message: Any) -> float:
     """Return the time since a message was renewed, in seconds."""
-    stamp = _stamp(message)
+    stamp = _get_stamp(message)
     return float(time.time() - stamp.sec - 1e-9 * stamp.nanosec)
 
 
-def median_age(ages: list[float]) -> float:
+def compute_median_age(ages: list[float]) -> float:
     """Return the median of ages, or 0 if there are none."""
     return statistics.median(ages) if ages else 0.0
 
 
-def _stamp(message: Any) -> Any:
+def _get_stamp(message: Any) -> Any:
     return (message.transforms[0].header if hasattr(message, "transforms") else message.header).stamp
 
 
-def paced(send: Callable[[], object], seconds: float, rate: float) -> Result:
+def send_paced(send: Callable[[], object], seconds: float, rate: float) -> Result:
     """Send at a rate for a number of seconds."""
     count, begin, cpu = 0, time.perf_counter(), time.process_time()
     while time.perf_counter() - begin < seconds:
@@ -110,7 +112,7 @@ def paced(send: Callable[[], object], seconds: float, rate: float) -> Result:
 def send_ours(kind: str, seconds: float, rate: float) -> Result:
     """Publish through a graph."""
     graph = Graph(threads=True)
-    message = ours(kind)
+    message = make_message(kind)
     publisher = graph.create_node("sender").create_publisher(type(message), TOPIC, LOSSLESS)
     transport = join(graph)
     assert transport is not None
@@ -122,7 +124,7 @@ def send_ours(kind: str, seconds: float, rate: float) -> Result:
         renew(message, next(numbers))
         publisher.publish(message)
 
-    result = paced(send, seconds, rate)
+    result = send_paced(send, seconds, rate)
     graph.close_threadsafe()
     return result
 
@@ -130,14 +132,14 @@ def send_ours(kind: str, seconds: float, rate: float) -> Result:
 async def receive_ours(kind: str, seconds: float) -> Result:
     """Receive as the launcher does, in an event loop; each message is read as an object."""
     graph = Graph()
-    message_class = type(ours(kind))
+    message_class = type(make_message(kind))
     ages: list[float] = []
     count, first, last, cpu = 0, 0.0, 0.0, 0.0
 
     def received(message: Any) -> None:
         nonlocal count, first, last, cpu
         if kind != "transforms":  # its objects are never created
-            ages.append(age(message))
+            ages.append(get_age(message))
         last = time.perf_counter()
         if not count:
             first, cpu = last, time.process_time()
@@ -146,19 +148,21 @@ async def receive_ours(kind: str, seconds: float) -> Result:
     graph.create_node("receiver").create_subscription(message_class, TOPIC, received, LOSSLESS)
     join(graph)
     await _until_quiet(lambda: count, seconds)
-    result = Result(count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9), median_age(ages))
+    result = Result(
+        count, last - first, (time.process_time() - cpu) / max(last - first, 1e-9), compute_median_age(ages)
+    )
     await graph.close()
     return result
 
 
 async def _until_quiet(count: Callable[[], int], seconds: float) -> None:
-    """Wait until messages have arrived for a time and then stop, or until none arrive for too long."""
-    limit, seen = time.monotonic() + seconds + 20, 0
+    """Wait until messages have arrived and then stopped, or until none arrive for too long."""
+    limit, last_count = time.monotonic() + seconds + 20, 0
     while time.monotonic() < limit:
         await asyncio.sleep(0.7)
-        if count() and count() == seen:
+        if count() and count() == last_count:
             return
-        seen = count()
+        last_count = count()
 
 
 def main() -> None:

@@ -1,8 +1,11 @@
-"""What a robot more costs on Zenoh: ``python -m benchmarks.fleet [ROBOTS ...]``, 50 and 100 when left out.
+"""Measure what each additional robot costs on Zenoh.
 
-Each robot is a graph with a session of its own, twenty-five to a process, all of them clients of one router: it
-publishes 5 transforms at 20 Hz, odometry at 20 Hz and a scan of 360 ranges at 10 Hz. One more session listens to all
-robots, as bytes, and counts. Processor time and memory are those of all processes, the router's by itself too.
+Usage: ``python -m benchmarks.fleet [ROBOTS ...]``; by default with 50 and 100 robots.
+
+Each robot is a graph with its own session, a client of one router; twenty-five robots share a process. A robot
+publishes 5 transforms at 20 Hz, odometry at 20 Hz and a scan of 360 ranges at 10 Hz. One more session receives the
+messages of all robots as bytes and counts them. Processor time and memory are those of all processes, and those of the
+router alone.
 """
 
 from __future__ import annotations
@@ -25,12 +28,12 @@ from linkwright.messages import get_message
 from linkwright.wire.zenoh import join
 
 DOMAIN = "68"
-A_PROCESS = 25
-SECONDS = 10.0
-TRANSFORMS = 5
-RANGES = 360
-TICK = 0.05
-SAMPLE = 4.0
+ROBOTS_PER_PROCESS = 25
+DURATION_S = 10.0
+TRANSFORM_COUNT = 5
+RANGE_COUNT = 360
+TICK_S = 0.05
+SAMPLE_S = 4.0
 TYPES = {"tf": "tf2_msgs/msg/TFMessage", "odom": "nav_msgs/msg/Odometry", "scan": "sensor_msgs/msg/LaserScan"}
 
 
@@ -44,9 +47,9 @@ async def drive(first: int, count: int) -> None:
         node = graph.create_node("robot", namespace=f"/robot{number}", start_parameter_services=False)
         publishers.append(
             [
-                (node.create_publisher(tf, "tf", 100), tf(transforms=[transform() for _ in range(TRANSFORMS)]), 1),
+                (node.create_publisher(tf, "tf", 100), tf(transforms=[transform() for _ in range(TRANSFORM_COUNT)]), 1),
                 (node.create_publisher(odometry, "odom", 10), odometry(), 1),
-                (node.create_publisher(scan, "scan", 10), scan(ranges=[1.0] * RANGES), 2),
+                (node.create_publisher(scan, "scan", 10), scan(ranges=[1.0] * RANGE_COUNT), 2),
             ]
         )
         transport = join(graph)
@@ -63,7 +66,7 @@ async def drive(first: int, count: int) -> None:
                     publisher.publish(message)
         if stop.done():
             break
-        await asyncio.sleep(max(0.0, TICK - (time.monotonic() - begin)))
+        await asyncio.sleep(max(0.0, TICK_S - (time.monotonic() - begin)))
     for graph in graphs:
         await graph.close()
 
@@ -86,9 +89,9 @@ async def listen(robots: int) -> None:
         await asyncio.sleep(0.2)
     print("ready", flush=True)
     await asyncio.to_thread(sys.stdin.readline)
-    before = dict(counts)
+    old_counts = dict(counts)
     await asyncio.to_thread(sys.stdin.readline)
-    heard = {topic: counts[topic] - before[topic] for topic in counts}
+    heard = {topic: counts[topic] - old_counts[topic] for topic in counts}
     print(json.dumps({"heard": heard, "nodes": len(node.get_node_names())}), flush=True)
     await graph.close()
 
@@ -98,9 +101,11 @@ def measure(robots: int) -> dict[str, float]:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         port = taken.getsockname()[1]
-    at = f'["tcp/127.0.0.1:{port}"]'
-    router_settings = f"listen/endpoints={at};connect/endpoints=[]"
-    session_settings = f'mode="client";connect/endpoints={at};listen/endpoints=[];scouting/multicast/enabled=false'
+    endpoints = f'["tcp/127.0.0.1:{port}"]'
+    router_settings = f"listen/endpoints={endpoints};connect/endpoints=[]"
+    session_settings = (
+        f'mode="client";connect/endpoints={endpoints};listen/endpoints=[];scouting/multicast/enabled=false'
+    )
     common = {**os.environ, "ROS_DOMAIN_ID": DOMAIN}
 
     def start(settings: str, *words: str) -> subprocess.Popen[str]:
@@ -118,8 +123,10 @@ def measure(robots: int) -> dict[str, float]:
         ending.callback(router.kill)
         time.sleep(3.0)
         parts = [
-            start(session_settings, "benchmarks.fleet", "drive", str(first), str(min(A_PROCESS, robots - first)))
-            for first in range(0, robots, A_PROCESS)
+            start(
+                session_settings, "benchmarks.fleet", "drive", str(first), str(min(ROBOTS_PER_PROCESS, robots - first))
+            )
+            for first in range(0, robots, ROBOTS_PER_PROCESS)
         ]
         listener = start(session_settings, "benchmarks.fleet", "listen", str(robots))
         begin = time.monotonic()
@@ -132,38 +139,41 @@ def measure(robots: int) -> dict[str, float]:
         discovery = settle(used)
         assert listener.stdin is not None
         print(file=listener.stdin, flush=True)
-        before = spent_by(used)
-        time.sleep(SECONDS)
-        spent = {pid: seconds - before[pid] for pid, seconds in spent_by(used).items()}
+        start_times = get_processor_times(used)
+        time.sleep(DURATION_S)
+        processor_times = {pid: seconds - start_times[pid] for pid, seconds in get_processor_times(used).items()}
         memory = {pid: process.memory_info().rss / 1e6 for pid, process in used.items()}
         heard = json.loads(listener.communicate("\n")[0])
     return {
         "robots": robots,
         "joined within, s": joined,
         "processor until all is discovered, s": discovery,
-        "processor of a robot, % of a core": 100 * (sum(spent.values()) - spent[router.pid]) / SECONDS / robots,
-        "router for a robot, % of a core": 100 * spent[router.pid] / SECONDS / robots,
+        "processor of a robot, % of a core": 100
+        * (sum(processor_times.values()) - processor_times[router.pid])
+        / DURATION_S
+        / robots,
+        "router for a robot, % of a core": 100 * processor_times[router.pid] / DURATION_S / robots,
         "memory of a robot, MB": (sum(memory.values()) - memory[router.pid]) / robots,
         "router for a robot, MB": memory[router.pid] / robots,
         "nodes seen": heard["nodes"],
-        **{f"{topic} a second of a robot": count / SECONDS / robots for topic, count in heard["heard"].items()},
+        **{f"{topic} a second of a robot": count / DURATION_S / robots for topic, count in heard["heard"].items()},
     }
 
 
-def spent_by(used: dict[int, psutil.Process]) -> dict[int, float]:
+def get_processor_times(used: dict[int, psutil.Process]) -> dict[int, float]:
     """Return the processor time of each process in seconds."""
     return {pid: sum(process.cpu_times()[:2]) for pid, process in used.items()}
 
 
 def settle(used: dict[int, psutil.Process]) -> float:
     """Wait until the traffic of discovery has settled, and return the traffic until then."""
-    before, last = sum(spent_by(used).values()), float("inf")
+    old_total, last_increase = sum(get_processor_times(used).values()), float("inf")
     while True:
-        time.sleep(SAMPLE)
-        total = sum(spent_by(used).values())
-        if total - before >= 0.8 * last:
-            return before
-        before, last = total, total - before
+        time.sleep(SAMPLE_S)
+        total = sum(get_processor_times(used).values())
+        if total - old_total >= 0.8 * last_increase:
+            return old_total
+        old_total, last_increase = total, total - old_total
 
 
 def main() -> None:

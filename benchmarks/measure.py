@@ -47,19 +47,19 @@ class Row:
 
     def cells(self) -> tuple[str, str, str, str]:
         """Return the quantity, our figure, the promised figure, and the peers with their ratios."""
-        others = [
-            f"{name} not measured" if value is None else f"{name} {value:.4g} {self.unit}{self._compared(value)}"
+        peers = [
+            f"{name} not measured" if value is None else f"{name} {value:.4g} {self.unit}{self._format_ratio(value)}"
             for name, value in self.peers.items()
         ]
         shown = f"{self.ours:.3g}" if abs(self.ours) < 1000 else f"{self.ours:.0f}"
-        return self.what, f"{shown} {self.unit}", self.target, ", ".join(others)
+        return self.what, f"{shown} {self.unit}", self.target, ", ".join(peers)
 
     def line(self) -> str:
         """Return the line for the terminal."""
-        what, ours, target, others = self.cells()
-        return f"{what:58} {ours:>12}   {f'(promised: {target})  ' if target else ''}{others}"
+        what, ours, target, peers = self.cells()
+        return f"{what:58} {ours:>12}   {f'(promised: {target})  ' if target else ''}{peers}"
 
-    def _compared(self, value: float) -> str:
+    def _format_ratio(self, value: float) -> str:
         return f" ({value / self.ours:.1f}x)" if self.ours else ""
 
 
@@ -69,7 +69,7 @@ def show(rows: Sequence[Measured]) -> None:
         print(row.line())
 
 
-def side_by_side(
+def measure_side_by_side(
     calls: Mapping[str, Callable[[], object] | None],
     rounds: int,
     repeat: int = 1,
@@ -97,8 +97,8 @@ def side_by_side(
     return {name: statistics.median(seconds) for name, seconds in times.items()}
 
 
-def commands(calls: Mapping[str, Sequence[str] | None], rounds: int, **environment: str) -> dict[str, float]:
-    """Return the median seconds of whole commands, each in a new process with compiled bytecode."""
+def measure_commands(calls: Mapping[str, Sequence[str] | None], rounds: int, **environment: str) -> dict[str, float]:
+    """Return the median seconds of commands, each in a new process with compiled bytecode."""
     known = {**os.environ, **environment}
     known.pop("PYTHONDONTWRITEBYTECODE", None)
 
@@ -107,20 +107,20 @@ def commands(calls: Mapping[str, Sequence[str] | None], rounds: int, **environme
             words, check=True, env=known, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
         )
 
-    return side_by_side({name: start(words) if words else None for name, words in calls.items()}, rounds)
+    return measure_side_by_side({name: start(words) if words else None for name, words in calls.items()}, rounds)
 
 
-_PEAK = """
+_PEAK_CODE = """
 import resource, subprocess, sys
 subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 """
 
 
-def peak_memory(words: Sequence[str], **environment: str) -> float:
+def measure_peak_memory(words: Sequence[str], **environment: str) -> float:
     """Return the peak memory of a command in MB."""
     known = {**os.environ, **environment}
     result = subprocess.run(
-        [sys.executable, "-c", _PEAK, *words], check=True, env=known, capture_output=True, text=True
+        [sys.executable, "-c", _PEAK_CODE, *words], check=True, env=known, capture_output=True, text=True
     )
     return int(result.stdout) / (1000 if sys.platform != "darwin" else 1_000_000)

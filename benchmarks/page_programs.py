@@ -1,4 +1,4 @@
-"""Programs whose pages are measured: how they are started, what they cost, and browsers that open them."""
+"""Programs whose pages are measured, their processor load, and browsers that open them."""
 
 from __future__ import annotations
 
@@ -17,40 +17,45 @@ from contextlib import contextmanager
 import psutil
 from playwright.sync_api import Browser, Page, sync_playwright
 
-from benchmarks.plain_browser import PlainBrowser, PlainPage, running
+from benchmarks.plain_browser import PlainBrowser, PlainPage, run_browser
 
-FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
-SIZE = {"width": 1280, "height": 800}
-READY = "window.linkwright?.ready === true"
+CHROMIUM_FLAGS = (
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+)
+PAGE_SIZE = {"width": 1280, "height": 800}
+READY_CONDITION = "window.linkwright?.ready === true"
 
 
 @contextmanager
-def started(*words: str) -> Iterator[tuple[subprocess.Popen[str], int, float]]:
-    """Start a `linkwright` process on a port of its own; return the process, the port, and the start time."""
-    port = free_port()
+def start_linkwright(*words: str) -> Iterator[tuple[subprocess.Popen[str], int, float]]:
+    """Start a `linkwright` process on a free port, and yield process, port and start time."""
+    port = find_free_port()
     begin = time.perf_counter()
-    with _running("-m", "linkwright", *words, "--no-open", "--port", str(port)) as process:
+    with _run_program("-m", "linkwright", *words, "--no-open", "--port", str(port)) as process:
         yield process, port, begin
 
 
 @contextmanager
-def showing(scene: str) -> Iterator[subprocess.Popen[str]]:
+def show_scene(scene: str) -> Iterator[subprocess.Popen[str]]:
     """Start a process that publishes and shows one of `data_scenes.SCENES`."""
-    with _running("-m", "benchmarks.data_scenes", scene) as process:
+    with _run_program("-m", "benchmarks.data_scenes", scene) as process:
         yield process
 
 
 @contextmanager
-def shown_by_viser(scene: str) -> Iterator[subprocess.Popen[str]]:
+def show_with_viser(scene: str) -> Iterator[subprocess.Popen[str]]:
     """Start a process in which viser shows one of `viser_scenes`."""
-    with _running("-m", "benchmarks.viser_scenes", scene) as process:
+    with _run_program("-m", "benchmarks.viser_scenes", scene) as process:
         yield process
 
 
 @contextmanager
-def _running(*words: str) -> Iterator[subprocess.Popen[str]]:
+def _run_program(*words: str) -> Iterator[subprocess.Popen[str]]:
     environment = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
-    environment["LINKWRIGHT_DDS"] = "0"  # robots of others would be measured too
+    environment["LINKWRIGHT_DDS"] = "0"  # nodes of other programs would be measured as well
     process = subprocess.Popen(
         [sys.executable, *words], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment, text=True
     )
@@ -61,14 +66,14 @@ def _running(*words: str) -> Iterator[subprocess.Popen[str]]:
         process.communicate(timeout=20)
 
 
-def free_port() -> int:
+def find_free_port() -> int:
     """Return a free port."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
 
 
-def viewer_url(process: subprocess.Popen[str]) -> str:
+def read_viewer_url(process: subprocess.Popen[str]) -> str:
     """Return the address that the program prints."""
     assert process.stdout is not None
     for line in process.stdout:
@@ -77,8 +82,8 @@ def viewer_url(process: subprocess.Popen[str]) -> str:
     raise SystemExit("the program ended without printing its address")
 
 
-def answered(port: int, begin: float) -> float:
-    """Return the seconds from `begin` until the server answers any request, also with a rejection."""
+def wait_for_response(port: int, begin: float) -> float:
+    """Return the seconds from `begin` until the server responds, even with a rejection."""
     while True:
         try:
             urllib.request.urlopen(f"http://127.0.0.1:{port}/", timeout=5).close()
@@ -90,7 +95,7 @@ def answered(port: int, begin: float) -> float:
         return time.perf_counter() - begin
 
 
-class Core:
+class CoreShare:
     """A measurement of the share of a core that a process uses after its creation, in percent."""
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
@@ -107,7 +112,7 @@ class Core:
         return times.user + times.system
 
 
-def _program() -> str:
+def _find_chromium() -> str:
     path = os.environ.get("LINKWRIGHT_CHROMIUM") or shutil.which("chromium")
     if path is None:
         raise SystemExit("no Chromium: set LINKWRIGHT_CHROMIUM or put one on the PATH")
@@ -115,33 +120,35 @@ def _program() -> str:
 
 
 @contextmanager
-def chromium() -> Iterator[Browser]:
+def run_chromium() -> Iterator[Browser]:
     """Run a Chromium that draws in software, driven by Playwright."""
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=_program(), args=list(FLAGS))
+        browser = playwright.chromium.launch(executable_path=_find_chromium(), args=list(CHROMIUM_FLAGS))
         yield browser
         browser.close()
 
 
 @contextmanager
-def plain_chromium() -> Iterator[PlainBrowser]:
+def run_plain_chromium() -> Iterator[PlainBrowser]:
     """Run the same browser without any listeners."""
-    with running(_program(), FLAGS) as browser:
+    with run_browser(_find_chromium(), CHROMIUM_FLAGS) as browser:
         yield browser
 
 
 @contextmanager
-def watched(browser: PlainBrowser, url: str, ready: str = READY, script: str = "") -> Iterator[PlainPage]:
+def open_plain_page(
+    browser: PlainBrowser, url: str, ready: str = READY_CONDITION, script: str = ""
+) -> Iterator[PlainPage]:
     """Open a program's page, and wait until it has drawn the robot, or another condition holds."""
-    with browser.opened(url, ready, **SIZE, script=script) as page:
+    with browser.open_page(url, ready, **PAGE_SIZE, script=script) as page:
         yield page
 
 
 @contextmanager
-def opened(browser: Browser, url: str, ready: str = READY) -> Iterator[Page]:
+def open_page(browser: Browser, url: str, ready: str = READY_CONDITION) -> Iterator[Page]:
     """Open a program's page, and wait until it has drawn the robot, or another condition holds."""
-    # Conditions are evaluated as text, which the page's policy allows to nobody else.
-    context = browser.new_context(viewport=SIZE, bypass_csp=True, locale="en-US")  # type: ignore[arg-type]  # a dict
+    # Conditions are evaluated as text, which the page's security policy otherwise forbids.
+    context = browser.new_context(viewport=PAGE_SIZE, bypass_csp=True, locale="en-US")  # type: ignore[arg-type]  # a dict
     page = context.new_page()
     page.goto(url)
     page.wait_for_function(ready, timeout=60_000)

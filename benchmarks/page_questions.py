@@ -79,11 +79,11 @@ COUNT_FRAMES = """
   requestAnimationFrame(next);
 })();
 """
-"""For a page of another program, before its own scripts: counts the frames in which WebGL draws something."""
+"""A script for pages of other programs, run before their own: counts the frames in which WebGL draws."""
 
 
-def slider_latency(page: Page, moves: int) -> tuple[list[float], list[float]]:
-    """Return the times from a slider's input events to the new transform in the page, and to its frame, in ms."""
+def measure_slider_latency(page: Page, moves: int) -> tuple[list[float], list[float]]:
+    """Return the ms from a slider's input events to the new transform in the page, and to its frame."""
     known, drawn = [], []
     for number in range(moves):
         page.wait_for_timeout(37 + 13 * (number % 7))
@@ -94,8 +94,8 @@ def slider_latency(page: Page, moves: int) -> tuple[list[float], list[float]]:
     return known, drawn
 
 
-def save_latency(page: Page, model: Path, saves: int) -> list[float]:
-    """Return the milliseconds from the end of a file's writing to the changed frame in the page."""
+def measure_save_latency(page: Page, model: Path, saves: int) -> list[float]:
+    """Return the ms from the end of a file's writing to the changed frame in the page."""
     text = model.read_text(encoding="utf-8")
     times = []
     for number in range(saves):
@@ -108,8 +108,8 @@ def save_latency(page: Page, model: Path, saves: int) -> list[float]:
     return times
 
 
-def wheel_latency(page: PlainPage, turns: int) -> list[float]:
-    """Return the milliseconds from a mouse wheel event in the browser to the frame drawn after it."""
+def measure_wheel_latency(page: PlainPage, turns: int) -> list[float]:
+    """Return the ms from a mouse wheel event in the browser to the frame drawn after it."""
     page.evaluate(_WATCH_WHEEL)
     for number in range(turns):
         page.wheel(640, 400, 20 if number % 2 else -20)
@@ -118,32 +118,32 @@ def wheel_latency(page: PlainPage, turns: int) -> list[float]:
     return times
 
 
-def frames_drawn(page: Page | PlainPage) -> int:
+def count_frames(page: Page | PlainPage) -> int:
     """Return the number of frames that the page has drawn."""
     count: int = page.evaluate(_DRAWN)
     return count
 
 
-def frames_with_drawing(page: PlainPage) -> int:
+def count_drawing_frames(page: PlainPage) -> int:
     """Return the number of frames that a page with `COUNT_FRAMES` has drawn."""
     count: int = page.evaluate("() => window.framesWithDrawing")
     return count
 
 
-def images_shown(page: PlainPage) -> int:
+def count_images(page: PlainPage) -> int:
     """Return the number of images that the first display has shown, in a panel of its own."""
     count: int = page.evaluate("() => window.linkwright.displays[0].drawn.images")
     return count
 
 
-def rate_of(counted: Callable[[PlainPage], int], page: PlainPage, seconds: float) -> float:
+def measure_rate(counted: Callable[[PlainPage], int], page: PlainPage, seconds: float) -> float:
     """Return the increase of a counter per second."""
-    before, begin = counted(page), time.perf_counter()
+    old_count, begin = counted(page), time.perf_counter()
     time.sleep(seconds)
-    return (counted(page) - before) / (time.perf_counter() - begin)
+    return (counted(page) - old_count) / (time.perf_counter() - begin)
 
 
-def transform_age(pages: list[PlainPage], times: int) -> float:
+def measure_transform_age(pages: list[PlainPage], times: int) -> float:
     """Return the median age of the oldest transforms in pages, in milliseconds."""
     oldest: list[float] = []
     for number in range(times):
@@ -153,7 +153,7 @@ def transform_age(pages: list[PlainPage], times: int) -> float:
 
 
 def open_every_panel(page: Page) -> int:
-    """Open all panels that there are; how many had been closed."""
+    """Open all panels, and return the number of panels that were closed."""
     count = 0
     while True:
         page.get_by_role("button", name="Panels").click()
@@ -165,8 +165,8 @@ def open_every_panel(page: Page) -> int:
         count += 1
 
 
-def scripts_loaded(page: Page) -> float:
-    """KiB of scripts and styles that the page had fetched when it drew first."""
+def measure_scripts(page: Page) -> float:
+    """Return the KiB of scripts and styles that the page had fetched when it first drew."""
     size: float = page.evaluate(
         "() => performance.getEntriesByType('resource')"
         ".filter((each) => /[.](js|css)$/.test(new URL(each.name).pathname))"

@@ -1,7 +1,8 @@
-"""The programs that we are measured against: installed from PyPI into ``.build/peers``, imported from there.
+"""The peers: programs of PyPI that Linkwright is compared with.
 
-They are no dependencies of the project. ``python -m benchmarks.peers`` installs them, which takes some minutes; a peer
-that cannot be installed here is left out, and the measurements say so.
+They are installed into ``.build/peers`` and imported from there. Peers are not dependencies of the project. ``python -m
+benchmarks.peers`` installs them, which takes some minutes; a peer that cannot be installed is left out, which the
+measurements report.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from importlib import metadata
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parents[1] / ".build" / "peers"
-PEERS = {
+REQUIREMENTS = {
     "xacro": "xacro==2.1.1",
     "urdf_parser_py": "urdf-parser-py",
     "yourdfpy": "yourdfpy",
@@ -26,16 +27,16 @@ PEERS = {
     "viser": "viser==1.1.1",
     "trimesh": "trimesh",
 }
-"""Module -> what is installed for it."""
+"""The requirement that provides each module."""
 
 
 def install() -> list[str]:
-    """Install the peers that are not there yet; the modules that could not be."""
+    """Install missing peers, and return the modules that could not be installed."""
     if not (FOLDER / "pyvenv.cfg").is_file():
         venv.create(FOLDER, with_pip=True)
     missing = []
-    for module, package in PEERS.items():
-        if version(module) is not None:
+    for module, package in REQUIREMENTS.items():
+        if get_version(module) is not None:
             continue
         words = [str(FOLDER / "bin" / "python"), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
         if subprocess.run([*words, package], check=False, stderr=subprocess.DEVNULL).returncode != 0:
@@ -43,26 +44,27 @@ def install() -> list[str]:
     return missing
 
 
-def site_packages() -> Path:
+def get_site_packages() -> Path:
     """Return the folder of the peers."""
     return FOLDER / "lib" / f"python{sys.version_info.major}.{sys.version_info.minor}" / "site-packages"
 
 
-def version(module: str) -> str | None:
+def get_version(module: str) -> str | None:
     """Return the version of a peer, or None if it is not installed."""
-    name = PEERS[module].partition("==")[0]
-    distributions = list(metadata.distributions(name=name, path=[str(site_packages())]))
+    name = REQUIREMENTS[module].partition("==")[0]
+    distributions = list(metadata.distributions(name=name, path=[str(get_site_packages())]))
     return distributions[0].version if distributions else None
 
 
-def load(module: str, part: str | None = None) -> types.ModuleType | None:
-    """A peer, or one of its modules, imported into this process; None when it is not installed or does not import.
+def load_module(module: str, part: str | None = None) -> types.ModuleType | None:
+    """Import and return a peer or one of its modules.
 
+    Returns None if it is not installed or cannot be imported.
     What both need, such as numpy, is ours.
     """
-    if version(module) is None:
+    if get_version(module) is None:
         return None
-    for folder in (site_packages(), *site_packages().glob("cmeel.prefix/lib/python3*/site-packages")):
+    for folder in (get_site_packages(), *get_site_packages().glob("cmeel.prefix/lib/python3*/site-packages")):
         if str(folder) not in sys.path:
             sys.path.append(str(folder))
     try:
@@ -72,7 +74,7 @@ def load(module: str, part: str | None = None) -> types.ModuleType | None:
         return None
 
 
-def command(name: str) -> str | None:
+def find_command(name: str) -> str | None:
     """Return the path of a peer's command, or None if it is not installed."""
     path = FOLDER / "bin" / name
     return str(path) if path.is_file() else None
@@ -80,6 +82,6 @@ def command(name: str) -> str | None:
 
 if __name__ == "__main__":
     for absent in install():
-        print(f"{PEERS[absent]} cannot be installed here", file=sys.stderr)
-    for peer in PEERS:
-        print(f"{peer} {version(peer) or 'not installed'}")
+        print(f"{REQUIREMENTS[absent]} cannot be installed here", file=sys.stderr)
+    for peer in REQUIREMENTS:
+        print(f"{peer} {get_version(peer) or 'not installed'}")

@@ -1,9 +1,9 @@
-"""Pictures of 1 MB between nodes of Linkwright and of real ROS 2 on Fast DDS: how many come, and does a reader hang?
+"""Measure images of 1 MB between nodes of Linkwright and of real ROS 2 on Fast DDS.
 
-``python -m benchmarks.pictures``, after ``make .build/ros/.ready`` and ``make .build/ros-kilted/.ready ROS=kilted``;
-``--loops 3`` keeps as many cores busy beside it. Milliseconds are the processor's, for a picture. It measures what
-`docs/decisions/0095-large-messages-to-fast-dds.md` and `0104-large-messages-packet-by-packet.md` tell. Both sides of a
-pair run it, each with its own rclpy.
+The figures are the received images, and whether a reader hangs. ``python -m benchmarks.pictures``, after ``make
+.build/ros/.ready`` and ``make .build/ros-kilted/.ready ROS=kilted``; ``--loops 3`` keeps three further cores busy.
+Milliseconds are processor times per image. The background is in `docs/decisions/0095-large-messages-to-fast-dds.md` and
+`0104-large-messages-packet-by-packet.md`. Both sides of a pair run this program, each with its own rclpy.
 """
 
 from __future__ import annotations
@@ -19,10 +19,10 @@ import time
 from pathlib import Path
 from typing import Any
 
-SIZE = 1_000_000
-STARTING = 60.0
-HANGS_AFTER = 5.0
-"""Seconds without a picture, while they are published, after which a reader counts as hung."""
+IMAGE_BYTES = 1_000_000
+START_TIMEOUT_S = 60.0
+HANG_TIMEOUT_S = 5.0
+"""The seconds without an image, while images are published, after which a reader counts as hung."""
 
 PAIRS = [
     ("linkwright", "linkwright"),
@@ -34,7 +34,7 @@ PAIRS = [
 ]
 
 
-def profile(reliable: bool, depth: int) -> Any:
+def make_profile(reliable: bool, depth: int) -> Any:
     """Return the quality of service of both sides."""
     from rclpy.qos import QoSProfile, ReliabilityPolicy
 
@@ -50,43 +50,46 @@ def publish(reliable: bool, depth: int, rate: float, seconds: float) -> None:
 
     rclpy.init()
     node = rclpy.create_node("pictures")
-    publisher = node.create_publisher(Image, "/picture", profile(reliable, depth))
-    image = Image(height=1, width=SIZE, encoding="mono8", step=SIZE, data=bytes(SIZE))
-    until = time.monotonic() + STARTING
+    publisher = node.create_publisher(Image, "/picture", make_profile(reliable, depth))
+    image = Image(height=1, width=IMAGE_BYTES, encoding="mono8", step=IMAGE_BYTES, data=bytes(IMAGE_BYTES))
+    until = time.monotonic() + START_TIMEOUT_S
     while not publisher.get_subscription_count() and time.monotonic() < until:
         rclpy.spin_once(node, timeout_sec=0.1)
-    time.sleep(1.0)  # both sides have found each other by then
+    time.sleep(1.0)  # time for both sides to discover each other
     began, count, cpu = time.monotonic(), 0, time.process_time()
     while time.monotonic() < began + seconds:
         publisher.publish(image)
         count += 1
         while (left := began + count / rate - time.monotonic()) > 0:
             rclpy.spin_once(node, timeout_sec=left)
-    time.sleep(1.0)  # what was lost is sent again
+    time.sleep(1.0)  # lost images are sent again
     print(count, time.process_time() - cpu, flush=True)
     os._exit(0)
 
 
 def subscribe(reliable: bool, depth: int, counter: Path) -> None:
-    """Write the number of received images and the processor time to a file: a reader that hangs cannot reply."""
+    """Write the number of received images and the processor time to a file.
+
+    A reader that hangs could not reply.
+    """
     import rclpy
     from sensor_msgs.msg import Image
 
-    came, cpu = 0, 0.0
+    received_count, cpu = 0, 0.0
 
     def on_picture(_: Image) -> None:
-        nonlocal came, cpu
+        nonlocal received_count, cpu
         cpu = cpu or time.process_time()
-        came += 1
-        counter.write_text(f"{came} {time.process_time() - cpu}")
+        received_count += 1
+        counter.write_text(f"{received_count} {time.process_time() - cpu}")
 
     rclpy.init()
     node = rclpy.create_node("looking")
-    node.create_subscription(Image, "/picture", on_picture, profile(reliable, depth))
+    node.create_subscription(Image, "/picture", on_picture, make_profile(reliable, depth))
     rclpy.spin(node)
 
 
-def program(side: str, *words: str) -> subprocess.Popen[str]:
+def start_program(side: str, *words: str) -> subprocess.Popen[str]:
     """Start one side of a pair."""
     variables = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
     if side == "linkwright":
@@ -102,33 +105,33 @@ def program(side: str, *words: str) -> subprocess.Popen[str]:
 
 
 def measure(pair: tuple[str, str], reliable: bool, depth: int, rate: float, seconds: float) -> dict[str, Any]:
-    """Return the numbers of images sent and received, the time of each, and whether the reader hung."""
+    """Return the numbers of sent and received images, their cost, and whether the reader hung."""
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as ends:
         counter = Path(folder) / "came"
         counter.write_text("0 0")
         kind = "reliable" if reliable else "best-effort"
-        reader = program(pair[1], "subscribe", kind, str(max(depth, 5)), str(counter))
+        reader = start_program(pair[1], "subscribe", kind, str(max(depth, 5)), str(counter))
         ends.callback(reader.kill)
-        writer = program(pair[0], "publish", kind, str(depth), str(rate), str(seconds))
+        writer = start_program(pair[0], "publish", kind, str(depth), str(rate), str(seconds))
         ends.callback(writer.kill)
-        seen, since, hung = "0 0", time.monotonic(), False
+        last_received, since, hung = "0 0", time.monotonic(), False
         while writer.poll() is None:
-            time.sleep(0.2)  # a reader that hangs tells nobody: its file is looked at
-            came = counter.read_text() or seen
-            if came != seen:
-                seen, since = came, time.monotonic()
-            hung = hung or (seen != "0 0" and time.monotonic() - since > HANGS_AFTER)
+            time.sleep(0.2)  # a reader that hangs cannot report, so its file is polled
+            received = counter.read_text() or last_received
+            if received != last_received:
+                last_received, since = received, time.monotonic()
+            hung = hung or (last_received != "0 0" and time.monotonic() - since > HANG_TIMEOUT_S)
         sent, sending = ((writer.stdout.read() if writer.stdout else "") or "0 0").split()
-        came, receiving = counter.read_text().split()
+        received, receiving = counter.read_text().split()
     return {
         "pair": " to ".join(pair),
         "kind": kind,
         "depth": depth,
         "rate": rate,
         "sent": int(sent),
-        "came": int(came),
+        "came": int(received),
         "sender_ms": round(1e3 * float(sending) / max(int(sent), 1), 2),
-        "receiver_ms": round(1e3 * float(receiving) / max(int(came), 1), 2),
+        "receiver_ms": round(1e3 * float(receiving) / max(int(received), 1), 2),
         "hung": hung,
     }
 

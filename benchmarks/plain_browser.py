@@ -1,7 +1,7 @@
-"""A Chromium of which nothing is asked but the values of expressions, by the DevTools protocol.
+"""A Chromium that only evaluates expressions, through the DevTools protocol.
 
-Playwright has the browser tell it of every message of a WebSocket, with all its bytes, which for clouds of points cost
-as much as the page itself took. What is measured while data comes is measured in this one.
+With Playwright, the browser reports every WebSocket message with all its bytes, which for point clouds costs as much as
+the page itself. So pages that receive data are measured in this browser.
 """
 
 from __future__ import annotations
@@ -19,15 +19,15 @@ from typing import Any
 
 import aiohttp
 
-SECONDS = 60.0
-"""How long a page is waited for."""
+TIMEOUT_S = 60.0
+"""The timeout for pages, in seconds."""
 
 
 class PlainBrowser:
     """A running Chromium.
 
     Args:
-        address: of its own socket, ``ws://...``.
+        address: the address of the browser's DevTools socket, ``ws://...``.
     """
 
     def __init__(self, address: str) -> None:
@@ -35,8 +35,11 @@ class PlainBrowser:
         self._socket = Socket(address)
 
     @contextmanager
-    def opened(self, url: str, ready: str, width: int, height: int, script: str = "") -> Iterator[PlainPage]:
-        """Yield a page with storage of its own, once a condition holds; a script runs before those of the page."""
+    def open_page(self, url: str, ready: str, width: int, height: int, script: str = "") -> Iterator[PlainPage]:
+        """Yield a page with its own storage, once a condition holds.
+
+        `script` runs before the scripts of the page.
+        """
         context = self._socket.call("Target.createBrowserContext")["browserContextId"]
         target = self._socket.call("Target.createTarget", url="about:blank", browserContextId=context)["targetId"]
         with closing(PlainPage(Socket(self._pages + target))) as page:
@@ -50,13 +53,16 @@ class PlainBrowser:
 
 
 class PlainPage:
-    """A page of a `PlainBrowser`, with those methods of Playwright's that measuring needs."""
+    """A page of a `PlainBrowser`, with the methods of Playwright that measurements need."""
 
     def __init__(self, socket: Socket) -> None:
         self._socket = socket
 
     def open(self, url: str, ready: str, width: int, height: int, script: str = "") -> None:
-        """Go there, at a size in pixels, and wait for a condition; before the page's own scripts run another."""
+        """Open an address at a size in pixels, and wait for a condition.
+
+        `script` runs before the scripts of the page.
+        """
         if script:
             self._socket.call("Page.enable")
             self._socket.call("Page.addScriptToEvaluateOnNewDocument", source=script)
@@ -65,30 +71,30 @@ class PlainPage:
         )
         self._socket.call("Emulation.setFocusEmulationEnabled", enabled=True)
         self._socket.call("Page.navigate", url=url)
-        self.until(ready)
+        self.wait_until(ready)
 
-    def until(self, condition: str) -> Any:
-        """Wait until an expression is true, or something that counts as true; returns that."""
-        end = time.monotonic() + SECONDS
+    def wait_until(self, condition: str) -> Any:
+        """Wait until an expression is truthy, and return its value."""
+        end = time.monotonic() + TIMEOUT_S
         while not (value := self.evaluate(f"() => {condition}")):
             if time.monotonic() > end:
-                raise SystemExit(f"not within {SECONDS:g} s: {condition}")
+                raise SystemExit(f"not within {TIMEOUT_S:g} s: {condition}")
             time.sleep(0.05)
         return value
 
     def evaluate(self, function: str) -> Any:
         """Return the result of a JavaScript function without arguments."""
-        told = self._socket.call("Runtime.evaluate", expression=f"({function})()", returnByValue=True)
-        if "exceptionDetails" in told:
-            raise RuntimeError(told["exceptionDetails"]["text"])
-        return told["result"].get("value")
+        result = self._socket.call("Runtime.evaluate", expression=f"({function})()", returnByValue=True)
+        if "exceptionDetails" in result:
+            raise RuntimeError(result["exceptionDetails"]["text"])
+        return result["result"].get("value")
 
     def wheel(self, x: float, y: float, distance: float) -> None:
-        """Turn the mouse wheel over a place of the page."""
+        """Turn the mouse wheel at a position of the page."""
         self._socket.call("Input.dispatchMouseEvent", type="mouseWheel", x=x, y=y, deltaX=0, deltaY=distance)
 
     def click(self, x: float, y: float) -> None:
-        """Click on a place of the page."""
+        """Click at a position of the page."""
         for kind in ("mousePressed", "mouseReleased"):
             self._socket.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
@@ -98,7 +104,7 @@ class PlainPage:
 
 
 class Socket:
-    """Commands of the DevTools protocol, each with its answer."""
+    """A socket of the DevTools protocol, which sends commands and returns their results."""
 
     def __init__(self, address: str) -> None:
         self._number = 0
@@ -107,10 +113,10 @@ class Socket:
 
     def call(self, method: str, **parameters: Any) -> dict[str, Any]:
         """Return the result of a command."""
-        return self._loop.run_until_complete(asyncio.wait_for(self._call(method, parameters), SECONDS))
+        return self._loop.run_until_complete(asyncio.wait_for(self._call(method, parameters), TIMEOUT_S))
 
     def close(self) -> None:
-        """Close it."""
+        """Close the socket."""
         self._loop.run_until_complete(self._session.close())
         self._loop.close()
 
@@ -132,13 +138,13 @@ class Socket:
 
 
 @contextmanager
-def running(program: str, flags: tuple[str, ...]) -> Iterator[PlainBrowser]:
+def run_browser(program: str, flags: tuple[str, ...]) -> Iterator[PlainBrowser]:
     """Run a Chromium with a temporary profile."""
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as profile:
-        own = ("--headless", "--remote-debugging-port=0", f"--user-data-dir={profile}", "--no-first-run")
-        # Of the locale C it tells pages a language that Intl does not know.
+        own_flags = ("--headless", "--remote-debugging-port=0", f"--user-data-dir={profile}", "--no-first-run")
+        # In the locale C, the browser reports a language that Intl does not know.
         environment = os.environ | {"LC_ALL": "en_US.UTF-8"}
-        words = [program, *flags, *own, "about:blank"]
+        words = [program, *flags, *own_flags, "about:blank"]
         process = subprocess.Popen(words, stderr=subprocess.PIPE, env=environment, text=True)
         try:
             assert process.stderr is not None
@@ -149,4 +155,4 @@ def running(program: str, flags: tuple[str, ...]) -> Iterator[PlainBrowser]:
                 yield browser
         finally:
             process.terminate()
-            process.wait(timeout=SECONDS)
+            process.wait(timeout=TIMEOUT_S)

@@ -1,6 +1,6 @@
-"""The pages with the figures: ``docs/benchmarks.md`` and its Chinese sister.
+"""The pages with the figures: ``docs/benchmarks.md`` and its Chinese version.
 
-A run with ``--write`` of some measurements leaves the others on the page as they are.
+A run with ``--write`` of some measurements keeps the figures of the others.
 """
 
 from __future__ import annotations
@@ -53,16 +53,16 @@ _CHINESE = """# 性能测试
 
 `python -m benchmarks.peers` 把对比程序安装到 `.build/peers`；`python -m benchmarks --write` 测量并写出本页。
 """
-_HEADS = (
+_TABLE_HEADS = (
     "| what | Linkwright | promised | others |\n| --- | --- | --- | --- |\n",
     "| 项目 | Linkwright | 承诺 | 其他程序 |\n| --- | --- | --- | --- |\n",
 )
-_RULE_OF_SIZES = "| --- | --- | --- | --- | --- | --- |\n"
-_HEADS_OF_SIZES = (
-    f"| command | many of what | 1 000 | 10 000 | 100 000 | ten times as many (time, memory) |\n{_RULE_OF_SIZES}",
-    f"| 命令 | 数量变化的内容 | 1 000 | 10 000 | 100 000 | 数量增加十倍时（时间、内存） |\n{_RULE_OF_SIZES}",
+_SIZES_TABLE_RULE = "| --- | --- | --- | --- | --- | --- |\n"
+_SIZES_TABLE_HEADS = (
+    f"| command | many of what | 1 000 | 10 000 | 100 000 | ten times as many (time, memory) |\n{_SIZES_TABLE_RULE}",
+    f"| 命令 | 数量变化的内容 | 1 000 | 10 000 | 100 000 | 数量增加十倍时（时间、内存） |\n{_SIZES_TABLE_RULE}",
 )
-_ABOUT_SIZES = (
+_SIZES_NOTES = (
     """Time of the processor and the most memory at once, of a process for each figure. What a bound of the program
 refuses is `refused`; `-` is what would take more than four minutes. The last column compares the two largest that were
 measured, their times without what the command takes for a single thing. The rows are filled by
@@ -76,7 +76,7 @@ measured, their times without what the command takes for a single thing. The row
 
 """,
 )
-_INPUTS = {
+_INPUT_DESCRIPTIONS = {
     True: (
         "58 expansions of real robots, and robots made for measuring",
         "真实机器人的 58 次展开，以及专为测量生成的机器人",
@@ -101,28 +101,29 @@ def write(results: Mapping[str, Sequence[Measured]], *, corpus: bool) -> list[Pa
         head, *sections = target.read_text(encoding="utf-8").split("\n## ")
         old = {section.partition("\n")[0]: section for section in sections}
         if results.keys() == TITLES.keys():
-            head = f"{text.format(machine=_machine(), inputs=_INPUTS[corpus][place])}\n{_versions()}"
+            introduction = text.format(machine=_describe_machine(), inputs=_INPUT_DESCRIPTIONS[corpus][place])
+            head = f"{introduction}\n{_list_versions()}"
         for name, rows in results.items():
-            heads, about = (_HEADS_OF_SIZES, _ABOUT_SIZES[place]) if name == "sizes" else (_HEADS, "")
-            old[TITLES[name][place]] = f"{TITLES[name][place]}\n\n{about}{_section(rows, heads[place])}"
+            heads, about = (_SIZES_TABLE_HEADS, _SIZES_NOTES[place]) if name == "sizes" else (_TABLE_HEADS, "")
+            old[TITLES[name][place]] = f"{TITLES[name][place]}\n\n{about}{_format_section(rows, heads[place])}"
         ordered = [old.pop(titles[place]) for titles in TITLES.values() if titles[place] in old]
-        ordered += old.values()  # what others publish, which nobody measures here
+        ordered += old.values()  # figures published by others, which are not measured here
         target.write_text("\n## ".join([head, *ordered]), encoding="utf-8")
         written.append(target)
     return written
 
 
-def _section(rows: Sequence[Measured], head: str) -> str:
+def _format_section(rows: Sequence[Measured], head: str) -> str:
     date = datetime.now(timezone.utc).date().isoformat()
     return f"{date}\n\n{head}" + "".join("| " + " | ".join(row.cells()) + " |\n" for row in rows)
 
 
-def _machine() -> str:
+def _describe_machine() -> str:
     return f"Python {platform.python_version()}, {platform.system()} {platform.machine()}, {os.cpu_count()} CPU"
 
 
-def _versions() -> str:
-    listed = [f"- Linkwright {__version__}"]
-    listed += [f"- {name} {metadata.version(name)}" for name in ("cyclonedds", "rosbags")]
-    listed += [f"- {name} {peers.version(name) or '-'}" for name in peers.PEERS]
-    return "\n".join(listed) + "\n"
+def _list_versions() -> str:
+    lines = [f"- Linkwright {__version__}"]
+    lines += [f"- {name} {metadata.version(name)}" for name in ("cyclonedds", "rosbags")]
+    lines += [f"- {name} {peers.get_version(name) or '-'}" for name in peers.REQUIREMENTS]
+    return "\n".join(lines) + "\n"

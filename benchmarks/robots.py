@@ -1,4 +1,4 @@
-"""Robots made for measuring."""
+"""Robots for the measurements."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SHIPPED = REPOSITORY / "robots" / "my_robot_description"
 
 @dataclass(frozen=True)
 class Model:
-    """A description to expand, its arguments, and where the packages are that it names."""
+    """A description to expand, its arguments, and the folders of the packages that it names."""
 
     path: str
     arguments: dict[str, str]
@@ -38,8 +38,8 @@ def has_corpus() -> bool:
     return (CORPUS / "manifest.json").is_file()
 
 
-def models(folder: Path) -> list[Model]:
-    """Return the descriptions to expand: those of the corpus, or else the shipped ones and generated ones."""
+def find_models(folder: Path) -> list[Model]:
+    """Return the descriptions to expand: the corpus, or else shipped and generated ones."""
     if has_corpus():
         manifest = json.loads((CORPUS / "manifest.json").read_text(encoding="utf-8"))
         packages = {name: str(CORPUS / place) for name, place in manifest["packages"].items()}
@@ -47,13 +47,13 @@ def models(folder: Path) -> list[Model]:
     paths = [path for path in sorted(SHIPPED.rglob("*.xacro")) if path.parent.name == "urdf"]
     for legs in (4, 16, 64):
         path = folder / f"crawler_{legs}.urdf.xacro"
-        path.write_text(crawler(legs), encoding="utf-8")
+        path.write_text(make_crawler(legs), encoding="utf-8")
         paths.append(path)
     return [Model(str(path), {}, {SHIPPED.name: str(SHIPPED)}) for path in paths]
 
 
-def collected(folder: Path) -> list[Model]:
-    """Return the descriptions below a folder of checked-out repositories, each with all packages there."""
+def collect_models(folder: Path) -> list[Model]:
+    """Return the descriptions below a folder of repositories, each with all packages there."""
     packages: dict[str, str] = {}
     for path in filter(Path.is_file, sorted(folder.rglob("package.xml"))):  # a checkout may have dangling links
         name = re.search(r"<name>\s*([\w-]+)\s*</name>", path.read_text(encoding="utf-8", errors="replace"))
@@ -63,7 +63,7 @@ def collected(folder: Path) -> list[Model]:
     return [Model(str(path), {}, packages) for path in files]
 
 
-def crawler(legs: int) -> str:
+def make_crawler(legs: int) -> str:
     """Return a xacro text with a macro for a leg of three links, called for each leg."""
     calls = "\n".join(
         f'  <xacro:leg name="leg_{leg}" x="${{{leg} * 0.1}}" side="{1 if leg % 2 else -1}"/>' for leg in range(legs)
@@ -122,8 +122,8 @@ CALLS
 """
 
 
-def tree_robot(links: int, branching: int = 8) -> str:
-    """Return a URDF with a number of links, each with a box, joined by continuous joints into a tree."""
+def make_tree_robot(links: int, branching: int = 8) -> str:
+    """Return a URDF with a tree of links with boxes, connected by continuous joints."""
     parts = ['<?xml version="1.0"?>', '<robot name="tree">']
     for number in range(links):
         parts.append(
@@ -141,17 +141,22 @@ def tree_robot(links: int, branching: int = 8) -> str:
     return "\n".join(parts)
 
 
-def robot_with_mesh(folder: Path, kind: str) -> Path:
-    """Return the path of a robot of one link with a mass and a mesh of four triangles, an ``stl`` or a ``dae``."""
+def write_robot_with_mesh(folder: Path, kind: str) -> Path:
+    """Return the path of a robot of one link with a mass and a mesh of four triangles.
+
+    `kind` is the format of the mesh, ``stl`` or ``dae``.
+    """
     corners = ((0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.1))
     faces = ((0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3))
     if kind == "stl":
-        rows = (struct.pack("<12fH", *[0.0] * 3, *(part for at in face for part in corners[at]), 0) for face in faces)
+        rows = (
+            struct.pack("<12fH", *[0.0] * 3, *(part for index in face for part in corners[index]), 0) for face in faces
+        )
         (folder / "part.stl").write_bytes(bytes(80) + struct.pack("<I", len(faces)) + b"".join(rows))
     else:
         points = " ".join(str(part) for corner in corners for part in corner)
-        places = " ".join(str(at) for face in faces for at in face)
-        (folder / "part.dae").write_text(_COLLADA.format(points=points, places=places), encoding="utf-8")
+        indices = " ".join(str(index) for face in faces for index in face)
+        (folder / "part.dae").write_text(_COLLADA.format(points=points, indices=indices), encoding="utf-8")
     robot = folder / f"robot_{kind}.urdf"
     robot.write_text(_ONE_LINK.replace("KIND", kind), encoding="utf-8")
     return robot
@@ -186,8 +191,11 @@ _COLLADA = """<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" vers
 """
 
 
-def detailed_robot(links: int, moving: int) -> str:
-    """Return a robot of links and moving joints; each link has inertia, two shapes and its own numbers."""
+def make_detailed_robot(links: int, moving: int) -> str:
+    """Return a robot of links and moving joints.
+
+    Each link has inertia, two shapes and its own numbers.
+    """
     chance = random.Random(links)
 
     def numbers(count: int) -> str:
@@ -273,20 +281,23 @@ ARM_VIEW = """\
 """
 ARM_LENGTHS = (0.1, 0.15, 0.45, 0.4, 0.15, 0.12, 0.08)
 ARM_TRIANGLES = (5_000, 17_000, 30_000, 13_000, 14_000, 14_000, 3_000)
-"""Of each link, much as the meshes have them that makers of arms give away: 96 000 in all."""
+"""The triangles of each link, similar to meshes published by makers of arms: 96,000 in total."""
 
 
 def write_sweep(folder: Path, links: int, rate: int) -> Path:
-    """Write a tree robot, its .rviz file and a launch file that sweeps all joints; returns the launch file."""
-    return _write_sweep(folder, tree_robot(links), TREE_RVIZ, rate)
+    """Write a tree robot, its .rviz file and a launch file that sweeps all joints.
+
+    Returns the launch file.
+    """
+    return _write_sweep(folder, make_tree_robot(links), TREE_RVIZ, rate)
 
 
 def write_arm_sweep(folder: Path, rate: int) -> Path:
-    """Write the same for an arm of seven links with meshes."""
+    """Write the same as `write_sweep` for an arm of seven links with meshes."""
     parts = ['<?xml version="1.0"?>', '<robot name="arm">']
     for number, (length, triangles) in enumerate(zip(ARM_LENGTHS, ARM_TRIANGLES, strict=True)):
         mesh = folder / f"link_{number}.stl"
-        mesh.write_bytes(_ribbed_tube(0.07 - 0.006 * number, length, triangles))
+        mesh.write_bytes(_make_ribbed_tube(0.07 - 0.006 * number, length, triangles))
         parts.append(
             f'<link name="link_{number}"><visual><geometry><mesh filename="file://{mesh}"/></geometry>'
             f'<material name="m{number}"><color rgba="0.{3 + number} 0.6 0.8 1"/></material></visual></link>'
@@ -302,7 +313,7 @@ def write_arm_sweep(folder: Path, rate: int) -> Path:
     return _write_sweep(folder, "\n".join(parts), rviz, rate)
 
 
-def _ribbed_tube(radius: float, length: float, triangles: int) -> bytes:
+def _make_ribbed_tube(radius: float, length: float, triangles: int) -> bytes:
     """Return a binary STL of a round tube with ribs along z, in m."""
     rings = round((triangles / 2) ** 0.5)
     corners = triangles // 2 // rings

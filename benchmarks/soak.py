@@ -1,8 +1,11 @@
-"""``python -m benchmarks.soak [--minutes 60]``: several processes, an hour long; does anything grow, get lost or hang?
+"""Run several processes for an hour, and check that nothing grows, gets lost or hangs.
 
-Programs over rclpy publish at several rates, ask services, actions and parameters, and let nodes come and go; a launch
-has a process that is killed with -9 and comes back; commands look at the graph from outside. At the end a table tells
-memory, threads and file descriptors of each process, and what was lost. The status is 1 when a bound is broken.
+Usage: ``python -m benchmarks.soak [--minutes 60]``
+
+Programs with rclpy publish at several rates, call services, actions and parameters, and create and destroy nodes. A
+launch has a process that is killed with SIGKILL and restarted. Commands inspect the graph from outside. At the end, a
+table shows memory, threads and file descriptors of each process, and lost messages. The exit status is 1 if a limit is
+exceeded.
 """
 
 from __future__ import annotations
@@ -28,21 +31,23 @@ import psutil
 from benchmarks.measure import LINKWRIGHT, ROOT
 
 PARTS = ("listener", "talker", "server", "client", "guests")
-SAMPLE_SECONDS = 2.0
-KILL_SECONDS = 15.0
-COMMAND_SECONDS = 12.0
-BACK_WITHIN = 8.0
-"""Seconds in which what was killed is heard again."""
+SAMPLE_PERIOD_S = 2.0
+KILL_PERIOD_S = 15.0
+COMMAND_PERIOD_S = 12.0
+RESTART_TIMEOUT_S = 8.0
+"""The seconds within which messages of a killed process's successor must arrive."""
 
-GROWTH_MB = 5.0
-GROWTH_SHARE = 0.05
-"""How much memory may grow between the end of the warm-up and the end: the larger of the two. It is not nothing because
-Cyclone keeps some hundred bytes of each reader or writer that was made and deleted, also without us."""
+MAX_GROWTH_MB = 5.0
+MAX_GROWTH_SHARE = 0.05
+"""The permitted growth of memory after the warm-up: the larger of the two values.
 
-SPREAD = 3
-"""How many threads or file descriptors more than after the warm-up are still none too many."""
+It is not 0 because Cyclone keeps some hundred bytes of each deleted reader or writer, even without Linkwright.
+"""
 
-P99_MS = 100.0
+MAX_HANDLE_INCREASE = 3
+"""The permitted increase of threads and of file descriptors after the warm-up."""
+
+MAX_P99_MS = 100.0
 COMMANDS = (
     ("topic", "list", "-t"),
     ("topic", "echo", "/soak/rate_50", "--once"),
@@ -74,15 +79,15 @@ def generate_launch_description():
 
 
 @dataclass
-class Watched:
-    """A process and what was seen of it.
+class WatchedProcess:
+    """A process and its observed figures.
 
     Attributes:
-        name: its role.
-        process: the process.
+        name: the role of the process.
+        process: the running process.
         errors: the file of its standard error.
         samples: (seconds since the start, MB of its own memory, threads, file descriptors).
-        told: the last line of JSON that it printed.
+        report: the last line of JSON that it printed.
         delays: 99th percentiles of its latencies, ms.
     """
 
@@ -90,30 +95,32 @@ class Watched:
     process: subprocess.Popen[str]
     errors: Path
     samples: list[tuple[float, float, int, int]] = field(default_factory=list)
-    told: dict[str, Any] = field(default_factory=dict)
+    report: dict[str, Any] = field(default_factory=dict)
     delays: list[float] = field(default_factory=list)
 
     def sample(self, since: float) -> None:
         """Add a sample of its memory, threads and file descriptors."""
         with suppress(psutil.Error):
-            seen = psutil.Process(self.process.pid)
-            known = seen.memory_info()
-            # Pages of files, libraries above all, come and go as the system likes.
+            watched_process = psutil.Process(self.process.pid)
+            known = watched_process.memory_info()
+            # The system loads and drops pages of files, such as libraries, at any time.
             memory = (known.rss - getattr(known, "shared", 0)) / 1e6
-            self.samples.append((time.monotonic() - since, memory, seen.num_threads(), seen.num_fds()))
+            self.samples.append(
+                (time.monotonic() - since, memory, watched_process.num_threads(), watched_process.num_fds())
+            )
 
     def listen(self) -> None:
         """Read its output until it ends, and store the figures in it."""
         assert self.process.stdout is not None
         for line in self.process.stdout:
             with suppress(ValueError):
-                self.told = json.loads(line)
-                if "p99_ms" in self.told:
-                    self.delays.append(self.told["p99_ms"])
+                self.report = json.loads(line)
+                if "p99_ms" in self.report:
+                    self.delays.append(self.report["p99_ms"])
 
-    def seen(self, what: str) -> int:
-        """Return a count that it last reported."""
-        return int(self.told.get("seen", {}).get(what, 0))
+    def get_count(self, what: str) -> int:
+        """Return the last reported value of a counter."""
+        return int(self.report.get("seen", {}).get(what, 0))
 
 
 class Soak:
@@ -130,7 +137,7 @@ class Soak:
 
         self._seconds, self._warm_up = seconds, warm_up
         self._environment = {**create_environment(os.environ), "ROS_DOMAIN_ID": domain}
-        self._watched: list[Watched] = []
+        self._watched: list[WatchedProcess] = []
         self.faults: list[str] = []
         self._kills = self._commands = 0
         self._begin = time.monotonic()
@@ -139,14 +146,16 @@ class Soak:
         """Run the processes, print the table, and return the exit status."""
         with tempfile.TemporaryDirectory() as folder, self._processes(Path(folder)):
             self._begin = time.monotonic()
-            helpers = [threading.Thread(target=work, daemon=True) for work in (self._kill, self._command)]
+            helpers = [
+                threading.Thread(target=work, daemon=True) for work in (self._kill_repeatedly, self._run_commands)
+            ]
             for helper in helpers:
                 helper.start()
             while (passed := time.monotonic() - self._begin) < self._seconds:
-                time.sleep(SAMPLE_SECONDS)
+                time.sleep(SAMPLE_PERIOD_S)
                 for watched in self._watched:
                     watched.sample(self._begin)
-                self._look(passed)
+                self._sample_processes(passed)
             for helper in helpers:
                 helper.join(60.0)
         self._judge()
@@ -169,9 +178,9 @@ class Soak:
             yield
         finally:
             # End the talker first, and wait for messages on their way: the listener must receive all of them.
-            for each in sorted(self._watched, key=lambda each: each.name != "talker"):
-                self._end(each)
-                if each.name == "talker":
+            for watched in sorted(self._watched, key=lambda watched: watched.name != "talker"):
+                self._end(watched)
+                if watched.name == "talker":
                     time.sleep(4.0)
 
     def _start(self, name: str, words: list[str], more: Mapping[str, str]) -> None:
@@ -181,12 +190,12 @@ class Soak:
             process = subprocess.Popen(
                 words, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=stream, text=True
             )
-        watched = Watched(name, process, errors)
+        watched = WatchedProcess(name, process, errors)
         threading.Thread(target=watched.listen, daemon=True).start()
         self._watched.append(watched)
 
-    def _end(self, watched: Watched) -> None:
-        below = _descendants(watched.process.pid)
+    def _end(self, watched: WatchedProcess) -> None:
+        descendants = _find_descendants(watched.process.pid)
         if watched.process.poll() is not None:
             self.faults.append(f"{watched.name} had ended with status {watched.process.returncode}")
             return
@@ -200,34 +209,36 @@ class Soak:
             return
         if status != (130 if watched.name == "launcher" else 0):
             self.faults.append(f"{watched.name} ended with status {status}")
-        _, left = psutil.wait_procs(below, timeout=3.0)
+        _, left = psutil.wait_procs(descendants, timeout=3.0)
         for orphan in left:
             self.faults.append(f"{watched.name} left process {orphan.pid} behind")
             orphan.kill()
 
     def _is_over(self) -> bool:
-        return time.monotonic() - self._begin > self._seconds - BACK_WITHIN
+        return time.monotonic() - self._begin > self._seconds - RESTART_TIMEOUT_S
 
-    def _kill(self) -> None:
-        """Kill the process of the launch repeatedly, and wait until messages of its successor arrive."""
-        launcher, listener = self._of("launcher"), self._of("listener")
+    def _kill_repeatedly(self) -> None:
+        """Kill the launch's process repeatedly, and wait for messages of its successor."""
+        launcher, listener = self._find_process("launcher"), self._find_process("listener")
         while not self._is_over():
-            time.sleep(KILL_SECONDS)
-            victims = [process for process in _descendants(launcher.process.pid) if "victim" in _words(process)]
+            time.sleep(KILL_PERIOD_S)
+            victims = [
+                process for process in _find_descendants(launcher.process.pid) if "victim" in _get_command_line(process)
+            ]
             if len(victims) != 1:
                 self.faults.append(f"{len(victims)} processes are there to be killed instead of one")
                 continue
             victims[0].kill()
             self._kills += 1
             time.sleep(1.0)
-            heard, limit = listener.seen("/soak/phoenix"), time.monotonic() + BACK_WITHIN
-            while listener.seen("/soak/phoenix") <= heard:
+            heard, limit = listener.get_count("/soak/phoenix"), time.monotonic() + RESTART_TIMEOUT_S
+            while listener.get_count("/soak/phoenix") <= heard:
                 if time.monotonic() > limit:
-                    self.faults.append(f"what was killed was not heard again within {BACK_WITHIN:g} s")
+                    self.faults.append(f"what was killed was not heard again within {RESTART_TIMEOUT_S:g} s")
                     break
                 time.sleep(0.2)
 
-    def _command(self) -> None:
+    def _run_commands(self) -> None:
         """Run commands that inspect the graph, in turn."""
         while not self._is_over():
             words = COMMANDS[self._commands % len(COMMANDS)]
@@ -245,63 +256,67 @@ class Soak:
                     self.faults.append(f"'{' '.join(words)}' ended with {result.returncode}: {result.stderr.strip()}")
             except subprocess.TimeoutExpired:
                 self.faults.append(f"'{' '.join(words)}' did not end within 20 s")
-            time.sleep(COMMAND_SECONDS)
+            time.sleep(COMMAND_PERIOD_S)
 
-    def _look(self, passed: float) -> None:
+    def _sample_processes(self, passed: float) -> None:
         for watched in self._watched:
             if watched.process.poll() is not None:
-                said = watched.errors.read_text()[-2000:]
-                raise SystemExit(f"{said}\n{watched.name} ended with {watched.process.returncode} after {passed:.0f} s")
+                error_text = watched.errors.read_text()[-2000:]
+                raise SystemExit(
+                    f"{error_text}\n{watched.name} ended with {watched.process.returncode} after {passed:.0f} s"
+                )
         if sys.stderr.isatty():
-            listener = self._of("listener")
-            text = f"{passed:6.0f} s, {listener.seen('/soak/rate_1000')} messages, {listener.seen('lost')} lost"
+            listener = self._find_process("listener")
+            text = (
+                f"{passed:6.0f} s, {listener.get_count('/soak/rate_1000')} messages, {listener.get_count('lost')} lost"
+            )
             print(f"\r{text}, {self._kills} kills, {len(self.faults)} faults", end="", file=sys.stderr)
 
-    def _of(self, name: str) -> Watched:
+    def _find_process(self, name: str) -> WatchedProcess:
         return next(watched for watched in self._watched if watched.name == name)
 
     def _judge(self) -> None:
-        talker, listener = self._of("talker"), self._of("listener")
+        talker, listener = self._find_process("talker"), self._find_process("listener")
         for watched in self._watched:
-            for failure in watched.told.get("failures", ()):
+            for failure in watched.report.get("failures", ()):
                 self.faults.append(f"{watched.name}: {failure}")
-            growth = _growth(watched, self._warm_up)
+            growth = _compute_growth(watched, self._warm_up)
             if growth is not None:
                 self._judge_growth(watched, growth)
-        for name, count in talker.told.get("seen", {}).items():
-            if listener.seen(name) != count:
-                self.faults.append(f"of {count} messages of {name} the last that came was {listener.seen(name)}")
-        if not listener.delays or statistics.median(listener.delays) > P99_MS:
-            self.faults.append(f"latency: 99 of 100 messages come within more than {P99_MS:g} ms")
+        for name, count in talker.report.get("seen", {}).items():
+            if listener.get_count(name) != count:
+                self.faults.append(f"of {count} messages of {name} the last that came was {listener.get_count(name)}")
+        if not listener.delays or statistics.median(listener.delays) > MAX_P99_MS:
+            self.faults.append(f"latency: 99 of 100 messages come within more than {MAX_P99_MS:g} ms")
         for name, what in (("client", "sums"), ("client", "goals"), ("listener", "transforms"), ("guests", "guests")):
-            if not self._of(name).seen(what):
+            if not self._find_process(name).get_count(what):
                 self.faults.append(f"{name} has no {what}")
 
-    def _judge_growth(self, watched: Watched, growth: Growth) -> None:
-        if growth.megabytes > max(GROWTH_MB, GROWTH_SHARE * growth.last_megabytes):
+    def _judge_growth(self, watched: WatchedProcess, growth: Growth) -> None:
+        if growth.megabytes > max(MAX_GROWTH_MB, MAX_GROWTH_SHARE * growth.last_megabytes):
             self.faults.append(f"{watched.name}: memory grew by {growth.megabytes:.1f} MB")
-        if growth.threads > SPREAD:
+        if growth.threads > MAX_HANDLE_INCREASE:
             self.faults.append(f"{watched.name}: {growth.threads:g} threads more")
-        if growth.descriptors > SPREAD:
+        if growth.descriptors > MAX_HANDLE_INCREASE:
             self.faults.append(f"{watched.name}: {growth.descriptors:g} file descriptors more")
 
     def _print(self) -> None:
         print(f"{'process':10} {'memory':>9} {'growth':>9} {'slope':>11} {'threads':>9} {'files':>8}  seen")
         for watched in self._watched:
-            growth = _growth(watched, self._warm_up)
+            growth = _compute_growth(watched, self._warm_up)
             if growth is None:
                 print(f"{watched.name:10} too short a run to tell")
                 continue
-            seen = ", ".join(
-                f"{name.rpartition('/')[2]} {count}" for name, count in watched.told.get("seen", {}).items()
+            counts = ", ".join(
+                f"{name.rpartition('/')[2]} {count}" for name, count in watched.report.get("seen", {}).items()
             )
             print(
                 f"{watched.name:10} {growth.last_megabytes:6.1f} MB "
                 f"{growth.megabytes:+6.2f} MB {growth.slope:+6.2f} MB/h "
                 f"{growth.last_threads:4.0f}{growth.threads:+5.0f} "
-                f"{growth.last_descriptors:4.0f}{growth.descriptors:+4.0f}  {seen}"
+                f"{growth.last_descriptors:4.0f}{growth.descriptors:+4.0f}  {counts}"
             )
-        delays = self._of("listener").delays
+        delays = self._find_process("listener").delays
         latency = f"99 of 100 messages within {statistics.median(delays):.2f} ms (median of 2 s)" if delays else "-"
         print(f"{self._seconds / 60:.1f} minutes, {self._kills} kills, {self._commands} commands; {latency}")
         for fault in self.faults:
@@ -311,7 +326,10 @@ class Soak:
 
 @dataclass(frozen=True)
 class Growth:
-    """How a process has changed between the end of the warm-up and the end: medians of a fifth of the time each."""
+    """The changes of a process from the end of the warm-up to the end of the run.
+
+    Each value is a median over a fifth of this time.
+    """
 
     megabytes: float
     slope: float
@@ -322,7 +340,7 @@ class Growth:
     last_descriptors: float
 
 
-def _growth(watched: Watched, warm_up: float) -> Growth | None:
+def _compute_growth(watched: WatchedProcess, warm_up: float) -> Growth | None:
     samples = [sample for sample in watched.samples if sample[0] >= warm_up]
     share = len(samples) // 5
     if share < 2:
@@ -336,13 +354,13 @@ def _growth(watched: Watched, warm_up: float) -> Growth | None:
     return Growth(last[1] - first[1], slope, last[2] - first[2], last[3] - first[3], last[1], last[2], last[3])
 
 
-def _descendants(pid: int) -> list[psutil.Process]:
+def _find_descendants(pid: int) -> list[psutil.Process]:
     with suppress(psutil.Error):
         return psutil.Process(pid).children(recursive=True)
     return []
 
 
-def _words(process: psutil.Process) -> list[str]:
+def _get_command_line(process: psutil.Process) -> list[str]:
     with suppress(psutil.Error):
         return process.cmdline()
     return []

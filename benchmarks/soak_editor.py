@@ -1,8 +1,10 @@
-"""``python -m benchmarks.soak_editor [--minutes 60] [FOLDER]``: does the memory of the language server grow?
+"""Edit files at random, and check that the memory of the language server does not grow.
 
-A client opens descriptions of the folder, types into them, deletes from them and restores them, and sends requests of
-each kind. The table has the memory of ``linkwright lsp`` and its times. The status is 1 if the memory grows after the
-warm-up, if the server ends, or if an answer takes longer than a bound.
+Usage: ``python -m benchmarks.soak_editor [--minutes 60] [FOLDER]``
+
+A client opens the descriptions of the folder, edits and restores them, and sends requests of each kind. The table shows
+the memory and the response times of ``linkwright lsp``. The exit status is 1 if the memory grows after the warm-up, if
+the server ends, or if a response takes longer than a limit.
 """
 
 from __future__ import annotations
@@ -25,19 +27,30 @@ from pygls.lsp.client import LanguageClient
 
 from benchmarks.measure import ROOT
 
-_ENDINGS = (".xacro", ".urdf", ".sdf", ".world", ".launch.py", ".launch.xml", ".yaml", ".rviz", ".srdf", "package.xml")
+_FILE_SUFFIXES = (
+    ".xacro",
+    ".urdf",
+    ".sdf",
+    ".world",
+    ".launch.py",
+    ".launch.xml",
+    ".yaml",
+    ".rviz",
+    ".srdf",
+    "package.xml",
+)
 _OPEN_FILES = 12
 _EDITS_PER_REQUEST = 3
 _WARM_UP_SHARE = 0.25
 _MAX_GROWTH_MB = 10.0
 _MAX_GROWTH_SHARE = 0.1
-_MAX_SECONDS = 30.0
-"""The longest time that an answer may take."""
+_MAX_RESPONSE_S = 30.0
+"""The maximum time of a response, in seconds."""
 
-_REFUSALS = (types.LSPErrorCodes.ContentModified, types.LSPErrorCodes.RequestFailed)
-"""The codes of errors that are answers, such as that a file has changed in the meantime."""
+_REFUSAL_CODES = (types.LSPErrorCodes.ContentModified, types.LSPErrorCodes.RequestFailed)
+"""The codes of errors that count as responses, such as that a file has changed meanwhile."""
 
-_PIECES = (
+_TEXT_PIECES = (
     "<link",
     "/>",
     '"',
@@ -73,7 +86,7 @@ _OF_DOCUMENT = {
 }
 
 
-class Typist:
+class RandomEditor:
     """A client that edits random files.
 
     Args:
@@ -115,11 +128,11 @@ class Typist:
 
     def _edit(self, file: Path) -> None:
         text, choice = self._texts[file], self._random.random()
-        at = self._random.randrange(len(text) + 1)
+        offset = self._random.randrange(len(text) + 1)
         if choice < 0.6:
-            text = text[:at] + self._random.choice(_PIECES) + text[at:]
+            text = text[:offset] + self._random.choice(_TEXT_PIECES) + text[offset:]
         elif choice < 0.85:
-            text = text[:at] + text[at + self._random.randrange(1, 30) :]
+            text = text[:offset] + text[offset + self._random.randrange(1, 30) :]
         else:
             text = file.read_text(encoding="utf-8", errors="replace")
         self._texts[file] = text
@@ -139,9 +152,9 @@ class Typist:
         parameters = at_position(document, position) if at_position else _OF_DOCUMENT[method](document)
         begin = time.monotonic()
         try:
-            await asyncio.wait_for(self._client.protocol.send_request_async(method, parameters), 2 * _MAX_SECONDS)
+            await asyncio.wait_for(self._client.protocol.send_request_async(method, parameters), 2 * _MAX_RESPONSE_S)
         except JsonRpcException as error:
-            if error.code not in _REFUSALS:
+            if error.code not in _REFUSAL_CODES:
                 self.errors[f"{method}: {error.message}"] += 1
         self.seconds.append(time.monotonic() - begin)
 
@@ -155,7 +168,7 @@ async def run(folder: Path, files: list[Path], seconds: float, seed: int) -> lis
     await client.initialize_async(types.InitializeParams(types.ClientCapabilities(), workspace_folders=workspace))
     client.initialized(types.InitializedParams())
     (server,) = psutil.Process().children()
-    typist = Typist(client, files, seed)
+    typist = RandomEditor(client, files, seed)
     begin = shown = time.monotonic()
     samples: list[tuple[float, float]] = []
     print(f"{len(files)} files\n seconds    edits   MB", flush=True)
@@ -172,14 +185,14 @@ async def run(folder: Path, files: list[Path], seconds: float, seed: int) -> lis
     await client.stop()
     warm = [memory for at, memory in samples if _WARM_UP_SHARE <= at / seconds < 2 * _WARM_UP_SHARE]
     last = [memory for at, memory in samples if at / seconds >= 1 - _WARM_UP_SHARE]
-    before, after = statistics.median(warm), statistics.median(last)
+    start_memory, end_memory = statistics.median(warm), statistics.median(last)
     slowest, middle = max(typist.seconds), statistics.median(typist.seconds)
-    print(f"memory: {before:.0f} MB after the warm-up, {after:.0f} MB at the end")
+    print(f"memory: {start_memory:.0f} MB after the warm-up, {end_memory:.0f} MB at the end")
     print(f"answers: {len(typist.seconds)}, median {1000 * middle:.0f} ms, slowest {1000 * slowest:.0f} ms")
     faults = [f"{count} times {error}" for error, count in typist.errors.most_common()]
-    if after - before > max(_MAX_GROWTH_MB, _MAX_GROWTH_SHARE * before):
-        faults.append(f"the memory has grown by {after - before:.0f} MB")
-    if slowest > _MAX_SECONDS:
+    if end_memory - start_memory > max(_MAX_GROWTH_MB, _MAX_GROWTH_SHARE * start_memory):
+        faults.append(f"the memory has grown by {end_memory - start_memory:.0f} MB")
+    if slowest > _MAX_RESPONSE_S:
         faults.append(f"an answer took {slowest:.1f} s")
     return faults
 
@@ -194,7 +207,7 @@ def main() -> int:
     with tempfile.TemporaryDirectory() as copies:
         folder = Path(copies, "packages")
         shutil.copytree(arguments.folder, folder, symlinks=True)
-        files = sorted(path for path in folder.rglob("*") if path.name.endswith(_ENDINGS) and path.is_file())
+        files = sorted(path for path in folder.rglob("*") if path.name.endswith(_FILE_SUFFIXES) and path.is_file())
         faults = asyncio.run(run(folder, files, 60 * arguments.minutes, arguments.seed))
     for fault in faults:
         print(f"fault: {fault}")

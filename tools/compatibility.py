@@ -1,4 +1,6 @@
-"""Write ``docs/compatibility.md`` and ``docs/zh/compatibility.md`` from the tables of the modules that users import.
+"""Write the pages on compatibility from the tables of the modules that users import.
+
+The pages are ``docs/compatibility.md`` and ``docs/zh/compatibility.md``.
 
 Usage: python tools/compatibility.py [--check]
 """
@@ -32,7 +34,7 @@ class Words:
     messages: str
     missing: str
 
-    def remark(self, remark: table.Remark) -> str:
+    def format_remark(self, remark: table.Remark) -> str:
         """Return a remark in this language."""
         return remark.chinese if self is CHINESE else remark.english
 
@@ -109,22 +111,24 @@ CHINESE = Words(
 
 def generate() -> dict[Path, str]:
     """Return the text of each page, by path."""
-    return {DOCS / "compatibility.md": _page(ENGLISH), DOCS / "zh" / "compatibility.md": _page(CHINESE)}
+    return {DOCS / "compatibility.md": _format_page(ENGLISH), DOCS / "zh" / "compatibility.md": _format_page(CHINESE)}
 
 
-def _page(words: Words) -> str:
+def _format_page(words: Words) -> str:
     tables = {package: table.read(package) for package in table.list_packages()}
     parts = [words.head.format(mark=_MARK), words.packages]
-    parts += [_counts(package, modules) for package, modules in tables.items()]
+    parts += [_format_counts(package, modules) for package, modules in tables.items()]
     for package, modules in tables.items():
         parts.append(f"\n## {package}\n")
-        parts += [line for module in modules.values() if _is_public(module.name) for line in _module(module, words)]
+        parts += [
+            line for module in modules.values() if _is_public(module.name) for line in _format_module(module, words)
+        ]
     names = ", ".join(f"`{name}`" for name in sorted(catalog.packages()))
-    absent = _listed(ROS_MODULES)
+    absent = _format_names(ROS_MODULES)
     return "\n".join([*parts, words.messages.format(packages=names), words.missing.format(modules=absent)])
 
 
-def _counts(package: str, modules: Mapping[str, table.Module]) -> str:
+def _format_counts(package: str, modules: Mapping[str, table.Module]) -> str:
     public = [module for module in modules.values() if _is_public(module.name)]
     names = [(module.since or module.names[name].since) for module in public for name in module.public]
     absent = sum(len(module.absent) for module in public)
@@ -133,33 +137,33 @@ def _counts(package: str, modules: Mapping[str, table.Module]) -> str:
     return f"| [{package}](#{anchor}) | {len(public)} | {len(names)} | {later} | {absent} |"
 
 
-def _module(module: table.Module, words: Words) -> Iterator[str]:
+def _format_module(module: table.Module, words: Words) -> Iterator[str]:
     yield f"### {module.name}\n"
     if module.since:
         yield words.whole.format(since=module.since.capitalize()) + "\n"
-    own = [name for name in module.public if _is_own(module, name)]
-    now = [name for name in own if not module.names[name].since]
+    own_names = [name for name in module.public if _is_own(module, name)]
+    now = [name for name in own_names if not module.names[name].since]
     if now:
-        yield _listed(now) + "\n"
-    for since in sorted({module.names[name].since for name in own} - {""}):
-        later = [name for name in own if module.names[name].since == since]
-        yield f"- {words.later.format(since=since.capitalize())}: {_listed(later)}"
+        yield _format_names(now) + "\n"
+    for since in sorted({module.names[name].since for name in own_names} - {""}):
+        later = [name for name in own_names if module.names[name].since == since]
+        yield f"- {words.later.format(since=since.capitalize())}: {_format_names(later)}"
     for title, remarks in ((words.absent, module.absent), (words.differs, module.differs)):
         for remark in dict.fromkeys(remarks.values()):
             names = [name for name, its in remarks.items() if its == remark]
-            yield f"- {title}: {_listed(names)}: {words.remark(remark)}"
+            yield f"- {title}: {_format_names(names)}: {words.format_remark(remark)}"
     imported = [name for name in module.public if not _is_own(module, name)]
     if imported:
-        yield f"- {words.imported}: {_listed(imported)}"
+        yield f"- {words.imported}: {_format_names(imported)}"
     yield ""
 
 
-def _listed(names: Iterable[str]) -> str:
+def _format_names(names: Iterable[str]) -> str:
     return ", ".join(f"`{name}`" for name in sorted(names, key=str.lower))
 
 
 def _is_own(module: table.Module, name: str) -> bool:
-    """Return whether a name is the module's own, or is one that a package re-exports from its modules."""
+    """Return whether a name is a module's own, or is re-exported from a package's modules."""
     origin = module.names[name].origin
     return origin.startswith(("linkwright.", f"{module.name}.")) or origin in (table.VALUE, module.name)
 

@@ -1,4 +1,6 @@
-"""Make the images of the gallery, ``docs/gallery/NAME.webp``, from its descriptions, ``docs/gallery/NAME.xacro``.
+"""Create the images of the gallery from its descriptions.
+
+``docs/gallery/NAME.xacro`` becomes ``docs/gallery/NAME.webp``.
 
 Usage: python tools/gallery.py [NAME ...] (needs a Chromium and Pillow)
 
@@ -23,10 +25,15 @@ FOLDER = Path(__file__).resolve().parent.parent / "docs" / "gallery"
 PARTS = "parts"
 """The file that the robots include; it does not describe a robot itself."""
 
-FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
+CHROMIUM_FLAGS = (
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+)
 WINDOW = {"width": 1480, "height": 812}
 SIZE = (480, 360)
-SETTLING = 4000
+SETTLING_MS = 4000
 """Milliseconds after which the scene is drawn at its full resolution."""
 
 _CONTROLS_HIDDEN = """(canvas) => {
@@ -38,13 +45,13 @@ _CONTROLS_HIDDEN = """(canvas) => {
 }"""
 
 
-def robots() -> list[str]:
+def list_robots() -> list[str]:
     """Return the names of the robots."""
     return sorted(path.stem for path in FOLDER.glob("*.xacro") if path.stem != PARTS)
 
 
 def make_image(browser: Browser, words: Sequence[str], image: Path, folder: Path) -> None:
-    """Run a command of Linkwright in a folder, such as ``view FILE``, and write an image of its scene."""
+    """Run a command such as ``view FILE`` in a folder, and write an image of its scene."""
     command = [sys.executable, "-m", "linkwright", *words, "--no-open"]
     environment = {**os.environ, "LINKWRIGHT_DDS": "0"}
     program = subprocess.Popen(command, stdout=subprocess.PIPE, env=environment, cwd=folder, text=True)
@@ -53,7 +60,7 @@ def make_image(browser: Browser, words: Sequence[str], image: Path, folder: Path
         page = browser.new_page(viewport=WINDOW, locale="en-US")  # type: ignore[arg-type]
         page.goto(next(line.split()[1] for line in program.stdout if line.startswith("Viewer: ")))
         page.wait_for_function("window.linkwright?.ready === true", timeout=60_000)
-        small = picture_of_scene(page)
+        small = capture_scene(page)
         page.close()
     finally:
         program.send_signal(signal.SIGINT)
@@ -61,11 +68,11 @@ def make_image(browser: Browser, words: Sequence[str], image: Path, folder: Path
     small.save(image, quality=80, method=6)
 
 
-def picture_of_scene(page: Page) -> Image.Image:
-    """Return a picture of the middle of the scene of a page, without the controls over it."""
+def capture_scene(page: Page) -> Image.Image:
+    """Capture the middle of a page's scene, without the controls over it."""
     canvas = page.locator("canvas").first
     canvas.evaluate(_CONTROLS_HIDDEN)
-    page.wait_for_timeout(SETTLING)
+    page.wait_for_timeout(SETTLING_MS)
     shot = Image.open(io.BytesIO(canvas.screenshot(timeout=60_000))).convert("RGB")
     height = min(shot.height, shot.width * SIZE[1] // SIZE[0])
     width = height * SIZE[0] // SIZE[1]
@@ -74,10 +81,12 @@ def picture_of_scene(page: Page) -> Image.Image:
 
 
 def main(names: Sequence[str]) -> int:
-    """Make the images of these robots, or of all."""
+    """Create the images of the named robots, or of all robots."""
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=chromium.find() or chromium.fetch(), args=list(FLAGS))
-        for name in names or robots():
+        browser = playwright.chromium.launch(
+            executable_path=chromium.find_chromium() or chromium.fetch_chromium(), args=list(CHROMIUM_FLAGS)
+        )
+        for name in names or list_robots():
             make_image(browser, ["view", f"{name}.xacro"], FOLDER / f"{name}.webp", FOLDER)
         browser.close()
     return 0

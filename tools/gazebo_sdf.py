@@ -37,7 +37,7 @@ def numbers(values: Iterable[float]) -> str:
 
 @dataclass(frozen=True)
 class Pose:
-    """A position in meters, and rotations about x (`roll`), y (`pitch`) and z (`yaw`) in radians."""
+    """A position in meters, and rotations about x (roll), y (pitch) and z (yaw) in radians."""
 
     x: float = 0.0
     y: float = 0.0
@@ -64,18 +64,18 @@ class Part:
         """Return the collision and the visual."""
         rows = []
         if self.solid:
-            rows += [f'<collision name="{self.name}">', *self._place(), "</collision>"]
+            rows += [f'<collision name="{self.name}">', *self._format_pose(), "</collision>"]
         color = numbers((*self.color, 1))
         colors = f"<ambient>{color}</ambient><diffuse>{color}</diffuse><specular>0.1 0.1 0.1 1</specular>"
         rows += [
             f'<visual name="{self.name}">',
-            *self._place(),
+            *self._format_pose(),
             f"  <material>{colors}</material>",
             "</visual>",
         ]
         return "\n".join(indent + row for row in rows)
 
-    def _place(self) -> list[str]:
+    def _format_pose(self) -> list[str]:
         pose = [] if self.pose == Pose() else [f"  <pose>{self.pose}</pose>"]
         return [*pose, f"  <geometry>{self.geometry}</geometry>"]
 
@@ -103,7 +103,7 @@ def mesh(name: str, file: str, pose: Pose, color: Color, *, solid: bool = True) 
 
 @dataclass(frozen=True)
 class Body:
-    """The mass in kg of an object that can be pushed, and its moments about the center in kg m^2."""
+    """The mass in kg of a movable object, and its moments about the center in kg m^2."""
 
     mass: float
     moments: Vector
@@ -138,11 +138,11 @@ class Model:
 
     def xml(self, indent: str = "    ") -> str:
         """Return the model as an element of a world or of a separate file."""
-        place = [] if self.pose == Pose() else [f"{indent}  <pose>{self.pose}</pose>"]
+        pose_rows = [] if self.pose == Pose() else [f"{indent}  <pose>{self.pose}</pose>"]
         rows = [
             f'{indent}<model name="{self.name}">',
             *([f"{indent}  <static>true</static>"] if self.body is None else []),
-            *place,
+            *pose_rows,
             f'{indent}  <link name="link">',
             *([self.body.xml(indent + "    ")] if self.body else []),
             *(part.xml(indent + "    ") for part in self.parts),

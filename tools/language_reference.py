@@ -1,4 +1,6 @@
-"""Write docs/reference/urdf.md and sdf.md, the elements and attributes of both, from the tables that drive the readers.
+"""Write the references of URDF and SDF from the tables that drive the readers.
+
+The pages ``urdf.md`` and ``sdf.md`` in ``docs/reference`` list the elements and attributes.
 
 Usage: python tools/language_reference.py [--check]
 
@@ -37,16 +39,16 @@ the first in the file does.
 
 class _Section(NamedTuple):
     rule: ElementRule
-    around: tuple[str, ...]
+    ancestor_tags: tuple[str, ...]
 
     def name(self, depth: int) -> tuple[str, ...]:
         """Return the tag, followed by the tags of this number of enclosing elements."""
-        return (self.rule.tag, *self.around[:depth])
+        return (self.rule.tag, *self.ancestor_tags[:depth])
 
 
 def generate(head: str, root: ElementRule) -> str:
     """Return the text of a page."""
-    sections = list(_sections(root, (), set()))
+    sections = list(_iterate_sections(root, (), set()))
     parts = [head]
     for section in sections:
         depth = 0
@@ -58,15 +60,15 @@ def generate(head: str, root: ElementRule) -> str:
     return "\n".join(parts)
 
 
-def _sections(rule: ElementRule, around: tuple[str, ...], seen: set[object]) -> Iterator[_Section]:
+def _iterate_sections(rule: ElementRule, ancestor_tags: tuple[str, ...], seen: set[object]) -> Iterator[_Section]:
     """Yield the rule and the rules below it, once each; values are listed with their parents."""
     key = (rule.tag, str(describe_element(rule)))
     if key in seen or rule.is_value:
         return
     seen.add(key)
-    yield _Section(rule, around)
+    yield _Section(rule, ancestor_tags)
     for child in rule.children:
-        yield from _sections(child, (rule.tag, *around), seen)
+        yield from _iterate_sections(child, (rule.tag, *ancestor_tags), seen)
 
 
 def main() -> int:

@@ -21,7 +21,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 LOCK = ROOT / "uv.lock"
-_COPIED = (
+_COPIED_FILES = (
     "pyproject.toml",
     "README.md",
     "LICENSE",
@@ -36,7 +36,7 @@ _COPIED = (
 )
 
 
-def without_addresses(text: str) -> str:
+def remove_addresses(text: str) -> str:
     """Return the text of the lock file without addresses.
 
     The table ``package.metadata`` is also removed. Without it, uv uses the file as a list of preferred versions, and
@@ -47,14 +47,14 @@ def without_addresses(text: str) -> str:
     return re.sub(r"\n\[package\.metadata[^\]]*\]\n(?:.+\n)*", "", text)
 
 
-def constraints(text: str) -> str:
+def format_constraints(text: str) -> str:
     """Return a line ``name==version ; marker --hash=...`` for each locked package."""
     lines = []
     for block in text.split("[[package]]\n")[1:]:
         if '\nsource = { registry = "index" }\n' not in block:
             continue
-        name = _value(block, "name")
-        version = _value(block, "version")
+        name = _get_value(block, "name")
+        version = _get_value(block, "version")
         markers = re.search(r"resolution-markers = \[\n((?:.+\n)*?)\]", block)
         condition = ""
         if markers:
@@ -65,7 +65,7 @@ def constraints(text: str) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _value(block: str, key: str) -> str:
+def _get_value(block: str, key: str) -> str:
     match = re.search(rf'^{key} = "([^"]+)"', block, re.MULTILINE)
     if not match:
         raise SystemExit(f"uv.lock: a package without {key}")
@@ -78,7 +78,7 @@ def update(extra: list[str]) -> None:
     if not uv:
         raise SystemExit("uv is not on the PATH; run `make lock`")
     with tempfile.TemporaryDirectory() as folder:
-        for name in _COPIED:
+        for name in _COPIED_FILES:
             target = Path(folder) / name
             target.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, target)
@@ -86,7 +86,7 @@ def update(extra: list[str]) -> None:
             shutil.copy(LOCK, Path(folder) / "uv.lock")
         subprocess.run([Path(uv).absolute(), "lock", *extra], cwd=folder, check=True)
         text = (Path(folder) / "uv.lock").read_text(encoding="utf-8")
-    LOCK.write_text(without_addresses(text), encoding="utf-8")
+    LOCK.write_text(remove_addresses(text), encoding="utf-8")
 
 
 def main() -> int:
@@ -95,7 +95,7 @@ def main() -> int:
     if action == "update":
         update(extra)
     elif action == "constraints":
-        sys.stdout.write(constraints(LOCK.read_text(encoding="utf-8")))
+        sys.stdout.write(format_constraints(LOCK.read_text(encoding="utf-8")))
     elif action == "check":
         if "://" in LOCK.read_text(encoding="utf-8"):
             print("uv.lock holds addresses: run `make lock`", file=sys.stderr)

@@ -14,7 +14,7 @@ import sys
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from gazebo_models import MODELS, model_config
+from gazebo_models import MODELS, format_model_config
 from gazebo_sdf import (
     BLACK,
     BLUE,
@@ -58,7 +58,7 @@ GROUND = """\
       </link>
     </model>"""
 
-AROUND = """\
+PHYSICS_AND_SCENE = """\
     <physics type="ode">
       <max_step_size>0.001</max_step_size>
       <real_time_factor>1</real_time_factor>
@@ -86,14 +86,17 @@ AROUND = """\
     </light>"""
 
 
-def world(name: str, things: Sequence[Model | Include]) -> str:
+def world(name: str, objects: Sequence[Model | Include]) -> str:
     """Return a world with ground, light and the given objects."""
-    parts = [AROUND, GROUND, *(thing.xml() for thing in things)]
+    parts = [PHYSICS_AND_SCENE, GROUND, *(thing.xml() for thing in objects)]
     return sdf(f'  <world name="{name}">\n\n' + "\n\n".join(parts) + "\n\n  </world>")
 
 
 def wall(name: str, start: Point, end: Point, height: float, thickness: float) -> Part:
-    """Return a wall between two points on the ground, which extends beyond both by half its thickness."""
+    """Return a wall between two points on the ground.
+
+    It extends beyond both by half its thickness.
+    """
     length = math.dist(start, end) + thickness
     pose = Pose(
         (start[0] + end[0]) / 2, (start[1] + end[1]) / 2, height / 2, math.atan2(end[1] - start[1], end[0] - start[0])
@@ -103,18 +106,18 @@ def wall(name: str, start: Point, end: Point, height: float, thickness: float) -
 
 def walls(lines: Iterable[Line], height: float, thickness: float) -> Model:
     """Return all walls of a building as one static model."""
-    parts = [wall(f"wall_{at}", *ends, height, thickness) for at, ends in enumerate(lines, start=1)]
+    parts = [wall(f"wall_{index}", *ends, height, thickness) for index, ends in enumerate(lines, start=1)]
     return Model("walls", parts)
 
 
 def rectangle(left: float, right: float, low: float, high: float) -> list[Line]:
     """Return the four sides of a rectangle in x and y, in meters."""
     corners = [(left, low), (right, low), (right, high), (left, high)]
-    return [(corners[at], corners[(at + 1) % 4]) for at in range(4)]
+    return [(corners[index], corners[(index + 1) % 4]) for index in range(4)]
 
 
 def obstacles() -> list[Model | Include]:
-    """Return a room of 10 m x 8 m with pillars, blocks, a ramp and two crates that can be pushed."""
+    """Return a room of 10 m x 8 m with pillars, blocks, a ramp and two movable crates."""
     blocks = [
         (2.5, 1.5, 0.8, 0.5, 0.6, 0.5, RED),
         (-2.2, 2.4, 1.2, 0.4, 0.8, -0.3, BLUE),
@@ -124,10 +127,12 @@ def obstacles() -> list[Model | Include]:
     ]
     pillars = [(1.0, 2.9), (-1.2, -1.2), (3.2, 2.8), (-3.9, 0.7), (3.4, -2.9)]
     parts = [
-        box(f"block_{at}", (x_size, y_size, tall), Pose(x, y, tall / 2, yaw), color)
-        for at, (x, y, x_size, y_size, tall, yaw, color) in enumerate(blocks, start=1)
+        box(f"block_{index}", (x_size, y_size, tall), Pose(x, y, tall / 2, yaw), color)
+        for index, (x, y, x_size, y_size, tall, yaw, color) in enumerate(blocks, start=1)
     ]
-    parts += [cylinder(f"pillar_{at}", 0.15, 1.2, Pose(x, y, 0.6), GRAY) for at, (x, y) in enumerate(pillars, start=1)]
+    parts += [
+        cylinder(f"pillar_{index}", 0.15, 1.2, Pose(x, y, 0.6), GRAY) for index, (x, y) in enumerate(pillars, start=1)
+    ]
     ramp = box("ramp", (1.2, 0.9, 0.05), Pose(-3.6, 3.0, 0.08, pitch=-0.12), WOOD)
     return [
         walls(rectangle(-5, 5, -4, 4), 1.0, 0.15),
@@ -167,8 +172,8 @@ def house() -> list[Model | Include]:
             box("wash_basin", (0.5, 0.4, 0.8), Pose(4.6, 1.3, 0.40), WHITE),
             box("table_top", (1.0, 1.0, 0.05), Pose(3.0, -2.6, 0.72), WOOD),
             *(
-                cylinder(f"table_leg_{at}", 0.03, 0.70, Pose(3.0 + x, -2.6 + y, 0.35), WOOD)
-                for at, (x, y) in enumerate(((0.45, 0.45), (-0.45, 0.45), (-0.45, -0.45), (0.45, -0.45)), start=1)
+                cylinder(f"table_leg_{index}", 0.03, 0.70, Pose(3.0 + x, -2.6 + y, 0.35), WOOD)
+                for index, (x, y) in enumerate(((0.45, 0.45), (-0.45, 0.45), (-0.45, -0.45), (0.45, -0.45)), start=1)
             ),
         ],
     )
@@ -196,51 +201,53 @@ def maze(size: int = 9, cell: float = 1.1, seed: int = 7) -> list[Model | Includ
 
     The robot starts in one corner and leaves at the opposite one.
     """
-    chance = random.Random(seed)
-    here, seen = (0, 0), {(0, 0)}
-    way, open_between = [here], set()
-    while way:
-        here = way[-1]
-        steps = [(here[0] + dx, here[1] + dy) for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1))]
-        new = [step for step in steps if step not in seen and all(0 <= value < size for value in step)]
-        if not new:
-            way.pop()
+    generator = random.Random(seed)
+    cell_position, visited = (0, 0), {(0, 0)}
+    path, open_between = [cell_position], set()
+    while path:
+        cell_position = path[-1]
+        steps = [(cell_position[0] + dx, cell_position[1] + dy) for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+        unvisited = [step for step in steps if step not in visited and all(0 <= value < size for value in step)]
+        if not unvisited:
+            path.pop()
             continue
-        chosen = new[int(chance.random() * len(new))]
-        open_between |= {(here, chosen), (chosen, here)}
-        seen.add(chosen)
-        way.append(chosen)
+        next_position = unvisited[int(generator.random() * len(unvisited))]
+        open_between |= {(cell_position, next_position), (next_position, cell_position)}
+        visited.add(next_position)
+        path.append(next_position)
     lines: list[Line] = []
     for line in range(size + 1):
         # Walls along x below row `line`, and along y left of column `line`; the exit is the right side of the last
         # cell.
-        below = [((at, line - 1), (at, line)) not in open_between for at in range(size)]
-        left = [((line - 1, at), (line, at)) not in open_between for at in range(size)]
+        has_wall_below = [((index, line - 1), (index, line)) not in open_between for index in range(size)]
+        has_wall_left = [((line - 1, index), (line, index)) not in open_between for index in range(size)]
         if line == size:
-            left[-1] = False
-        lines += [((low, fixed), (high, fixed)) for fixed, low, high in _runs(line, below, cell)]
-        lines += [((fixed, low), (fixed, high)) for fixed, low, high in _runs(line, left, cell)]
+            has_wall_left[-1] = False
+        lines += [((low, fixed), (high, fixed)) for fixed, low, high in _iterate_wall_spans(line, has_wall_below, cell)]
+        lines += [((fixed, low), (fixed, high)) for fixed, low, high in _iterate_wall_spans(line, has_wall_left, cell)]
     finish = box("finish", (0.9, 0.9, 0.002), Pose(size * cell, (size - 1) * cell, 0.001), GREEN, solid=False)
     return [walls(lines, 0.6, 0.08), Model("finish", [finish])]
 
 
-def _runs(line: int, closed: Sequence[bool], cell: float) -> Iterator[tuple[float, float, float]]:
+def _iterate_wall_spans(line: int, closed: Sequence[bool], cell: float) -> Iterator[tuple[float, float, float]]:
     """Yield the position of a grid line, and the start and end of each of its walls, in meters.
 
     Cell 0 is centered at 0.
     """
     start = None
-    for at, wanted in enumerate([*closed, False]):
-        if wanted:
-            start = at if start is None else start
+    for index, is_wall in enumerate([*closed, False]):
+        if is_wall:
+            start = index if start is None else start
         elif start is not None:
-            yield (line - 0.5) * cell, (start - 0.5) * cell, (at - 0.5) * cell
+            yield (line - 0.5) * cell, (start - 0.5) * cell, (index - 0.5) * cell
             start = None
 
 
 def playground() -> list[Model | Include]:
     """Return a yard with objects to detect: a slalom of cones, balls, crates, people and signs."""
-    slalom = [Include("traffic_cone", f"cone_{at}", Pose(1.5 + 1.2 * at, 0.35 * (-1) ** at)) for at in range(1, 5)]
+    slalom = [
+        Include("traffic_cone", f"cone_{index}", Pose(1.5 + 1.2 * index, 0.35 * (-1) ** index)) for index in range(1, 5)
+    ]
     colored = [
         Model(
             f"{word}_ball",
@@ -278,18 +285,21 @@ def playground() -> list[Model | Include]:
 
 
 def line_track(steps: int = 120) -> list[Model | Include]:
-    """Return a closed black line of 5 cm on a white floor, along x at the origin, with two cones beside it."""
+    """Return a closed black line of 5 cm on a white floor, with two cones beside it.
 
-    def point(at: int) -> Point:
-        t = 2 * math.pi * at / steps
+    At the origin, the line is along x.
+    """
+
+    def point(index: int) -> Point:
+        t = 2 * math.pi * index / steps
         return 3.0 * math.sin(t), 1.6 * (1 - math.cos(t)) + 0.35 * (math.cos(3 * t) - 1)
 
     pieces = []
-    for at in range(steps):
-        (x, y), (next_x, next_y) = point(at), point(at + 1)
+    for index in range(steps):
+        (x, y), (next_x, next_y) = point(index), point(index + 1)
         length = math.dist((x, y), (next_x, next_y)) + 0.01
         pose = Pose((x + next_x) / 2, (y + next_y) / 2, 0.003, math.atan2(next_y - y, next_x - x))
-        pieces.append(box(f"piece_{at + 1}", (length, 0.05, 0.002), pose, BLACK, solid=False))
+        pieces.append(box(f"piece_{index + 1}", (length, 0.05, 0.002), pose, BLACK, solid=False))
     floor = box("floor", (8.0, 6.0, 0.002), Pose(0, 1.6, 0.001), WHITE, solid=False)
     return [
         Model("floor", [floor]),
@@ -314,7 +324,7 @@ def generate() -> dict[str, str]:
     files = {f"worlds/{name}.world": world(name, make()) for name, make in WORLDS.items()}
     for name, (make, description) in MODELS.items():
         model, meshes = make()
-        files[f"models/{name}/model.config"] = model_config(name, description)
+        files[f"models/{name}/model.config"] = format_model_config(name, description)
         files[f"models/{name}/model.sdf"] = sdf(model.xml("  "))
         files |= {f"models/{name}/meshes/{file}": text for file, text in meshes.items()}
     return files

@@ -1,4 +1,4 @@
-"""Write the mesh of the Kinect that mbot carries: ``robots/my_robot_description/meshes/kinect.dae``.
+"""Write ``robots/my_robot_description/meshes/kinect.dae``, the mesh of mbot's Kinect.
 
 Usage: python tools/make_kinect_mesh.py [--check]
 
@@ -112,33 +112,35 @@ def loft(rings: Sequence[Sequence[Vector]]) -> list[Triangle]:
     count = len(rings[0])
     for lower, upper in pairwise(rings):
         faces = []
-        for at in range(count):
-            after = (at + 1) % count
-            faces.append(unit(cross(subtract(lower[after], lower[at]), subtract(upper[at], lower[at]))))
-        for at in range(count):
-            after = (at + 1) % count
-            here = smooth(faces[at - 1], faces[at], faces[at])
-            there = smooth(faces[at], faces[after], faces[at])
-            triangles.append(Triangle((lower[at], lower[after], upper[after]), (here, there, there)))
-            triangles.append(Triangle((lower[at], upper[after], upper[at]), (here, there, here)))
-    return triangles + cap(list(reversed(rings[0]))) + cap(list(rings[-1]))
+        for index in range(count):
+            next_index = (index + 1) % count
+            faces.append(unit(cross(subtract(lower[next_index], lower[index]), subtract(upper[index], lower[index]))))
+        for index in range(count):
+            next_index = (index + 1) % count
+            normal = smooth_normal(faces[index - 1], faces[index], faces[index])
+            next_normal = smooth_normal(faces[index], faces[next_index], faces[index])
+            triangles.append(
+                Triangle((lower[index], lower[next_index], upper[next_index]), (normal, next_normal, next_normal))
+            )
+            triangles.append(Triangle((lower[index], upper[next_index], upper[index]), (normal, next_normal, normal)))
+    return triangles + make_cap(list(reversed(rings[0]))) + make_cap(list(rings[-1]))
 
 
-def smooth(a: Vector, b: Vector, face: Vector) -> Vector:
-    """Return the mean normal of two faces that meet at less than 30 degrees, otherwise the normal of the face."""
+def smooth_normal(a: Vector, b: Vector, face: Vector) -> Vector:
+    """Return the mean normal of two faces that meet at less than 30 degrees, else the face's."""
     if sum(x * y for x, y in zip(a, b, strict=True)) < math.cos(math.radians(30)):
         return face
     return unit((a[0] + b[0], a[1] + b[1], a[2] + b[2]))
 
 
-def cap(ring: list[Vector]) -> list[Triangle]:
+def make_cap(ring: list[Vector]) -> list[Triangle]:
     """Return a flat, convex end: a fan over a ring that is counterclockwise from outside."""
     normal = unit(cross(subtract(ring[1], ring[0]), subtract(ring[2], ring[0])))
     normals = (normal, normal, normal)
-    return [Triangle((ring[0], ring[at], ring[at + 1]), normals) for at in range(1, len(ring) - 1)]
+    return [Triangle((ring[0], ring[index], ring[index + 1]), normals) for index in range(1, len(ring) - 1)]
 
 
-def body() -> Part:
+def make_body() -> Part:
     """Return the long shell: a rounded profile, extruded along x and beveled at both ends."""
     middle_y, middle_z = sum(BODY_Y) / 2, sum(BODY_Z) / 2
     rings = []
@@ -149,7 +151,7 @@ def body() -> Part:
     return Part("body", SHELL, loft(rings))
 
 
-def foot() -> Part:
+def make_foot() -> Part:
     """Return the stand: a neck that widens to the base, with its upper end inside the body."""
     rings = []
     for z, width, depth in (
@@ -163,7 +165,7 @@ def foot() -> Part:
     return Part("foot", FOOT, loft(rings))
 
 
-def lens(name: str, material: Material, x: float, radius: float, front: float = LENS_FRONT) -> Part:
+def make_lens(name: str, material: Material, x: float, radius: float, front: float = LENS_FRONT) -> Part:
     """Return a round window in the front: a short cylinder along -y with a beveled rim."""
     z = sum(BODY_Z) / 2
     rings = []
@@ -173,25 +175,25 @@ def lens(name: str, material: Material, x: float, radius: float, front: float = 
     return Part(name, material, loft(rings))
 
 
-def kinect() -> list[Part]:
+def make_kinect() -> list[Part]:
     """Return all parts, in the order of the file."""
     return [
-        body(),
-        foot(),
-        lens("emitter", EMITTER, -0.068, 0.0085),
-        lens("color_lens", LENS, 0.0, 0.0085),
-        lens("depth_lens", LENS, 0.030, 0.0085),
-        lens("led", LED, -0.026, 0.0025, front=LENS_FRONT + 0.0005),
+        make_body(),
+        make_foot(),
+        make_lens("emitter", EMITTER, -0.068, 0.0085),
+        make_lens("color_lens", LENS, 0.0, 0.0085),
+        make_lens("depth_lens", LENS, 0.030, 0.0085),
+        make_lens("led", LED, -0.026, 0.0025, front=LENS_FRONT + 0.0005),
     ]
 
 
-def number(value: float) -> str:
+def format_number(value: float) -> str:
     """Return a number with at most six decimal places, without negative zero."""
     text = f"{value:.6f}".rstrip("0").rstrip(".")
     return "0" if text in ("-0", "") else text
 
 
-def effect(material: Material) -> str:
+def format_effect(material: Material) -> str:
     """Return the COLLADA effect of a material, with Phong shading."""
     rows = []
     for tag, color in (
@@ -199,14 +201,14 @@ def effect(material: Material) -> str:
         ("diffuse", material.diffuse),
         ("specular", material.specular),
     ):
-        rows.append(f"          <{tag}><color>{' '.join(map(number, color))} 1</color></{tag}>")
+        rows.append(f"          <{tag}><color>{' '.join(map(format_number, color))} 1</color></{tag}>")
     return "\n".join(
         [
             f'    <effect id="{material.name}-effect">',
             "      <profile_COMMON>",
             '        <technique sid="common"><phong>',
             *rows,
-            f"          <shininess><float>{number(material.shininess)}</float></shininess>",
+            f"          <shininess><float>{format_number(material.shininess)}</float></shininess>",
             "        </phong></technique>",
             "      </profile_COMMON>",
             "    </effect>",
@@ -214,9 +216,9 @@ def effect(material: Material) -> str:
     )
 
 
-def source(identifier: str, vectors: Sequence[Vector]) -> str:
+def format_source(identifier: str, vectors: Sequence[Vector]) -> str:
     """Return a COLLADA source of x, y, z triples, one per line."""
-    rows = "\n".join("          " + " ".join(map(number, vector)) for vector in vectors)
+    rows = "\n".join("          " + " ".join(map(format_number, vector)) for vector in vectors)
     accessor = f'<accessor source="#{identifier}-array" count="{len(vectors)}" stride="3">'
     return "\n".join(
         [
@@ -232,24 +234,27 @@ def source(identifier: str, vectors: Sequence[Vector]) -> str:
     )
 
 
-def geometry(part: Part) -> str:
-    """Return the COLLADA geometry of a part, in which equal points and equal normals are written once."""
+def format_geometry(part: Part) -> str:
+    """Return the COLLADA geometry of a part.
+
+    Equal points and equal normals are written once.
+    """
     positions: dict[Vector, int] = {}
     normals: dict[Vector, int] = {}
     indices = []
     for triangle in part.triangles:
         for corner, normal in zip(triangle.corners, triangle.normals, strict=True):
-            at = positions.setdefault(rounded(corner), len(positions))
-            facing = normals.setdefault(rounded(normal), len(normals))
-            indices.append(f"{at} {facing}")
+            point_index = positions.setdefault(round_vector(corner), len(positions))
+            facing = normals.setdefault(round_vector(normal), len(normals))
+            indices.append(f"{point_index} {facing}")
     rows = "\n".join("          " + "  ".join(indices[start : start + 3]) for start in range(0, len(indices), 3))
     name = part.name
     return "\n".join(
         [
             f'    <geometry id="{name}-mesh" name="{name}">',
             "      <mesh>",
-            source(f"{name}-positions", list(positions)),
-            source(f"{name}-normals", list(normals)),
+            format_source(f"{name}-positions", list(positions)),
+            format_source(f"{name}-normals", list(normals)),
             f'        <vertices id="{name}-vertices">',
             f'          <input semantic="POSITION" source="#{name}-positions"/>',
             "        </vertices>",
@@ -266,12 +271,12 @@ def geometry(part: Part) -> str:
     )
 
 
-def rounded(vector: Vector) -> Vector:
+def round_vector(vector: Vector) -> Vector:
     """Return a vector rounded as in the file; adding zero turns -0.0 into 0.0."""
     return (round(vector[0], 6) + 0.0, round(vector[1], 6) + 0.0, round(vector[2], 6) + 0.0)
 
 
-def node(part: Part) -> str:
+def format_node(part: Part) -> str:
     """Return the node of a part in the scene."""
     name, material = part.name, part.material.name
     return "\n".join(
@@ -287,7 +292,7 @@ def node(part: Part) -> str:
 
 def generate() -> str:
     """Return the text of the file."""
-    parts = kinect()
+    parts = make_kinect()
     materials = list(dict.fromkeys(part.material for part in parts))
     # COLLADA requires both dates; they are fixed, so that the file depends only on this program.
     return "\n".join(
@@ -303,7 +308,7 @@ def generate() -> str:
             "    <up_axis>Z_UP</up_axis>",
             "  </asset>",
             "  <library_effects>",
-            *map(effect, materials),
+            *map(format_effect, materials),
             "  </library_effects>",
             "  <library_materials>",
             *(
@@ -312,11 +317,11 @@ def generate() -> str:
             ),
             "  </library_materials>",
             "  <library_geometries>",
-            *map(geometry, parts),
+            *map(format_geometry, parts),
             "  </library_geometries>",
             "  <library_visual_scenes>",
             '    <visual_scene id="scene" name="kinect">',
-            *map(node, parts),
+            *map(format_node, parts),
             "    </visual_scene>",
             "  </library_visual_scenes>",
             '  <scene><instance_visual_scene url="#scene"/></scene>',

@@ -1,4 +1,4 @@
-"""Write the table of the parameters of Linkwright's nodes and their plugins, for the language server.
+"""Write the table of parameters of nodes and plugins, for the language server.
 
 Most nodes declare their parameters in code. Each node is therefore started in a graph without a network, with each type
 of plugins that it loads, and its declarations are recorded, with the descriptions of the tables that it reads.
@@ -32,8 +32,8 @@ from linkwright.nodes import parameter_tables
 from linkwright.nodes.options import EXECUTABLES, NodeOptions
 
 ROOT = Path(__file__).resolve().parent.parent
-TEXTS = ROOT / "tools" / "node_parameters.toml"
-LIST = ROOT / "src" / "linkwright" / "language" / "node_parameters.json"
+TEXTS_FILE = ROOT / "tools" / "node_parameters.toml"
+TABLE_FILE = ROOT / "src" / "linkwright" / "language" / "node_parameters.json"
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
@@ -43,10 +43,10 @@ _RECORD = re.compile(r"\{\s+([^{}]*?)\s+\}")
 _SENSOR = re.compile(r"^(odom|imu|pose|twist)\d")
 _PLUGIN, _ITEM, _PART = "THE_PLUGIN", "THE_ITEM", "THE_PART"
 _ROBOT = '<robot name="r"><link name="base_link"/></robot>'
-_LEFT_OUT = ("cam2image", "teleop_twist_keyboard", "rmw_zenohd", "_node.py", "static_transform_publisher")
-_PACKAGES_LEFT_OUT = ("gazebo_ros", "ros_gz_", "ros_ign_", "audio_", "demo_nodes", "tf2_tools", "my_robot_voice")
-_EVERYWHERE = ("use_sim_time", "qos_overrides", "start_type_description_service", "strict_callback_groups")
-_NEEDED: Mapping[str, dict[str, Any]] = {
+_EXCLUDED_EXECUTABLES = ("cam2image", "teleop_twist_keyboard", "rmw_zenohd", "_node.py", "static_transform_publisher")
+_EXCLUDED_PACKAGES = ("gazebo_ros", "ros_gz_", "ros_ign_", "audio_", "demo_nodes", "tf2_tools", "my_robot_voice")
+_COMMON_PARAMETERS = ("use_sim_time", "qos_overrides", "start_type_description_service", "strict_callback_groups")
+_REQUIRED_PARAMETERS: Mapping[str, dict[str, Any]] = {
     "ekf_node": {f"{name}{number}": "a" for name in ("odom", "imu", "pose", "twist") for number in range(2)},
     "ukf_node": {f"{name}{number}": "a" for name in ("odom", "imu", "pose", "twist") for number in range(2)},
     "lifecycle_manager": {"node_names": ["a"]},
@@ -66,10 +66,10 @@ _NEEDED: Mapping[str, dict[str, Any]] = {
 """The parameters without which a node does not start, by executable."""
 
 
-def _zones() -> Iterator[dict[str, Any]]:
-    """Yield the parameters of a collision monitor with one zone or one sensor, for each of their types."""
+def _iterate_zone_parameters() -> Iterator[dict[str, Any]]:
+    """Yield the parameters of a collision monitor with one zone or sensor, for each type."""
     points = "[[0.1, 0.1], [0.1, -0.1], [-0.1, 0.0]]"
-    for kind, action in product(collision_zones._TYPES, collision_zones._ACTIONS):
+    for kind, action in product(collision_zones._ZONE_TYPES, collision_zones._ACTIONS):
         zone = {"type": kind, "action_type": action, "points": points, "radius": 0.1, "visualize": True}
         zone |= {"velocity_polygons": [_PART]} if kind == "velocity_polygon" else {}
         zone |= {f"{_PART}.points": points}
@@ -78,17 +78,17 @@ def _zones() -> Iterator[dict[str, Any]]:
         yield {"observation_sources": [_ITEM], f"{_ITEM}.type": kind}
 
 
-_VARIANTS: Mapping[str, list[dict[str, Any]]] = {"collision_monitor": [*_zones()]}
+_VARIANTS: Mapping[str, list[dict[str, Any]]] = {"collision_monitor": [*_iterate_zone_parameters()]}
 """Several sets of parameters with which a node is started, by executable."""
 
 
-def _layer_types() -> list[str]:
+def _list_layer_types() -> list[str]:
     names = ("StaticLayer", "ObstacleLayer", "VoxelLayer", "InflationLayer", "DenoiseLayer", "RangeSensorLayer")
     return [*dict.fromkeys((*costmap_layers.DEFAULT_LAYERS.values(), *(f"nav2_costmap_2d::{name}" for name in names)))]
 
 
-def _plugins() -> Iterator[tuple[str, str, str, str]]:
-    """Yield the executable, the node, the parameter that lists plugins, and the type of each plugin."""
+def _iterate_plugins() -> Iterator[tuple[str, str, str, str]]:
+    """Yield the executable, the node, the parameter that lists plugins, and each plugin's type."""
     for kind in _FOLLOWERS:
         yield "controller_server", "controller_server", "controller_plugins", kind
     for kind in ("SimpleGoalChecker", "StoppedGoalChecker"):
@@ -106,7 +106,7 @@ def _plugins() -> Iterator[tuple[str, str, str, str]]:
         "waypoint_task_executor_plugin",
         "nav2_waypoint_follower/WaitAtWaypoint",
     )
-    for kind in _layer_types():
+    for kind in _list_layer_types():
         yield "controller_server", "local_costmap", "plugins", kind
 
 
@@ -115,7 +115,7 @@ Declarations = dict[str, dict[str, dict[str, Any]]]
 
 
 @contextmanager
-def _recording(declarations: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
+def _record_declarations(declarations: Declarations, given: Mapping[str, Any]) -> Iterator[None]:
     """Record the parameters that nodes declare; given values are not recorded as defaults."""
     start, declare, read = NodeParameters.__init__, ParameterStore.declare, parameter_tables._Reader.read
     owners: dict[int, str] = {}
@@ -143,8 +143,8 @@ def _recording(declarations: Declarations, given: Mapping[str, Any]) -> Iterator
         yield
     for store, name, default, descriptor in declared:
         owner = owners[id(store)]
-        if not name.startswith(_EVERYWHERE):
-            record = _record(default, descriptor, tables.get((owner, name)))
+        if not name.startswith(_COMMON_PARAMETERS):
+            record = _make_record(default, descriptor, tables.get((owner, name)))
             if record.get("default") == _ITEM or (name in given and record.get("default") == given[name]):
                 del record["default"]
             listing = [key for key, value in given.items() if value == [_ITEM]]
@@ -154,12 +154,12 @@ def _recording(declarations: Declarations, given: Mapping[str, Any]) -> Iterator
     # parameters of one distribution, which are not declared in the other one
     for (owner, name), entry in tables.items():
         if "*" not in name:
-            declarations.setdefault(owner, {}).setdefault(name, _record(entry.default, None, entry))
+            declarations.setdefault(owner, {}).setdefault(name, _make_record(entry.default, None, entry))
 
 
-def _record(default: Any, descriptor: Any, entry: parameter_tables.TableEntry | None) -> dict[str, Any]:
+def _make_record(default: Any, descriptor: Any, entry: parameter_tables.TableEntry | None) -> dict[str, Any]:
     """Return the type, default and description of a parameter, without unknown entries."""
-    kind = default if isinstance(default, ParameterType) else ParameterType.from_parameter_value(_listed(default))
+    kind = default if isinstance(default, ParameterType) else ParameterType.from_parameter_value(_format_list(default))
     if kind is ParameterType.NOT_SET and descriptor is not None and descriptor.type:
         kind = ParameterType(descriptor.type)
     if entry is not None:
@@ -168,27 +168,27 @@ def _record(default: Any, descriptor: Any, entry: parameter_tables.TableEntry | 
         kind = ParameterType.STRING_ARRAY  # the type of an empty list is unknown
     record: dict[str, Any] = {"type": kind.name.lower().replace("not_set", "")}
     if default is not None and not isinstance(default, ParameterType):
-        record["default"] = _plain(default)
+        record["default"] = _to_json_value(default)
     description = getattr(descriptor, "description", "") or (entry.description if entry else "")
     record |= {"description": description} if description else {}
     record |= {"choices": list(entry.choices)} if entry and entry.choices else {}
     return record
 
 
-def _listed(value: Any) -> Any:
+def _format_list(value: Any) -> Any:
     return list(value) if isinstance(value, tuple) else value
 
 
-def _plain(value: Any) -> Any:
+def _to_json_value(value: Any) -> Any:
     """Return a value for JSON; infinity and NaN, which JSON lacks, become texts as in YAML."""
     if isinstance(value, (list, tuple)):
-        return [_plain(item) for item in value]
+        return [_to_json_value(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):
         return f"{'-' if value < 0 else ''}.{'nan' if math.isnan(value) else 'inf'}"
     return value
 
 
-def _start(executable: tuple[str, str], parameters: Mapping[str, Any], others: ParameterRules) -> None:
+def _start_node(executable: tuple[str, str], parameters: Mapping[str, Any], others: ParameterRules) -> None:
     """Start a node, configure it, and close it, ignoring errors after the declarations."""
     options = NodeOptions(parameters=dict(parameters), parameters_of_others=others, output=lambda _: None)
     running = None
@@ -201,49 +201,57 @@ def _start(executable: tuple[str, str], parameters: Mapping[str, Any], others: P
             running.close()
 
 
-def _nodes() -> Declarations:
+def _record_nodes() -> Declarations:
     declarations: Declarations = {}
     for package, executable in EXECUTABLES:
-        if not executable.endswith(_LEFT_OUT) and not package.startswith(_PACKAGES_LEFT_OUT):
-            for given in _VARIANTS.get(executable) or [_NEEDED.get(executable, {})]:
-                with _recording(declarations, given):
-                    _start((package, executable), given, ParameterRules())
-    return {node: _without_plugins(declarations[node]) for node in sorted(declarations) if declarations[node]}
+        if not executable.endswith(_EXCLUDED_EXECUTABLES) and not package.startswith(_EXCLUDED_PACKAGES):
+            for parameters in _VARIANTS.get(executable) or [_REQUIRED_PARAMETERS.get(executable, {})]:
+                with _record_declarations(declarations, parameters):
+                    _start_node((package, executable), parameters, ParameterRules())
+    return {node: _remove_plugin_parameters(declarations[node]) for node in sorted(declarations) if declarations[node]}
 
 
-def _without_plugins(parameters: Mapping[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
-    """Return the parameters of a node without the parameters of default plugins, which a file may replace."""
+def _remove_plugin_parameters(parameters: Mapping[str, dict[str, Any]]) -> dict[str, dict[str, Any]]:
+    """Return the parameters of a node without those of default plugins.
+
+    A file may replace default plugins.
+    """
     plugins = tuple(name.removesuffix("plugin") for name in parameters if name.endswith(".plugin"))
     return {
         name: record for name, record in parameters.items() if not name.startswith(plugins) or name.endswith(".plugin")
     }
 
 
-def _plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
+def _iterate_plugin_tables() -> Iterator[tuple[str, dict[str, Any]]]:
     """Yield the type of each plugin, the nodes and parameters that list it, and its parameters."""
-    for executable, node, listed, kind in _plugins():
-        names: Any = _PLUGIN if listed.endswith("_plugin") else [_PLUGIN]
-        given = {listed: names, f"{_PLUGIN}.plugin": kind}
-        others = ParameterRules()
+    for executable, node, list_parameter, kind in _iterate_plugins():
+        names: Any = _PLUGIN if list_parameter.endswith("_plugin") else [_PLUGIN]
+        parameter_values = {list_parameter: names, f"{_PLUGIN}.plugin": kind}
+        rules = ParameterRules()
         if node != executable:
-            given[f"{_PLUGIN}.observation_sources"] = _ITEM
-            for name, value in given.items():
-                others.set(f"/{node}/{node}", name, value)
+            parameter_values[f"{_PLUGIN}.observation_sources"] = _ITEM
+            for name, value in parameter_values.items():
+                rules.set(f"/{node}/{node}", name, value)
         package = next(package for package, name in EXECUTABLES if name == executable)
         declarations: Declarations = {}
-        with _recording(declarations, given):
-            _start((package, executable), {} if node != executable else given, others)
-        own = declarations[node]
-        names_of_plugin = [name for name in own if name.startswith(f"{_PLUGIN}.")]
-        parameters = {name.removeprefix(f"{_PLUGIN}.").replace(_ITEM, "*"): own[name] for name in names_of_plugin}
+        with _record_declarations(declarations, parameter_values):
+            _start_node((package, executable), {} if node != executable else parameter_values, rules)
+        node_parameters = declarations[node]
+        names_of_plugin = [name for name in node_parameters if name.startswith(f"{_PLUGIN}.")]
+        parameters = {
+            name.removeprefix(f"{_PLUGIN}.").replace(_ITEM, "*"): node_parameters[name] for name in names_of_plugin
+        }
         parameters.pop("plugin", None)
         for name, record in parameters.items():
             record |= {"keys": ["observation_sources"]} if "*" in name else {}
-        yield kind, {"node": node, "listed": listed, "parameters": parameters}
+        yield kind, {"node": node, "listed": list_parameter, "parameters": parameters}
 
 
-def _describe(owner: str, parameters: dict[str, dict[str, Any]], texts: Mapping[str, Any]) -> None:
-    """Add the descriptions in the file to parameters without one, and the parameters that are only in the file."""
+def _add_descriptions(owner: str, parameters: dict[str, dict[str, Any]], texts: Mapping[str, Any]) -> None:
+    """Add the descriptions in the file to parameters without one.
+
+    Parameters that are only in the file are added, too.
+    """
     groups = {
         "COSTMAP": owner.endswith("_costmap"),
         "ROBOT_LOCALIZATION": owner.endswith(("kf_filter_node",)),
@@ -270,16 +278,16 @@ def _describe(owner: str, parameters: dict[str, dict[str, Any]], texts: Mapping[
         record |= choices if "type" not in choices else {}
 
 
-async def _table() -> str:
-    texts = tomllib.loads(TEXTS.read_text(encoding="utf-8"))
-    nodes = _nodes()
+async def _format_table() -> str:
+    texts = tomllib.loads(TEXTS_FILE.read_text(encoding="utf-8"))
+    nodes = _record_nodes()
     nodes.setdefault("controller_manager", {})
-    plugins = dict(_plugin_tables())
+    plugins = dict(_iterate_plugin_tables())
     for owner, parameters in nodes.items():
-        _describe(owner, parameters, texts)
+        _add_descriptions(owner, parameters, texts)
     for owner, plugin in plugins.items():
         plugin["purpose"] = texts["PLUGINS"][owner]
-        _describe(owner, plugin["parameters"], texts)
+        _add_descriptions(owner, plugin["parameters"], texts)
     content = {"nodes": nodes, "plugins": plugins}
     text = json.dumps(content, indent=1, ensure_ascii=False).replace(_ITEM, "*").replace(_PART, "*")
     return _RECORD.sub(lambda match: "{" + " ".join(match[1].split()) + "}", text) + "\n"
@@ -288,13 +296,13 @@ async def _table() -> str:
 def main(words: list[str]) -> int:
     """Write the table, or check it, and return the exit status."""
     with redirect_stderr(StringIO()), redirect_stdout(StringIO()):  # the logs of the nodes
-        text = asyncio.run(_table())
+        text = asyncio.run(_format_table())
     if words == ["--check"]:
-        if LIST.read_text(encoding="utf-8") == text:
+        if TABLE_FILE.read_text(encoding="utf-8") == text:
             return 0
-        print(f"{LIST.relative_to(ROOT)} is stale: run `python tools/node_parameters.py`", file=sys.stderr)
+        print(f"{TABLE_FILE.relative_to(ROOT)} is stale: run `python tools/node_parameters.py`", file=sys.stderr)
         return 1
-    LIST.write_text(text, encoding="utf-8")
+    TABLE_FILE.write_text(text, encoding="utf-8")
     return 0
 
 

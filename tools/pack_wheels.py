@@ -15,62 +15,69 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from linkwright.learning.packing.locked_files import OWN_PACKAGES, TABLE, wheel_rank
+from linkwright.learning.packing.locked_files import OWN_PACKAGES, TABLE_FILE, rank_wheel
 from linkwright.learning.packing.targets import SYSTEMS, Target, select_targets
 
 ROOT = Path(__file__).resolve().parent.parent
 LOCK = ROOT / "uv.lock"
-OMITTED = {"parquet", "ray", "train"}
+OMITTED_EXTRAS = {"parquet", "ray", "train"}
 """The extras that packs do not offer: they are for computers with a network, and larger than all others together."""
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 Package = dict[str, Any]
 
 
-def table(lock: str) -> str:
+def format_table(lock: str) -> str:
     """Return the text of the table."""
     by_name: dict[str, list[Package]] = {}
     for package in tomllib.loads(lock)["package"]:
         by_name.setdefault(package["name"], []).append(package)
     targets = select_targets(tuple(SYSTEMS), ())
-    (ours,) = by_name["linkwright"]
-    extras = sorted(set(ours["optional-dependencies"]) - OMITTED)
+    (linkwright,) = by_name["linkwright"]
+    extras = sorted(set(linkwright["optional-dependencies"]) - OMITTED_EXTRAS)
     rows: dict[str, Any] = {}
-    queue = [(ours, ""), *((ours, extra) for extra in extras)]
+    queue = [(linkwright, ""), *((linkwright, extra) for extra in extras)]
     while queue:
         package, extra = queue.pop(0)
-        row = rows.setdefault(_key(package), {"needs": [], "files": _files(package, targets)})
-        listed = row["needs"] if not extra else row.setdefault("extras", {}).setdefault(extra, [])
-        if listed:
+        row = rows.setdefault(_make_key(package), {"needs": [], "files": _list_files(package, targets)})
+        listed_edges = row["needs"] if not extra else row.setdefault("extras", {}).setdefault(extra, [])
+        if listed_edges:
             continue
         edges = (
             package.get("dependencies", ()) if not extra else package.get("optional-dependencies", {}).get(extra, ())
         )
         for edge in edges:
-            needed = _package(edge, by_name)
-            listed.append(_edge(edge, needed))
-            queue += [(needed, name) for name in ("", *edge.get("extra", ())) if not _has(rows, needed, name)]
-    return "{\n" + ",\n".join(f"{json.dumps(key)}: {_row(rows[key])}" for key in sorted(rows)) + "\n}\n"
+            needed_package = _find_package(edge, by_name)
+            listed_edges.append(_make_edge(edge, needed_package))
+            queue += [
+                (needed_package, name)
+                for name in ("", *edge.get("extra", ()))
+                if not _has_row(rows, needed_package, name)
+            ]
+    return "{\n" + ",\n".join(f"{json.dumps(key)}: {_format_row(rows[key])}" for key in sorted(rows)) + "\n}\n"
 
 
-def _row(row: Mapping[str, Any]) -> str:
+def _format_row(row: Mapping[str, Any]) -> str:
     """Return the JSON of a package, with a line for each file, so that changes can be read."""
     files = ",\n  ".join(json.dumps(file) for file in row["files"])
     rest = {key: value for key, value in row.items() if key != "files" and (value or key == "extras")}
     return json.dumps(rest)[:-1] + (", " if rest else "") + f'"files": [{files}]}}'
 
 
-def _key(package: Package) -> str:
+def _make_key(package: Package) -> str:
     return package["name"] if package["name"] in OWN_PACKAGES else f"{package['name']} {package['version']}"
 
 
-def _has(rows: Mapping[str, Any], package: Package, extra: str) -> bool:
-    row = rows.get(_key(package))
+def _has_row(rows: Mapping[str, Any], package: Package, extra: str) -> bool:
+    row = rows.get(_make_key(package))
     return row is not None and (not extra or extra in row.get("extras", {}))
 
 
-def _package(edge: Mapping[str, Any], by_name: Mapping[str, list[Package]]) -> Package:
-    """Return the package that an edge names; the lock file states the version if there are several."""
+def _find_package(edge: Mapping[str, Any], by_name: Mapping[str, list[Package]]) -> Package:
+    """Return the package that an edge names.
+
+    The lock file states the version if there are several.
+    """
     (package,) = [
         package
         for package in by_name[edge["name"]]
@@ -79,8 +86,8 @@ def _package(edge: Mapping[str, Any], by_name: Mapping[str, list[Package]]) -> P
     return package
 
 
-def _edge(edge: Mapping[str, Any], needed: Package) -> dict[str, Any]:
-    row: dict[str, Any] = {"key": _key(needed)}
+def _make_edge(edge: Mapping[str, Any], needed: Package) -> dict[str, Any]:
+    row: dict[str, Any] = {"key": _make_key(needed)}
     if "extra" in edge:
         row["extras"] = list(edge["extra"])
     if "marker" in edge:
@@ -88,18 +95,18 @@ def _edge(edge: Mapping[str, Any], needed: Package) -> dict[str, Any]:
     return row
 
 
-def _files(package: Package, targets: list[Target]) -> list[list[Any]]:
+def _list_files(package: Package, targets: list[Target]) -> list[list[Any]]:
     if package["name"] in OWN_PACKAGES:
         return []
     wheels = [
         wheel
         for wheel in package.get("wheels", ())
-        if any(wheel_rank(wheel["path"], target) is not None for target in targets)
+        if any(rank_wheel(wheel["path"], target) is not None for target in targets)
     ]
-    return [list(_file(file)) for file in wheels or [package["sdist"]]]
+    return [list(_iterate_file_values(file)) for file in wheels or [package["sdist"]]]
 
 
-def _file(file: Mapping[str, Any]) -> Iterator[Any]:
+def _iterate_file_values(file: Mapping[str, Any]) -> Iterator[Any]:
     yield file["path"]
     yield file["hash"].removeprefix("sha256:")
     yield file["size"]
@@ -107,13 +114,13 @@ def _file(file: Mapping[str, Any]) -> Iterator[Any]:
 
 def main(words: list[str]) -> int:
     """Write the table, or with ``--check`` report whether it is current."""
-    text = table(LOCK.read_text(encoding="utf-8"))
-    if TABLE.exists() and TABLE.read_text(encoding="utf-8") == text:
+    text = format_table(LOCK.read_text(encoding="utf-8"))
+    if TABLE_FILE.exists() and TABLE_FILE.read_text(encoding="utf-8") == text:
         return 0
     if "--check" in words:
-        print(f"{TABLE} is stale: run python tools/pack_wheels.py", file=sys.stderr)
+        print(f"{TABLE_FILE} is stale: run python tools/pack_wheels.py", file=sys.stderr)
         return 1
-    TABLE.write_text(text, encoding="utf-8", newline="\n")
+    TABLE_FILE.write_text(text, encoding="utf-8", newline="\n")
     return 0
 
 

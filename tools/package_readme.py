@@ -1,4 +1,6 @@
-"""Write the README for a package index, where files of the repository have no address and no checkout is needed.
+"""Write the README for a package index.
+
+There, files of the repository have no address, and no checkout is needed.
 
 Usage: python tools/package_readme.py (prints it)
 """
@@ -14,7 +16,7 @@ _PICTURE = re.compile(r"^!\[[^\]]*\]\((?!https:)[^)]*\)\n\n", re.MULTILINE)
 _LINK = re.compile(r"\[(!\[[^\]]*\]\([^)]*\)|[^\[\]]+)\]\((?!https:)[^)]*\)")
 
 
-_FROM_THE_CHECKOUT = (
+_CHECKOUT_PHRASES = (
     (re.compile(r" +# in a checkout of this repository$", re.MULTILINE), ""),
     (re.compile(r"\binstall \.(?=[`\n])"), "install linkwright"),
     (re.compile(r"\binstall '\.\["), "install 'linkwright["),
@@ -22,18 +24,18 @@ _FROM_THE_CHECKOUT = (
 )
 
 
-def package_readme() -> str:
+def make_package_readme() -> str:
     """Return the README of the repository in the form for a package index."""
-    text = without_relative_links(README.read_text(encoding="utf-8"))
-    for pattern, words in _FROM_THE_CHECKOUT:
+    text = remove_relative_links(README.read_text(encoding="utf-8"))
+    for pattern, words in _CHECKOUT_PHRASES:
         text = pattern.sub(words, text)
     return text
 
 
-def without_relative_links(text: str) -> str:
+def remove_relative_links(text: str) -> str:
     """Return Markdown without relative links, whose words remain, and without relative images."""
     return _LINK.sub(r"\1", _PICTURE.sub("", text))
 
 
 if __name__ == "__main__":
-    print(package_readme(), end="")
+    print(make_package_readme(), end="")

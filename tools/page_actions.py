@@ -1,6 +1,6 @@
-"""Actions in the page of a running command, as a learner does them: for `lesson_pictures.py`.
+"""Actions in the page of a running command, as a learner does them.
 
-An action is a line with a verb first:
+`lesson_pictures.py` uses them. An action is a line with a verb first:
 
 | action | effect |
 | --- | --- |
@@ -111,7 +111,7 @@ def drain(program: subprocess.Popen[str]) -> None:
     threading.Thread(target=lambda: program.stdout and program.stdout.read(), daemon=True).start()
 
 
-def act(page: Page, terminals: Terminals, action: str) -> None:
+def perform_action(page: Page, terminals: Terminals, action: str) -> None:
     """Carry out an action from the table in the module's docstring."""
     verb, _, text = action.partition(" ")
     match verb:
@@ -127,7 +127,9 @@ def act(page: Page, terminals: Terminals, action: str) -> None:
             page.wait_for_function(f"(() => {{ const lw = window.linkwright; return {text}; }})()", timeout=TIMEOUT_MS)
         case "drawn":
             display = f"lw.displays.find((each) => each.name === '{text}')"
-            act(page, terminals, f"until {display}?.status.some((row) => / messages? received/.test(row.text))")
+            perform_action(
+                page, terminals, f"until {display}?.status.some((row) => / messages? received/.test(row.text))"
+            )
         case "panel":
             page.get_by_role("button", name="Panels", exact=True).click()
             page.get_by_role("menuitemcheckbox", name=text, exact=True).click()
@@ -140,13 +142,13 @@ def act(page: Page, terminals: Terminals, action: str) -> None:
         case "set":
             panel, *values = shlex.split(text)
             for name, _, value in (setting.partition("=") for setting in values):
-                _write(_row(page, panel, name), value)
+                _write_value(_find_row(page, panel, name), value)
         case "view":
             kind, *values = shlex.split(text)
             page.get_by_role("tabpanel", name="Views").get_by_label("Type", exact=True).select_option(label=kind)
-            act(page, terminals, f"until lw.view.type === '{kind}'")
+            perform_action(page, terminals, f"until lw.view.type === '{kind}'")
             for name, _, value in (setting.partition("=") for setting in values):
-                _write(_row(page, "Views", name), value)
+                _write_value(_find_row(page, "Views", name), value)
         case "click":
             page.get_by_text(text, exact=True).first.click(timeout=TIMEOUT_MS)
         case "press":
@@ -168,19 +170,19 @@ def _add_display(page: Page, topic: str) -> None:
     page.get_by_role("dialog").wait_for(state="hidden")
 
 
-def _row(page: Page, panel: str, path: str) -> Locator:
-    """Return the row of a property in a tree, such as ``Focal Point/X``, after its parents are unfolded."""
+def _find_row(page: Page, panel: str, path: str) -> Locator:
+    """Unfold the parents of a property such as ``Focal Point/X``, and return its row."""
     tree = page.get_by_role("tree", name=panel).first
     *parents, name = path.split("/")
     for parent in parents:
-        above = tree.get_by_role("treeitem").filter(has=page.get_by_text(parent, exact=True)).first
-        if above.get_attribute("aria-expanded") == "false":
-            above.locator(".twist").click()
+        parent_row = tree.get_by_role("treeitem").filter(has=page.get_by_text(parent, exact=True)).first
+        if parent_row.get_attribute("aria-expanded") == "false":
+            parent_row.locator(".twist").click()
     rows = tree.get_by_role("treeitem").filter(has=page.get_by_text(name, exact=True))
     return rows.filter(has=page.locator("input, select")).last  # a status has a row with the same name
 
 
-def _write(row: Locator, value: str) -> None:
+def _write_value(row: Locator, value: str) -> None:
     row.scroll_into_view_if_needed(timeout=TIMEOUT_MS)
     if value in ("yes", "no"):
         row.locator(".check").set_checked(value == "yes")

@@ -20,8 +20,13 @@ import chromium
 from PIL import Image
 from playwright.sync_api import Page, sync_playwright
 
-FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
-SIZE = {"width": 1120, "height": 700}
+CHROMIUM_FLAGS = (
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+)
+PAGE_SIZE = {"width": 1120, "height": 700}
 LOCALES = {"en": "en-US", "zh": "zh-CN"}
 TIMEOUT_MS = 60_000
 """The timeout of an action, in milliseconds."""
@@ -43,11 +48,13 @@ def main() -> int:
     try:
         url = next(line.split()[1] for line in program.stdout if line.startswith("Viewer: "))
         with sync_playwright() as playwright:
-            browser = playwright.chromium.launch(executable_path=chromium.find() or chromium.fetch(), args=list(FLAGS))
-            page = browser.new_page(viewport=SIZE, locale=LOCALES[arguments.lang])  # type: ignore[arg-type]
+            browser = playwright.chromium.launch(
+                executable_path=chromium.find_chromium() or chromium.fetch_chromium(), args=list(CHROMIUM_FLAGS)
+            )
+            page = browser.new_page(viewport=PAGE_SIZE, locale=LOCALES[arguments.lang])  # type: ignore[arg-type]
             page.goto(url)
             page.wait_for_function("window.linkwright?.ready === true", timeout=TIMEOUT_MS)
-            operate(page, arguments.click)
+            click_texts(page, arguments.click)
             page.wait_for_timeout(arguments.wait * 1000)
             shot = Image.open(io.BytesIO(page.screenshot(timeout=TIMEOUT_MS))).convert("RGB")
             shot.save(arguments.image, quality=76, method=6)
@@ -58,7 +65,7 @@ def main() -> int:
     return 0
 
 
-def operate(page: Page, texts: list[str]) -> None:
+def click_texts(page: Page, texts: list[str]) -> None:
     """Click the element with each text, one after the other."""
     for text in texts:
         page.get_by_text(text, exact=True).first.click(timeout=TIMEOUT_MS)

@@ -1,4 +1,6 @@
-"""Update the tables in pages that come from the code: commands, extras, and the systems that support extras.
+"""Update the tables in pages that come from the code.
+
+They list the commands, the extras, and the systems that support extras.
 
 Usage: python tools/page_tables.py [--check]
 
@@ -23,11 +25,11 @@ from linkwright.cli.language import translate_help
 from linkwright.descriptions import load
 from linkwright.diagnostics.translation import set_language, translate_phrase
 from linkwright.learning.packing import targets
-from linkwright.learning.packing.locked_files import locked_packages
-from linkwright.learning.packing.optional_parts import PARTS, missing_parts
+from linkwright.learning.packing.locked_files import load_locked_packages
+from linkwright.learning.packing.optional_parts import PARTS, find_missing_parts
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from command_reference import describe
+from command_reference import describe_command
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
@@ -146,18 +148,20 @@ PYTHONS = [words[-1] for line in PROJECT["classifiers"] if re.fullmatch(r"3\.\d+
 """The versions of Python that Linkwright supports, oldest first."""
 
 
-def refreshed(page: str, chinese: bool) -> str:
+def refresh_page(page: str, chinese: bool) -> str:
     """Return the text of a page with current tables."""
     return _TABLE.sub(lambda match: f"{match[1]} -->\n\n{TABLES[match[1]](chinese)}\n\n", page)
 
 
 def commands(chinese: bool) -> str:
-    """Return the table of commands by group, each with its help text and a link to its reference."""
+    """Return the table of commands by group, with help texts and links to the reference."""
     set_language("zh" if chinese else "en")
     try:
         title = "用途" if chinese else "what it does"
         return "\n\n".join(
-            "\n".join([f"| {_capital(translate_help(group))} | {title} |", "| --- | --- |", *map(_command, verbs)])
+            "\n".join(
+                [f"| {_capitalize(translate_help(group))} | {title} |", "| --- | --- |", *map(_format_command, verbs)]
+            )
             for group, verbs in find_command_groups().items()
         )
     finally:
@@ -167,31 +171,33 @@ def commands(chinese: bool) -> str:
 def extras(chinese: bool) -> str:
     """Return the table of extras, with their purposes and packages."""
     rows = ["| 可选部分 | 用途 | 安装的包 |" if chinese else "| extra | for | brings |", "| --- | --- | --- |"]
-    together = {name for requirement in _required("all") for name in requirement.extras}
+    together = {name for requirement in _iterate_requirements("all") for name in requirement.extras}
     apart = "；不在 `all` 里" if chinese else "; not in `all`"
     for name, extra in EXTRAS.items():
         purpose = (extra.chinese if chinese else extra.english) + ("" if name in together else apart)
         brought = dict.fromkeys(
-            requirement.name for requirement in _required(name) if requirement.name != PROJECT["name"]
+            requirement.name for requirement in _iterate_requirements(name) if requirement.name != PROJECT["name"]
         )
-        own = [f"`{other}`" for requirement in _required(name) for other in sorted(requirement.extras)]
-        rows.append(f"| `{name}` | {purpose} | {('、' if chinese else ', ').join([*own, *brought])} |")
+        engine_extras = [
+            f"`{other}`" for requirement in _iterate_requirements(name) for other in sorted(requirement.extras)
+        ]
+        rows.append(f"| `{name}` | {purpose} | {('、' if chinese else ', ').join([*engine_extras, *brought])} |")
     return "\n".join(rows)
 
 
 def systems(chinese: bool) -> str:
-    """Return the table of Python versions for extras whose packages are not available everywhere."""
+    """Return the table of Python versions for extras that are not available everywhere."""
     rows = [f"| {'可选部分' if chinese else 'extra'} | {' | '.join(SYSTEMS)} |", f"| --- |{' --- |' * len(SYSTEMS)}"]
     every = f"{PYTHONS[0]}–{PYTHONS[-1]}"
     for name, extra in EXTRAS.items():
-        cells = [_span(extra.main, *system) for system in SYSTEMS.values()]
+        cells = [_find_python_span(extra.main, *system) for system in SYSTEMS.values()]
         if set(cells) != {every}:
             rows.append(f"| `{name}` | {' | '.join(cells)} |")
     return "\n".join(rows)
 
 
 def gallery(chinese: bool) -> str:
-    """Return the rows of the gallery: images, with titles and the numbers of moving joints below."""
+    """Return the rows of the gallery: images with titles and numbers of moving joints."""
     folder = "../gallery" if chinese else "gallery"
     images = {}
     for name, titles in ROBOTS.items():
@@ -201,12 +207,16 @@ def gallery(chinese: bool) -> str:
         images[f"![{title}]({folder}/{name}.webp)"] = f"[{title}]({folder}/{name}.xacro){text}"
     rows = [list(images)[first : first + COLUMNS] for first in range(0, len(images), COLUMNS)]
     return "\n\n".join(
-        "\n".join((_row(row), _row(["---"] * len(row)), _row([images[image] for image in row]))) for row in rows
+        "\n".join((_format_row(row), _format_row(["---"] * len(row)), _format_row([images[image] for image in row])))
+        for row in rows
     )
 
 
 def pack(chinese: bool) -> str:
-    """Return the table of a course's parts that some packs lack, with the Python versions that have them by system."""
+    """Return the table of a course's parts that some packs lack.
+
+    For each system, it has the Python versions with the part.
+    """
     language = "zh" if chinese else "en"
     labels = [system.label for system in targets.SYSTEMS.values()]
     rows = [f"| {'部分' if chinese else 'part'} | {' | '.join(labels)} |", f"| --- |{' --- |' * len(labels)}"]
@@ -216,11 +226,11 @@ def pack(chinese: bool) -> str:
             have = [
                 target.python
                 for target in targets.select_targets([system], ())
-                if part not in missing_parts(target, ["learn"], locked_packages())
+                if part not in find_missing_parts(target, ["learn"], load_locked_packages())
             ]
             is_span = have == list(targets.PYTHONS[: len(have)])
             cells.append(f"{have[0]}–{have[-1]}" if have and is_span else ("、" if chinese else ", ").join(have) or "–")
-        rows.append(f"| {_capital(translate_phrase(part.purpose, language))} | {' | '.join(cells)} |")
+        rows.append(f"| {_capitalize(translate_phrase(part.purpose, language))} | {' | '.join(cells)} |")
     return "\n".join(rows)
 
 
@@ -233,21 +243,24 @@ TABLES: dict[str, Callable[[bool], str]] = {
 }
 
 
-def _command(name: str) -> str:
-    first = next(describe(create_parser(name), "")).partition("\n")[0].removeprefix("## ").strip()
+def _format_command(name: str) -> str:
+    first = next(describe_command(create_parser(name), "")).partition("\n")[0].removeprefix("## ").strip()
     return f"| [`linkwright {name}`](commands.md#{first.replace(' ', '-')}) | {translate_help(collect_help_texts()[name])} |"
 
 
-def _row(cells: Sequence[str]) -> str:
+def _format_row(cells: Sequence[str]) -> str:
     return f"| {' | '.join(cells)} |"
 
 
-def _capital(text: str) -> str:
+def _capitalize(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _required(extra: str) -> Iterator[Requirement]:
-    """Yield the requirements of an extra in order, with the engine's requirements in place of the engine's extra."""
+def _iterate_requirements(extra: str) -> Iterator[Requirement]:
+    """Yield the requirements of an extra in order.
+
+    The engine's extras are replaced with their requirements.
+    """
     for requirement in map(Requirement, PROJECT["optional-dependencies"][extra]):
         if requirement.name == ENGINE["name"]:
             for name in requirement.extras:
@@ -256,15 +269,15 @@ def _required(extra: str) -> Iterator[Requirement]:
             yield requirement
 
 
-def _span(main: str, platform: str, machine: str) -> str:
-    """Return the Python versions for which a package is required on a system, as ``3.10–3.13``, or a dash."""
-    listed = [
+def _find_python_span(main: str, platform: str, machine: str) -> str:
+    """Return the Python versions that require a package on a system, such as ``3.10–3.13``."""
+    requirements = [
         requirement
         for extra in EXTRAS
-        for requirement in _required(extra)
+        for requirement in _iterate_requirements(extra)
         if requirement.name == main or requirement.name.startswith(f"{main}-")
     ]
-    there = [
+    versions = [
         version
         for version in PYTHONS
         if any(
@@ -272,23 +285,23 @@ def _span(main: str, platform: str, machine: str) -> str:
             or requirement.marker.evaluate(
                 {"python_version": version, "sys_platform": platform, "platform_machine": machine}
             )
-            for requirement in listed
+            for requirement in requirements
         )
     ]
-    return f"{there[0]}–{there[-1]}" if there else "–"
+    return f"{versions[0]}–{versions[-1]}" if versions else "–"
 
 
 def main(words: Sequence[str]) -> int:
     """Write the pages, or with ``--check`` report whether they are current."""
     status = 0
     for page in PAGES:
-        before = page.read_text(encoding="utf-8")
-        after = refreshed(before, page.parent.name == "zh")
-        if before != after and "--check" in words:
+        old_text = page.read_text(encoding="utf-8")
+        new_text = refresh_page(old_text, page.parent.name == "zh")
+        if old_text != new_text and "--check" in words:
             print(f"{page} is stale: run python tools/page_tables.py", file=sys.stderr)
             status = 1
-        elif before != after:
-            page.write_text(after, encoding="utf-8", newline="\n")
+        elif old_text != new_text:
+            page.write_text(new_text, encoding="utf-8", newline="\n")
     return status
 
 

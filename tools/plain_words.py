@@ -28,7 +28,7 @@ PACKAGE = ROOT / "src" / "linkwright"
 PAGE = ROOT / "frontend" / "src"
 REFUSED = Path(__file__).with_suffix(".toml")
 
-_END = re.compile(r"(?<=[.;:!?]) ")
+_SENTENCE_END = re.compile(r"(?<=[.;:!?]) ")
 _PAGE_TEXT = re.compile(r'"(?:[^"\\\n]|\\.)*"|`(?:[^`\\]|\\.)*`|/\*.*?\*/|//[^\n]*', re.DOTALL)
 
 
@@ -49,15 +49,15 @@ class Refusal:
     def matches(self, text: str) -> str | None:
         """Return the first refused words of a text, or None."""
         for match in self.pattern.finditer(text):
-            sentence = text[_END.sub("\0", text[: match.start()]).rfind("\0") + 1 :]
-            sentence = _END.split(sentence, maxsplit=1)[0]
+            sentence = text[_SENTENCE_END.sub("\0", text[: match.start()]).rfind("\0") + 1 :]
+            sentence = _SENTENCE_END.split(sentence, maxsplit=1)[0]
             if self.unless is None or not self.unless.search(sentence):
                 return match[0]
         return None
 
 
 @dataclass
-class Accepted:
+class Exemption:
     """Words that stay, such as a text that programs expect from ROS.
 
     Attributes:
@@ -79,7 +79,7 @@ class Accepted:
         return covers
 
 
-def read_table() -> tuple[list[Refusal], list[Accepted]]:
+def read_table() -> tuple[list[Refusal], list[Exemption]]:
     """Read the refused patterns and the exceptions."""
     table = tomllib.loads(REFUSED.read_text(encoding="utf-8"))
     refused = [
@@ -90,11 +90,11 @@ def read_table() -> tuple[list[Refusal], list[Accepted]]:
         )
         for row in table["refused"]
     ]
-    return refused, [Accepted(**row) for row in table.get("accepted", [])]
+    return refused, [Exemption(**row) for row in table.get("accepted", [])]
 
 
-def python_texts(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield the strings with a space, docstrings and comments of a Python file, each with its line."""
+def iterate_python_texts(path: Path) -> Iterator[tuple[int, str]]:
+    """Yield the strings with a space, docstrings and comments of a Python file, with lines."""
     source = path.read_text(encoding="utf-8")
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value:
@@ -104,7 +104,7 @@ def python_texts(path: Path) -> Iterator[tuple[int, str]]:
             yield token.start[0], token.string
 
 
-def page_texts(path: Path) -> Iterator[tuple[int, str]]:
+def iterate_page_texts(path: Path) -> Iterator[tuple[int, str]]:
     """Yield the strings with a space and the comments of a TypeScript file, each with its line."""
     source = path.read_text(encoding="utf-8")
     for match in _PAGE_TEXT.finditer(source):
@@ -112,16 +112,16 @@ def page_texts(path: Path) -> Iterator[tuple[int, str]]:
             yield source.count("\n", 0, match.start()) + 1, match[0].replace("\n *", " ")
 
 
-def texts(roots: list[Path]) -> Iterator[tuple[Path, int, str]]:
+def iterate_texts(roots: list[Path]) -> Iterator[tuple[Path, int, str]]:
     """Yield all texts below some folders: file, line, text."""
     for root in roots:
         for path in [root] if root.is_file() else sorted(root.rglob("*")):
-            reader = {".py": python_texts, ".ts": page_texts}.get(path.suffix)
+            reader = {".py": iterate_python_texts, ".ts": iterate_page_texts}.get(path.suffix)
             if reader and "zh" not in path.parts and "stubs" not in path.parts:
                 yield from ((path, line, text) for line, text in reader(path))
 
 
-def _is_accepted(exceptions: list[Accepted], path: Path, text: str) -> bool:
+def _is_accepted(exceptions: list[Exemption], path: Path, text: str) -> bool:
     covering = [exception for exception in exceptions if exception.covers(path, text)]
     return bool(covering)
 
@@ -130,11 +130,13 @@ def main(words: list[str]) -> int:
     """Print the refused texts, and return the exit status."""
     refused, accepted = read_table()
     problems = []
-    for path, line, text in texts([Path(word).resolve() for word in words] or [PACKAGE, PAGE]):
+    for path, line, text in iterate_texts([Path(word).resolve() for word in words] or [PACKAGE, PAGE]):
         plain = " ".join(text.split())
         refusals = [(match.strip(), refusal.plain) for refusal in refused if (match := refusal.matches(plain))]
         if refusals and not _is_accepted(accepted, path, plain):
-            problems += [f"{path.relative_to(ROOT)}:{line}: '{match}'; write: {better}" for match, better in refusals]
+            problems += [
+                f"{path.relative_to(ROOT)}:{line}: '{match}'; write: {suggestion}" for match, suggestion in refusals
+            ]
     if not words:
         problems += [f"{row.path}: no text needs the exception '{row.words}'" for row in accepted if not row.used]
     for problem in problems:

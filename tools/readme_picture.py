@@ -26,11 +26,16 @@ from playwright.sync_api import Page, sync_playwright
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = ROOT / "docs" / "images" / "mbot.webp"
 MODEL = ROOT / "robots" / "my_robot_description" / "urdf" / "mbot_base.xacro"
-FLAGS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
+CHROMIUM_FLAGS = (
+    "--no-sandbox",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-background-networking",
+)
 
 SIZE = (1120, 630)
 """The size of the page in pixels."""
-STRIP = 44
+STRIP_HEIGHT = 44
 """The height of the strip with the edited line, in pixels."""
 
 
@@ -48,10 +53,10 @@ class Film:
     frames: list[Image.Image] = field(default_factory=list)
     durations: list[int] = field(default_factory=list)
 
-    def take(self, milliseconds: int) -> None:
+    def record(self, milliseconds: int) -> None:
         """Add a frame with the current page."""
         shot = Image.open(io.BytesIO(self.page.screenshot())).convert("RGB")
-        frame = Image.new("RGB", (SIZE[0], SIZE[1] + STRIP), "#1e2327")
+        frame = Image.new("RGB", (SIZE[0], SIZE[1] + STRIP_HEIGHT), "#1e2327")
         frame.paste(shot)
         ImageDraw.Draw(frame).text((16, SIZE[1] + 12), self.line, font=ImageFont.load_default(17), fill="#e6e6e6")
         self.frames.append(frame)
@@ -77,7 +82,7 @@ def main() -> int:
             url = next(line.split()[1] for line in program.stdout if line.startswith("Viewer: "))
             with sync_playwright() as playwright:
                 browser = playwright.chromium.launch(
-                    executable_path=chromium.find() or chromium.fetch(), args=list(FLAGS)
+                    executable_path=chromium.find_chromium() or chromium.fetch_chromium(), args=list(CHROMIUM_FLAGS)
                 )
                 page = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]}, locale="en-US")
                 page.goto(url)
@@ -100,22 +105,24 @@ def play(film: Film, model: Path) -> None:
     page.mouse.move(canvas["x"] + canvas["width"] / 2, canvas["y"] + canvas["height"] / 2)
     while page.evaluate("window.linkwright.view.distance") > 1.7:
         page.mouse.wheel(0, -120)
-        until(page, "lw.ready")
+        wait_until(page, "lw.ready")
     slider = page.locator('[data-joint="left_wheel_joint"] input[type=range]')
     film.line = f"$ linkwright view {model.name}"
-    film.take(1400)
+    film.record(1400)
     for step in range(1, 16):
         slider.fill(f"{0.14 * step:.2f}")
-        until(page, f"Math.abs(lw.joints.left_wheel_joint - {0.14 * step:.2f}) < 0.02")
-        film.take(120)
-    film.take(600)
+        wait_until(page, f"Math.abs(lw.joints.left_wheel_joint - {0.14 * step:.2f}) < 0.02")
+        film.record(120)
+    film.record(600)
     edit(film, model, "wheel_joint_y", ("0.19", "0.23", "0.28"), "lw.frames.left_wheel_link.position[1]")
     edit(film, model, "kinect_joint_z", ("0.38", "0.46", "0.54"), "lw.frames.kinect_link.position[2]")
-    film.take(1200)
+    film.record(1200)
 
 
 def edit(film: Film, model: Path, name: str, values: tuple[str, ...], seen: str) -> None:
-    """Set a property of the model to values in turn, the first of which is in the file, and save each time.
+    """Set a property of the model to values in turn, and save each time.
+
+    The first value is in the file already.
 
     Args:
         film: the film.
@@ -124,19 +131,22 @@ def edit(film: Film, model: Path, name: str, values: tuple[str, ...], seen: str)
         values: the values of the property.
         seen: the JavaScript expression for the quantity in the page that becomes the value.
     """
-    for before, after in pairwise(values):
+    for old_value, new_value in pairwise(values):
         text = model.read_text(encoding="utf-8")
-        old, new = (f'<xacro:property name="{name}" value="{value}"/>' for value in (before, after))
+        old, new = (f'<xacro:property name="{name}" value="{value}"/>' for value in (old_value, new_value))
         film.line = f"{model.name}:  {old}"
-        film.take(500)
+        film.record(500)
         model.write_text(text.replace(old, new), encoding="utf-8")
         film.line = f"{model.name}:  {new}"
-        until(film.page, f"Math.abs({seen} - {after}) < 1e-6 && lw.ready")
-        film.take(700)
+        wait_until(film.page, f"Math.abs({seen} - {new_value}) < 1e-6 && lw.ready")
+        film.record(700)
 
 
-def until(page: Page, condition: str) -> None:
-    """Wait until a condition over `lw`, the page's `window.linkwright`, holds, and the page was painted after that."""
+def wait_until(page: Page, condition: str) -> None:
+    """Wait until a condition holds, and the page was painted after that.
+
+    In the condition, `lw` is the page's `window.linkwright`.
+    """
     page.wait_for_function(f"() => {{ const lw = window.linkwright; return {condition}; }}")
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
 

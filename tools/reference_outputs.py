@@ -43,7 +43,10 @@ Texts = dict[Path, str]
 
 
 def expand(requests: list[dict[str, Any]]) -> list[dict[str, str]]:
-    """Return the output of ros/xacro, ``text`` or ``error``, for each path with arguments, packages and folder."""
+    """Return the output of ros/xacro for each request, as ``text`` or ``error``.
+
+    A request has a path, arguments, packages and a folder.
+    """
     program = [str(PROGRAMS / "python"), str(ROOT / "fuzz" / "peer.py")]
     environment = {name: value for name, value in os.environ.items() if name not in ENVIRONMENT}
     environment |= {name: value for name, value in ENVIRONMENT.items() if value is not None}
@@ -60,7 +63,7 @@ def check_urdf(text: str) -> dict[str, Any]:
     return {"accepts": accepts, "errors": re.findall(r"^Error:\s+(.*?)\s*$", errors, re.MULTILINE)}
 
 
-def diagram(text: str) -> str:
+def draw_diagram(text: str) -> str:
     """Return the diagram of urdf_to_graphviz in Graphviz's language."""
     with tempfile.TemporaryDirectory() as folder:
         _run_urdfdom("urdf_to_graphviz", text, folder)
@@ -68,7 +71,10 @@ def diagram(text: str) -> str:
 
 
 def _run_urdfdom(program: str, text: str, folder: str) -> tuple[str, str]:
-    """Return the standard output and error of one of urdfdom's programs, which never ends if joints form a cycle."""
+    """Return the standard output and error of one of urdfdom's programs.
+
+    The program never ends by itself if joints form a cycle.
+    """
 
     def limited() -> None:
         resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, 1 << 20))
@@ -82,7 +88,7 @@ def _run_urdfdom(program: str, text: str, folder: str) -> tuple[str, str]:
     return outputs[0].read_text(encoding="utf-8"), outputs[1].read_text(encoding="utf-8")
 
 
-def robots() -> Texts:
+def record_robots() -> Texts:
     """Return the expansions, the diagrams and the manifest of the corpus."""
     requests = [
         {"path": str(model.path), "arguments": model.arguments, "packages": model.packages, "folder": str(OWN.robots)}
@@ -100,19 +106,19 @@ def robots() -> Texts:
             data["urdfdom"] = check_urdf(text)
         if data.get("urdfdom", {}).get("accepts"):
             data["gv"] = f"gv/{model}.gv"
-            written[OWN.folder / data["gv"]] = diagram(text)
+            written[OWN.folder / data["gv"]] = draw_diagram(text)
         models.append(data)
     packages = {folder.name: f"robots/{folder.name}" for folder in sorted(OWN.robots.iterdir())}
-    written[OWN.folder / "manifest.json"] = _json({"packages": packages, "models": models})
+    written[OWN.folder / "manifest.json"] = _format_json({"packages": packages, "models": models})
     return written
 
 
-def rules() -> Texts:
+def record_rules() -> Texts:
     """Return the pages of rules with ros/xacro's expansions."""
     written: Texts = {}
     for page in sorted((XACRO_CASES / "rules").glob("*.md")):
         text = page.read_text(encoding="utf-8")
-        for case, answer in _answers(page):
+        for case, answer in _expand_cases(page):
             assert "text" in answer, f"{page.name}: {case.title}: {answer['error']}"
             block = f"```urdf\n{case.expected}\n```"
             start = text.index(block, text.index(f"\n## {case.title}\n"))
@@ -122,18 +128,18 @@ def rules() -> Texts:
     return written
 
 
-def verdicts() -> Texts:
-    """Return the verdict of ros/xacro (its message or null) and of urdfdom on each mistake in the tests."""
+def record_verdicts() -> Texts:
+    """Return the verdicts of ros/xacro (a message or null) and urdfdom on the tests' mistakes."""
     xacro = {
         f"{page.stem}: {case.title}": answer.get("error")
         for page in sorted((XACRO_CASES / "errors").glob("*.md"))
-        for case, answer in _answers(page)
+        for case, answer in _expand_cases(page)
     }
     urdfdom = {title: check_urdf(text) for title, text, _ in SECTION.findall(MISTAKES.read_text(encoding="utf-8"))}
-    return {VERDICTS: _json({"xacro": xacro, "urdfdom": urdfdom})}
+    return {VERDICTS: _format_json({"xacro": xacro, "urdfdom": urdfdom})}
 
 
-def _answers(page: Path) -> list[tuple[Case, dict[str, str]]]:
+def _expand_cases(page: Path) -> list[tuple[Case, dict[str, str]]]:
     cases = read_cases(page)
     with tempfile.TemporaryDirectory() as root:
         requests = []
@@ -149,7 +155,7 @@ def _answers(page: Path) -> list[tuple[Case, dict[str, str]]]:
     return list(zip(cases, answers, strict=True))
 
 
-def _json(content: object) -> str:
+def _format_json(content: object) -> str:
     return json.dumps(content, ensure_ascii=False, indent=1) + "\n"
 
 
@@ -158,15 +164,15 @@ def main(arguments: list[str]) -> int:
     if not (PROGRAMS / "check_urdf").exists():
         print("the programs of ROS are not installed: run `make reference`", file=sys.stderr)
         return 2
-    wanted = robots() | rules() | verdicts()
-    recorded = {*(OWN.folder / "expected").iterdir(), *(OWN.folder / "gv").iterdir()} - wanted.keys()
-    changed = [path for path, text in wanted.items() if not path.exists() or path.read_text(encoding="utf-8") != text]
+    expected = record_robots() | record_rules() | record_verdicts()
+    recorded = {*(OWN.folder / "expected").iterdir(), *(OWN.folder / "gv").iterdir()} - expected.keys()
+    changed = [path for path, text in expected.items() if not path.exists() or path.read_text(encoding="utf-8") != text]
     for path in [*changed, *recorded]:
         print(path.relative_to(ROOT))
     if "--check" in arguments:
         return 1 if changed or recorded else 0
     for path in changed:
-        path.write_text(wanted[path], encoding="utf-8")
+        path.write_text(expected[path], encoding="utf-8")
     for path in recorded:
         path.unlink()
     return 0

@@ -1,9 +1,9 @@
-"""Build a release twice and test it: wheels, source distributions, bill of materials, changelog, checksums.
+"""Build a release twice and test it.
 
-Everything is built from the last commit below ``.build/release``, and is then moved to ``dist/``. The wheels and source
-distributions of linkwright and linkwright-core are built in two folders, in other time zones, languages, umasks and
-seconds, and the wheels once more from the unpacked source distributions. All bytes must be the same. See "Making a
-release" in CONTRIBUTING.md.
+A release has wheels, source distributions, bill of materials, changelog and checksums. Everything is built from the
+last commit below ``.build/release``, and is then moved to ``dist/``. The wheels and source distributions of linkwright
+and linkwright-core are built in two folders, in other time zones, languages, umasks and seconds, and the wheels once
+more from the unpacked source distributions. All bytes must be the same. See "Making a release" in CONTRIBUTING.md.
 
 Usage:
     python tools/release.py                  make the release (`make release` provides the required programs)
@@ -34,17 +34,17 @@ RESULTS = ROOT / "dist"
 VERSION = Path("src", "linkwright", "_version.py")
 RECIPE = Path("packaging", "conda", "recipe.yaml")
 PROJECT = Path("pyproject.toml")
-_GENERATED = ("src/linkwright/page/built", "src/linkwright/standins/stubs")
-_NAMES = ("linkwright_core", "linkwright")
+_GENERATED_PATHS = ("src/linkwright/page/built", "src/linkwright/standins/stubs")
+_DISTRIBUTION_NAMES = ("linkwright_core", "linkwright")
 """The names of the two distributions in their files, the engine first."""
-_DIFFERENT = (
+_OTHER_ENVIRONMENT = (
     {"TZ": "UTC", "LC_ALL": "C", "PYTHONHASHSEED": "1"},
     {"TZ": "Asia/Tokyo", "LC_ALL": "C.UTF-8", "PYTHONHASHSEED": "2"},
 )
 """The environments of two builds, which must not affect the result; neither must folders, umasks and times."""
 
 
-def run(*words: str | Path, cwd: Path = ROOT, umask: int = 0o022, **environment: str) -> str:
+def run_program(*words: str | Path, cwd: Path = ROOT, umask: int = 0o022, **environment: str) -> str:
     """Run a program, and return its output.
 
     Raises:
@@ -60,30 +60,37 @@ def run(*words: str | Path, cwd: Path = ROOT, umask: int = 0o022, **environment:
     return result.stdout
 
 
-def committed() -> str:
-    """Return the time of the last commit in seconds since 1970, which is the time of every file in a release.
+def get_commit_time() -> str:
+    """Return the time of the last commit in seconds since 1970.
+
+    It is the time of every file in a release.
 
     Raises:
         SystemExit: there are uncommitted changes, which would not be in the release.
     """
-    if changed := run("git", "status", "--porcelain"):
+    if changed := run_program("git", "status", "--porcelain"):
         raise SystemExit(f"{changed}release: this is in no commit, and a release is made of the last one: commit first")
-    return run("git", "log", "-1", "--format=%ct").strip()
+    return run_program("git", "log", "-1", "--format=%ct").strip()
 
 
-def sources(folder: Path) -> Path:
+def write_sources(folder: Path) -> Path:
     """Write the files of the last commit to a new folder, and return the folder."""
-    run("git", "checkout-index", "--all", f"--prefix={folder}/")
+    run_program("git", "checkout-index", "--all", f"--prefix={folder}/")
     return folder
 
 
-def built(folder: Path, time: str, *kinds: str, umask: int = 0o022, **environment: str) -> dict[str, Path]:
-    """Build wheels (``--wheel``) or source distributions (``--sdist``) of a folder, and return the files by name."""
+def build_distributions(
+    folder: Path, time: str, *kinds: str, umask: int = 0o022, **environment: str
+) -> dict[str, Path]:
+    """Build distributions of a folder, and return the files by name.
+
+    `kinds` are ``--wheel`` and ``--sdist``.
+    """
     results = folder.with_name(f"{folder.name} dist")
     constraints = SCRATCH / "constraints.txt"
     words = ("build", "--quiet", "--no-create-gitignore", "--build-constraints", constraints, *kinds)
-    run(
-        _uv(),
+    run_program(
+        _find_uv(),
         *words,
         "--out-dir",
         results,
@@ -96,34 +103,34 @@ def built(folder: Path, time: str, *kinds: str, umask: int = 0o022, **environmen
     return {path.name: path for path in sorted(results.iterdir())}
 
 
-def unpacked(sdist: Path, folder: Path) -> Path:
-    """Unpack a source distribution, and return the folder of its sources without generated files."""
+def unpack_sdist(sdist: Path, folder: Path) -> Path:
+    """Unpack a source distribution, and return its folder without generated files."""
     with tarfile.open(sdist) as archive:
         archive.extractall(folder, filter="data")
     (root,) = folder.iterdir()
-    for generated in _GENERATED:
+    for generated in _GENERATED_PATHS:
         shutil.rmtree(root / generated, ignore_errors=True)  # the engine's distribution has no such folder
     return root
 
 
-def same(first: dict[str, Path], second: dict[str, Path]) -> None:
+def require_same_files(first: dict[str, Path], second: dict[str, Path]) -> None:
     """Compare the results of two builds.
 
     Raises:
         SystemExit: a file of the second build differs from the same file of the first.
     """
     for name, path in second.items():
-        if digest(path) != digest(first[name]):
+        if compute_digest(path) != compute_digest(first[name]):
             raise SystemExit(f"release: {name} is not the same twice: compare {first[name]} with {path}")
 
 
-def digest(path: Path) -> str:
+def compute_digest(path: Path) -> str:
     """Return the SHA-256 of a file, as ``sha256sum`` prints it."""
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def installed(files: list[Path], name: str, extras: str = "") -> Path:
-    """Install distributions with the locked packages into an empty environment, and return its Python.
+def install_distributions(files: list[Path], name: str, extras: str = "") -> Path:
+    """Install distributions and locked packages into a new environment, and return its Python.
 
     Args:
         files: wheels or source distributions, the last one with the extras.
@@ -132,59 +139,76 @@ def installed(files: list[Path], name: str, extras: str = "") -> Path:
     """
     environment = SCRATCH / name
     python = environment / ("Scripts" if os.name == "nt" else "bin") / "python"
-    run(_uv(), "venv", "--quiet", "--clear", "--python", sys.executable, environment)
+    run_program(_find_uv(), "venv", "--quiet", "--clear", "--python", sys.executable, environment)
     names = [file.name.partition("-")[0].replace("_", "-") for file in files]
-    wanted = [f"{name} @ {file.resolve().as_uri()}" for name, file in zip(names, files, strict=True)]
-    wanted[-1] = wanted[-1].replace(" @", f"{extras} @", 1)
+    requirements = [f"{name} @ {file.resolve().as_uri()}" for name, file in zip(names, files, strict=True)]
+    requirements[-1] = requirements[-1].replace(" @", f"{extras} @", 1)
     constraints = ("--constraints", SCRATCH / "constraints.txt")
-    run(_uv(), "pip", "install", "--quiet", "--python", python, *constraints, *wanted)
+    run_program(_find_uv(), "pip", "install", "--quiet", "--python", python, *constraints, *requirements)
     return python
 
 
-def make() -> None:
+def make_release() -> None:
     """Make the release in ``dist/``, and print each step.
 
     Raises:
         SystemExit: a step fails; ``dist/`` is then empty.
     """
-    time = committed()
+    time = get_commit_time()
     for folder in (SCRATCH, RESULTS):
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-    (SCRATCH / "constraints.txt").write_text(lock.constraints(lock.LOCK.read_text(encoding="utf-8")), encoding="utf-8")
-    _say("building wheels and source distributions")
-    first = built(sources(SCRATCH / "first"), time, "--all-packages", "--sdist", "--wheel", **_DIFFERENT[0])
-    _say("building them in another folder")
-    again = sources(SCRATCH / "a longer name" / "of a folder" / "second")
-    same(first, built(again, time, "--all-packages", "--sdist", "--wheel", umask=0o077, **_DIFFERENT[1]))
-    _say("building the wheels of the source distributions")
-    wheels = [path for name in _NAMES for path in first.values() if path.match(f"{name}-*.whl")]
-    sdists = [path for name in _NAMES for path in first.values() if path.match(f"{name}-*.tar.gz")]
+    (SCRATCH / "constraints.txt").write_text(
+        lock.format_constraints(lock.LOCK.read_text(encoding="utf-8")), encoding="utf-8"
+    )
+    _print_step("building wheels and source distributions")
+    first = build_distributions(
+        write_sources(SCRATCH / "first"), time, "--all-packages", "--sdist", "--wheel", **_OTHER_ENVIRONMENT[0]
+    )
+    _print_step("building them in another folder")
+    again = write_sources(SCRATCH / "a longer name" / "of a folder" / "second")
+    require_same_files(
+        first,
+        build_distributions(again, time, "--all-packages", "--sdist", "--wheel", umask=0o077, **_OTHER_ENVIRONMENT[1]),
+    )
+    _print_step("building the wheels of the source distributions")
+    wheels = [path for name in _DISTRIBUTION_NAMES for path in first.values() if path.match(f"{name}-*.whl")]
+    sdists = [path for name in _DISTRIBUTION_NAMES for path in first.values() if path.match(f"{name}-*.tar.gz")]
     for sdist in sdists:
-        same(first, built(unpacked(sdist, SCRATCH / f"unpacked {sdist.name}"), time, "--wheel"))
-    _say(run(_beside("twine"), "check", "--strict", *wheels, *sdists).strip())
+        require_same_files(
+            first, build_distributions(unpack_sdist(sdist, SCRATCH / f"unpacked {sdist.name}"), time, "--wheel")
+        )
+    _print_step(run_program(_find_program("twine"), "check", "--strict", *wheels, *sdists).strip())
 
     version = read_version()
     tried = Path(__file__).with_name("try_installation.py")
-    _say(run(installed(wheels[:1], "engine"), "-I", tried, version, "--engine", cwd=SCRATCH).strip())
-    _say(run(installed(wheels, "alone"), "-I", tried, version, cwd=SCRATCH).strip())
-    everything = installed(wheels, "with everything", "[all]")
-    _say(run(everything, "-I", tried, version, cwd=SCRATCH).strip())
-    _say(run(installed(sdists, "of source"), "-I", tried, version, cwd=SCRATCH).strip())
+    _print_step(
+        run_program(install_distributions(wheels[:1], "engine"), "-I", tried, version, "--engine", cwd=SCRATCH).strip()
+    )
+    _print_step(run_program(install_distributions(wheels, "alone"), "-I", tried, version, cwd=SCRATCH).strip())
+    everything = install_distributions(wheels, "with everything", "[all]")
+    _print_step(run_program(everything, "-I", tried, version, cwd=SCRATCH).strip())
+    _print_step(run_program(install_distributions(sdists, "of source"), "-I", tried, version, cwd=SCRATCH).strip())
 
-    title, notes = release_notes.section(release_notes.CHANGELOG.read_text(encoding="utf-8"), version)
-    _say(f"the changelog is that of [{title}]")
+    title, notes = release_notes.find_section(release_notes.CHANGELOG.read_text(encoding="utf-8"), version)
+    _print_step(f"the changelog is that of [{title}]")
     results = [Path(shutil.copy(path, RESULTS)) for path in (*sdists, *wheels)]
     changelog, bill = RESULTS / f"linkwright-{version}.changelog.md", RESULTS / f"linkwright-{version}.cdx.json"
     results += [changelog, bill]
     changelog.write_text(notes, encoding="utf-8")
-    listing = (_beside("cyclonedx-py"), "environment", "--output-reproducible", "--gather-license-texts", everything)
-    bill.write_text(bill_of_materials.complete(run(*listing, SOURCE_DATE_EPOCH=time)), encoding="utf-8")
-    if silent := bill_of_materials.check(bill):
-        _say(f"packages that tell no license: {', '.join(silent)}")
-    sums = "".join(f"{digest(path)}  {path.name}\n" for path in results)
+    listing = (
+        _find_program("cyclonedx-py"),
+        "environment",
+        "--output-reproducible",
+        "--gather-license-texts",
+        everything,
+    )
+    bill.write_text(bill_of_materials.complete_bill(run_program(*listing, SOURCE_DATE_EPOCH=time)), encoding="utf-8")
+    if silent := bill_of_materials.validate_bill(bill):
+        _print_step(f"packages that tell no license: {', '.join(silent)}")
+    sums = "".join(f"{compute_digest(path)}  {path.name}\n" for path in results)
     (RESULTS / "SHA256SUMS").write_text(sums, encoding="utf-8")
-    _say(f"in {RESULTS.name}/:\n{sums.strip()}")
+    _print_step(f"in {RESULTS.name}/:\n{sums.strip()}")
 
 
 def read_version(root: Path = ROOT) -> str:
@@ -192,44 +216,46 @@ def read_version(root: Path = ROOT) -> str:
     return re.findall(r'__version__ = "(.+)"', (root / VERSION).read_text(encoding="utf-8"))[0]
 
 
-def begin(version: str, root: Path = ROOT) -> None:
-    """Write a new version into the checkout; the unreleased changes in the changelog become its section.
+def begin_version(version: str, root: Path = ROOT) -> None:
+    """Write a new version into the checkout.
+
+    The unreleased changes in the changelog become its section.
 
     Raises:
         SystemExit: the text is not a newer version, or there are no unreleased changes.
     """
     today = datetime.now(timezone.utc).strftime("%Y-%m-%d")
     changelog = root / release_notes.CHANGELOG.name
-    text = release_notes.begun(changelog.read_text(encoding="utf-8"), version, today, read_version(root))
+    text = release_notes.begin_section(changelog.read_text(encoding="utf-8"), version, today, read_version(root))
     changelog.write_text(text, encoding="utf-8")
-    before = read_version(root)
+    old_version = read_version(root)
     for file, named in ((VERSION, '"{}"'), (RECIPE, '"{}"'), (PROJECT, '"linkwright-core=={}"')):
         source = (root / file).read_text(encoding="utf-8")
-        (root / file).write_text(source.replace(named.format(before), named.format(version)), encoding="utf-8")
+        (root / file).write_text(source.replace(named.format(old_version), named.format(version)), encoding="utf-8")
 
 
-def _uv() -> str:
+def _find_uv() -> str:
     uv = shutil.which(os.environ.get("UV") or "uv")
     if not uv:
         raise SystemExit("uv is not on the PATH; run `make release`")
     return str(Path(uv).absolute())
 
 
-def _beside(program: str) -> Path:
+def _find_program(program: str) -> Path:
     """Return the path of a program in the environment of this process."""
     return Path(sys.executable).parent / program
 
 
-def _say(text: str) -> None:
+def _print_step(text: str) -> None:
     print(text, flush=True)
 
 
 def main(words: list[str]) -> int:
     """Run the requested action, and return the exit status."""
     if not words:
-        make()
+        make_release()
     elif len(words) == 2 and words[0] == "version":
-        begin(words[1])
+        begin_version(words[1])
     else:
         print(__doc__, file=sys.stderr)
         return 2

@@ -15,28 +15,28 @@ _HEADING = re.compile(r"^## \[(?P<name>[^\]]+)\](?: - \d{4}-\d{2}-\d{2})?$", re.
 _VERSION = re.compile(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)", re.ASCII)
 
 
-def sections(text: str) -> dict[str, str]:
+def split_sections(text: str) -> dict[str, str]:
     """Return the sections of a changelog, by the text in the brackets of their headings."""
     headings = list(_HEADING.finditer(text))
     ends = [heading.start() for heading in headings[1:]] + [len(text)]
     return {heading["name"]: text[heading.end() : end].strip() for heading, end in zip(headings, ends, strict=True)}
 
 
-def section(text: str, version: str) -> tuple[str, str]:
-    """Return the name and text of a version's section, or of the unreleased changes if the version has no section.
+def find_section(text: str, version: str) -> tuple[str, str]:
+    """Return the name and text of a version's section, or else of the unreleased changes.
 
     Raises:
         SystemExit: the section does not exist or is empty.
     """
-    all_sections = sections(text)
+    all_sections = split_sections(text)
     title = version if version in all_sections else UNRELEASED
     if not all_sections.get(title):
         raise SystemExit(f"{CHANGELOG.name} has nothing about {version}, and nothing unreleased")
     return title, f"# Linkwright {version}\n\n{all_sections[title]}\n"
 
 
-def begun(text: str, version: str, date: str, before: str) -> str:
-    """Return a changelog with the unreleased changes as a version with a date such as ``2026-11-22``.
+def begin_section(text: str, version: str, date: str, before: str) -> str:
+    """Return a changelog in which the unreleased changes become a version with a date.
 
     Raises:
         SystemExit: the version is not valid, is older than `before`, or has a section; or there are no unreleased
@@ -47,7 +47,7 @@ def begun(text: str, version: str, date: str, before: str) -> str:
         raise SystemExit(f"'{version}' is not a version; give one such as 0.2.0")
     if old and [int(part) for part in new.groups()] < [int(part) for part in old.groups()]:
         raise SystemExit(f"{version} is older than {before}, the version that there is")
-    known = sections(text)
+    known = split_sections(text)
     if version in known:
         raise SystemExit(f"{CHANGELOG.name} has a section about {version} already")
     if not known.get(UNRELEASED):
@@ -56,4 +56,4 @@ def begun(text: str, version: str, date: str, before: str) -> str:
 
 
 if __name__ == "__main__":
-    print(section(CHANGELOG.read_text(encoding="utf-8"), *(sys.argv[1:] or [UNRELEASED]))[1], end="")
+    print(find_section(CHANGELOG.read_text(encoding="utf-8"), *(sys.argv[1:] or [UNRELEASED]))[1], end="")

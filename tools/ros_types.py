@@ -34,7 +34,10 @@ def make(package: str, folder: Path, output: Path) -> None:
 
 
 def generate(package: str, folder: Path, interfaces: list[str], output: Path) -> None:
-    """Generate code like ``rosidl generate``, which fails here because its plug-ins are registered twice."""
+    """Generate code like ``rosidl generate``.
+
+    That command fails here because its plug-ins are registered twice.
+    """
     entry_points: Any = importlib.import_module("rosidl_cli.entry_points")
     api = importlib.import_module("rosidl_cli.command.generate.api")
 
@@ -72,7 +75,7 @@ def build(package: str, generated: Path, output: Path) -> None:
 
     def library(part: str, sources: list[Path], *needed: str) -> str:
         name = f"{package}__{part}"
-        compile_into(libraries / f"lib{name}.so", sources, *needed, *others(part))
+        compile_into(libraries / f"lib{name}.so", sources, *needed, *list_libraries(part))
         return name
 
     values = library(
@@ -92,8 +95,8 @@ def build(package: str, generated: Path, output: Path) -> None:
         compile_into(modules / f"{package}_s__{support}{suffix}", [source], of, python, values, "rosidl_typesupport_c")
 
 
-def others(part: str) -> list[str]:
-    """Return the libraries of a kind in installed packages, whose types these types may contain."""
+def list_libraries(part: str) -> list[str]:
+    """Return the libraries of a kind in installed packages, which these types may depend on."""
     return [path.name[3:-3] for path in sorted((PREFIX / "lib").glob(f"lib*__{part}.so"))]
 
 

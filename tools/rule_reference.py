@@ -1,4 +1,6 @@
-"""Write the pages of the rules, ``docs/rules.md``, ``docs/rules/`` and ``docs/zh/rules.md``, from the rules themselves.
+"""Write the pages of the rules from the rules themselves.
+
+The pages are ``docs/rules.md``, ``docs/rules/`` and ``docs/zh/rules.md``.
 
 Usage: python tools/rule_reference.py [--check]
 
@@ -67,15 +69,15 @@ INDEX_ZH = f"""\
 
 def generate() -> dict[Path, str]:
     """Return the text of each page, by path."""
-    pages = {DOCS / "rules.md": _index(), DOCS / "zh" / "rules.md": _chinese_index()}
+    pages = {DOCS / "rules.md": _format_index(), DOCS / "zh" / "rules.md": _format_chinese_index()}
     for start, (name, heading, _) in GROUPS.items():
-        pages[DOCS / "rules" / f"{name}.md"] = _group(heading, _rules(start))
-    pages[DOCS / "rules" / f"{OTHERS}.md"] = _others()
+        pages[DOCS / "rules" / f"{name}.md"] = _format_group(heading, _list_rules(start))
+    pages[DOCS / "rules" / f"{OTHERS}.md"] = _format_others()
     return pages
 
 
 @cache
-def chinese_titles() -> dict[str, str]:
+def read_chinese_titles() -> dict[str, str]:
     """Return the Chinese titles of rules, by code."""
     with CATALOG.open("rb") as file:
         catalog = read_po(file)
@@ -83,17 +85,17 @@ def chinese_titles() -> dict[str, str]:
     return {code: str(message.string) for code, message in titles.items() if message is not None}
 
 
-def _rules(start: str) -> list[Rule]:
+def _list_rules(start: str) -> list[Rule]:
     return [rule for rule in all_rules() if rule.code.startswith(start)]
 
 
-def _index() -> str:
+def _format_index() -> str:
     parts = [INDEX]
     for start, (name, heading, _) in GROUPS.items():
         rows = [
-            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} | {_escaped(rule_page(rule).title)} "
+            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} | {_escape(rule_page(rule).title)} "
             f"| {rule.severity.value} | {'' if rule.default else 'off'} |"
-            for rule in _rules(start)
+            for rule in _list_rules(start)
         ]
         parts.append(f"## {heading}\n")
         parts.append(
@@ -102,16 +104,16 @@ def _index() -> str:
     return "\n".join(parts)
 
 
-def _chinese_index() -> str:
-    titles = chinese_titles()
+def _format_chinese_index() -> str:
+    titles = read_chinese_titles()
     severities = {"error": "错误", "warning": "警告", "info": "提示"}
     parts = [INDEX_ZH]
     for start, (name, _, heading) in GROUPS.items():
         rows = [
             f"| [{rule.code}](../rules/{name}.md#{rule.code.lower()}) | {rule.name} "
-            f"| {_escaped(titles.get(rule.code, ''))} | {severities[rule.severity.value]} "
+            f"| {_escape(titles.get(rule.code, ''))} | {severities[rule.severity.value]} "
             f"| {'' if rule.default else '关'} |"
-            for rule in _rules(start)
+            for rule in _list_rules(start)
         ]
         parts.append(f"## {heading}\n")
         parts.append(
@@ -120,37 +122,37 @@ def _chinese_index() -> str:
     return "\n".join(parts)
 
 
-def _group(heading: str, rules: list[Rule]) -> str:
+def _format_group(heading: str, rules: list[Rule]) -> str:
     parts = [f"# {heading}\n\n{_MARK}\n"]
     for rule in rules:
         page = rule_page(rule)
         parts.append(
-            f"## {rule.code}: {rule.name} {{#{rule.code.lower()}}}\n\n{page.title}.\n\n{_demoted(page.text)}\n"
+            f"## {rule.code}: {rule.name} {{#{rule.code.lower()}}}\n\n{page.title}.\n\n{_demote_headings(page.text)}\n"
         )
     return "\n".join(parts)
 
 
-def _others() -> str:
+def _format_others() -> str:
     parts = [f"# Other diagnostics\n\n{_MARK}\n\nWhat the readers and commands report.\n"]
     for file in sorted(PAGES.glob("*.md")):
         title = re.match(r"# (.+)", file.read_text(encoding="utf-8"))
         parts.append(f"## {title[1] if title else file.stem}\n")
-        parts += list(_sections(file))
+        parts += list(_iterate_sections(file))
     return "\n".join(parts)
 
 
-def _sections(file: Path) -> Iterator[str]:
+def _iterate_sections(file: Path) -> Iterator[str]:
     text = file.read_text(encoding="utf-8")
     for page in room_pages().values():
         if f"\n## {page.code}: " in text:
-            yield _other(page)
+            yield _format_other(page)
 
 
-def _other(page: Page) -> str:
+def _format_other(page: Page) -> str:
     return f"### {page.code}: {page.title} {{#{page.code.lower()}}}\n\n{page.text}\n"
 
 
-def _demoted(text: str) -> str:
+def _demote_headings(text: str) -> str:
     """Return a text with headings one level lower, except in code blocks."""
     inside = False
     lines = []
@@ -161,7 +163,7 @@ def _demoted(text: str) -> str:
     return "\n".join(lines)
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     return text.replace("|", "\\|").replace("<", "&lt;") if "`" not in text else text.replace("|", "\\|")
 
 

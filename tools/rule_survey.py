@@ -22,7 +22,7 @@ from linkwright.lint.settings import Settings
 from linkwright.lint.targets import find_targets
 from linkwright.packages import PackageFinder
 
-_SAMPLE = 20
+_SAMPLE_SIZE = 20
 
 
 def main() -> None:
@@ -31,7 +31,7 @@ def main() -> None:
     parser.add_argument("paths", metavar="FILE|FOLDER", nargs="+", type=Path)
     parser.add_argument("--sample", metavar="CODE", action="append", default=[])
     arguments = parser.parse_args()
-    findings = {path: survey_of(path, arguments.paths) for path in targets(arguments.paths)}
+    findings = {path: survey_target(path, arguments.paths) for path in list_targets(arguments.paths)}
     if arguments.sample:
         for code in arguments.sample:
             print_sample(findings, code)
@@ -39,14 +39,17 @@ def main() -> None:
         print_table(findings)
 
 
-def targets(paths: Iterable[Path]) -> list[Path]:
-    """Return the descriptions, and the folders of packages."""
-    meant = find_targets(paths)
-    return [*meant.files, *meant.packages]
+def list_targets(paths: Iterable[Path]) -> list[Path]:
+    """Return the descriptions and the folders of packages below some paths."""
+    targets = find_targets(paths)
+    return [*targets.files, *targets.packages]
 
 
-def survey_of(path: Path, start: Iterable[Path]) -> list[Diagnostic]:
-    """Return the findings about a description or package, which may use the packages below the folders."""
+def survey_target(path: Path, start: Iterable[Path]) -> list[Diagnostic]:
+    """Return the findings about a description or package.
+
+    It may use the packages below the folders `start`.
+    """
     finder = PackageFinder(start=[path.absolute().parent, *(folder.absolute() for folder in start)])
     if path.is_dir():
         return list(examine_package(path, Settings(), finder).diagnostics)
@@ -69,10 +72,12 @@ def print_table(findings_by_target: dict[Path, list[Diagnostic]]) -> None:
 
 
 def print_sample(findings: dict[Path, list[Diagnostic]], code: str) -> None:
-    """Print a sample of the findings of a code: one of each robot, then the second of each, and so on."""
-    mine = [[diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in findings.values()]
-    picked = [of_robot[turn] for turn in range(_SAMPLE) for of_robot in mine if len(of_robot) > turn]
-    for finding in picked[:_SAMPLE]:
+    """Print a sample of the findings of a code: one per robot, then the second per robot, ..."""
+    matching = [
+        [diagnostic for diagnostic in diagnostics if diagnostic.code == code] for diagnostics in findings.values()
+    ]
+    picked = [of_robot[turn] for turn in range(_SAMPLE_SIZE) for of_robot in matching if len(of_robot) > turn]
+    for finding in picked[:_SAMPLE_SIZE]:
         print(
             f"{finding.severity.value}[{finding.code}] {finding.span or '-'}: {finding.message} ({finding.hint or '-'})"
         )

@@ -1,4 +1,4 @@
-"""Write the table of the plugins of simulators and their parameters, for the language server.
+"""Write the table of simulator plugins and their parameters, for the language server.
 
 Names, types and defaults are those of the classes that simulate the plugins. Importing these classes takes too long for
 an editor, so they are recorded. The descriptions are in ``simulator_plugins.toml``.
@@ -24,8 +24,8 @@ from linkwright.simulation.plugins.parameters import _types
 from linkwright.simulation.plugins.registry import PLUGINS, plugin_class
 
 ROOT = Path(__file__).resolve().parent.parent
-TEXTS = ROOT / "tools" / "simulator_plugins.toml"
-TABLE = ROOT / "src" / "linkwright" / "language" / "simulator_plugins.json"
+TEXTS_FILE = ROOT / "tools" / "simulator_plugins.toml"
+TABLE_FILE = ROOT / "src" / "linkwright" / "language" / "simulator_plugins.json"
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
@@ -45,11 +45,11 @@ _LISTS = (tuple[str, ...], tuple[float, ...])
 _GZ_SYSTEM = re.compile(r"gz-sim-(.+)-system")
 
 
-def _default(value: Any) -> str | None:
+def _format_default(value: Any) -> str | None:
     if value is MISSING or value is None or value == () or value == "":
         return None
     if isinstance(value, tuple):
-        return " ".join(str(_default(item)) for item in value)
+        return " ".join(str(_format_default(item)) for item in value)
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, float):
@@ -57,15 +57,15 @@ def _default(value: Any) -> str | None:
     return str(value)
 
 
-def _parameters(library: str, texts: Any) -> Iterator[dict[str, Any]]:
-    meanings, given = texts["parameters"], extensions(PLUGINS).get(library)
-    cls = None if given is None else plugin_class(library)
-    table: Any = getattr(cls, "PARAMETERS", None)
-    types = {} if table is None else _types(table)
-    for field in () if table is None else fields(table):
+def _iterate_parameters(library: str, texts: Any) -> Iterator[dict[str, Any]]:
+    meanings, extension = texts["parameters"], extensions(PLUGINS).get(library)
+    cls = None if extension is None else plugin_class(library)
+    format_table: Any = getattr(cls, "PARAMETERS", None)
+    types = {} if format_table is None else _types(format_table)
+    for field in () if format_table is None else fields(format_table):
         meaning, _, unit = meanings[field.name].partition(" | ")
         known = {"name": field.name, "type": _TYPES[types[field.name]], "meaning": meaning, "unit": unit}
-        default = _default(field.default)
+        default = _format_default(field.default)
         yield (
             known
             | ({} if default is None else {"default": default})
@@ -77,23 +77,23 @@ def _parameters(library: str, texts: Any) -> Iterator[dict[str, Any]]:
         yield {"name": name, "type": kind, "meaning": meaning, "unit": unit}
 
 
-def _class_of(library: str, texts: Any) -> str:
+def _find_class_name(library: str, texts: Any) -> str:
     system = _GZ_SYSTEM.fullmatch(library)
     derived = "" if system is None else "gz::sim::systems::" + system[1].title().replace("-", "")
     return str(texts["classes"].get(library, derived))
 
 
-def table() -> str:
+def format_table() -> str:
     """Return the text of the table."""
-    texts = tomllib.loads(TEXTS.read_text(encoding="utf-8"))
+    texts = tomllib.loads(TEXTS_FILE.read_text(encoding="utf-8"))
     missing = {*extensions(PLUGINS)} - {*texts["libraries"]}
     if missing:
-        raise SystemExit(f"{TEXTS.name} has no words about {', '.join(sorted(missing))}")
+        raise SystemExit(f"{TEXTS_FILE.name} has no words about {', '.join(sorted(missing))}")
     lines = []
     for library, about in sorted(texts["libraries"].items()):
-        entry: dict[str, Any] = {"about": about, "class": _class_of(library, texts)}
+        entry: dict[str, Any] = {"about": about, "class": _find_class_name(library, texts)}
         parameters = ",\n".join(
-            "   " + json.dumps(parameter, ensure_ascii=False) for parameter in _parameters(library, texts)
+            "   " + json.dumps(parameter, ensure_ascii=False) for parameter in _iterate_parameters(library, texts)
         )
         inside = f'{json.dumps(entry, ensure_ascii=False)[:-1]}, "parameters": [\n{parameters}\n  ]}}'
         lines.append(f" {json.dumps(library)}: {inside}")
@@ -102,13 +102,13 @@ def table() -> str:
 
 def main(words: list[str]) -> int:
     """Write the table, or check it, and return the exit status."""
-    text = table()
+    text = format_table()
     if words == ["--check"]:
-        if TABLE.read_text(encoding="utf-8") == text:
+        if TABLE_FILE.read_text(encoding="utf-8") == text:
             return 0
-        print(f"{TABLE.relative_to(ROOT)} is stale: run `python tools/simulator_plugins.py`", file=sys.stderr)
+        print(f"{TABLE_FILE.relative_to(ROOT)} is stale: run `python tools/simulator_plugins.py`", file=sys.stderr)
         return 1
-    TABLE.write_text(text, encoding="utf-8")
+    TABLE_FILE.write_text(text, encoding="utf-8")
     return 0
 
 

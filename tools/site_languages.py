@@ -34,7 +34,7 @@ def on_config(config: MkDocsConfig) -> None:
     folder = Path(config.docs_dir) / CHINESE
     titles: dict[str, str] = config.extra["chinese"]
     english = list(config.nav or ())
-    config.nav = [*english, {CHINESE: _chinese(english, folder, titles)}]
+    config.nav = [*english, {CHINESE: _translate_navigation(english, folder, titles)}]
 
 
 def on_nav(nav: Navigation, **_: object) -> None:
@@ -42,7 +42,7 @@ def on_nav(nav: Navigation, **_: object) -> None:
     *english, chinese = nav.items
     assert isinstance(chinese, Section)
     for language, items in (("en", english), (CHINESE, chinese.children)):
-        pages = [page for page in nav.pages if language_of(page) == language]
+        pages = [page for page in nav.pages if get_language(page) == language]
         pages[0].previous_page = pages[-1].next_page = None
         _navigation[language] = Navigation(items, pages)
         _navigation[language].homepage = pages[0]
@@ -51,12 +51,12 @@ def on_nav(nav: Navigation, **_: object) -> None:
 
 
 def on_page_context(context: dict[str, Any], *, page: Page, config: MkDocsConfig, **_: object) -> None:
-    """Give the template of a page the navigation, the texts and the search index of its language."""
-    language = language_of(page)
+    """Give a page's template the navigation, the texts and the search index of its language."""
+    language = get_language(page)
     context["nav"] = _navigation[language]
     config.theme["language"] = language
     config.extra["alternate"] = [
-        {"name": name, "lang": other, "link": page.url if other == language else _sister(page, other).url}
+        {"name": name, "lang": other, "link": page.url if other == language else _find_translation(page, other).url}
         for other, name in NAMES.items()
     ]
     config.extra["scope"] = context["base_url"]  # the selected colors apply in both languages
@@ -79,30 +79,33 @@ def on_post_build(config: MkDocsConfig) -> None:
     _write_index(Path(config.site_dir) / CHINESE / "search" / path.name, index, chinese, ["en", CHINESE])
 
 
-def language_of(page: Page) -> str:
+def get_language(page: Page) -> str:
     """Return the language of a page."""
     return CHINESE if page.file.src_uri.startswith(f"{CHINESE}/") else "en"
 
 
-def _chinese(items: list[Any], folder: Path, titles: dict[str, str]) -> list[Any]:
-    """Return the navigation entries with Chinese pages, with titles from the table or their first heading."""
+def _translate_navigation(items: list[Any], folder: Path, titles: dict[str, str]) -> list[Any]:
+    """Return the navigation entries that have Chinese pages.
+
+    Their titles come from the table or the first heading.
+    """
     pages: list[Any] = []
     for item in items:
-        title, below = next(iter(item.items())) if isinstance(item, dict) else ("", item)
-        if isinstance(below, list):
-            children = _chinese(below, folder, titles)
+        title, value = next(iter(item.items())) if isinstance(item, dict) else ("", item)
+        if isinstance(value, list):
+            children = _translate_navigation(value, folder, titles)
             pages += [{titles[title]: children}] if children else []
-        elif (folder / below).exists():
-            path = f"{CHINESE}/{below}"
+        elif (folder / value).exists():
+            path = f"{CHINESE}/{value}"
             pages.append({titles[title]: path} if title in titles else path)
     return pages
 
 
-def _sister(page: Page, language: str) -> Page:
-    own = page.file.src_uri.removeprefix(f"{CHINESE}/")
+def _find_translation(page: Page, language: str) -> Page:
+    path = page.file.src_uri.removeprefix(f"{CHINESE}/")
     prefix = f"{CHINESE}/" if language == CHINESE else ""
     pages = {other.file.src_uri: other for other in _navigation[language].pages}
-    candidates = (own, f"{own.partition('/')[0]}.md", INDEX)
+    candidates = (path, f"{path.partition('/')[0]}.md", INDEX)
     return next(pages[prefix + name] for name in candidates if prefix + name in pages)
 
 

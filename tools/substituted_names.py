@@ -1,6 +1,7 @@
-"""Write the list of the ROS packages that Linkwright replaces, with their executables, for the engine.
+"""Write the list of the ROS packages and executables that Linkwright replaces.
 
-The engine (linkwright-core) checks launch files without the nodes, modules and messages that are listed here.
+The engine uses the list. The engine (linkwright-core) checks launch files without the nodes, modules and messages that
+are listed here.
 
 Usage: python tools/substituted_names.py [--check]
 """
@@ -16,12 +17,12 @@ from linkwright.hosting.rqt_programs import PANEL_PROGRAMS
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGE = ROOT / "src" / "linkwright"
-LIST = PACKAGE / "packages" / "substituted_names.txt"
+TABLE_FILE = PACKAGE / "packages" / "substituted_names.txt"
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
 
-def names() -> str:
+def format_names() -> str:
     """Return the list: a line for each package, with its name and the names of its executables."""
     groups = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]
     names_by_module: dict[str, set[str]] = {"rviz2": set()}
@@ -40,11 +41,11 @@ def names() -> str:
 def main(words: list[str]) -> int:
     """Write the list, or check it, and return the exit status."""
     if words == ["--check"]:
-        if LIST.read_text(encoding="utf-8") == names():
+        if TABLE_FILE.read_text(encoding="utf-8") == format_names():
             return 0
-        print(f"{LIST.relative_to(ROOT)} is stale: run `python tools/substituted_names.py`", file=sys.stderr)
+        print(f"{TABLE_FILE.relative_to(ROOT)} is stale: run `python tools/substituted_names.py`", file=sys.stderr)
         return 1
-    LIST.write_text(names(), encoding="utf-8")
+    TABLE_FILE.write_text(format_names(), encoding="utf-8")
     return 0
 
 

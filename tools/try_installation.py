@@ -1,4 +1,4 @@
-"""Test an installed Linkwright: its version, a check of a robot, and the response of the page.
+"""Test an installed Linkwright: its version, a check of a robot, and the page's response.
 
 Run it with the Python of the environment to test, which needs only Linkwright.
 
@@ -29,11 +29,11 @@ _XACRO = """\
 </robot>
 """
 _ROBOT = Path("robots", "my_robot_description", "urdf", "mbot_with_laser.urdf")
-_SECONDS = 120
+_TIMEOUT_S = 120
 """A timeout that suffices on any machine, because nothing is measured here."""
 
 
-def try_it(version: str) -> str:
+def try_linkwright(version: str) -> str:
     """Test the installation, and return a summary in one line.
 
     Raises:
@@ -48,7 +48,7 @@ def try_it(version: str) -> str:
         assert specification.origin is not None
         robot = Path(specification.origin).parent / _ROBOT
         checked = _run(environment, "check", str(robot))
-        fetched = _page(environment, robot)
+        fetched = _count_page_files(environment, robot)
     python = f"{sys.version_info[0]}.{sys.version_info[1]}"
     tree = checked.count("\n")
     return (
@@ -83,7 +83,7 @@ def try_engine(version: str) -> str:
 
 def _run(environment: dict[str, str], *words: str, status: int = 0) -> str:
     result = subprocess.run(
-        [_PROGRAM, *words], env=environment, capture_output=True, text=True, timeout=_SECONDS, check=False
+        [_PROGRAM, *words], env=environment, capture_output=True, text=True, timeout=_TIMEOUT_S, check=False
     )
     assert result.returncode == status, (
         f"linkwright {' '.join(words)}: status {result.returncode}\n{result.stdout}{result.stderr}"
@@ -91,7 +91,7 @@ def _run(environment: dict[str, str], *words: str, status: int = 0) -> str:
     return result.stdout
 
 
-def _page(environment: dict[str, str], robot: Path) -> int:
+def _count_page_files(environment: dict[str, str], robot: Path) -> int:
     """Return the number of files that the page of a robot names and the server provides."""
     words = [_PROGRAM, "view", str(robot), "--no-open"]
     with subprocess.Popen(
@@ -107,12 +107,12 @@ def _page(environment: dict[str, str], robot: Path) -> int:
             else:
                 raise AssertionError("linkwright view ended by itself:\n" + "".join(lines))
             opener = build_opener(ProxyHandler({}), HTTPCookieProcessor(CookieJar()))
-            with opener.open(match[1], timeout=_SECONDS) as answer:
+            with opener.open(match[1], timeout=_TIMEOUT_S) as answer:
                 page, address = answer.read().decode("utf-8"), answer.geturl()
             files = re.findall(r'(?:src|href)="(\./[^"]+)"', page)
             assert any(file.endswith(".js") for file in files), page
             for file in files:
-                with opener.open(urljoin(address, file), timeout=_SECONDS) as answer:
+                with opener.open(urljoin(address, file), timeout=_TIMEOUT_S) as answer:
                     assert answer.read(), file
         finally:
             viewer.send_signal(signal.SIGTERM if os.name == "nt" else signal.SIGINT)
@@ -120,4 +120,4 @@ def _page(environment: dict[str, str], robot: Path) -> int:
 
 
 if __name__ == "__main__":
-    print((try_engine if "--engine" in sys.argv else try_it)(sys.argv[1]))
+    print((try_engine if "--engine" in sys.argv else try_linkwright)(sys.argv[1]))

@@ -1,4 +1,6 @@
-"""Go through a course in the page as a learner does: each step is red before and green after, in both languages.
+"""Walk through a course in the page as a learner does, in both languages.
+
+Each step must be red before it is done and green afterwards.
 
 Usage: python tools/walk_course.py [--course COURSE] [--lang zh] [LESSON ...] (needs a Chromium)
 
@@ -39,14 +41,14 @@ _MESSAGES = "() => window.linkwright.panels.lesson.checks.checks.filter((check) 
 _TITLE = "(title) => document.querySelector('.lesson-body h2')?.textContent === title"
 
 
-def walk(page: Page, course: Course, lessons: list[str], workspace: Path) -> int:
+def walk_course(page: Page, course: Course, lessons: list[str], workspace: Path) -> int:
     """Walk through the lessons, and return the number of steps that are not as they should be."""
     failures = 0
     for number, lesson in enumerate(course.lessons):
         if lessons and lesson.id not in lessons:
             for step in lesson.steps:
-                copy(lesson.start, workspace)
-                copy(step.solution, workspace)
+                copy_files(lesson.start, workspace)
+                copy_files(step.solution, workspace)
             continue
         for step in lesson.steps:
             begin = time.monotonic()
@@ -72,7 +74,7 @@ def do_step(page: Page, step: Step, number: int, workspace: Path) -> tuple[str, 
     page.wait_for_function(_CHECKED, arg=step.address, timeout=TIMEOUT_MS)
     if page.evaluate(_PASSED):
         return language, "the step is green before it is done"
-    copy(step.solution, workspace)
+    copy_files(step.solution, workspace)
     answer = step.lesson.folder / "solution" / f"{step.id}.answer"
     if answer.is_file():
         page.locator(".lesson-answer").fill(answer.read_text(encoding="utf-8").strip())
@@ -87,7 +89,10 @@ def do_step(page: Page, step: Step, number: int, workspace: Path) -> tuple[str, 
 
 
 def open_step(page: Page, step: Step, number: int) -> str:
-    """Open a step of a lesson from the list of steps, and return the language of its text once it is shown."""
+    """Open a step from the list of steps, and return the language of its text.
+
+    The function returns when the text is shown.
+    """
     outline = page.locator(".course-outline")
     if not outline.is_visible():
         page.locator(".lesson-head button").click()
@@ -97,14 +102,14 @@ def open_step(page: Page, step: Step, number: int) -> str:
     return language
 
 
-def copy(source: Path, workspace: Path) -> None:
+def copy_files(source: Path, workspace: Path) -> None:
     """Copy files into the workspace, if there are any."""
     if source.is_dir():
         shutil.copytree(source, workspace, dirs_exist_ok=True, ignore=shutil.ignore_patterns("__pycache__"))
 
 
 def main() -> int:
-    """Walk through these lessons, or through all."""
+    """Walk through the named lessons, or through all lessons."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--course", default="robot")
     parser.add_argument("--lang", choices=("en", "zh"), default="en")
@@ -121,13 +126,13 @@ def main() -> int:
         assert program.stdout is not None
         url = next(line.split()[1] for line in program.stdout if line.startswith("Viewer: "))
         browser = playwright.chromium.launch(
-            executable_path=chromium.find() or chromium.fetch(), args=list(gallery.FLAGS)
+            executable_path=chromium.find_chromium() or chromium.fetch_chromium(), args=list(gallery.CHROMIUM_FLAGS)
         )
         page = browser.new_page(
             viewport={"width": 1440, "height": 900}, locale={"en": "en-US", "zh": "zh-CN"}[arguments.lang]
         )
         page.goto(url)
-        failures = walk(page, course, arguments.lessons, workspace)
+        failures = walk_course(page, course, arguments.lessons, workspace)
         browser.close()
         program.send_signal(signal.SIGINT)
         program.wait(timeout=30)

@@ -12,7 +12,7 @@ import pytest
 from playwright.sync_api import Browser, Page, Playwright, expect
 
 from linkwright.messages import get_message
-from linkwright.speech.enrolled.words import RECOMMENDED_TAKES, Take, Words, words_path
+from linkwright.speech.enrolled.words import RECOMMENDED_TAKES, Take, Words, find_words_path
 from linkwright.speech.sound.spectra import BANDS
 from tests.browser.conftest import run_browser, until
 from tests.browser.live import LiveViewer, configuration
@@ -203,7 +203,7 @@ def test_unrecognized_speaker_can_enroll_words_at_this_place(
     for name in ("stop", "forward"):
         for _ in range(RECOMMENDED_TAKES):
             words.add(name, Take(rng.uniform(1e3, 1e6, (40, BANDS)), np.ones(BANDS)))
-    words.write(words_path())
+    words.write(find_words_path())
     page.keyboard.down("v")
     wait_until(lambda: robot.button_states == [True], TIMEOUT_S)
     page.keyboard.up("v")

@@ -11,7 +11,7 @@ from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.loading import extensions
 from linkwright.speech.engine import Heard, SpeechEngine
-from linkwright.speech.sound.samples import BLOCK, RATE
+from linkwright.speech.sound.samples import BLOCK_LENGTH, RATE
 from linkwright.speech.sound.wav import encode_wav
 from tests.full_disk import full_disk, needs_limits
 
@@ -30,7 +30,7 @@ class ByLevel(SpeechEngine):
         self.heard, self.quiet, self.level, self.began = 0, 0, 0, 0
 
     def hear(self, samples):
-        assert len(samples) <= BLOCK
+        assert len(samples) <= BLOCK_LENGTH
         self.heard += len(samples)
         now, peak = self.heard / RATE, int(samples.max())
         if peak and not self.level:

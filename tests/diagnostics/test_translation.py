@@ -167,7 +167,7 @@ def test_arbitrary_text_can_be_inserted(text: str) -> None:
 
 def test_chinese_catalog_uses_chinese_punctuation() -> None:
     tool = load_tool("catalogs")
-    for message in tool.read(tool.FOLDER / "zh.po"):
+    for message in tool.read_catalog(tool.FOLDER / "zh.po"):
         english = "".join(message.id)
         for chinese in [message.string] if isinstance(message.string, str) else message.string:
             assert message.id == "" or not set(chinese) & set("\"'`") - set(english), chinese

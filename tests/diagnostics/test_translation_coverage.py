@@ -69,9 +69,9 @@ def test_catalogs_match_source(source: Any) -> None:
     tool = load_tool("catalogs")
     assert len(source.templates) > 1000
     for path in sorted(tool.FOLDER.glob("*.po")):
-        catalog = tool.read(path)
-        assert list(tool.problems_of(catalog, source)) == []
-        assert tool.as_text(tool.updated(catalog, source)) == path.read_text(encoding="utf-8")
+        catalog = tool.read_catalog(path)
+        assert list(tool.find_problems(catalog, source)) == []
+        assert tool.format_catalog(tool.update_catalog(catalog, source)) == path.read_text(encoding="utf-8")
 
 
 def test_catalog_problems_are_reported(tmp_path: Path) -> None:
@@ -93,7 +93,7 @@ def test_catalog_problems_are_reported(tmp_path: Path) -> None:
     )
     tool = load_tool("catalogs")
     source = tool.Source(tmp_path / "package")
-    assert list(tool.problems_of(tool.read(tmp_path / "zh.po"), source)) == [
+    assert list(tool.find_problems(tool.read_catalog(tmp_path / "zh.po"), source)) == [
         "urdf/reader.py:3: the placeholders of '{a} is {b}' are not its arguments",
         "urdf/reader.py:4: the template is no literal",
         "the translation of ''{tag}' is odd' has other placeholders",
@@ -101,13 +101,13 @@ def test_catalog_problems_are_reported(tmp_path: Path) -> None:
         "urdf/reader.py:2: 'a new one' is not in the catalog",
         "urdf/reader.py:3: '{a} is {b}' is not in the catalog",
     ]
-    new = tool.updated(tool.read(tmp_path / "zh.po"), source)
+    new = tool.update_catalog(tool.read_catalog(tmp_path / "zh.po"), source)
     assert [message.id for message in new if message.id] == [
         "'{tag}' is odd", "a new one", "{a} is {b}", ("{count} link", "{count} links")
     ]  # fmt: skip
-    catalog_text = tool.as_text(new)
+    catalog_text = tool.format_catalog(new)
     (tmp_path / "zh.po").write_text(catalog_text, encoding="utf-8")
-    assert tool.as_text(tool.updated(tool.read(tmp_path / "zh.po"), source)) == catalog_text
+    assert tool.format_catalog(tool.update_catalog(tool.read_catalog(tmp_path / "zh.po"), source)) == catalog_text
 
 
 def test_untranslated_page_title_is_reported(tmp_path: Path) -> None:
@@ -128,18 +128,18 @@ def test_untranslated_page_title_is_reported(tmp_path: Path) -> None:
     )
     tool = load_tool("catalogs")
     source = tool.Source(tmp_path / "package")
-    assert list(tool.problems_of(tool.read(tmp_path / "zh.po"), source)) == [
+    assert list(tool.find_problems(tool.read_catalog(tmp_path / "zh.po"), source)) == [
         "no page has the title 'A robot that is gone'",
         "lint/rules/own.py:1: the title 'A robot that is odd' is not in the catalog",
         "lint/pages/own.md: the title 'a thing is odd' is not in the catalog",
     ]
-    new = tool.updated(tool.read(tmp_path / "zh.po"), source)
+    new = tool.update_catalog(tool.read_catalog(tmp_path / "zh.po"), source)
     assert [(message.context, message.id, message.string) for message in new if message.id] == [
         ("rule", "A robot that is even", "偶数的机器人"),
         ("rule", "A robot that is odd", ""),
         ("rule", "a thing is odd", ""),
     ]
-    assert "'A robot that is odd' is not translated" in list(tool.problems_of(new, source))
+    assert "'A robot that is odd' is not translated" in list(tool.find_problems(new, source))
 
 
 def test_checked_titles_match_rule_pages(source: Any) -> None:

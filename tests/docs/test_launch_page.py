@@ -50,5 +50,5 @@ def test_composed_launch_file_loads(tmp_path: Path, capsys) -> None:
 def test_shown_error_matches_output(language: str) -> None:
     page = PAGES[language]
     arguments = next(shlex.split(line) for line in read_commands(page) if "bringup" in line)
-    output = TOOL.output_of(arguments[1:], [(file.title, file.text) for file in read_files(page)], language)
+    output = TOOL.run_command(arguments[1:], [(file.title, file.text) for file in read_files(page)], language)
     assert output in [block.text for block in read_blocks(page) if block.language == "text"]

@@ -48,7 +48,7 @@ def test_extras_have_purpose_and_packages(tool) -> None:
         name for name in EXTRAS if re.search(rf"`{name}` \| .*; not in `all` \|", table)
     } == EXTRAS.keys() - TOGETHER
     for name, extra in tool.EXTRAS.items():
-        assert any(required.name == extra.main for required in tool._required(name)), name
+        assert any(required.name == extra.main for required in tool._iterate_requirements(name)), name
 
 
 def test_systems_table_marks_missing_dds_wheels(tool) -> None:

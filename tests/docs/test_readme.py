@@ -60,14 +60,14 @@ def test_animation_lasts_ten_seconds_and_is_small():
 
 
 def test_package_readme_has_no_relative_links():
-    text = load_tool("package_readme").package_readme()
+    text = load_tool("package_readme").make_package_readme()
     prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
     assert [target for target in re.findall(r"\]\(([^)]*)\)", prose) if not target.startswith("https://")] == []
     assert "build mbot from an empty folder: its description," in " ".join(prose.replace("*", "").split())
 
 
 def test_package_readme_installs_from_index():
-    commands = re.findall(r"\b(?:pip|pipx|uv tool) install [^\n`]+", load_tool("package_readme").package_readme())
+    commands = re.findall(r"\b(?:pip|pipx|uv tool) install [^\n`]+", load_tool("package_readme").make_package_readme())
     assert sorted(set(commands)) == [
         "pip install 'linkwright[all]'",
         "pip install linkwright",

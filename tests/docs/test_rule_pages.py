@@ -16,7 +16,7 @@ def test_rule_pages_are_current() -> None:
 
 
 def test_rules_have_chinese_titles() -> None:
-    titles = load_tool("rule_reference").chinese_titles()
+    titles = load_tool("rule_reference").read_chinese_titles()
     assert set(titles) == {rule.code for rule in all_rules()}
     assert all(titles.values())
 

@@ -18,7 +18,7 @@ TOOL = load_tool("documented_output")
 @pytest.mark.parametrize("page", TOOL.PAGES, ids=["en", "zh"])
 def test_shown_output_is_current(page: Path) -> None:
     text = page.read_text(encoding="utf-8")
-    assert text == TOOL.refreshed(text, TOOL.language_of(page)), "run tools/documented_output.py"
+    assert text == TOOL.refresh_page(text, TOOL.get_language(page)), "run tools/documented_output.py"
 
 
 def test_both_languages_show_same_cases() -> None:
@@ -62,4 +62,4 @@ def test_stale_page_is_found_and_fixed(tmp_path: Path, monkeypatch: pytest.Monke
 
 def test_command_without_failure_is_rejected() -> None:
     with pytest.raises(RuntimeError, match="exited with 0"):
-        TOOL.output_of(["--version"], [])
+        TOOL.run_command(["--version"], [])

@@ -7,12 +7,14 @@ import sys
 
 import pytest
 
-from linkwright.learning.checks import running
+from linkwright.learning.checks import check_process
 from linkwright.learning.sandbox import run
 from tests.measuring import coverage_options, measured_program
 
 
 @pytest.fixture(autouse=True)
 def measured_checks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(running, "PYTHON", [sys.executable, *coverage_options()])
-    monkeypatch.setattr(run, "_SUPERVISE", measured_program(run._SUPERVISE, "from {module} import main; main()"))
+    monkeypatch.setattr(check_process, "PYTHON", [sys.executable, *coverage_options()])
+    monkeypatch.setattr(
+        run, "_SUPERVISOR_CODE", measured_program(run._SUPERVISOR_CODE, "from {module} import main; main()")
+    )

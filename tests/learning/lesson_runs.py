@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from linkwright.learning.course import Course, Lesson, courses_folder, load_course
+from linkwright.learning.course import Course, Lesson, find_courses_folder, load_course
 from linkwright.learning.lesson_tests import test_lesson as run_lesson_tests
 
-COURSES = [load_course(file.parent) for file in sorted((courses_folder() or ()).glob("*/course.toml"))]
+COURSES = [load_course(file.parent) for file in sorted((find_courses_folder() or ()).glob("*/course.toml"))]
 LESSONS = [
     pytest.param(course, lesson, id=f"{course.id}-{lesson.id}") for course in COURSES for lesson in course.lessons
 ]

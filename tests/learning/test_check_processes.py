@@ -10,21 +10,21 @@ from types import SimpleNamespace
 
 import pytest
 
-from linkwright.learning.checks import launched, running
-from linkwright.learning.checks.installed import files_of_setup
+from linkwright.learning.checks import check_process, launch_check
+from linkwright.learning.checks.installed_files import list_setup_files
 from linkwright.learning.course import load_course
 from linkwright.learning.new_course import create_course
 
 
 def test_windows_process_is_ended_with_children(monkeypatch):
     commands = []
-    monkeypatch.setattr(running, "sys", SimpleNamespace(platform="win32"))
-    monkeypatch.setattr(running.subprocess, "run", lambda command, **_: commands.append(command))
+    monkeypatch.setattr(check_process, "sys", SimpleNamespace(platform="win32"))
+    monkeypatch.setattr(check_process.subprocess, "run", lambda command, **_: commands.append(command))
     with subprocess.Popen([sys.executable, "-c", "import time; time.sleep(60)"]) as process:
-        running._end_group(process)
+        check_process._kill_session(process)
         assert commands == [["taskkill", "/T", "/F", "/PID", str(process.pid)]]
         assert process.wait() != 0
-        running._end_group(process)
+        check_process._kill_session(process)
     assert len(commands) == 1
 
 
@@ -45,7 +45,7 @@ def busy_processor():
 
 @pytest.fixture(scope="module")
 def check_server():
-    with running.create_check_server() as server:
+    with check_process.create_check_server() as server:
         yield server
 
 
@@ -60,7 +60,7 @@ def run_statement(server, folder, statement, processor, time_limit):
         encoding="utf-8",
     )
     step = load_course(course).find_step("mass")
-    (result,) = running.check_in_process(step, folder, time_limit=time_limit, server=server).checks
+    (result,) = check_process.check_in_process(step, folder, time_limit=time_limit, server=server).checks
     return str(result.message)
 
 
@@ -94,15 +94,15 @@ def test_call_of_launch_waits_without_load_only(monkeypatch):
 
     The clock stops during this time.
     """
-    check = launched.LaunchCheck("package", "file", {}, None)
+    check = launch_check.LaunchCheck("package", "file", {}, None)
     loop = check._loop
     thread = threading.Thread(target=loop.run_forever)
     thread.start()
-    monkeypatch.setattr(launched, "_WAIT_S", 0.05)
+    monkeypatch.setattr(launch_check, "_WAIT_S", 0.05)
     loop.call_soon_threadsafe(time.sleep, 0.3)
     with pytest.raises(TimeoutError):
         check._call(lambda: 1)
-    monkeypatch.setattr(launched, "PatientClock", lambda: SimpleNamespace(read=lambda: 0.0))
+    monkeypatch.setattr(launch_check, "PatientClock", lambda: SimpleNamespace(read=lambda: 0.0))
     loop.call_soon_threadsafe(time.sleep, 0.3)
     assert check._call(lambda: 1) == 1
     loop.call_soon_threadsafe(loop.stop)
@@ -122,7 +122,7 @@ def test_checks_of_page_run_at_low_priority(tmp_path):
         encoding="utf-8",
     )
     step = load_course(course).find_step("mass")
-    assert running.CheckProcess(step, tmp_path, niceness=5).run().passed
+    assert check_process.CheckProcess(step, tmp_path, niceness=5).run().passed
     assert int((tmp_path / "niceness").read_text()) == min(os.nice(0) + 5, 19)
 
 
@@ -132,7 +132,7 @@ def test_setup_file_may_print_non_ascii_text_in_c_locale(tmp_path, monkeypatch):
     monkeypatch.setitem(os.environ, "LC_ALL", "C")
     program = "from setuptools import setup\nprint('机器人')\nsetup(data_files=[('share', ['world.sdf'])])\n"
     (tmp_path / "setup.py").write_text(program, encoding="utf-8")
-    assert files_of_setup(tmp_path) == {PurePosixPath("share/world.sdf"): tmp_path / "world.sdf"}
+    assert list_setup_files(tmp_path) == {PurePosixPath("share/world.sdf"): tmp_path / "world.sdf"}
 
 
 @pytest.mark.parametrize("stop_at_failure", [False, True])
@@ -150,6 +150,6 @@ def test_checks_can_stop_at_first_failure(tmp_path, stop_at_failure):
         encoding="utf-8",
     )
     step = load_course(course).find_step("mass")
-    result = running.check_in_process(step, tmp_path, stop_at_failure=stop_at_failure)
+    result = check_process.check_in_process(step, tmp_path, stop_at_failure=stop_at_failure)
     assert [check.passed for check in result.checks] == ([False] if stop_at_failure else [False, True])
     assert (tmp_path / "second").exists() is not stop_at_failure

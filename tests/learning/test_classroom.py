@@ -17,9 +17,9 @@ import pytest
 from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span, phrase
 from linkwright.graph.parameters.files import read_parameter_file
-from linkwright.learning.checks import running
+from linkwright.learning.checks import check_process
+from linkwright.learning.checks.check_process import check_in_process, create_check_server
 from linkwright.learning.checks.findings import describe_finding
-from linkwright.learning.checks.running import check_in_process, create_check_server
 from linkwright.learning.classroom import open_classroom
 from linkwright.learning.course import find_course, load_course
 from linkwright.learning.lesson_tests import test_lesson as run_lesson_tests
@@ -353,5 +353,5 @@ def test_unwritable_workspace_is_one_error(tmp_path, monkeypatch):
 
 
 def test_modules_imported_by_check_server_exist():
-    names = [name.removesuffix(".*") for name in running._IMPORTED]
+    names = [name.removesuffix(".*") for name in check_process._PRELOADED_MODULES]
     assert [name for name in names if importlib.util.find_spec(name) is None] == []

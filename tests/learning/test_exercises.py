@@ -17,8 +17,8 @@ import pytest
 
 from linkwright.cli.entry import main
 from linkwright.diagnostics import LinkwrightError
-from linkwright.learning.judging.exercise import Figure, exercise_names, find_exercise, load_exercise
-from linkwright.learning.judging.running import RunResult, judge_program
+from linkwright.learning.judging.exercise import Figure, find_exercise, list_exercise_names, load_exercise
+from linkwright.learning.judging.runs import RunResult, judge_program
 from linkwright.learning.judging.world import create_judge, write_world
 from linkwright.learning.local_text import LocalText
 from linkwright.testing import SteppedSimulation
@@ -27,7 +27,7 @@ from tests.waiting import wait_until
 
 pytestmark = pytest.mark.extra("sim")
 
-NAMES = exercise_names()
+NAMES = list_exercise_names()
 SEEDS = (0, 1, 2)
 FAST_EXERCISES = "avoid_obstacles"
 

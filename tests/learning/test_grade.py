@@ -16,10 +16,10 @@ import pytest
 
 from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, LinkwrightError
-from linkwright.learning.checks import running
+from linkwright.learning.checks import check_process
 from linkwright.learning.course import find_course
 from linkwright.learning.grading import grading, workers
-from linkwright.learning.grading import running as grading_running
+from linkwright.learning.grading import jobs as grading_jobs
 from linkwright.sweep.ray_cluster import LostTask
 from tests.learning.sandbox.conftest import class_folder, processes_with  # noqa: F401
 from tests.waiting import TIMEOUT_S, wait_until
@@ -50,7 +50,7 @@ def folder(class_folder, monkeypatch):  # noqa: F811
     (lesson / "lesson.en.md").write_text("# A program\n\n## Run {#run}\n\nWrite it.\n\n## Read {#read}\n\nWrite it.\n")
     (lesson / "checks.py").write_text(
         "import subprocess, sys\n"
-        "from linkwright.learning.checks.declaring import check\n"
+        "from linkwright.learning.checks.declarations import check\n"
         "from linkwright.learning.checks.not_yet import NotYet\n"
         "@check('run', en='It writes 42.')\n"
         "def run(work):\n"
@@ -66,7 +66,7 @@ def folder(class_folder, monkeypatch):  # noqa: F811
     students.mkdir()
     monkeypatch.chdir(class_folder)
     # Without coverage, whose settings are not readable in the sandbox.
-    monkeypatch.setattr(running, "PYTHON", [sys.executable])
+    monkeypatch.setattr(check_process, "PYTHON", [sys.executable])
     return class_folder
 
 
@@ -174,7 +174,7 @@ def test_error_of_cluster_process_is_error_of_command(folder, monkeypatch, capsy
     def refuse(*_, **__):
         raise LinkwrightError(Diagnostic("LEARN901", "no sandbox here"))
 
-    monkeypatch.setattr(grading_running, "run_in_sandbox", refuse)
+    monkeypatch.setattr(grading_jobs, "run_in_sandbox", refuse)
     monkeypatch.setattr(workers, "connect_to_ray", lambda address: nullcontext(FakeCluster()))
     assert main(["learn", "grade", "--course", "course", "--ray", "auto", "students/good"]) == 1
     assert "LEARN901" in capsys.readouterr().err
@@ -183,14 +183,14 @@ def test_error_of_cluster_process_is_error_of_command(folder, monkeypatch, capsy
 def test_error_of_one_run_leaves_other_students_graded(folder, monkeypatch):
     write_student(folder, "good", "print(42)")
     write_student(folder, "unlucky", "print(42)  # unlucky")
-    run_in_sandbox = grading_running.run_in_sandbox
+    run_in_sandbox = grading_jobs.run_in_sandbox
 
     def fail_for_one(words, **more):
         if "unlucky" in (more["folder"] / "workspace/program.py").read_text() and "run" in words:
             raise OSError(errno.ENOSPC, "No space left on device")
         return run_in_sandbox(words, **more)
 
-    monkeypatch.setattr(grading_running, "run_in_sandbox", fail_for_one)
+    monkeypatch.setattr(grading_jobs, "run_in_sandbox", fail_for_one)
     monkeypatch.setattr(workers, "connect_to_ray", lambda address: nullcontext(FakeCluster()))
     status, students, _ = grade_folder(folder, "--ray", "auto", "--csv", "out.csv", "--nbgrader", "nb.csv")
     assert status == 1
@@ -207,7 +207,7 @@ def test_error_of_one_run_leaves_other_students_graded(folder, monkeypatch):
     scores = {line["student_id"]: line["score"] for line in csv.DictReader(Path("nb.csv").read_text().splitlines())}
     assert scores == {"good": "4", "unlucky": ""}
     assert Path("out.csv.unfinished").exists()
-    monkeypatch.setattr(grading_running, "run_in_sandbox", run_in_sandbox)
+    monkeypatch.setattr(grading_jobs, "run_in_sandbox", run_in_sandbox)
     status, students, _ = grade_folder(folder, "--ray", "auto", "--csv", "out.csv")
     assert status == 0
     assert students["unlucky"]["points"] == 4

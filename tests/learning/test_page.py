@@ -16,11 +16,11 @@ import pytest
 from linkwright.cli import main
 from linkwright.cli.command import _begins_without_verb
 from linkwright.cli.learn.verb import VERBS
-from linkwright.learning.classroom import Classroom, open_classroom, workspace_at
+from linkwright.learning.classroom import Classroom, find_workspace, open_classroom
 from linkwright.learning.course import find_course
 from linkwright.learning.page.course_guide import CourseGuide
 from linkwright.learning.page.feature import CourseFeature
-from linkwright.learning.page.step_html import step_html
+from linkwright.learning.page.step_html import render_html
 from linkwright.page.program_pages import ProgramPages
 from tests.viewer.scene import open_world, page
 
@@ -179,7 +179,7 @@ async def test_progress_from_another_process_is_shown(tmp_path):
     async with classroom(tmp_path / "ws") as client:
         await wait_for_results(client)
         other = open_classroom(tmp_path / "ws")
-        other.answer(other.course.find_step("mass"), "3")
+        other.record_answer(other.course.find_step("mass"), "3")
         other.take_hint(other.course.find_step("one-link"))
         while not (await client.until("course_step"))["hints"]:
             pass
@@ -213,41 +213,41 @@ def test_lesson_text_becomes_safe_html_with_own_images_only(tmp_path):
     (lesson / "images" / "a.png").write_bytes(b"PNG")
     (tmp_path / "secret.png").write_bytes(b"secret")
     (lesson / "link.png").symlink_to(tmp_path / "secret.png")
-    html = step_html("<script>x</script> ![a picture](images/a.png)\n\n| a | b |\n| - | - |\n| 1 | 2 |", lesson)
+    html = render_html("<script>x</script> ![a picture](images/a.png)\n\n| a | b |\n| - | - |\n| 1 | 2 |", lesson)
     assert "&lt;script&gt;" in html
     assert '<img src="data:image/png;base64,UE5H" alt="a picture"' in html
     assert "<td>1</td>" in html
     hostile = ("../secret.png", "link.png", "images/none.png", "/etc/passwd", "images", "http://a.b/c.png", "%00.png")
     for name in hostile:
-        assert step_html(f"![words](<{name}>)", lesson) == "<p>words</p>\n", name
-    assert step_html("[a](javascript:alert)", lesson) == "<p>[a](javascript:alert)</p>\n"
+        assert render_html(f"![words](<{name}>)", lesson) == "<p>words</p>\n", name
+    assert render_html("[a](javascript:alert)", lesson) == "<p>[a](javascript:alert)</p>\n"
 
 
 def test_lines_of_chinese_text_join_without_space(tmp_path):
-    assert step_html("形状、位置都相同的\n碰撞体：\n机身。", tmp_path) == "<p>形状、位置都相同的碰撞体：机身。</p>\n"
-    assert step_html("这是**粗体**\n文字", tmp_path) == "<p>这是<strong>粗体</strong>文字</p>\n"
-    assert step_html("写\n`mbot.xacro`\n文件", tmp_path) == "<p>写\n<code>mbot.xacro</code>\n文件</p>\n"
-    assert step_html("“左转”\n是命令", tmp_path) == "<p>“左转”是命令</p>\n"
-    assert step_html("“left”\n“right”", tmp_path) == "<p>“left”\n“right”</p>\n"
-    assert step_html("two\nlines", tmp_path) == "<p>two\nlines</p>\n"
+    assert render_html("形状、位置都相同的\n碰撞体：\n机身。", tmp_path) == "<p>形状、位置都相同的碰撞体：机身。</p>\n"
+    assert render_html("这是**粗体**\n文字", tmp_path) == "<p>这是<strong>粗体</strong>文字</p>\n"
+    assert render_html("写\n`mbot.xacro`\n文件", tmp_path) == "<p>写\n<code>mbot.xacro</code>\n文件</p>\n"
+    assert render_html("“左转”\n是命令", tmp_path) == "<p>“左转”是命令</p>\n"
+    assert render_html("“left”\n“right”", tmp_path) == "<p>“left”\n“right”</p>\n"
+    assert render_html("two\nlines", tmp_path) == "<p>two\nlines</p>\n"
 
 
 def test_workspace_is_current_folder_or_new_folder(tmp_path):
-    assert workspace_at(tmp_path) == tmp_path
+    assert find_workspace(tmp_path) == tmp_path
     (tmp_path / "file").touch()
-    assert workspace_at(tmp_path) == tmp_path / "robot_ws"
-    assert workspace_at(tmp_path, "example") == tmp_path / "example_ws"
+    assert find_workspace(tmp_path) == tmp_path / "robot_ws"
+    assert find_workspace(tmp_path, "example") == tmp_path / "example_ws"
     (tmp_path / "learn.yaml").write_text("course: example\n")
     (tmp_path / "src" / "deep").mkdir(parents=True)
-    assert workspace_at(tmp_path / "src" / "deep") == tmp_path
+    assert find_workspace(tmp_path / "src" / "deep") == tmp_path
 
 
 def test_file_is_shown_from_first_step_that_names_it(tmp_path):
     room: Classroom = open_classroom(tmp_path, "robot")
     steps = room.course.steps
-    assert room.shown_file(steps[0]) is None
-    assert room.shown_file(steps[1]) == tmp_path / "src/my_robot_description/urdf/mbot_base.urdf"
-    assert room.shown_file(steps[3]) == room.shown_file(steps[1])
+    assert room.find_shown_file(steps[0]) is None
+    assert room.find_shown_file(steps[1]) == tmp_path / "src/my_robot_description/urdf/mbot_base.urdf"
+    assert room.find_shown_file(steps[3]) == room.find_shown_file(steps[1])
 
 
 @pytest.mark.parametrize(

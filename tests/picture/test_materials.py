@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.collada_colors import read_colored_meshes
-from linkwright.picture.materials import DEFAULT_COLOR, SurfaceLibrary, surface_color
+from linkwright.picture.materials import DEFAULT_COLOR, SurfaceLibrary, choose_surface_color
 from tests.browser.golden import GOLDEN, golden_links, robot_of
 from tests.picture.robots import image, joint, link, mostly, scene, urdf
 from tests.places import REPOSITORY
@@ -69,10 +69,10 @@ def test_file_color_precedes_description_color() -> None:
     from linkwright.geometry.mesh_parts import FileMaterial
 
     blue = FileMaterial((0.0, 0.0, 1.0))
-    assert surface_color(blue, (1.0, 0.0, 0.0), is_textured=False, format_has_colors=True) == (0.0, 0.0, 1.0)
-    assert surface_color(None, (0.0, 1.0, 0.0), is_textured=False, format_has_colors=True) == (0.0, 1.0, 0.0)
-    assert surface_color(None, None, is_textured=False, format_has_colors=False) == DEFAULT_COLOR
-    assert surface_color(None, None, is_textured=False, format_has_colors=True) == (0.6, 0.6, 0.6)
+    assert choose_surface_color(blue, (1.0, 0.0, 0.0), is_textured=False, format_has_colors=True) == (0.0, 0.0, 1.0)
+    assert choose_surface_color(None, (0.0, 1.0, 0.0), is_textured=False, format_has_colors=True) == (0.0, 1.0, 0.0)
+    assert choose_surface_color(None, None, is_textured=False, format_has_colors=False) == DEFAULT_COLOR
+    assert choose_surface_color(None, None, is_textured=False, format_has_colors=True) == (0.6, 0.6, 0.6)
 
 
 def test_mesh_uses_color_and_scale_of_description(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from linkwright.picture.rasterizer import DepthBuffer, ScreenTriangles, fragments
+from linkwright.picture.rasterizer import DepthBuffer, ScreenTriangles, rasterize
 
 
 def triangles(points: list[tuple[float, float, float]]) -> ScreenTriangles:
@@ -24,7 +24,7 @@ def test_adjacent_triangles_cover_each_sample_once() -> None:
         for point in ((*middle, 0.0), (*first, 0.0), (*second, 0.0))
     ]
     counts = np.zeros(40 * 40, int)
-    for part in fragments(triangles(fan), np.arange(9), 40, 0, 40):
+    for part in rasterize(triangles(fan), np.arange(9), 40, 0, 40):
         np.add.at(counts, part.samples, 1)
     assert counts.max() == 1
     grid = counts.reshape(40, 40)

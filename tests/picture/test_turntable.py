@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.picture.camera import VIEWS
 from linkwright.picture.rendering import Style, render
-from linkwright.picture.turntable import turning_cameras, turntable
+from linkwright.picture.turntable import iterate_turning_cameras, render_turntable
 from tests.picture.robots import BLUE, RED, joint, link, scene, urdf
 
 LONG = urdf(
@@ -22,7 +22,7 @@ LONG = urdf(
 def test_robot_stays_within_image_at_constant_scale() -> None:
     shown = scene(LONG)
     scales = set()
-    for camera in turning_cameras(VIEWS["iso"], (160, 120), shown.points, 24):
+    for camera in iterate_turning_cameras(VIEWS["iso"], (160, 120), shown.points, 24):
         x, y, _ = camera.project(shown.points)
         assert x.min() > 0
         assert x.max() < 160
@@ -38,7 +38,7 @@ def test_rotation_axis_stays_in_place() -> None:
     middle = (low + high)[None, :] / 2
     places = [
         [float(value[0]) for value in camera.project(middle)[:2]]
-        for camera in turning_cameras(VIEWS["iso"], (160, 120), shown.points, 7)
+        for camera in iterate_turning_cameras(VIEWS["iso"], (160, 120), shown.points, 7)
     ]
     np.testing.assert_allclose(places, [places[0]] * 7, atol=1e-6)
 
@@ -46,9 +46,9 @@ def test_rotation_axis_stays_in_place() -> None:
 def test_images_match_their_cameras_across_threads() -> None:
     shown = scene(LONG)
     finished: list[int] = []
-    images = turntable(shown, VIEWS["iso"], (64, 48), Style(), 4, finished.append)
+    images = render_turntable(shown, VIEWS["iso"], (64, 48), Style(), 4, finished.append)
     assert finished == [1, 2, 3, 4]
-    cameras = turning_cameras(VIEWS["iso"], (64, 48), shown.points, 4)
+    cameras = iterate_turning_cameras(VIEWS["iso"], (64, 48), shown.points, 4)
     for image, camera in zip(images, cameras, strict=True):
         assert (image == render(shown, VIEWS["iso"], (64, 48), Style(), camera)).all()
     assert not (images[0] == images[1]).all()
@@ -67,5 +67,5 @@ def test_interruption_does_not_wait_for_remaining_images(monkeypatch: pytest.Mon
 
     monkeypatch.setattr("linkwright.picture.turntable.render", slow)
     with pytest.raises(KeyboardInterrupt):
-        turntable(scene(LONG), VIEWS["iso"], (64, 48), Style(), 200, interrupt)
+        render_turntable(scene(LONG), VIEWS["iso"], (64, 48), Style(), 200, interrupt)
     assert len(drawn) < 50

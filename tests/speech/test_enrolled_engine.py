@@ -13,7 +13,7 @@ from linkwright.speech.enrolled.engine import EnrolledEngine
 from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.recognition import Guess
 from linkwright.speech.enrolled.words import Words
-from linkwright.speech.sound.samples import BLOCK, RATE
+from linkwright.speech.sound.samples import BLOCK_LENGTH, RATE
 from tests.speech.voices import WORDS, add_noise, babble, say
 
 OTHERS = ("mumi", "faso.t", "ri.tamu", "om", "se.pifu", "tatata", "u", "moramifu")
@@ -42,7 +42,7 @@ def engine(path):
     return EnrolledEngine(EngineOptions(tuple(WORDS), model=path))
 
 
-def results_of(engine, samples, block=BLOCK):
+def results_of(engine, samples, block=BLOCK_LENGTH):
     results = []
     for start in range(0, len(samples), block):
         results += engine.hear(samples[start : start + block])
@@ -184,10 +184,10 @@ def test_partial_is_reported_within_300_ms_of_word(engine):
     samples = say(WORDS["stop"], silence=0.8, seed=13)
     end = len(samples) - int(0.8 * RATE)
     partial_time = None
-    for start in range(0, len(samples), BLOCK):
-        results = engine.hear(samples[start : start + BLOCK])
+    for start in range(0, len(samples), BLOCK_LENGTH):
+        results = engine.hear(samples[start : start + BLOCK_LENGTH])
         if partial_time is None and any(result.text == "stop" for result in results):
-            partial_time = start + BLOCK
+            partial_time = start + BLOCK_LENGTH
             assert not results[0].final
     assert partial_time is not None
     assert partial_time - end <= 0.3 * RATE

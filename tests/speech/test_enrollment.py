@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError, Severity
 from linkwright.speech.enrolled.enrollment import enroll
-from linkwright.speech.enrolled.words import MAX_TAKES, MAX_WORDS, Words, words_path
+from linkwright.speech.enrolled.words import MAX_TAKES, MAX_WORDS, Words, find_words_path
 from linkwright.speech.sound.spectra import BANDS
 from tests.speech.voices import WORDS, say
 
@@ -196,4 +196,4 @@ def test_missing_words_file_is_reported(tmp_path):
 
 def test_words_file_is_in_user_configuration_folder(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-    assert words_path() == tmp_path / "linkwright" / "voice" / "words.json"
+    assert find_words_path() == tmp_path / "linkwright" / "voice" / "words.json"

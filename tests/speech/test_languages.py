@@ -12,7 +12,7 @@ from linkwright.speech.engines.vosk_engine import MODELS
 from linkwright.vision.places import object_requests
 
 
-@pytest.mark.parametrize("table", [voice._TEST_PHRASES, object_requests._NUMBERS, *GRAMMAR_VALUES.values()])
+@pytest.mark.parametrize("table", [voice._TEST_PHRASES, object_requests._NUMBER_WORDS, *GRAMMAR_VALUES.values()])
 def test_tables_cover_languages(table) -> None:
     assert tuple(table) == LANGUAGES
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.speech.sound.activity import VoiceActivity, speech_span, unsteady_noise
+from linkwright.speech.sound.activity import VoiceActivity, estimate_unsteady_noise, find_speech_span
 from linkwright.speech.sound.resampling import Resampler, resample
 from linkwright.speech.sound.samples import RATE
-from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, mel_frames
+from linkwright.speech.sound.spectra import BANDS, HOP_LENGTH, MelFrames, extract_mel_frames
 from linkwright.speech.sound.wav import encode_wav, parse_wav, read_wav
 from tests.speech.voices import WORDS, add_noise, babble, say
 
@@ -133,41 +133,44 @@ def test_mel_frames_do_not_depend_on_block_size(length):
         samples = samples[:1000]
     stream = MelFrames()
     blocks = [stream.feed(samples[offset : offset + length]) for offset in range(0, len(samples), length)]
-    assert np.allclose(np.concatenate(blocks), mel_frames(samples))
+    assert np.allclose(np.concatenate(blocks), extract_mel_frames(samples))
 
 
 def test_tone_is_strongest_in_its_band():
-    strongest = [int(mel_frames(np.rint(tone(hertz) * 32768).astype(np.int16)).mean(axis=0).argmax()) for hertz in
-                 (150, 500, 1000, 2000, 4000, 7000)]  # fmt: skip
+    frames = [
+        extract_mel_frames(np.rint(tone(hertz) * 32768).astype(np.int16))
+        for hertz in (150, 500, 1000, 2000, 4000, 7000)
+    ]
+    strongest = [int(powers.mean(axis=0).argmax()) for powers in frames]
     assert strongest == sorted(set(strongest))
     assert strongest[0] <= 1
     assert strongest[-1] == BANDS - 1
 
 
 def test_too_few_samples_give_no_frames():
-    assert mel_frames(np.zeros(0, np.int16)).shape == (0, BANDS)
-    assert mel_frames(np.zeros(100, np.int16)).shape == (0, BANDS)
+    assert extract_mel_frames(np.zeros(0, np.int16)).shape == (0, BANDS)
+    assert extract_mel_frames(np.zeros(100, np.int16)).shape == (0, BANDS)
 
 
 @pytest.mark.parametrize("noise", [0.0, 3.0, 100.0])
 def test_speech_span_is_found(noise):
     samples = say(WORDS["forward"], silence=0.6, noise=noise)
-    first, last, _ = speech_span(mel_frames(samples))
-    assert abs(first * HOP - 0.6 * RATE) < 0.06 * RATE
-    assert abs(last * HOP - (len(samples) - 0.6 * RATE)) < 0.08 * RATE
+    first, last, _ = find_speech_span(extract_mel_frames(samples))
+    assert abs(first * HOP_LENGTH - 0.6 * RATE) < 0.06 * RATE
+    assert abs(last * HOP_LENGTH - (len(samples) - 0.6 * RATE)) < 0.08 * RATE
 
 
 def test_speech_span_is_found_in_fading_noise():
     samples = say(WORDS["forward"], silence=1.2, noise=0.0)
     fading = 5.0 * np.exp(-np.arange(len(samples)) / RATE) * np.random.default_rng(3).normal(size=len(samples))
-    first, last, _ = speech_span(mel_frames(np.rint(samples + fading).astype(np.int16)))
-    assert abs(first * HOP - 1.2 * RATE) < 0.06 * RATE
-    assert abs(last * HOP - (len(samples) - 1.2 * RATE)) < 0.08 * RATE
+    first, last, _ = find_speech_span(extract_mel_frames(np.rint(samples + fading).astype(np.int16)))
+    assert abs(first * HOP_LENGTH - 1.2 * RATE) < 0.06 * RATE
+    assert abs(last * HOP_LENGTH - (len(samples) - 1.2 * RATE)) < 0.08 * RATE
 
 
 def voice_activity(samples):
     activity = VoiceActivity()
-    return np.array([activity.step(frame) for frame in mel_frames(samples)])
+    return np.array([activity.step(frame) for frame in extract_mel_frames(samples)])
 
 
 @pytest.mark.parametrize("noise", [0.0, 3.0, 100.0])
@@ -194,10 +197,10 @@ def test_sudden_noise_counts_as_speech_for_at_most_two_seconds():
 
 def floor_and_unsteady_noise(samples):
     """Return the noise floor at the end of a recording, and the unsteady noise above it."""
-    powers, activity = mel_frames(samples), VoiceActivity()
+    powers, activity = extract_mel_frames(samples), VoiceActivity()
     for frame in powers:
         activity.step(frame)
-    return activity.floor, unsteady_noise(powers, activity.floor)
+    return activity.floor, estimate_unsteady_noise(powers, activity.floor)
 
 
 @pytest.mark.parametrize("name", WORDS)
@@ -221,14 +224,14 @@ def test_babble_beside_word_is_unsteady_noise_above_floor():
     floor, noise = floor_and_unsteady_noise(add_noise(samples, babble_samples, 15.0, 3000.0))
     assert noise is not None
     assert (noise >= floor).all()
-    before = mel_frames(add_noise(np.zeros_like(samples), babble_samples, 15.0, 3000.0))
+    before = extract_mel_frames(add_noise(np.zeros_like(samples), babble_samples, 15.0, 3000.0))
     assert np.mean(before <= noise) > 0.85
     assert np.mean(before <= floor) < 0.5
 
 
 def test_short_lead_gives_no_unsteady_noise():
-    powers = mel_frames(say(WORDS["forward"], silence=0.1))
-    assert unsteady_noise(powers, np.full(BANDS, 1e-3)) is None
+    powers = extract_mel_frames(say(WORDS["forward"], silence=0.1))
+    assert estimate_unsteady_noise(powers, np.full(BANDS, 1e-3)) is None
 
 
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])

@@ -42,14 +42,14 @@ KNOWN: dict[str, str] = {
     "launch/engine/guardian_program.py": "/proc /proc/ SIGHUP SIGKILL getpgid killpg",
     "launch/engine/process_table.py": "SIGKILL",
     "launch/engine/processes.py": "SIGKILL killpg openpty",
-    "learning/checks/running.py": "SIGKILL killpg nice platform",
-    "learning/grading/running.py": "O_NOFOLLOW O_NONBLOCK",
+    "learning/checks/check_process.py": "SIGKILL killpg nice platform",
+    "learning/grading/jobs.py": "O_NOFOLLOW O_NONBLOCK",
     "learning/grading/workers.py": "get_context platform",
     "learning/packing/installer/install.py": "/bin/activate'",
     "learning/sandbox/contents.py": "/dev/mqueue /dev/shm /tmp chown geteuid",
     "learning/sandbox/identity.py": "/proc /proc/self/gid_map /proc/self/uid_map geteuid platform pwd",
     "learning/sandbox/landlock.py": "O_CLOEXEC",
-    "learning/sandbox/limits_of_process.py": "/proc /proc/self/oom_score_adj getuid nice platform resource sched_setaffinity",  # noqa: E501
+    "learning/sandbox/process_limits.py": "/proc /proc/self/oom_score_adj getuid nice platform resource sched_setaffinity",  # noqa: E501
     "learning/sandbox/linux.py": "/proc/self/status CDLL kill",
     "learning/sandbox/namespaces.py": "/proc /proc/self/uid_map fcntl getegid geteuid platform",
     "learning/sandbox/new_root.py": "/dev/ /dev/ptmx /dev/pts /dev/shm /proc /proc/ /proc/self/ /proc/self/fd/ /tmp O_CLOEXEC O_NOFOLLOW",  # noqa: E501
@@ -57,7 +57,7 @@ KNOWN: dict[str, str] = {
     "learning/sandbox/readable.py": "/proc/cpuinfo /proc/filesystems /proc/meminfo /proc/stat /proc/version /sys/devices/system",  # noqa: E501
     "learning/sandbox/run.py": "platform start_new_session",
     "learning/sandbox/seccomp.py": "AF_UNIX uname",
-    "learning/sandbox/starting.py": "/dev/ /dev/pts /dev/shm /proc /tmp SIGKILL fork geteuid platform pthread_sigmask setsid uname",  # noqa: E501
+    "learning/sandbox/run_start.py": "/dev/ /dev/pts /dev/shm /proc /tmp SIGKILL fork geteuid platform pthread_sigmask setsid uname",  # noqa: E501
     "learning/sandbox/supervisor.py": "/proc/ /sys/ SIGKILL fork platform poll set_blocking",
     "learning/sandbox/usage.py": "getegid geteuid platform",
     "lsp/large_files.py": "get_context",

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.vision.detections import Detections
-from linkwright.vision.evaluation import GroundTruth, best_f1_threshold, evaluate, intersection_over_union
+from linkwright.vision.evaluation import GroundTruth, evaluate, find_best_f1_threshold, intersection_over_union
 
 NAMES = ("ball", "box")
 BOX = (10.0, 10.0, 30.0, 30.0)
@@ -106,9 +106,9 @@ def test_recall_is_reported_by_size():
 def test_best_f1_threshold_is_score_of_last_useful_detection():
     truth = [make_objects((0, *BOX), (1, *OTHER_BOX), (1, 200, 200, 240, 240), ignored={2})]
     rows = [(0, 0.9, *BOX), (1, 0.6, *OTHER_BOX), (0, 0.4, 90, 90, 99, 99), (1, 0.7, 200, 200, 240, 240)]
-    assert best_f1_threshold(NAMES, truth, [make_detections(*rows)]) == pytest.approx(0.6)
-    assert best_f1_threshold(NAMES, truth, [make_detections(*rows[2:])]) == 0.5
-    assert best_f1_threshold(NAMES, truth, [make_detections()]) == 0.5
+    assert find_best_f1_threshold(NAMES, truth, [make_detections(*rows)]) == pytest.approx(0.6)
+    assert find_best_f1_threshold(NAMES, truth, [make_detections(*rows[2:])]) == 0.5
+    assert find_best_f1_threshold(NAMES, truth, [make_detections()]) == 0.5
 
 
 @given(st.lists(st.tuples(st.integers(0, 1), st.integers(0, 60), st.integers(0, 60)), max_size=6), st.randoms())

@@ -123,7 +123,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Render the data set, and return the exit status, which is 130 after an interruption."""
     from linkwright.vision.datasets.dataset import make_dataset
     from linkwright.vision.datasets.options import Options
-    from linkwright.vision.datasets.statistics import as_table
+    from linkwright.vision.datasets.statistics import format_table
 
     width, height = arguments.size
     options = Options(
@@ -156,7 +156,7 @@ def run(arguments: argparse.Namespace) -> int:
         on_start=progress.show_method,
     )
     progress.end()
-    print(as_table(result.folder.statistics()), end="")
+    print(format_table(result.folder.statistics()), end="")
     images = counted("{count} image", "{count} images", result.folder.count)
     print(localized(phrase("{images} in {folder}", images=images, folder=display_path(path))))
     if result.was_interrupted:

@@ -170,8 +170,8 @@ def _create_style(arguments: argparse.Namespace, scene: Scene) -> Style:
 def _render_animation(arguments: argparse.Namespace, scene: Scene, style: Style, ending: str) -> bytes:
     """Return the file of a turn around a scene, and show its progress."""
     from linkwright.cli.progress import ProgressLine
-    from linkwright.picture.animation import animation
-    from linkwright.picture.turntable import turntable
+    from linkwright.picture.animation import encode_animation
+    from linkwright.picture.turntable import render_turntable
 
     count = _compute_frame_count(arguments)
     progress = ProgressLine()
@@ -180,10 +180,10 @@ def _render_animation(arguments: argparse.Namespace, scene: Scene, style: Style,
         progress.show(phrase("drawing image {done} of {count}", done=finished_count, count=count))
 
     try:
-        images = turntable(scene, arguments.view, arguments.size, style, count, report)
+        images = render_turntable(scene, arguments.view, arguments.size, style, count, report)
     finally:
         progress.end()
-    return animation(images, arguments.turntable / count, ending)
+    return encode_animation(images, arguments.turntable / count, ending)
 
 
 def _compute_frame_count(arguments: argparse.Namespace) -> int:

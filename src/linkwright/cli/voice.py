@@ -85,13 +85,13 @@ class _Trial:
         """Feed a recording to the engine, and print the results, one per line."""
         import numpy as np
 
-        from linkwright.speech.sound.samples import BLOCK, RATE
+        from linkwright.speech.sound.samples import BLOCK_LENGTH, RATE
 
         recording_start = self._fed_samples / RATE
         sound = np.concatenate((samples, np.zeros(RATE, np.int16)))  # append silence, which ends an utterance
         final_count = 0
-        for block_start in range(0, len(sound), BLOCK):
-            block = sound[block_start : block_start + BLOCK]
+        for block_start in range(0, len(sound), BLOCK_LENGTH):
+            block = sound[block_start : block_start + BLOCK_LENGTH]
             self._fed_samples += len(block)
             computation_start = time.perf_counter()
             results = self._engine.hear(block)
@@ -247,10 +247,10 @@ def _add_file_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def _find_words_path(arguments: argparse.Namespace) -> Path:
-    from linkwright.speech.enrolled.words import words_path
+    from linkwright.speech.enrolled.words import find_words_path
 
     path: Path | None = arguments.file
-    return path or words_path()
+    return path or find_words_path()
 
 
 def _read_words(path: Path) -> Words:

@@ -24,14 +24,14 @@ COLOR_WORD_SPELLINGS = {**{word: word for word in RGB_BY_COLOR_WORD}, "gray": "g
 """The English words for colors, each with its name in `RGB_BY_COLOR_WORD`."""
 
 
-def words_of(name: str) -> list[str]:
+def split_into_words(name: str) -> list[str]:
     """Return the words of a class name, in lower case."""
     return [word for word in re.split(r"[\s_\-]+", name.lower()) if word]
 
 
 def find_color_word(name: str) -> str | None:
-    """Return the color word in a class name, one of `RGB_BY_COLOR_WORD`, or None if there is none."""
-    return next((COLOR_WORD_SPELLINGS[word] for word in words_of(name) if word in COLOR_WORD_SPELLINGS), None)
+    """Return the color word in a class name, one of `RGB_BY_COLOR_WORD`, or None."""
+    return next((COLOR_WORD_SPELLINGS[word] for word in split_into_words(name) if word in COLOR_WORD_SPELLINGS), None)
 
 
 def find_rgb(name: str) -> tuple[int, int, int] | None:

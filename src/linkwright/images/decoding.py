@@ -293,11 +293,11 @@ def demosaic(mosaic: Pixels, pattern: str) -> Pixels:
     return result
 
 
-def _packed_converter(first: str) -> Callable[[Any], Pixels]:
+def _make_packed_converter(first: str) -> Callable[[Any], Pixels]:
     return lambda message: packed_to_rgb(_read_rows(message, "u1", 2), first)
 
 
-def _planar_converter(layout: str) -> Callable[[Any], Pixels]:
+def _make_planar_converter(layout: str) -> Callable[[Any], Pixels]:
     def convert(message: Any) -> Pixels:
         width, height = message.width, message.height
         has_full_chroma = layout == "nv24"
@@ -324,12 +324,12 @@ def _planar_converter(layout: str) -> Callable[[Any], Pixels]:
 
 
 _YUV_CONVERTERS: dict[str, Callable[[Any], Pixels]] = {
-    "yuv422": _packed_converter("uyvy"),
-    "uyvy": _packed_converter("uyvy"),
-    "yuv422_yuy2": _packed_converter("yuyv"),
-    "yuyv": _packed_converter("yuyv"),
-    "nv21": _planar_converter("nv21"),
-    "nv24": _planar_converter("nv24"),
+    "yuv422": _make_packed_converter("uyvy"),
+    "uyvy": _make_packed_converter("uyvy"),
+    "yuv422_yuy2": _make_packed_converter("yuyv"),
+    "yuyv": _make_packed_converter("yuyv"),
+    "nv21": _make_planar_converter("nv21"),
+    "nv24": _make_planar_converter("nv24"),
 }
 
 

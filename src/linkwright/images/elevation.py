@@ -10,7 +10,16 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array
 
-_WIDTH, _HEIGHT, _BITS, _COMPRESSION, _OFFSETS, _SAMPLES, _COUNTS, _FORMAT = 256, 257, 258, 259, 273, 277, 279, 339
+_WIDTH_TAG, _HEIGHT_TAG, _BITS_TAG, _COMPRESSION_TAG, _OFFSETS_TAG, _SAMPLES_TAG, _COUNTS_TAG, _FORMAT_TAG = (
+    256,
+    257,
+    258,
+    259,
+    273,
+    277,
+    279,
+    339,
+)
 _INTEGER_TYPES = {3: ("H", 2), 4: ("I", 4)}
 """The supported types of tag values: each with its letter in `struct` and its size in bytes."""
 _FLOAT_FORMAT, _UNCOMPRESSED = 3, 1
@@ -32,12 +41,12 @@ def read_elevation(path: Path) -> Array:
         raise ValueError("not a TIFF file")
     try:
         tags = _read_tags(data, order)
-        width, height, bits = tags[_WIDTH][0], tags[_HEIGHT][0], tags[_BITS][0]
-        strips = zip(tags[_OFFSETS], tags[_COUNTS], strict=True)
+        width, height, bits = tags[_WIDTH_TAG][0], tags[_HEIGHT_TAG][0], tags[_BITS_TAG][0]
+        strips = zip(tags[_OFFSETS_TAG], tags[_COUNTS_TAG], strict=True)
         raw = b"".join(data[start : start + count] for start, count in strips)
     except (KeyError, IndexError, struct.error) as error:
         raise ValueError("the file has no table of heights") from error
-    layout = (tags.get(_FORMAT, [1])[0], tags.get(_COMPRESSION, [1])[0], tags.get(_SAMPLES, [1])[0])
+    layout = (tags.get(_FORMAT_TAG, [1])[0], tags.get(_COMPRESSION_TAG, [1])[0], tags.get(_SAMPLES_TAG, [1])[0])
     if layout != (_FLOAT_FORMAT, _UNCOMPRESSED, 1) or bits not in (32, 64) or not 0 < width * height <= _MAX_PIXELS:
         raise ValueError("the heights are not uncompressed floating-point numbers")
     values: Any = np.frombuffer(raw, dtype=f"{order}f{bits // 8}", count=width * height)

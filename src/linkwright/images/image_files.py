@@ -16,7 +16,7 @@ from linkwright.images.decoding import BadImageError
 MAX_PIXELS = 1 << 24
 """The maximum number of pixels of an image to decode: a small file can claim any size."""
 
-_PNG, _JPEG = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
+_PNG_START, _JPEG_START = b"\x89PNG\r\n\x1a\n", b"\xff\xd8\xff"
 _PNG_END, _JPEG_END = b"IEND", b"\xff\xd9"
 _TAIL_BYTES = 256
 """The number of bytes at the end of a file in which its end marker is searched first."""
@@ -57,8 +57,8 @@ def is_cut_off(data: NDArray[np.uint8]) -> bool:
 
     Some cameras append meaningless bytes after the marker.
     """
-    first_bytes = data[: len(_PNG)].tobytes()
-    end_marker = _JPEG_END if first_bytes.startswith(_JPEG) else _PNG_END if first_bytes == _PNG else b""
+    first_bytes = data[: len(_PNG_START)].tobytes()
+    end_marker = _JPEG_END if first_bytes.startswith(_JPEG_START) else _PNG_END if first_bytes == _PNG_START else b""
     return end_marker not in data[-_TAIL_BYTES:].tobytes() and end_marker not in data.tobytes()
 
 
@@ -77,9 +77,9 @@ def decode_file(data: NDArray[np.uint8]) -> NDArray[Any]:
             phrase("PNG and JPEG files cannot be decoded: {hint}", hint=install_hint("image"))
         ) from None
     first_bytes = data[:8].tobytes()
-    if not first_bytes.startswith((_PNG, _JPEG)):
+    if not first_bytes.startswith((_PNG_START, _JPEG_START)):
         raise BadImageError(phrase("The image is neither a PNG nor a JPEG"))
-    reader = PngImagePlugin.PngImageFile if first_bytes == _PNG else JpegImagePlugin.JpegImageFile
+    reader = PngImagePlugin.PngImageFile if first_bytes == _PNG_START else JpegImagePlugin.JpegImageFile
     try:
         # Image.open is not used: it accepts more formats, and warns of sizes that are rejected below.
         file = reader(BytesIO(data.tobytes()))
@@ -90,14 +90,14 @@ def decode_file(data: NDArray[np.uint8]) -> NDArray[Any]:
         raise BadImageError(
             phrase(
                 "The {kind} cannot be read: {error}",
-                kind=file_format(first_bytes),
+                kind=find_file_format(first_bytes),
                 error=foreign(error or type(error).__name__),
             )
         ) from None
     raise BadImageError(
         phrase(
             "The {kind} has {width} x {height} pixels; at most {maximum} are supported",
-            kind=file_format(first_bytes),
+            kind=find_file_format(first_bytes),
             width=width,
             height=height,
             maximum=MAX_PIXELS,
@@ -105,9 +105,9 @@ def decode_file(data: NDArray[np.uint8]) -> NDArray[Any]:
     )
 
 
-def file_format(start: bytes) -> str:
+def find_file_format(start: bytes) -> str:
     """Return the format of a PNG or JPEG file from its first bytes."""
-    return "PNG" if start.startswith(_PNG) else "JPEG"
+    return "PNG" if start.startswith(_PNG_START) else "JPEG"
 
 
 def decode_compressed(message: Any) -> RawImage:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from linkwright.loading.deferred import deferred
 
 if TYPE_CHECKING:
-    from linkwright.learning.checks.declaring import check
+    from linkwright.learning.checks.declarations import check
     from linkwright.learning.checks.not_yet import NotYet, expect
     from linkwright.learning.checks.robots import JointCheck, LinkCheck, RobotCheck, ShapeSpec
     from linkwright.learning.checks.silence import expect_published
@@ -37,7 +37,7 @@ __all__ = [
 __getattr__ = deferred(
     __name__,
     {
-        "checks.declaring": ("check",),
+        "checks.declarations": ("check",),
         "checks.not_yet": ("NotYet", "expect"),
         "checks.silence": ("expect_published",),
         "checks.robots": ("JointCheck", "LinkCheck", "RobotCheck", "ShapeSpec"),

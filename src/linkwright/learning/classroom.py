@@ -11,15 +11,15 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
+from linkwright.learning.checks.check_process import check_in_process
 from linkwright.learning.checks.results import StepResult
-from linkwright.learning.checks.running import check_in_process
 from linkwright.learning.course import (
     DEFAULT_COURSE,
     Course,
     Step,
-    courses_folder,
-    files_below,
     find_course,
+    find_courses_folder,
+    iterate_files,
     load_course,
 )
 from linkwright.learning.progress import PROGRESS_FILE, Progress, read_progress, write_progress
@@ -51,12 +51,12 @@ class Classroom:
 
     Args:
         workspace: the folder of the workspace, which is created with the first file.
-        course: the course.
+        course: the course that the learner takes.
         progress: the progress in the course.
 
     Attributes:
         workspace: the folder of the workspace.
-        course: the course.
+        course: the course that the learner takes.
         progress: the progress in the course.
     """
 
@@ -73,18 +73,21 @@ class Classroom:
         after it, it is the first step of the course that is not passed, or the last step.
         """
         steps = self.course.steps
-        last = max(range(len(steps)), key=lambda index: (self._last_moment(steps[index]), index))
-        begin = last if self._last_moment(steps[last]) > -math.inf else 0
+        last = max(range(len(steps)), key=lambda index: (self._find_last_time(steps[index]), index))
+        begin = last if self._find_last_time(steps[last]) > -math.inf else 0
         return next((step for step in (*steps[begin:], *steps) if not self._is_passed(step)), steps[-1])
 
     def _is_passed(self, step: Step) -> bool:
         return self.progress.step(step.address).passed is not None
 
-    def _last_moment(self, step: Step) -> float:
-        """Return the time when a step was last begun or passed, in s since the epoch; minus infinity for never."""
-        noted = self.progress.step(step.address)
-        moments = [moment.timestamp() for moment in (noted.started, noted.passed) if moment is not None]
-        return max(moments, default=-math.inf)
+    def _find_last_time(self, step: Step) -> float:
+        """Return the time when a step was last begun or passed.
+
+        The time is in s since the epoch; minus infinity for never.
+        """
+        step_progress = self.progress.step(step.address)
+        times = [time.timestamp() for time in (step_progress.started, step_progress.passed) if time is not None]
+        return max(times, default=-math.inf)
 
     def open_step(self, step: Step) -> list[Path]:
         """Open a step: record the time, and copy the initial files of its lesson.
@@ -97,21 +100,21 @@ class Classroom:
         Raises:
             LinkwrightError: LEARN111, a file cannot be written.
         """
-        with _writing(self.workspace):
+        with _report_write_errors(self.workspace):
             copied = [
                 self.workspace / name
-                for name, source in files_below(step.lesson.start)
-                if not (self.workspace / name).exists() and _copy(source, self.workspace / name)
+                for name, source in iterate_files(step.lesson.start)
+                if not (self.workspace / name).exists() and _copy_file(source, self.workspace / name)
             ]
         if self.progress.step(step.address).started is None:
-            self._note(step, started=_now())
+            self._record_progress(step, started=_get_current_time())
         return copied
 
     def check(self, step: Step, run: Callable[..., StepResult] = check_in_process) -> StepResult:
         """Check a step, and record it as passed if all checks are satisfied.
 
         Args:
-            step: the step.
+            step: the step to check.
             run: runs the checks; see `check_in_process`.
 
         Raises:
@@ -128,7 +131,7 @@ class Classroom:
             LinkwrightError: LEARN111, the progress cannot be written.
         """
         if result.passed and self.progress.step(step.address).passed is None:
-            self._note(step, passed=_now())
+            self._record_progress(step, passed=_get_current_time())
 
     def reload(self) -> None:
         """Read the progress file again, because another program may have changed it.
@@ -138,7 +141,7 @@ class Classroom:
         """
         self.progress = read_progress(self.workspace) or self.progress
 
-    def shown_file(self, step: Step) -> Path | None:
+    def find_shown_file(self, step: Step) -> Path | None:
         """Return the robot's file to show beside a step, or None; the file need not exist.
 
         It is the one that the step names, or the last one that a step before it names. It is None if there is none.
@@ -151,11 +154,11 @@ class Classroom:
         ]
         return self.workspace / names[-1] if names else None
 
-    def solution_files(self, step: Step) -> list[Path]:
+    def list_solution_files(self, step: Step) -> list[Path]:
         """Return the paths in the workspace that the solution of a step writes."""
-        return [self.workspace / name for name, _ in files_below(step.solution)]
+        return [self.workspace / name for name, _ in iterate_files(step.solution)]
 
-    def answer(self, step: Step, text: str) -> None:
+    def record_answer(self, step: Step, text: str) -> None:
         """Record the learner's answer to a step.
 
         Raises:
@@ -165,13 +168,13 @@ class Classroom:
             raise LinkwrightError(
                 Diagnostic("LEARN112", phrase("the step '{step}' does not ask for a number", step=step.address))
             )
-        self._note(step, answer=text)
+        self._record_progress(step, answer=text)
 
     def take_hint(self, step: Step) -> int:
         """Record that one more hint of a step is shown, and return the number of shown hints."""
         available = len(step.text("").hints)
         hint_count = min(self.progress.step(step.address).hints + 1, available)
-        self._note(step, hints=hint_count)
+        self._record_progress(step, hints=hint_count)
         return hint_count
 
     def take_solution(self, step: Step) -> list[Path]:
@@ -187,16 +190,16 @@ class Classroom:
         Raises:
             LinkwrightError: LEARN111, a file cannot be written; LEARN113, the step has no solution.
         """
-        files = dict(files_below(step.solution))
+        files = dict(iterate_files(step.solution))
         if not files and step.right_answer is None:
             raise LinkwrightError(
                 Diagnostic("LEARN113", phrase("the step '{step}' has no solution", step=step.address))
             )
-        written = self._write(self._plan(files))
-        self._note(step, solution=True)
+        written = self._write_files(self._plan_files(files))
+        self._record_progress(step, solution=True)
         return written
 
-    def steps_to_catch_up(self, step: Step) -> list[Step]:
+    def find_steps_to_catch_up(self, step: Step) -> list[Step]:
         """Return the earlier steps with files that are neither passed nor taken over."""
         earlier_steps = self.course.steps[: self.course.steps.index(step)]
         steps_with_progress = [
@@ -214,11 +217,12 @@ class Classroom:
         Raises:
             LinkwrightError: LEARN111, a file cannot be read.
         """
-        return self._plan(self.course.files_before(step))
+        return self._plan_files(self.course.files_before(step))
 
     def catch_up(self, step: Step) -> list[Path]:
-        """Bring the workspace into the course's state before a step, and mark the earlier steps as taken over.
+        """Bring the workspace into the course's state before a step.
 
+        The earlier steps are marked as taken over.
         Passed steps stay passed. Files with other content are backed up as in `take_solution`.
 
         Returns:
@@ -227,17 +231,17 @@ class Classroom:
         Raises:
             LinkwrightError: LEARN111, a file cannot be written.
         """
-        written = self._write(self.plan_catch_up(step))
+        written = self._write_files(self.plan_catch_up(step))
         earlier_steps = self.course.steps[: self.course.steps.index(step)]
         missing = [
             earlier_step for earlier_step in earlier_steps if self.progress.step(earlier_step.address).passed is None
         ]
-        self._note(*missing, taken_over=True)
+        self._record_progress(*missing, taken_over=True)
         return written
 
-    def _plan(self, files: Mapping[Path, Path]) -> FilePlan:
-        """Return the files, by their paths in the workspace, that differ from the files of the workspace."""
-        with _writing(self.workspace):
+    def _plan_files(self, files: Mapping[Path, Path]) -> FilePlan:
+        """Return the files, by path in the workspace, that differ from the workspace's files."""
+        with _report_write_errors(self.workspace):
             targets = {self.workspace / name: source for name, source in files.items()}
             new = {target: source for target, source in targets.items() if not target.exists()}
             replaced = {
@@ -247,44 +251,44 @@ class Classroom:
             }
         return FilePlan(new, replaced)
 
-    def _write(self, plan: FilePlan) -> list[Path]:
+    def _write_files(self, plan: FilePlan) -> list[Path]:
         """Write the files of a plan, and back up the files that they replace."""
         name = datetime.now().astimezone().strftime("%Y-%m-%d-%H%M%S")
         folders = (self.workspace / REPLACED_FOLDER / f"{name}{suffix}" for suffix in ("", *range(-2, -100, -1)))
         backup = next(folder for folder in folders if not folder.exists())
-        with _writing(self.workspace):
+        with _report_write_errors(self.workspace):
             for target in plan.replaced:
-                _copy(target, backup / target.relative_to(self.workspace))
+                _copy_file(target, backup / target.relative_to(self.workspace))
                 (backup.parent / "COLCON_IGNORE").touch()
             for target, source in plan.files.items():
-                _copy(source, target)
+                _copy_file(source, target)
         return sorted(plan.files)
 
-    def _note(self, *steps: Step, **changes: object) -> None:
+    def _record_progress(self, *steps: Step, **changes: object) -> None:
         self.reload()
         for step in steps:
             self.progress = self.progress.with_step(step.address, **changes)
-        with _writing(self.workspace):
+        with _report_write_errors(self.workspace):
             self.workspace.mkdir(parents=True, exist_ok=True)
             write_progress(self.workspace, self.progress)
 
 
-def enclosing_workspace(folder: Path) -> Path:
-    """Return the nearest folder with a progress file at or above a folder, or the folder itself."""
+def find_enclosing_workspace(folder: Path) -> Path:
+    """Return the nearest folder at or above a folder that has a progress file, or the folder."""
     return next((path for path in (folder, *folder.parents) if (path / PROGRESS_FILE).is_file()), folder)
 
 
-def workspace_at(folder: Path, course: str | None = None) -> Path:
+def find_workspace(folder: Path, course: str | None = None) -> Path:
     """Return the workspace for a learner who works in a folder.
 
     It is the nearest folder with a progress file at or above the folder; the folder itself if it is empty; otherwise
     the folder ``COURSE_ws`` in it, such as ``robot_ws``.
 
     Args:
-        folder: the folder.
+        folder: the folder in which the learner works.
         course: the course: the name of a shipped one, or a folder; None for the shipped course about a robot.
     """
-    enclosing = enclosing_workspace(folder)
+    enclosing = find_enclosing_workspace(folder)
     if (enclosing / PROGRESS_FILE).is_file() or not any(folder.iterdir()):
         return enclosing
     return folder / f"{Path(course or DEFAULT_COURSE).name}_ws"
@@ -305,7 +309,7 @@ def open_classroom(workspace: Path, course: str | None = None) -> Classroom:
     progress = read_progress(workspace)
     name = course or (progress.course if progress else DEFAULT_COURSE)
     loaded = load_course(find_course(name))
-    shipped = courses_folder()
+    shipped = find_courses_folder()
     is_shipped = shipped is not None and loaded.folder.parent == shipped.resolve()
     known_name = loaded.id if is_shipped else str(loaded.folder)
     if progress is not None and progress.course not in {known_name, name}:
@@ -319,18 +323,18 @@ def open_classroom(workspace: Path, course: str | None = None) -> Classroom:
     return Classroom(workspace, loaded, progress or Progress(known_name, {}))
 
 
-def _copy(source: Path, target: Path) -> bool:
+def _copy_file(source: Path, target: Path) -> bool:
     target.parent.mkdir(parents=True, exist_ok=True)
     shutil.copy(source, target)
     return True
 
 
-def _now() -> datetime:
+def _get_current_time() -> datetime:
     return datetime.now(timezone.utc).replace(microsecond=0)
 
 
 @contextmanager
-def _writing(workspace: Path) -> Iterator[None]:
+def _report_write_errors(workspace: Path) -> Iterator[None]:
     """Raise LEARN111 in place of an OSError in the context."""
     try:
         yield

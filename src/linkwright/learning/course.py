@@ -11,7 +11,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, display_path, phrase, quoted_names
 from linkwright.diagnostics.translation import LANGUAGES
-from linkwright.learning.errors import file_error, unreadable
+from linkwright.learning.errors import file_error, unreadable_file_error
 from linkwright.learning.lesson_text import LessonText, StepText, read_lesson_text
 from linkwright.learning.local_text import LocalText
 
@@ -29,7 +29,7 @@ class Step:
     """A step of a lesson.
 
     Attributes:
-        lesson: the lesson.
+        lesson: the lesson that contains the step.
         id: the name of the step, the same in all languages.
         texts: the text in each language of the lesson.
     """
@@ -60,7 +60,10 @@ class Step:
 
     @property
     def shown_file(self) -> str | None:
-        """The robot's file that the page shows from this step on, relative to the workspace; None for no change."""
+        """The robot's file that the page shows from this step on; None for no change.
+
+        The path is relative to the workspace.
+        """
         return next(iter(self.texts.values())).shown_file
 
     def text(self, language: str) -> StepText:
@@ -85,7 +88,7 @@ class Step:
         except FileNotFoundError:
             return None
         except (OSError, UnicodeDecodeError) as error:
-            raise unreadable(path, error) from None
+            raise unreadable_file_error(path, error) from None
 
 
 @dataclass(frozen=True)
@@ -158,9 +161,9 @@ class Course:
         files: dict[Path, Path] = {}
         for earlier_step in self.steps[: self.steps.index(step)]:
             files = {
-                **dict(files_below(earlier_step.lesson.start)),
+                **dict(iterate_files(earlier_step.lesson.start)),
                 **files,
-                **dict(files_below(earlier_step.solution)),
+                **dict(iterate_files(earlier_step.solution)),
             }
         return files
 
@@ -179,10 +182,10 @@ class Course:
         return tuple(known[name] for name in names) or self.lessons
 
     def find_step(self, name: str, lessons: Sequence[Lesson] = ()) -> Step:
-        """Return the step with a name: ``LESSON/STEP``, or ``STEP`` if only one lesson has such a step.
+        """Return the step with a name: ``LESSON/STEP``, or ``STEP`` if the name is unique.
 
         Args:
-            name: the name.
+            name: the step's name, as in commands.
             lessons: the lessons to search; all if there are none.
 
         Raises:
@@ -210,14 +213,17 @@ class Course:
         raise LinkwrightError(Diagnostic("LEARN106", message, hint=hint))
 
 
-def files_below(folder: Path) -> Iterator[tuple[Path, Path]]:
-    """Yield the relative path and the absolute path of each file below a folder, which need not exist."""
+def iterate_files(folder: Path) -> Iterator[tuple[Path, Path]]:
+    """Yield the relative and the absolute path of each file below a folder.
+
+    The folder need not exist.
+    """
     for path in sorted(folder.rglob("*")) if folder.is_dir() else ():
         if path.is_file() and "__pycache__" not in path.parts:
             yield path.relative_to(folder), path
 
 
-def courses_folder() -> Path | None:
+def find_courses_folder() -> Path | None:
     """Return the folder of the shipped courses, or None if there is none.
 
     The folder is in the wheel, or in the repository of an editable install.
@@ -232,7 +238,7 @@ def find_course(name: str) -> Path:
     Raises:
         LinkwrightError: LEARN101, there is no such course.
     """
-    shipped = courses_folder()
+    shipped = find_courses_folder()
     for folder in (Path(name), *([] if shipped is None else [shipped / name])):
         if (folder / COURSE_FILE).is_file():
             return folder
@@ -301,7 +307,7 @@ def _is_number_of_points(value: object) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and 0 <= value < math.inf
 
 
-def _form(step: StepText) -> tuple[object, ...]:
+def _select_shared_properties(step: StepText) -> tuple[object, ...]:
     """Return the properties of a step that must be equal in all languages."""
     return step.id, step.unit, step.shown_file, len(step.hints)
 
@@ -309,7 +315,7 @@ def _form(step: StepText) -> tuple[object, ...]:
 def _compare_languages(texts: Sequence[LessonText]) -> None:
     first = texts[0]
     for other in texts[1:]:
-        steps, other_steps = ([_form(step) for step in text.steps] for text in (first, other))
+        steps, other_steps = ([_select_shared_properties(step) for step in text.steps] for text in (first, other))
         if steps == other_steps:
             continue
         index = next(
@@ -330,7 +336,7 @@ def _read_toml(path: Path) -> dict[str, object]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
-        raise unreadable(path, error) from None
+        raise unreadable_file_error(path, error) from None
     except tomllib.TOMLDecodeError as error:
         raise file_error("LEARN104", path, phrase("the file is not valid TOML: {error}", error=str(error))) from None
 

@@ -12,7 +12,7 @@ def file_error(code: str, path: Path, message: Phrase, *, line: int = 1, hint: P
     return LinkwrightError(Diagnostic(code, message, Span(str(path), line, 1, line, 1), hint=hint))
 
 
-def unreadable(path: Path, error: OSError | UnicodeDecodeError) -> LinkwrightError:
+def unreadable_file_error(path: Path, error: OSError | UnicodeDecodeError) -> LinkwrightError:
     """Return LEARN102, the error for a file that cannot be read."""
     reason = getattr(error, "strerror", None) or str(error)
     return LinkwrightError(

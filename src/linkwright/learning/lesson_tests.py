@@ -10,8 +10,8 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.files.scratch_folders import ScratchFolder
-from linkwright.learning.checks.declaring import load_checks, load_module
-from linkwright.learning.checks.running import check_in_process, create_check_server
+from linkwright.learning.checks.check_process import check_in_process, create_check_server
+from linkwright.learning.checks.declarations import load_checks, load_module
 from linkwright.learning.course import CASES_FILE, CHECKS_FILE, Course, Lesson, Step
 from linkwright.learning.errors import file_error
 from linkwright.process.forked import ForkServer
@@ -62,7 +62,10 @@ def right(step: str, title: str, *changes: Edit | Mapping[str, str | None], answ
 def wrong(
     step: str, title: str, *changes: Edit | Mapping[str, str | None], says: str, answer: str | None = None
 ) -> Case:
-    """Return a test case with a wrong solution; a check's message must contain `says`. See `Case`."""
+    """Return a test case with a wrong solution. See `Case`.
+
+    A check's message must contain `says`.
+    """
     return Case(step, title, changes, says, answer)
 
 
@@ -107,7 +110,7 @@ def test_lesson(course: Course, lesson: Lesson) -> Iterator[TestResult]:
         for name, source in course.files_before(lesson.steps[0]).items():
             (workspace / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(source, workspace / name)
-        _overlay(lesson.start, workspace)
+        _copy_over(lesson.start, workspace)
         for step in lesson.steps:
             if step.id not in checks:
                 yield TestResult(lesson.id, step.id, phrase("the step has no checks"))
@@ -125,21 +128,21 @@ def _test_step(
     answer = step.right_answer
     if check_in_process(step, workspace, stop_at_failure=True, server=server).passed:
         yield TestResult(step.lesson.id, step.id, phrase("the checks accept the step without its solution"))
-    _overlay(step.solution, workspace)
-    yield TestResult(step.lesson.id, step.id, _unexpected_result(step, workspace, answer, None, server))
+    _copy_over(step.solution, workspace)
+    yield TestResult(step.lesson.id, step.id, _find_unexpected_result(step, workspace, answer, None, server))
     for case in cases:
         shutil.rmtree(scratch, ignore_errors=True)
         shutil.copytree(workspace, scratch)
-        _apply(case, scratch, step.lesson)
+        _apply_changes(case, scratch, step.lesson)
         tested_answer = answer if case.answer is None else case.answer
         yield TestResult(
             step.lesson.id,
             f"{step.id}: {case.title}",
-            _unexpected_result(step, scratch, tested_answer, case.says, server),
+            _find_unexpected_result(step, scratch, tested_answer, case.says, server),
         )
 
 
-def _unexpected_result(
+def _find_unexpected_result(
     step: Step, workspace: Path, answer: str | None, says: str | None, server: ForkServer
 ) -> Phrase | None:
     """Return the difference between the expected and the actual result of the checks, or None."""
@@ -176,7 +179,7 @@ def load_cases(lesson: Lesson) -> list[Case]:
     return cases
 
 
-def _apply(case: Case, workspace: Path, lesson: Lesson) -> None:
+def _apply_changes(case: Case, workspace: Path, lesson: Lesson) -> None:
     for change in case.changes:
         if isinstance(change, Edit):
             path = workspace / change.file
@@ -201,7 +204,7 @@ def _apply(case: Case, workspace: Path, lesson: Lesson) -> None:
             path.write_text(content, encoding="utf-8")
 
 
-def _overlay(source: Path, target: Path) -> None:
+def _copy_over(source: Path, target: Path) -> None:
     if source.is_dir():
         shutil.copytree(source, target, dirs_exist_ok=True)
 

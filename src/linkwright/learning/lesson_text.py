@@ -10,12 +10,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import missing_extra, phrase
-from linkwright.learning.errors import file_error, unreadable
+from linkwright.learning.errors import file_error, unreadable_file_error
 
 if TYPE_CHECKING:
     from markdown_it.token import Token
 
-_ATTRIBUTES = re.compile(r"\s*\{([^{}]*)\}\s*$")
+_HEADING_ATTRIBUTES = re.compile(r"\s*\{([^{}]*)\}\s*$")
 _STEP_LEVEL, _SECTION_LEVEL = "h2", "h3"
 HINT = "hint"
 
@@ -26,7 +26,7 @@ class StepText:
 
     Attributes:
         id: the step's name in checks and progress, from ``{#id}`` after the title.
-        title: the title.
+        title: the heading without its attributes.
         body: the Markdown of the step without title and hints.
         hints: the Markdown of each section marked with ``{.hint}``, including its title, in the order of the text.
         unit: the unit of the learner's answer, from ``{#id answer=m}``; None if the step has no question.
@@ -81,30 +81,31 @@ def read_lesson_text(path: Path) -> LessonText:
     try:
         text = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise unreadable(path, error) from None
+        raise unreadable_file_error(path, error) from None
     lines = text.splitlines()
-    headings = list(_headings(text))
+    headings = list(_find_headings(text))
     if not headings or headings[0].level != "h1":
         raise file_error(
             "LEARN103", path, phrase("the lesson has no title"), hint=phrase("begin the text with '# Title'")
         )
-    firsts = [index for index, heading in enumerate(headings) if heading.level == _STEP_LEVEL]
-    if not firsts:
+    step_indices = [index for index, heading in enumerate(headings) if heading.level == _STEP_LEVEL]
+    if not step_indices:
         raise file_error(
             "LEARN103",
             path,
             phrase("the lesson has no steps"),
             hint=phrase("begin each step with '## Title {{#name}}'"),
         )
-    bounds = [*firsts, len(headings)]
+    bounds = [*step_indices, len(headings)]
     steps = [
-        _read_step(path, lines, headings[first:end], _line_of(headings, end, lines)) for first, end in pairwise(bounds)
+        _read_step(path, lines, headings[first:end], _find_line(headings, end, lines))
+        for first, end in pairwise(bounds)
     ]
-    introduction = _cut(lines, headings[0].end_line, headings[firsts[0]].first_line)
+    introduction = _join_lines(lines, headings[0].end_line, headings[step_indices[0]].first_line)
     return LessonText(path, headings[0].title, introduction, tuple(steps))
 
 
-def _headings(text: str) -> Iterator[_Heading]:
+def _find_headings(text: str) -> Iterator[_Heading]:
     try:
         from markdown_it import MarkdownIt
     except ModuleNotFoundError as error:
@@ -116,13 +117,13 @@ def _headings(text: str) -> Iterator[_Heading]:
 
 
 def _make_heading(opening: Token, content: str) -> _Heading:
-    match = _ATTRIBUTES.search(content)
+    match = _HEADING_ATTRIBUTES.search(content)
     attributes = match[1].split() if match else []
     first_line, end_line = opening.map or (0, 0)
     return _Heading(opening.tag, content[: match.start()] if match else content, attributes, first_line, end_line)
 
 
-def _line_of(headings: Sequence[_Heading], index: int, lines: Sequence[str]) -> int:
+def _find_line(headings: Sequence[_Heading], index: int, lines: Sequence[str]) -> int:
     return headings[index].first_line if index < len(headings) else len(lines)
 
 
@@ -140,13 +141,13 @@ def _read_step(path: Path, lines: Sequence[str], headings: Sequence[_Heading], e
     hints: list[str] = []
     sections = [heading for heading in headings[1:] if heading.level == _SECTION_LEVEL]
     starts = [heading.first_line for heading in sections] + [end_line]
-    body.append(_cut(lines, opening.end_line, starts[0]))
+    body.append(_join_lines(lines, opening.end_line, starts[0]))
     for section, end in zip(sections, starts[1:], strict=True):
-        content = f"### {section.title}\n\n{_cut(lines, section.end_line, end)}"
+        content = f"### {section.title}\n\n{_join_lines(lines, section.end_line, end)}"
         (hints if f".{HINT}" in section.attributes else body).append(content)
     text = "\n\n".join(filter(None, body))
     return StepText(names[0], opening.title, text, tuple(hints), values.get("answer"), values.get("show"), line)
 
 
-def _cut(lines: Sequence[str], first: int, end: int) -> str:
+def _join_lines(lines: Sequence[str], first: int, end: int) -> str:
     return "\n".join(lines[first:end]).strip()

@@ -12,7 +12,7 @@ import yaml
 
 from linkwright.diagnostics import phrase
 from linkwright.files.whole_files import write_whole_file
-from linkwright.learning.errors import file_error, unreadable
+from linkwright.learning.errors import file_error, unreadable_file_error
 
 PROGRESS_FILE = "learn.yaml"
 
@@ -80,19 +80,19 @@ def read_progress(workspace: Path) -> Progress | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, UnicodeDecodeError) as error:
-        raise unreadable(path, error) from None
+        raise unreadable_file_error(path, error) from None
     except yaml.YAMLError as error:
         line = getattr(getattr(error, "problem_mark", None), "line", 0) + 1
-        raise file_error("LEARN110", path, phrase("the file is not valid YAML"), line=line, hint=_RENAME) from None
+        raise file_error("LEARN110", path, phrase("the file is not valid YAML"), line=line, hint=_RENAME_HINT) from None
     try:
         steps = {str(name): _read_step(values) for name, values in data.get("steps", {}).items()}
         return Progress(str(data["course"]), steps)
     except (AttributeError, KeyError, TypeError, ValueError):
         message = phrase("the file does not contain the progress in a course")
-        raise file_error("LEARN110", path, message, hint=_RENAME) from None
+        raise file_error("LEARN110", path, message, hint=_RENAME_HINT) from None
 
 
-_RENAME = phrase("fix the file, or rename it to start again")
+_RENAME_HINT = phrase("fix the file, or rename it to start again")
 
 
 def _read_step(values: Mapping[str, Any]) -> StepProgress:

@@ -27,7 +27,7 @@ def require_webp() -> None:
         raise LinkwrightError(Diagnostic("PIC120", message, hint=phrase("write a .png file")))
 
 
-def animation(images: Sequence[Image], frame_seconds: float, ending: str) -> bytes:
+def encode_animation(images: Sequence[Image], frame_seconds: float, ending: str) -> bytes:
     """Encode images as an endlessly repeated animation.
 
     Args:

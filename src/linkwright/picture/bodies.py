@@ -52,7 +52,10 @@ class Surface:
 
     @classmethod
     def of_triangles(cls, triangles: Triangles, texture: Texture | None = None) -> Surface:
-        """Return triangles as a white surface, smooth except at creases. Normals in the file are ignored."""
+        """Return triangles as a white surface, smooth except at creases.
+
+        Normals in the file are ignored.
+        """
         faces = triangles.indices.reshape(-1, 3)
         if not len(faces) or not (np.abs(triangles.positions) <= MAX_COORDINATE).all():
             return cls(triangles.positions, np.zeros_like(triangles.positions), faces)
@@ -74,7 +77,10 @@ class Surface:
         return replace(self, color=color, alpha=alpha)
 
     def scaled(self, scale: Vector3) -> Surface:
-        """Return a copy of the surface, scaled along its axes. A negative factor mirrors the surface."""
+        """Return a copy of the surface, scaled along its axes.
+
+        A negative factor mirrors the surface.
+        """
         if scale == (1.0, 1.0, 1.0):
             return self
         factors = np.array(scale)

@@ -15,7 +15,7 @@ from linkwright.picture.vectors import along
 
 HALF_FOV_TANGENT = 0.22
 """The tangent of half the field of view along the shorter side, for perspective cameras."""
-_MARGIN = 1.16
+_MARGIN_FACTOR = 1.16
 """The ratio of the image's size to the size of the content that must be visible."""
 _MIN_EXTENT = 1e-6
 """The width of the visible area in m if the scene is a single point."""
@@ -68,7 +68,7 @@ class Camera:
     size: tuple[int, int]
 
     def project(self, points: Array) -> tuple[Array, Array, Array]:
-        """Return x and y in pixels from the upper left corner, and the nearness, of points of shape (n, 3).
+        """Return x and y in pixels from the upper left corner, and the nearness, of points (n, 3).
 
         The nearness is linear in the image over each plane, and larger for points nearer to the camera.
         """
@@ -128,7 +128,7 @@ class Camera:
         return add_vectors(add_vectors(parts[0], parts[1]), parts[2])
 
 
-def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -> Camera:
+def fit_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -> Camera:
     """Return the camera that shows all points at the largest possible size.
 
     Args:
@@ -136,18 +136,18 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
         size: the width and height of the image in pixels.
         points: arrays of points in m, each of shape (n, 3), with one point at least.
     """
-    right, up, toward = camera_axes(view)
+    right, up, toward = compute_camera_axes(view)
     x, y, z = (np.concatenate([along(array, axis) for array in points]) for axis in (right, up, toward))
     width, height = size
     if not view.perspective:
         extents = [max(float(values.max() - values.min()), _MIN_EXTENT) for values in (x, y)]
         middle = [float(values.max() + values.min()) / 2 for values in (x, y)]
-        scale = min(width / extents[0], height / extents[1]) / _MARGIN
+        scale = min(width / extents[0], height / extents[1]) / _MARGIN_FACTOR
         return Camera(right, up, toward, (middle[0], middle[1], float(z.max())), 0.0, scale, size)
     depth = float(z.max())
     z = z - depth
     shorter = min(width, height)
-    tangents = [HALF_FOV_TANGENT * side / shorter / _MARGIN for side in (width, height)]
+    tangents = [HALF_FOV_TANGENT * side / shorter / _MARGIN_FACTOR for side in (width, height)]
     center, distances = [], []
     for values, tangent in zip((x, y), tangents, strict=True):
         # All points are between two planes through the camera: |value - center| <= tangent * (distance - z).
@@ -160,7 +160,7 @@ def fitting_camera(view: View, size: tuple[int, int], points: Sequence[Array]) -
     )
 
 
-def camera_axes(view: View) -> tuple[Vector3, Vector3, Vector3]:
+def compute_camera_axes(view: View) -> tuple[Vector3, Vector3, Vector3]:
     """Return the unit vectors that point right, up and toward the camera."""
     sine, cosine = sine_and_cosine(radians(view.azimuth))
     sine_up, cosine_up = sine_and_cosine(radians(view.elevation))

@@ -8,17 +8,17 @@ from numpy.typing import NDArray
 from linkwright.picture.smoothing import CREASE_COSINE
 from linkwright.picture.vectors import Floats
 
-_JUMP = 0.006
+_MIN_SLOPE_JUMP = 0.006
 """The change of the distance's slope, relative to the scene's depth, that marks a surface in front of another."""
-_OUTER, _INNER = 0.88, 0.55
+_OUTER_DARKNESS, _INNER_DARKNESS = 0.88, 0.55
 """The darkness of lines at the ends of surfaces and at creases, from 0 to 1."""
-_DENSE = 0.30
+_DENSE_SHARE = 0.30
 """The share of samples on lines above which lines fade, because details are smaller than the lines."""
-_REACH = 2
+_DENSITY_REACH_PIXELS = 2
 """The number of pixels around a pixel in which lines are counted."""
 
 
-def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32], per_pixel: int) -> Floats:
+def compute_edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32], per_pixel: int) -> Floats:
     """Return the darkness of lines at each sample, from 0 to 1.
 
     Args:
@@ -31,56 +31,60 @@ def edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np.int32],
     outer = np.zeros(bodies.shape, dtype=bool)
     inner = np.zeros(bodies.shape, dtype=bool)
     for axis in (0, 1):
-        first, second = _pairs(axis)
-        differs = bodies[first] != bodies[second]
-        outer[first] |= differs
-        outer[second] |= differs
-        bends = normals[0][first] * normals[0][second]
-        bends += normals[1][first] * normals[1][second]
-        bends += normals[2][first] * normals[2][second]
-        is_crease = bends < CREASE_COSINE
+        first, second = _pair_slices(axis)
+        is_other_body = bodies[first] != bodies[second]
+        outer[first] |= is_other_body
+        outer[second] |= is_other_body
+        normal_cosines = normals[0][first] * normals[0][second]
+        normal_cosines += normals[1][first] * normals[1][second]
+        normal_cosines += normals[2][first] * normals[2][second]
+        is_crease = normal_cosines < CREASE_COSINE
         inner[first] |= is_crease
         inner[second] |= is_crease
         steps = distances[second] - distances[first]
-        previous, following = _pairs(axis)
+        previous, following = _pair_slices(axis)
         middle = (slice(1, -1), slice(None)) if axis == 0 else (slice(None), slice(1, -1))
-        outer[middle] |= np.abs(steps[following] - steps[previous]) > _JUMP
-    outer |= _neighbors(outer)
+        outer[middle] |= np.abs(steps[following] - steps[previous]) > _MIN_SLOPE_JUMP
+    outer |= _find_neighbors(outer)
     outer &= is_seen
     inner &= is_seen & ~outer
-    strength = np.where(outer, np.float32(_OUTER), np.where(inner, np.float32(_INNER), np.float32(0.0)))
-    fading = _fading(outer | inner, is_seen, per_pixel)
+    strength = np.where(
+        outer, np.float32(_OUTER_DARKNESS), np.where(inner, np.float32(_INNER_DARKNESS), np.float32(0.0))
+    )
+    fading = _compute_fading(outer | inner, is_seen, per_pixel)
     strength *= np.repeat(np.repeat(fading, per_pixel, axis=0), per_pixel, axis=1)
     return strength
 
 
-def _neighbors(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _find_neighbors(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the samples next to the samples in a mask."""
     neighbors = np.zeros_like(mask)
     for axis in (0, 1):
-        first, second = _pairs(axis)
+        first, second = _pair_slices(axis)
         neighbors[first] |= mask[second]
         neighbors[second] |= mask[first]
     return neighbors
 
 
-def _pairs(axis: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
-    """Return the slices of all samples except the last, and of all except the first, along an axis."""
+def _pair_slices(axis: int) -> tuple[tuple[slice, slice], tuple[slice, slice]]:
+    """Return slices along an axis: all samples except the last, and all except the first."""
     if axis == 0:
         return (slice(None, -1), slice(None)), (slice(1, None), slice(None))
     return (slice(None), slice(None, -1)), (slice(None), slice(1, None))
 
 
-def _fading(is_line: NDArray[np.bool_], is_seen: NDArray[np.bool_], per_pixel: int) -> Floats:
-    """Return a factor for each pixel, which is below 1 where lines are too dense to be distinguished."""
-    line_count, visible_count = (box_sums(pixel_sums(mask, per_pixel), _REACH) for mask in (is_line, is_seen))
+def _compute_fading(is_line: NDArray[np.bool_], is_seen: NDArray[np.bool_], per_pixel: int) -> Floats:
+    """Return a factor for each pixel, below 1 where lines are too dense to be distinguished."""
+    line_count, visible_count = (
+        sum_over_boxes(sum_by_pixel(mask, per_pixel), _DENSITY_REACH_PIXELS) for mask in (is_line, is_seen)
+    )
     density = line_count.astype(np.float32) / np.maximum(visible_count, 1).astype(np.float32)
-    excess = np.maximum(density / np.float32(_DENSE), np.float32(1.0))
+    excess = np.maximum(density / np.float32(_DENSE_SHARE), np.float32(1.0))
     factor: Floats = np.float32(1.0) / (excess * excess)
     return factor
 
 
-def pixel_sums(mask: NDArray[np.bool_], per_pixel: int) -> NDArray[np.int64]:
+def sum_by_pixel(mask: NDArray[np.bool_], per_pixel: int) -> NDArray[np.int64]:
     """Return the number of samples of each pixel in a mask."""
     rows, width = mask.shape
     counts = np.zeros((rows // per_pixel, width // per_pixel), np.int64)
@@ -90,7 +94,7 @@ def pixel_sums(mask: NDArray[np.bool_], per_pixel: int) -> NDArray[np.int64]:
     return counts
 
 
-def box_sums(values: NDArray[np.int64], reach: int) -> NDArray[np.int64]:
+def sum_over_boxes(values: NDArray[np.int64], reach: int) -> NDArray[np.int64]:
     """Return the sums of integers over the square around each pixel, clipped at the border."""
     for axis in (0, 1):
         totals = np.cumsum(values, axis=axis)

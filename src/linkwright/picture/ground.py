@@ -11,28 +11,28 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Vector3
 from linkwright.picture.bodies import Color
 from linkwright.picture.camera import Camera
-from linkwright.picture.edges import box_sums
+from linkwright.picture.edges import sum_over_boxes
 from linkwright.picture.layers import Mesh
-from linkwright.picture.rasterizer import ScreenTriangles, fragments
+from linkwright.picture.rasterizer import ScreenTriangles, rasterize
 from linkwright.picture.vectors import Floats
 
-_CELLS = 320
+_CELLS_PER_SIDE = 320
 """The number of cells along the longer side of the shadow map."""
-_HEIGHTS = (0.015, 0.05, 0.12, 0.25, 0.5, 1e9)
+_LAYER_HEIGHTS = (0.015, 0.05, 0.12, 0.25, 0.5, 1e9)
 """The upper limits of the shadow's layers, relative to the size of the scene. Shadows of higher layers are softer."""
 _SOFTNESS = 0.30
 """The radius of the blur, relative to the height above the ground."""
 _MIN_SOFTNESS = 0.012
 _DARKNESS = 0.50
-_LINES = 8
+_LINE_COUNT = 8
 """The approximate number of grid cells along the longer side of the scene."""
-_LINE_WIDTH, _AXIS_WIDTH = 0.9, 1.8
+_LINE_WIDTH_PIXELS, _AXIS_WIDTH_PIXELS = 0.9, 1.8
 """The widths of lines in pixels."""
 _LINE_STRENGTH, _AXIS_STRENGTH = 0.30, 0.65
 _GRID_COLOR: Color = (0.30, 0.34, 0.40)
 _AXIS_COLORS: tuple[Color, Color] = ((0.80, 0.20, 0.18), (0.22, 0.60, 0.22))
 """The colors of the lines along x and along y through the origin."""
-_FLAT = 0.06
+_MIN_ELEVATION_SINE = 0.06
 """The minimum sine of the camera's elevation at which the ground is drawn."""
 
 
@@ -52,7 +52,7 @@ class ShadowMap:
     cell: float
     darkness: Floats
 
-    def at(self, points: Array) -> Floats:
+    def darkness_at(self, points: Array) -> Floats:
         """Return the darkness at points of the ground, shape (n, 3), interpolated between cells."""
         rows, columns = self.darkness.shape
         x = np.nan_to_num((points[:, 0] - self.origin[0]) / self.cell - 0.5, nan=-1e6, posinf=-1e6, neginf=-1e6)
@@ -67,8 +67,8 @@ class ShadowMap:
         return darkness
 
 
-def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
-    """Return the shadow map of a scene on the plane below it, or None if no body casts a shadow.
+def compute_shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
+    """Return the shadow map of a scene on the plane below it, or None if there is no shadow.
 
     Args:
         mesh: the triangles of the scene.
@@ -88,15 +88,15 @@ def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
     margin = 2.2 * (_MIN_SOFTNESS + _SOFTNESS * float(high[2] - low[2]) / size) * size
     left, right = float(x[is_used].min()) - margin, float(x[is_used].max()) + margin
     back, front = float(y[is_used].min()) - margin, float(y[is_used].max()) + margin
-    cell = max(right - left, front - back) / _CELLS
+    cell = max(right - left, front - back) / _CELLS_PER_SIDE
     columns, rows = int((right - left) / cell) + 2, int((front - back) / cell) + 2
     triangles = ScreenTriangles.from_faces((x - left) / cell, (y - back) / cell, height / size, mesh.faces)
-    layers = np.zeros((len(_HEIGHTS), rows * columns), dtype=bool)
-    for part in fragments(triangles, solid, columns, 0, rows):
-        layers[np.searchsorted(_HEIGHTS, part.nearness), part.samples] = True
+    layers = np.zeros((len(_LAYER_HEIGHTS), rows * columns), dtype=bool)
+    for part in rasterize(triangles, solid, columns, 0, rows):
+        layers[np.searchsorted(_LAYER_HEIGHTS, part.nearness), part.samples] = True
     light = np.ones((rows, columns), np.float32)
     lower_limit = 0.0
-    for limit, layer in zip(_HEIGHTS, layers.reshape(-1, rows, columns), strict=True):
+    for limit, layer in zip(_LAYER_HEIGHTS, layers.reshape(-1, rows, columns), strict=True):
         middle = (lower_limit + min(limit, 1.0)) / 2
         reach = max(1, round((_MIN_SOFTNESS + _SOFTNESS * middle) * size / cell))
         light *= np.float32(1.0) - _blur(layer, reach)
@@ -107,13 +107,13 @@ def shadow_map(mesh: Mesh, key: Vector3) -> ShadowMap | None:
 def _blur(mask: NDArray[np.bool_], reach: int) -> Floats:
     """Return a mask after two box blurs, with values from 0 to 1."""
     area = 2 * reach + 1
-    sums = box_sums(box_sums(mask.astype(np.int64), reach), reach)
+    sums = sum_over_boxes(sum_over_boxes(mask.astype(np.int64), reach), reach)
     return (sums.astype(np.float64) / float(area**4)).astype(np.float32)
 
 
 def is_ground_visible(camera: Camera) -> bool:
     """Return whether the camera looks at the ground from above."""
-    return camera.toward[2] >= _FLAT
+    return camera.toward[2] >= _MIN_ELEVATION_SINE
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,9 +138,9 @@ class GroundGrid:
         low, high = points.min(axis=0).tolist(), points.max(axis=0).tolist()
         extent = max(high[0] - low[0], high[1] - low[1], (high[2] - low[2]) / 2, 1e-3)
         spacing = 1e-6
-        while spacing * 10 < extent / _LINES:
+        while spacing * 10 < extent / _LINE_COUNT:
             spacing *= 10
-        spacing *= next(factor for factor in (1, 2, 5, 10) if spacing * factor >= extent / _LINES)
+        spacing *= next(factor for factor in (1, 2, 5, 10) if spacing * factor >= extent / _LINE_COUNT)
         return cls(low[2], spacing, ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2), extent * 1.6)
 
     def draw(self, light: Floats, alpha: Floats, camera: Camera, first_row: int) -> None:
@@ -153,9 +153,9 @@ class GroundGrid:
             first_row: the row of the image that is the first one.
         """
         last_row = first_row + len(alpha)
-        points = ground_points(camera, self.height, first_row, last_row)
-        right = ground_points(camera, self.height, first_row, last_row, (1.0, 0.0))
-        down = ground_points(camera, self.height, first_row, last_row, (0.0, 1.0))
+        points = compute_ground_points(camera, self.height, first_row, last_row)
+        right = compute_ground_points(camera, self.height, first_row, last_row, (1.0, 0.0))
+        down = compute_ground_points(camera, self.height, first_row, last_row, (0.0, 1.0))
         steps = np.abs(right - points) + np.abs(down - points)  # the size of a pixel on the ground
         x, y = points[:, 0] - self.center[0], points[:, 1] - self.center[1]
         fading = np.clip(2.0 - 2.0 * np.sqrt(x * x + y * y) / self.radius, 0.0, 1.0)
@@ -163,7 +163,7 @@ class GroundGrid:
             multiples = np.rint(points[:, axis] / self.spacing)
             distance = np.abs(points[:, axis] - multiples * self.spacing) / steps[:, axis]
             is_axis = multiples == 0
-            width = np.where(is_axis, _AXIS_WIDTH, _LINE_WIDTH)
+            width = np.where(is_axis, _AXIS_WIDTH_PIXELS, _LINE_WIDTH_PIXELS)
             strength = np.where(is_axis, _AXIS_STRENGTH, _LINE_STRENGTH)
             dense = np.clip(0.25 * self.spacing / steps[:, axis], 0.0, 1.0)
             cover = np.clip(width / 2 + 0.5 - distance, 0.0, 1.0) * strength * fading * dense
@@ -174,11 +174,12 @@ class GroundGrid:
             alpha[:] = alpha * (1.0 - cover) + cover
 
 
-def ground_points(
+def compute_ground_points(
     camera: Camera, height: float, first_row: int, last_row: int, offset: tuple[float, float] = (0.0, 0.0)
 ) -> Array:
-    """Return the point of the ground at each pixel of some rows, shape (pixels, 3); not a number above the horizon.
+    """Return the point of the ground at each pixel of some rows, shape (pixels, 3).
 
+    Above the horizon, the point is not a number.
     `offset` moves all pixels to the right and downward.
     """
     width = camera.size[0]

@@ -10,7 +10,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.picture.bodies import Anchor
 from linkwright.picture.camera import Camera
-from linkwright.picture.stroke_font import LINE_HEIGHT, text_lines
+from linkwright.picture.stroke_font import LINE_HEIGHT, make_text_lines
 from linkwright.picture.vectors import Floats
 
 _TEXT_HEIGHT_PX = 15.0
@@ -25,15 +25,18 @@ _TEXT_BRIGHTNESS, _HALO_BRIGHTNESS = 0.008, 0.96
 
 
 @dataclass(frozen=True, slots=True)
-class _Placed:
-    """A label in an image: its anchor, the upper left corner of its text, and the extent of the text, in pixels."""
+class _PlacedLabel:
+    """A label in an image: its anchor, and the upper left corner and extent of its text.
+
+    All values are in pixels.
+    """
 
     text: str
     anchor: tuple[float, float]
     corner: tuple[float, float]
     extent: tuple[float, float]
 
-    def overlaps(self, other: _Placed) -> bool:
+    def overlaps(self, other: _PlacedLabel) -> bool:
         return all(
             self.corner[axis] < other.corner[axis] + other.extent[axis] + _SPACING_PX
             and other.corner[axis] < self.corner[axis] + self.extent[axis] + _SPACING_PX
@@ -54,13 +57,15 @@ def draw_labels(colors: Floats, alpha: Floats, anchors: Sequence[Anchor], camera
         return
     x, y, _ = camera.project(np.array([anchor.position for anchor in anchors]))
     scale = max(min(camera.size) / _DEFAULT_SIDE_PX, _MIN_SCALE)
-    labels: list[_Placed] = []
+    labels: list[_PlacedLabel] = []
     for index in sorted(range(len(anchors)), key=lambda index: (float(y[index]), index)):
-        labels.append(_place(anchors[index].text, (float(x[index]), float(y[index])), labels, camera.size, scale))
+        labels.append(_place_label(anchors[index].text, (float(x[index]), float(y[index])), labels, camera.size, scale))
     for label in labels:
-        _draw(colors, alpha, _leader_line(label), _LINE_RADIUS_PX * 0.7 * scale, _HALO_RADIUS_PX * 0.5 * scale)
+        _draw_lines(
+            colors, alpha, _make_leader_line(label), _LINE_RADIUS_PX * 0.7 * scale, _HALO_RADIUS_PX * 0.5 * scale
+        )
     for label in labels:
-        _draw(
+        _draw_lines(
             colors,
             alpha,
             np.array([(label.anchor, label.anchor)]),
@@ -68,15 +73,15 @@ def draw_labels(colors: Floats, alpha: Floats, anchors: Sequence[Anchor], camera
             (_DOT_RADIUS_PX + 1.0) * scale,
         )
     for label in labels:
-        _draw(colors, alpha, _letter_lines(label), _LINE_RADIUS_PX * scale, _HALO_RADIUS_PX * scale)
+        _draw_lines(colors, alpha, _make_letter_lines(label), _LINE_RADIUS_PX * scale, _HALO_RADIUS_PX * scale)
 
 
-def _place(
-    text: str, anchor: tuple[float, float], others: Sequence[_Placed], size: tuple[int, int], scale: float
-) -> _Placed:
-    """Return a label next to its anchor, at the first position where it does not overlap another label."""
+def _place_label(
+    text: str, anchor: tuple[float, float], others: Sequence[_PlacedLabel], size: tuple[int, int], scale: float
+) -> _PlacedLabel:
+    """Return a label next to its anchor, at the first position without an overlap."""
     unit = _TEXT_HEIGHT_PX * scale / LINE_HEIGHT
-    extent = (text_lines(text)[1] * unit, _TEXT_HEIGHT_PX * scale)
+    extent = (make_text_lines(text)[1] * unit, _TEXT_HEIGHT_PX * scale)
     is_left = anchor[0] + _TEXT_OFFSET_PX * scale + extent[0] + _BORDER_PX > size[0]
     x = anchor[0] - _TEXT_OFFSET_PX * scale - extent[0] if is_left else anchor[0] + _TEXT_OFFSET_PX * scale
     x = min(max(x, _BORDER_PX), max(_BORDER_PX, size[0] - extent[0] - _BORDER_PX))
@@ -84,23 +89,23 @@ def _place(
     step = extent[1] / 2 + _SPACING_PX
     for attempt in range(2 * int(size[1] / step) + 2):
         shift = (attempt + 1) // 2 * (step if attempt % 2 else -step)
-        label = _Placed(text, anchor, (x, top + shift), extent)
+        label = _PlacedLabel(text, anchor, (x, top + shift), extent)
         is_inside = _BORDER_PX <= label.corner[1] <= size[1] - extent[1] - _BORDER_PX
         if is_inside and not any(label.overlaps(other) for other in others):
             return label
-    return _Placed(text, anchor, (x, top), extent)
+    return _PlacedLabel(text, anchor, (x, top), extent)
 
 
-def _leader_line(label: _Placed) -> Array:
+def _make_leader_line(label: _PlacedLabel) -> Array:
     """Return the line that connects an anchor to its text."""
     is_right = label.corner[0] > label.anchor[0]
     x = label.corner[0] - _SPACING_PX if is_right else label.corner[0] + label.extent[0] + _SPACING_PX
     return np.array([(label.anchor, (x, label.corner[1] + label.extent[1] / 2))])
 
 
-def _letter_lines(label: _Placed) -> Array:
+def _make_letter_lines(label: _PlacedLabel) -> Array:
     """Return the lines of the letters of a label."""
-    lines, _ = text_lines(label.text)
+    lines, _ = make_text_lines(label.text)
     unit = label.extent[1] / LINE_HEIGHT
     lines = lines * unit
     lines[:, :, 0] += label.corner[0]
@@ -108,7 +113,7 @@ def _letter_lines(label: _Placed) -> Array:
     return lines
 
 
-def _draw(colors: Floats, alpha: Floats, lines: Array, pen: float, halo: float) -> None:
+def _draw_lines(colors: Floats, alpha: Floats, lines: Array, pen: float, halo: float) -> None:
     """Draw lines, shape (n, 2, 2) in pixels, with a bright area around them."""
     if not len(lines):
         return
@@ -120,7 +125,7 @@ def _draw(colors: Floats, alpha: Floats, lines: Array, pen: float, halo: float) 
     )
     if right <= left or bottom <= top:
         return
-    distances = _distances(lines, left, top, right, bottom)
+    distances = _compute_distances(lines, left, top, right, bottom)
     window = (slice(top, bottom), slice(left, right))
     for radius, shade, strength in ((halo, _HALO_BRIGHTNESS, 0.8), (pen, _TEXT_BRIGHTNESS, 1.0)):
         coverage = (np.clip(radius + 0.5 - distances, 0.0, 1.0) * strength).astype(np.float32)
@@ -128,7 +133,7 @@ def _draw(colors: Floats, alpha: Floats, lines: Array, pen: float, halo: float) 
         alpha[window] = alpha[window] * (1.0 - coverage) + coverage
 
 
-def _distances(lines: Array, left: int, top: int, right: int, bottom: int) -> Array:
+def _compute_distances(lines: Array, left: int, top: int, right: int, bottom: int) -> Array:
     """Return the distance from each pixel of a window to the nearest line."""
     x, y = (np.arange(left, right) + 0.5)[None, :], (np.arange(top, bottom) + 0.5)[:, None]
     nearest = np.full((bottom - top, right - left), 1e12)

@@ -58,34 +58,34 @@ class Mesh:
             tuple(owners),
         )
 
-    def selected(self, is_wanted: Sequence[bool]) -> Indices:
-        """Return the indices of the triangles whose surfaces are selected by a mask over the surfaces."""
+    def select(self, is_wanted: Sequence[bool]) -> Indices:
+        """Return the indices of the triangles whose surfaces a mask selects."""
         return np.flatnonzero(np.array(is_wanted, dtype=bool)[self.parts]) if self.surfaces else np.zeros(0, np.int64)
 
     @property
     def opaque(self) -> Indices:
         """The indices of the opaque triangles without ghosts, shape (n,)."""
-        return self.selected([part.alpha >= OPAQUE and body.ghost is None for part, body in self._pairs])
+        return self.select([part.alpha >= OPAQUE and body.ghost is None for part, body in self._pairs])
 
     @property
     def transparent(self) -> Indices:
         """The indices of the triangles with transparent materials, without ghosts, shape (n,)."""
-        return self.selected([0.0 < part.alpha < OPAQUE and body.ghost is None for part, body in self._pairs])
+        return self.select([0.0 < part.alpha < OPAQUE and body.ghost is None for part, body in self._pairs])
 
     @property
     def ghosts(self) -> Indices:
         """The indices of the triangles of ghosts, shape (n,)."""
-        return self.selected([body.ghost is not None for body in self.bodies])
+        return self.select([body.ghost is not None for body in self.bodies])
 
     @property
     def solid(self) -> Indices:
         """The indices of the triangles that cast a shadow, shape (n,)."""
-        return self.selected([part.alpha > 0.0 and body.ghost is None for part, body in self._pairs])
+        return self.select([part.alpha > 0.0 and body.ghost is None for part, body in self._pairs])
 
     def outlined_triangles(self) -> dict[Color, Indices]:
         """Return the indices of the triangles of outlined bodies, by the color of the outline."""
         colors = dict.fromkeys(body.outline for body in self.bodies if body.outline is not None)
-        return {color: self.selected([body.outline == color for body in self.bodies]) for color in colors}
+        return {color: self.select([body.outline == color for body in self.bodies]) for color in colors}
 
     @property
     def colors(self) -> NDArray[np.float32]:

@@ -17,13 +17,13 @@ from linkwright.urdf import Joint, Robot, children_of, parent_joints
 _ORIGIN = Placement(IDENTITY, (0.0, 0.0, 0.0))
 
 
-def exact_placement(pose: Pose) -> Placement:
+def placement_from_pose(pose: Pose) -> Placement:
     """Return the rotation and the position for a pose in a description."""
     quaternion = exact_quaternion(pose.rpy) if pose.quaternion is None else normalized(*pose.quaternion)
     return Placement(rotation_matrix(quaternion), pose.xyz)
 
 
-def link_frames(robot: Robot, positions: Mapping[str, float]) -> dict[str, Placement]:
+def compute_link_frames(robot: Robot, positions: Mapping[str, float]) -> dict[str, Placement]:
     """Return the frames of all links in the root link's frame, by link name.
 
     Args:
@@ -37,7 +37,7 @@ def link_frames(robot: Robot, positions: Mapping[str, float]) -> dict[str, Place
     KinematicTree(robot).positions(positions)  # raises an error for unknown names
     moving_joints = [joint.name for joint in robot.joints.values() if joint.type in MOVING]
     independent_joints, relations = resolve_mimics(robot, moving_joints)
-    leaders = {name: positions.get(name, start_position(robot.joints[name])) for name in independent_joints}
+    leaders = {name: positions.get(name, choose_start_position(robot.joints[name])) for name in independent_joints}
     values = {
         name: relation.factor * leaders[relation.leader] + relation.offset
         for name, relation in relations.items()
@@ -50,20 +50,20 @@ def link_frames(robot: Robot, positions: Mapping[str, float]) -> dict[str, Place
         parent = pending.pop()
         for joint in children[parent]:
             if joints_by_child[joint.child] is joint and joint.child not in frames:
-                motion = _motion(joint, values.get(joint.name, 0.0))
-                frames[joint.child] = motion.inside(exact_placement(joint.origin).inside(frames[parent]))
+                motion = _compute_motion(joint, values.get(joint.name, 0.0))
+                frames[joint.child] = motion.inside(placement_from_pose(joint.origin).inside(frames[parent]))
                 pending.append(joint.child)
     return frames
 
 
-def start_position(joint: Joint) -> float:
+def choose_start_position(joint: Joint) -> float:
     """Return 0, or the middle of the limits of a joint whose limits exclude 0."""
     if joint.limit is None or joint.type == "continuous" or joint.limit.lower <= 0.0 <= joint.limit.upper:
         return 0.0
     return (joint.limit.lower + joint.limit.upper) / 2.0
 
 
-def _motion(joint: Joint, position: float) -> Placement:
+def _compute_motion(joint: Joint, position: float) -> Placement:
     """Return the frame of a joint's child link in the frame of the joint at position 0."""
     norm = length(joint.axis)
     if joint.type not in MOVING or not norm > 0.0:

@@ -22,9 +22,9 @@ ROUND_SIDES = 72
 """The number of sides of round shapes, which is high enough that their edges are invisible."""
 DEFAULT_COLOR: Color = (1.0, 0.0, 0.0)
 """The color of a shape without a material, as in RViz."""
-_MAX_TEXTURE = 768
+_MAX_TEXTURE_SIDE = 768
 """The maximum width and height of textures in pixels. Larger textures are downsampled."""
-_MISSING_EXTRA = "INR104"
+_MISSING_EXTRA_CODE = "INR104"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -43,7 +43,7 @@ class MeshSurface:
 
 
 class SurfaceLibrary:
-    """A cache of the surfaces of mesh files, which reads each file once for one or several scenes.
+    """A cache of the surfaces of mesh files, which reads each file once.
 
     Attributes:
         errors_of_colorless_files: the files that were read without their colors, because a library is not installed,
@@ -81,7 +81,7 @@ class SurfaceLibrary:
 
     def _read(self, path: Path, size: int, *, with_names: bool) -> list[MeshSurface]:
         return [
-            MeshSurface(Surface.of_triangles(part.triangles, _texture(part)), part.file_material, part.names)
+            MeshSurface(Surface.of_triangles(part.triangles, _read_texture(part)), part.file_material, part.names)
             for part in self._read_parts(path, size, with_names=with_names)
             if len(part.triangles.indices)
         ]
@@ -94,18 +94,18 @@ class SurfaceLibrary:
         if simple_parts is not None:
             return simple_parts
         try:
-            return read_parts(path, resolver=_resolver(path), with_normals=False)
+            return read_parts(path, resolver=_make_resolver(path), with_normals=False)
         except BadMeshError as error:
             raise unreadable(path, error.reason) from None
         except LinkwrightError as error:
-            if error.diagnostics[0].code != _MISSING_EXTRA:
+            if error.diagnostics[0].code != _MISSING_EXTRA_CODE:
                 raise
             part = _read_plain_part(path)
             self.errors_of_colorless_files[path] = error
             return [part]
 
 
-def _resolver(path: Path) -> object:
+def _make_resolver(path: Path) -> object:
     try:
         return file_resolver(str(path))
     except ModuleNotFoundError:
@@ -118,7 +118,7 @@ def _read_plain_part(path: Path) -> MeshPart:
     return MeshPart(Triangles(mesh.vertices, np.asarray(mesh.faces, np.int64).reshape(-1)), None)
 
 
-def shape_surface(shape: SimpleShape, texture: Texture | None = None) -> Surface:
+def make_shape_surface(shape: SimpleShape, texture: Texture | None = None) -> Surface:
     """Return the surface of a primitive shape."""
     if isinstance(shape, Box):
         triangles = box(shape.size)
@@ -131,7 +131,7 @@ def shape_surface(shape: SimpleShape, texture: Texture | None = None) -> Surface
     return Surface.of_triangles(triangles, texture)
 
 
-def surface_color(
+def choose_surface_color(
     file_material: FileMaterial | None, description_color: Color | None, *, is_textured: bool, format_has_colors: bool
 ) -> Color:
     """Return the color of a surface by RViz's rules.
@@ -151,13 +151,16 @@ def surface_color(
     return (UNCOLORED,) * 3 if format_has_colors else DEFAULT_COLOR
 
 
-def _texture(part: MeshPart) -> Texture | None:
+def _read_texture(part: MeshPart) -> Texture | None:
     image = part.file_material.image if part.file_material is not None else None
-    return None if image is None or part.triangles.coordinates is None else decoded_texture(image)
+    return None if image is None or part.triangles.coordinates is None else decode_texture(image)
 
 
-def decoded_texture(data: bytes) -> Texture | None:
-    """Return the pixels of an image file, or None if the file cannot be decoded or Pillow is missing."""
+def decode_texture(data: bytes) -> Texture | None:
+    """Return the pixels of an image file, or None if they cannot be decoded.
+
+    Decoding may fail because Pillow is missing.
+    """
     try:
         from PIL import Image
     except ModuleNotFoundError:
@@ -166,7 +169,7 @@ def decoded_texture(data: bytes) -> Texture | None:
         pixels: Texture = np.asarray(Image.open(BytesIO(data)).convert("RGB"), np.uint8)
     except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         return None
-    factor = -(-max(pixels.shape[:2]) // _MAX_TEXTURE)
+    factor = -(-max(pixels.shape[:2]) // _MAX_TEXTURE_SIDE)
     height, width = (pixels.shape[0] // factor) * factor, (pixels.shape[1] // factor) * factor
     if factor == 1 or not height or not width:
         return pixels

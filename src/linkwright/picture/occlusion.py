@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from linkwright.geometry.exact_angles import circle
 from linkwright.picture.camera import Camera
-from linkwright.picture.edges import box_sums
+from linkwright.picture.edges import sum_over_boxes
 from linkwright.picture.vectors import Floats
 
-_DIRECTIONS = 10
+_DIRECTION_COUNT = 10
 _RINGS = (0.10, 0.28, 0.56, 1.0)
 """The distances of the examined points, relative to the maximum distance."""
 _REACH = 0.085
@@ -28,41 +28,41 @@ _MIN_LIGHT = 0.30
 """The fraction of the light that remains in the deepest corner."""
 
 
-def occlusion_reach(camera: Camera) -> int:
+def compute_occlusion_reach(camera: Camera) -> int:
     """Return the number of pixels around a pixel that its light depends on."""
-    return _examined_reach(camera) + _BLUR
+    return _compute_examined_reach(camera) + _BLUR
 
 
-def _examined_reach(camera: Camera) -> int:
+def _compute_examined_reach(camera: Camera) -> int:
     return max(2, round(_REACH * min(camera.size)))
 
 
-def ambient_light(depth: Floats, normals: Floats, is_seen: NDArray[np.bool_], camera: Camera) -> Floats:
+def compute_ambient_light(depth: Floats, normals: Floats, is_seen: NDArray[np.bool_], camera: Camera) -> Floats:
     """Return the fraction of the light that reaches each pixel, from 0 to 1.
 
     Args:
         depth: the component along the camera's `toward` of the surface at each pixel, in m, shape (rows, columns).
         normals: the unit normals of the surface along `right`, `up` and `toward`, shape (3, rows, columns).
         is_seen: whether a surface is seen, shape (rows, columns).
-        camera: the camera.
+        camera: the camera that renders the image.
     """
-    meters = _meters_per_pixel(depth, camera)
-    reach = float(_examined_reach(camera))
+    meters = _compute_meters_per_pixel(depth, camera)
+    reach = float(_compute_examined_reach(camera))
     blocked = np.zeros(depth.shape, np.float32)
     for ring, part in enumerate(_RINGS):
-        for direction in range(_DIRECTIONS):
-            cosine, sine = circle(_DIRECTIONS * len(_RINGS))[direction * len(_RINGS) + ring]
+        for direction in range(_DIRECTION_COUNT):
+            cosine, sine = circle(_DIRECTION_COUNT * len(_RINGS))[direction * len(_RINGS) + ring]
             shift = round(cosine * part * reach), round(sine * part * reach)
             if shift != (0, 0):
                 _add_blocked(blocked, depth, normals, is_seen, meters, shift, reach)
-    light = 1.0 - blocked * (_STRENGTH / (_DIRECTIONS * len(_RINGS)))
+    light = 1.0 - blocked * (_STRENGTH / (_DIRECTION_COUNT * len(_RINGS)))
     steps = np.where(is_seen, np.rint(np.maximum(light, np.float32(_MIN_LIGHT)) * _STEPS), 0.0).astype(np.int64)
-    count = np.maximum(box_sums(is_seen.astype(np.int64), _BLUR), 1)
-    ambient: Floats = (box_sums(steps, _BLUR) / (count * _STEPS)).astype(np.float32)
+    count = np.maximum(sum_over_boxes(is_seen.astype(np.int64), _BLUR), 1)
+    ambient: Floats = (sum_over_boxes(steps, _BLUR) / (count * _STEPS)).astype(np.float32)
     return ambient
 
 
-def _meters_per_pixel(depth: Floats, camera: Camera) -> Floats:
+def _compute_meters_per_pixel(depth: Floats, camera: Camera) -> Floats:
     if not camera.distance:
         return np.full(depth.shape, 1.0 / camera.scale, np.float32)
     meters: Floats = (camera.distance - depth) * np.float32(1.0 / (camera.scale * camera.distance))
@@ -78,7 +78,7 @@ def _add_blocked(
     shift: tuple[int, int],
     reach: float,
 ) -> None:
-    """Add to `blocked` the light that is blocked by the points `shift` (right, down) pixels away."""
+    """Add to `blocked` the light blocked by the points `shift` (right, down) pixels away."""
     across, down = shift
     rows, columns = depth.shape
     inner = (slice(max(0, -down), min(rows, rows - down)), slice(max(0, -across), min(columns, columns - across)))

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from linkwright.picture.bodies import Color
 from linkwright.picture.vectors import Floats
 
-_WIDTH = 2.2
+_WIDTH_PIXELS = 2.2
 """The width of an outline in pixels."""
 _TINT = np.float32(0.20)
 """The strength with which the outline's color tints the body."""
@@ -26,7 +26,7 @@ def draw_outline(light: Floats, alpha: Floats, mask: NDArray[np.bool_], color: C
         color: the color of the line.
         per_pixel: the samples per pixel along a row.
     """
-    reach = max(1, round(_WIDTH * per_pixel))
+    reach = max(1, round(_WIDTH_PIXELS * per_pixel))
     line = _dilate(mask, reach) & ~mask
     paint = np.array(color, np.float32)
     paint *= paint

@@ -49,7 +49,10 @@ class ScreenTriangles:
 
     @classmethod
     def from_faces(cls, x: Array, y: Array, nearness: Array, faces: Indices) -> ScreenTriangles:
-        """Return the triangles with the given corners. `faces` has the indices of the corners, shape (n, 3)."""
+        """Return the triangles with the given corners.
+
+        `faces` has the indices of the corners, shape (n, 3).
+        """
         tx, ty, tn = x[faces], y[faces], nearness[faces]
         x1, y1, n1 = tx[:, 1] - tx[:, 0], ty[:, 1] - ty[:, 0], tn[:, 1] - tn[:, 0]
         x2, y2, n2 = tx[:, 2] - tx[:, 0], ty[:, 2] - ty[:, 0], tn[:, 2] - tn[:, 0]
@@ -76,13 +79,13 @@ class Fragments:
     nearness: Array
 
 
-def fragments(
+def rasterize(
     triangles: ScreenTriangles, selected: Indices, width: int, first_row: int, last_row: int
 ) -> Iterator[Fragments]:
     """Yield the fragments of triangles in rows of the grid, in batches.
 
     Args:
-        triangles: the triangles.
+        triangles: the triangles in samples of the grid.
         selected: the indices of the triangles to rasterize.
         width: the number of samples in a row.
         first_row: the first row.
@@ -93,8 +96,8 @@ def fragments(
     bottom = np.ceil(np.clip(y.max(axis=1) - 0.5, first_row, last_row)).astype(np.int64)
     is_on_grid = (bottom > top) & (x.max(axis=1) > 0.0) & (x.min(axis=1) < width)
     selected, top, counts = selected[is_on_grid], top[is_on_grid], (bottom - top)[is_on_grid]
-    x, y = _sorted_by_row(np.rint(x[is_on_grid] * _SNAP) / _SNAP, np.rint(y[is_on_grid] * _SNAP) / _SNAP)
-    slopes = _slopes(x, y)
+    x, y = _sort_by_row(np.rint(x[is_on_grid] * _SNAP) / _SNAP, np.rint(y[is_on_grid] * _SNAP) / _SNAP)
+    slopes = _compute_slopes(x, y)
     low, high = triangles.nearness[selected].min(axis=1), triangles.nearness[selected].max(axis=1)
     start = 0
     ends = np.cumsum(counts)
@@ -105,15 +108,15 @@ def fragments(
         owners, row_steps = repeat_indices(counts[batch])
         owners = owners + start
         rows = top[owners] + row_steps
-        left, right = _spans(x, y, slopes, owners, rows + 0.5, width)
+        left, right = _find_spans(x, y, slopes, owners, rows + 0.5, width)
         is_filled = right > left
         owners, rows = owners[is_filled], rows[is_filled]
         left, right = left[is_filled], right[is_filled]
-        yield from _span_fragments(triangles, selected, owners, rows, left, right, (low, high), width, first_row)
+        yield from _rasterize_spans(triangles, selected, owners, rows, left, right, (low, high), width, first_row)
         start = stop
 
 
-def _span_fragments(
+def _rasterize_spans(
     triangles: ScreenTriangles,
     selected: Indices,
     owners: Indices,
@@ -155,8 +158,11 @@ def _span_fragments(
         begin = stop
 
 
-def _sorted_by_row(x: Array, y: Array) -> tuple[Array, Array]:
-    """Return the corners of each triangle sorted from top to bottom, and from left to right within a row."""
+def _sort_by_row(x: Array, y: Array) -> tuple[Array, Array]:
+    """Return the corners of each triangle, sorted from top to bottom.
+
+    Corners in the same row are sorted from left to right.
+    """
     xs, ys = [x[:, corner] for corner in range(3)], [y[:, corner] for corner in range(3)]
     for first, second in ((0, 1), (1, 2), (0, 1)):
         swaps = (ys[second] < ys[first]) | ((ys[second] == ys[first]) & (xs[second] < xs[first]))
@@ -168,7 +174,7 @@ def _sorted_by_row(x: Array, y: Array) -> tuple[Array, Array]:
     return np.stack(xs, axis=1), np.stack(ys, axis=1)
 
 
-def _slopes(x: Array, y: Array) -> tuple[Array, Array, Array]:
+def _compute_slopes(x: Array, y: Array) -> tuple[Array, Array, Array]:
     """Return the change of x per row along the upper, lower and long edge of each triangle."""
     slopes = []
     for first, second in ((0, 1), (1, 2), (0, 2)):
@@ -177,10 +183,10 @@ def _slopes(x: Array, y: Array) -> tuple[Array, Array, Array]:
     return slopes[0], slopes[1], slopes[2]
 
 
-def _spans(
+def _find_spans(
     x: Array, y: Array, slopes: tuple[Array, Array, Array], owners: Indices, centers: Floats, width: int
 ) -> tuple[Indices, Indices]:
-    """Return the first sample of each row that is inside its triangle, and the sample after the last one."""
+    """Return the first sample of each row inside its triangle, and the sample after the last."""
     is_upper = centers < y[owners, 1]
     corner = np.where(is_upper, 0, 1)
     short = x[owners, corner] + (centers - y[owners, corner]) * np.where(is_upper, slopes[0][owners], slopes[1][owners])
@@ -232,7 +238,7 @@ class DepthBuffer:
         self._nearest = nearest
         self._steps = _DEPTH_STEPS / max(nearest - farthest, 1e-12)
 
-    def empty_copy(self) -> DepthBuffer:
+    def make_empty_copy(self) -> DepthBuffer:
         """Return an empty buffer of the same extent."""
         copy = DepthBuffer(self.width, self.first_row, self.last_row, self._nearest, self._nearest - 1.0)
         copy._steps = self._steps
@@ -254,12 +260,12 @@ class DepthBuffer:
         """Add triangles.
 
         Args:
-            triangles: the triangles.
+            triangles: the triangles in samples of the grid.
             selected: the indices of the triangles to add.
             behind: only samples behind this buffer's triangles are added.
             in_front_of: only samples in front of this buffer's triangles are added.
         """
-        for batch in fragments(triangles, selected, self.width, self.first_row, self.last_row):
+        for batch in rasterize(triangles, selected, self.width, self.first_row, self.last_row):
             steps = np.maximum((self._nearest - batch.nearness) * self._steps, 0.0).astype(np.int64)
             keys = (steps << _TRIANGLE_BITS) | batch.triangles
             samples = batch.samples
@@ -280,7 +286,7 @@ class DepthBuffer:
         rows, columns = np.flatnonzero(is_seen.any(axis=1)), np.flatnonzero(is_seen.any(axis=0))
         if not len(rows):
             return None
-        window = (_align(rows, len(keys), block_size), _align(columns, self.width, block_size))
+        window = (_align_range(rows, len(keys), block_size), _align_range(columns, self.width, block_size))
         mask = is_seen[window]
         seen_keys = keys[window][mask]
         distances = (seen_keys >> _TRIANGLE_BITS).astype(np.float32)
@@ -296,7 +302,10 @@ class DepthBuffer:
         )
 
 
-def _align(indices: Indices, count: int, step: int) -> slice:
-    """Return a range of indices, extended by one step on both sides and rounded outward to multiples of the step."""
+def _align_range(indices: Indices, count: int, step: int) -> slice:
+    """Return a range of indices, extended by one step on both sides.
+
+    The ends are rounded outward to multiples of the step.
+    """
     first, last = int(indices[0]) // step - 1, int(indices[-1]) // step + 2
     return slice(max(first * step, 0), min(last * step, count))

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from linkwright.picture.camera import VIEWS, Camera, View
 from linkwright.picture.cast_shadows import CastShadows
-from linkwright.picture.edges import edge_strength
-from linkwright.picture.ground import GroundGrid, ground_points, is_ground_visible, shadow_map
+from linkwright.picture.edges import compute_edge_strength
+from linkwright.picture.ground import GroundGrid, compute_ground_points, compute_shadow_map, is_ground_visible
 from linkwright.picture.labels import draw_labels
-from linkwright.picture.occlusion import ambient_light, occlusion_reach
+from linkwright.picture.occlusion import compute_ambient_light, compute_occlusion_reach
 from linkwright.picture.outlines import draw_outline
 from linkwright.picture.rasterizer import NOTHING, DepthBuffer, ScreenTriangles, VisibleTriangles
 from linkwright.picture.scene import Scene, camera_for
@@ -22,11 +22,11 @@ from linkwright.picture.vectors import Floats, Indices, along
 
 Image = NDArray[np.uint8]
 
-_PER_PIXEL, _PER_PIXEL_OF_LARGE = 3, 2
+_SAMPLES_PER_PIXEL, _SAMPLES_PER_PIXEL_OF_LARGE = 3, 2
 """The samples per pixel along a row, in images of normal and of large size."""
 _FILTERS = {2: (1, 3, 3, 1), 3: (1, 2, 3, 2, 1)}
 """By samples per pixel: the weights of a pixel's samples along a row, with one sample of each neighbor."""
-_LARGE_IMAGE = 2_500_000
+_LARGE_IMAGE_PIXELS = 2_500_000
 _BAND_SAMPLES = 6_000_000
 """The approximate number of samples to render at once."""
 _LINE_REACH = 8
@@ -36,7 +36,7 @@ _PEELED_LAYERS = 3
 _GHOST_ALPHA = 0.38
 """The opacity of a ghost, from 0 to 1."""
 _EDGE_LIGHT = 0.012
-_UPPER, _LOWER = (0.98, 0.984, 0.988), (0.87, 0.89, 0.914)
+_BACKGROUND_TOP, _BACKGROUND_BOTTOM = (0.98, 0.984, 0.988), (0.87, 0.89, 0.914)
 """The colors of the background at the top and at the bottom."""
 
 
@@ -74,7 +74,7 @@ def render(
     Returns:
         Red, green, blue and alpha, not multiplied by it, shape (height, width, 4).
     """
-    return _Renderer(scene, camera or camera_for(view, size, scene), style).image()
+    return _Renderer(scene, camera or camera_for(view, size, scene), style).render()
 
 
 class _Renderer:
@@ -83,7 +83,9 @@ class _Renderer:
         self._camera = camera
         self._style = style
         self._width, self._height = camera.size
-        self._per_pixel = _PER_PIXEL if self._width * self._height <= _LARGE_IMAGE else _PER_PIXEL_OF_LARGE
+        self._per_pixel = (
+            _SAMPLES_PER_PIXEL if self._width * self._height <= _LARGE_IMAGE_PIXELS else _SAMPLES_PER_PIXEL_OF_LARGE
+        )
         x, y, nearness = camera.project(mesh.points)
         self._screen = ScreenTriangles.from_faces(x * self._per_pixel, y * self._per_pixel, nearness, mesh.faces)
         self._range = (float(nearness.max()), float(nearness.min())) if len(nearness) else (1.0, 0.0)
@@ -91,34 +93,37 @@ class _Renderer:
         self._shader = Shader(mesh, self._screen, lights)
         self._cast = CastShadows(mesh, lights.key) if len(mesh.solid) else None
         is_on_ground = is_ground_visible(camera)
-        self._shadow = shadow_map(mesh, lights.key) if is_on_ground else None
+        self._shadow = compute_shadow_map(mesh, lights.key) if is_on_ground else None
         self._grid = GroundGrid.around(scene.points) if style.grid and is_on_ground else None
         self._anchors = {None: (), "links": scene.labels.links, "joints": scene.labels.joints}[style.labels]
         numbers = {id(body): index for index, body in enumerate(dict.fromkeys(mesh.bodies))}
         self._body_numbers = np.array([numbers[id(body)] for body in mesh.bodies], np.int32)
 
-    def image(self) -> Image:
+    def render(self) -> Image:
         rows = max(1, _BAND_SAMPLES // (self._width * self._per_pixel**2))
-        bands = [self._band(first, min(first + rows, self._height)) for first in range(0, self._height, rows)]
+        bands = [self._render_band(first, min(first + rows, self._height)) for first in range(0, self._height, rows)]
         light, alpha = (np.concatenate(arrays) for arrays in zip(*bands, strict=True))
         draw_labels(light, alpha, self._anchors, self._camera)
         return _quantize(light, alpha)
 
-    def _band(self, first: int, last: int) -> tuple[Floats, Floats]:
+    def _render_band(self, first: int, last: int) -> tuple[Floats, Floats]:
         """Return the light of some rows of pixels, multiplied by the opacity, and the opacity."""
-        overlap = _LINE_REACH + occlusion_reach(self._camera)
+        overlap = _LINE_REACH + compute_occlusion_reach(self._camera)
         upper, lower = max(0, first - overlap), min(self._height, last + overlap)
-        light, alpha = self._bodies(upper, lower)
+        light, alpha = self._render_bodies(upper, lower)
         requested_rows = slice(first - upper, last - upper)
         light, alpha = light[requested_rows], alpha[requested_rows]
-        light_below, alpha_below = self._ground(first, last)
+        light_below, alpha_below = self._render_ground(first, last)
         transparency = 1.0 - alpha
         return light + light_below * transparency[:, :, None], alpha + alpha_below * transparency
 
     # --- bodies ------------------------------------------------------------------------------------------------
 
-    def _bodies(self, upper: int, lower: int) -> tuple[Floats, Floats]:
-        """Return the bodies' light multiplied by opacity, shape (rows, width, 3), and opacity, shape (rows, width)."""
+    def _render_bodies(self, upper: int, lower: int) -> tuple[Floats, Floats]:
+        """Return the light of the bodies multiplied by their opacity, and the opacity.
+
+        The shapes are (rows, width, 3) and (rows, width).
+        """
         mesh, scale = self._mesh, self._per_pixel
         width = self._width * scale
         opaque = DepthBuffer(width, upper * scale, lower * scale, *self._range)
@@ -133,20 +138,20 @@ class _Renderer:
                 self._blend(light, alpha, layer)
         ghosts = mesh.ghosts
         if len(ghosts):
-            layer = opaque.empty_copy()
+            layer = opaque.make_empty_copy()
             layer.add(self._screen, ghosts, in_front_of=opaque)
             self._blend(light, alpha, layer, opacity=_GHOST_ALPHA)
         for color, triangles in mesh.outlined_triangles().items():
-            layer = opaque.empty_copy()
+            layer = opaque.make_empty_copy()
             layer.add(self._screen, triangles)
             draw_outline(light, alpha, (layer.keys != NOTHING).reshape(alpha.shape), color, scale)
-        return _filter(light, scale), _filter(alpha, scale)
+        return _filter_samples(light, scale), _filter_samples(alpha, scale)
 
     def _peel(self, transparent: Indices, opaque: DepthBuffer) -> list[DepthBuffer]:
         """Return the transparent surfaces in front of the opaque ones, the nearest first."""
         layers: list[DepthBuffer] = []
         for _ in range(_PEELED_LAYERS):
-            layer = opaque.empty_copy()
+            layer = opaque.make_empty_copy()
             layer.add(self._screen, transparent, behind=layers[-1] if layers else None, in_front_of=opaque)
             if layer.is_empty:
                 break
@@ -175,12 +180,12 @@ class _Renderer:
         if visible is None:
             return
         shaded = self._shader.shade(visible)
-        lines = self._lines(visible, shaded.normals)
+        lines = self._compute_lines(visible, shaded.normals)
         alphas = shaded.alpha if opacity is None else np.full(len(lines), opacity, np.float32)
         alphas = alphas + (1.0 - alphas) * lines
         colors = shaded.colors
         if is_first:
-            colors *= self._ambient(visible, shaded.normals)[:, None]
+            colors *= self._compute_ambient(visible, shaded.normals)[:, None]
         colors *= ((1.0 - lines) * alphas)[:, None]
         colors += (lines * alphas * _EDGE_LIGHT)[:, None]
         light, alpha = light[visible.window], alpha[visible.window]
@@ -191,7 +196,7 @@ class _Renderer:
         light[visible.mask] = colors
         alpha[visible.mask] = alphas
 
-    def _ambient(self, visible: VisibleTriangles, normals: Floats) -> Floats:
+    def _compute_ambient(self, visible: VisibleTriangles, normals: Floats) -> Floats:
         """Return the fraction of ambient light at samples, computed at the center of each pixel."""
         scale, camera = self._per_pixel, self._camera
         middles = (slice(scale // 2, None, scale), slice(scale // 2, None, scale))
@@ -207,15 +212,15 @@ class _Renderer:
         of_middles = normals[at_middle[visible.mask]]
         for axis, direction in enumerate((camera.right, camera.up, camera.toward)):
             turned[axis][is_seen] = along(of_middles, direction)
-        ambient = ambient_light(depth, turned, is_seen, camera)
+        ambient = compute_ambient_light(depth, turned, is_seen, camera)
         if self._cast is not None:
             x, y = (values[at_middle[visible.mask]].astype(np.float64) / scale for values in (visible.x, visible.y))
             points = camera.points_at(x, y, depth[is_seen].astype(np.float64))
-            ambient[is_seen] *= self._cast.light(points, of_middles)
+            ambient[is_seen] *= self._cast.compute_light(points, of_middles)
         spread: Floats = np.repeat(np.repeat(ambient, scale, axis=0), scale, axis=1)[visible.mask]
         return spread
 
-    def _lines(self, visible: VisibleTriangles, normals: Floats) -> Floats:
+    def _compute_lines(self, visible: VisibleTriangles, normals: Floats) -> Floats:
         """Return the darkness of lines at samples."""
         bodies = np.full(visible.mask.shape, -1, np.int32)
         bodies[visible.mask] = self._body_numbers[self._mesh.parts[visible.triangles]]
@@ -224,13 +229,16 @@ class _Renderer:
         normal_grid = np.zeros((3, *visible.mask.shape), np.float32)
         for axis in range(3):
             normal_grid[axis][visible.mask] = normals[:, axis]
-        lines: Floats = edge_strength(distances, normal_grid, bodies, self._per_pixel)[visible.mask]
+        lines: Floats = compute_edge_strength(distances, normal_grid, bodies, self._per_pixel)[visible.mask]
         return lines
 
     # --- ground ------------------------------------------------------------------------------------------------
 
-    def _ground(self, first: int, last: int) -> tuple[Floats, Floats]:
-        """Return the light of ground and background in some rows, multiplied by the opacity, and the opacity."""
+    def _render_ground(self, first: int, last: int) -> tuple[Floats, Floats]:
+        """Return the light of ground and background in some rows, and its opacity.
+
+        The light is multiplied by the opacity.
+        """
         shape = (last - first, self._width)
         light: Floats
         alpha: Floats
@@ -238,25 +246,28 @@ class _Renderer:
             light, alpha = np.zeros((*shape, 3), np.float32), np.zeros(shape, np.float32)
         else:
             position = ((np.arange(first, last) + 0.5) / self._height)[:, None]
-            colors = np.array(_UPPER) + (np.array(_LOWER) - np.array(_UPPER)) * position
+            colors = np.array(_BACKGROUND_TOP) + (np.array(_BACKGROUND_BOTTOM) - np.array(_BACKGROUND_TOP)) * position
             light = np.repeat((colors * colors)[:, None, :], self._width, axis=1).astype(np.float32)
             alpha = np.ones(shape, np.float32)
         if self._grid is not None:
             self._grid.draw(light, alpha, self._camera, first)
         if self._shadow is not None:
-            points = ground_points(self._camera, self._shadow.height, first, last)
-            darkness = self._shadow.at(points).reshape(shape)
+            points = compute_ground_points(self._camera, self._shadow.height, first, last)
+            darkness = self._shadow.darkness_at(points).reshape(shape)
             light *= (1.0 - darkness)[:, :, None]
             alpha += (1.0 - alpha) * darkness
         return light, alpha
 
 
-def _filter(samples: Floats, per_pixel: int) -> Floats:
-    """Return pixels as weighted averages of samples, shape (rows, columns, ...), that overlap neighbors."""
-    return _filtered_rows(_filtered_rows(samples.swapaxes(0, 1), per_pixel).swapaxes(0, 1), per_pixel)
+def _filter_samples(samples: Floats, per_pixel: int) -> Floats:
+    """Return pixels as weighted averages of samples, shape (rows, columns, ...).
+
+    The averages of neighboring pixels overlap.
+    """
+    return _filter_rows(_filter_rows(samples.swapaxes(0, 1), per_pixel).swapaxes(0, 1), per_pixel)
 
 
-def _filtered_rows(samples: Floats, per_pixel: int) -> Floats:
+def _filter_rows(samples: Floats, per_pixel: int) -> Floats:
     """Return weighted averages along the first axis, one per pixel."""
     count = len(samples) // per_pixel
     weights = _FILTERS[per_pixel]

@@ -10,8 +10,8 @@ from linkwright.geometry.shapes import MAX_COORDINATE, Placement
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.packages import PackageFinder
 from linkwright.picture.bodies import Anchor, Body, Color, Labels, Surface, Texture
-from linkwright.picture.link_frames import exact_placement, link_frames
-from linkwright.picture.materials import SurfaceLibrary, decoded_texture, shape_surface, surface_color
+from linkwright.picture.link_frames import compute_link_frames, placement_from_pose
+from linkwright.picture.materials import SurfaceLibrary, choose_surface_color, decode_texture, make_shape_surface
 from linkwright.picture.scene import Scene
 from linkwright.urdf import Link, Material, Mesh, Robot, Visual
 
@@ -35,9 +35,9 @@ def robot_scene(
     """Return a scene with a robot's visuals.
 
     Args:
-        robot: the robot.
+        robot: the robot to show.
         finder: finds the packages of its meshes.
-        positions: joint positions in rad or m by name; see `link_frames` for the others.
+        positions: joint positions in rad or m by name; see `compute_link_frames` for the others.
         folder: the folder for relative paths in a description without a file; the current folder by default.
         ghost: the color in which the robot is drawn as transparent, for the old one of two; None for its own colors.
         outlined: the colors of lines around links, by the names of the links.
@@ -48,22 +48,22 @@ def robot_scene(
         UnknownNameError: KIN101 or KIN102, a name is not that of a joint that has a position.
     """
     reader = _VisualReader(library or SurfaceLibrary(), MeshLibrary(finder, folder or Path.cwd()))
-    frames = link_frames(robot, positions or {})
+    frames = compute_link_frames(robot, positions or {})
     if root is not None:
         frames = {name: frame.inside(root) for name, frame in frames.items()}
     outline_colors = outlined or {}
     bodies = []
     for name in robot.links:
         if name in frames and max(map(abs, frames[name].position)) <= MAX_COORDINATE:
-            surfaces = reader.surfaces(robot.links[name])
+            surfaces = reader.read_surfaces(robot.links[name])
             bodies.append(Body(name, frames[name], surfaces, ghost, outline_colors.get(name)))
         elif name in frames:
             reader.add_out_of_range(name)
             del frames[name]
-    return Scene(bodies, reader.problems, _labels(robot, frames))
+    return Scene(bodies, reader.problems, _make_labels(robot, frames))
 
 
-def _labels(robot: Robot, frames: Mapping[str, Placement]) -> Labels:
+def _make_labels(robot: Robot, frames: Mapping[str, Placement]) -> Labels:
     links = [Anchor(name, frames[name].position) for name in robot.links if name in frames]
     joints = [
         Anchor(name, frames[joint.child].position) for name, joint in robot.joints.items() if joint.child in frames
@@ -83,12 +83,12 @@ class _VisualReader:
         self._library = library
         self._files = files
 
-    def surfaces(self, link: Link) -> tuple[Surface, ...]:
+    def read_surfaces(self, link: Link) -> tuple[Surface, ...]:
         """Convert the visuals of a link to surfaces in the link's frame."""
         surfaces = []
         for visual in link.visuals:
-            for surface in self._visual(link, visual):
-                surface_in_link = surface.placed(exact_placement(visual.origin))
+            for surface in self._read_visual(link, visual):
+                surface_in_link = surface.placed(placement_from_pose(visual.origin))
                 if surface_in_link.is_in_range:
                     surfaces.append(surface_in_link)
                 else:
@@ -100,17 +100,17 @@ class _VisualReader:
         message = phrase("link '{link}' is drawn incompletely: a coordinate is out of range", link=link)
         self._add(Diagnostic("PIC101", message, severity=Severity.WARNING))
 
-    def _visual(self, link: Link, visual: Visual) -> list[Surface]:
+    def _read_visual(self, link: Link, visual: Visual) -> list[Surface]:
         material, geometry = visual.material, visual.geometry
         color = None if material is None else material.rgba
         rgb = None if color is None else color[:3]
         alpha = 1.0 if color is None else color[3]
         texture = None
         if material is not None and material.texture:
-            texture = self._texture(link, material)
+            texture = self._read_texture(link, material)
         if not isinstance(geometry, Mesh):
-            surface = shape_surface(geometry, texture)
-            shown = surface_color(None, rgb, is_textured=surface.texture is not None, format_has_colors=False)
+            surface = make_shape_surface(geometry, texture)
+            shown = choose_surface_color(None, rgb, is_textured=surface.texture is not None, format_has_colors=False)
             return [surface.colored(shown, alpha)]
         try:
             path = self._files.locate(geometry.filename, visual.element)
@@ -123,15 +123,16 @@ class _VisualReader:
         format_has_colors = path.suffix.lower() != ".stl"
         return [
             part.surface.scaled(geometry.scale).colored(
-                surface_color(part.file_material, rgb, is_textured=False, format_has_colors=format_has_colors), alpha
+                choose_surface_color(part.file_material, rgb, is_textured=False, format_has_colors=format_has_colors),
+                alpha,
             )
             for part in parts
         ]
 
-    def _texture(self, link: Link, material: Material) -> Texture | None:
+    def _read_texture(self, link: Link, material: Material) -> Texture | None:
         try:
             path = self._files.locate(material.texture or "", material.element)
-            texture = decoded_texture(path.read_bytes())
+            texture = decode_texture(path.read_bytes())
         except (LinkwrightError, OSError):
             texture = None
         if texture is None:

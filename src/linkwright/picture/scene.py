@@ -10,7 +10,7 @@ import numpy as np
 from linkwright.diagnostics import Diagnostic
 from linkwright.geometry.arrays import Array
 from linkwright.picture.bodies import Body, Labels
-from linkwright.picture.camera import Camera, View, fitting_camera
+from linkwright.picture.camera import Camera, View, fit_camera
 from linkwright.picture.layers import Mesh
 
 
@@ -18,12 +18,12 @@ class Scene:
     """Bodies to render together.
 
     Args:
-        bodies: the bodies.
+        bodies: the bodies to render, with their frames in the scene.
         problems: the findings about surfaces that are missing.
         labels: the points that can have labels.
 
     Attributes:
-        bodies: the bodies.
+        bodies: the bodies to render, with their frames in the scene.
         problems: the findings about surfaces that are missing.
         labels: the points that can have labels.
     """
@@ -46,18 +46,20 @@ class Scene:
 
     @property
     def points(self) -> Array:
-        """The points that an image must show: all vertices, or the origins of the bodies if there are no vertices."""
+        """The points that an image must show: all vertices, else the origins of the bodies."""
         if len(self.mesh.points):
             return self.mesh.points
         return np.array([body.frame.position for body in self.bodies] or [(0.0, 0.0, 0.0)])
 
 
 def camera_for(view: View, size: tuple[int, int], *scenes: Scene) -> Camera:
-    """Return the camera that shows all scenes at the largest possible common size, so that images are comparable.
+    """Return the camera that shows all scenes at the largest possible common size.
+
+    Images with this camera are comparable.
 
     Args:
         view: the direction of the camera.
         size: the width and height of the image in pixels.
         scenes: one scene or several.
     """
-    return fitting_camera(view, size, [scene.points for scene in scenes])
+    return fit_camera(view, size, [scene.points for scene in scenes])

@@ -17,11 +17,18 @@ from linkwright.picture.layers import Mesh
 from linkwright.picture.rasterizer import ScreenTriangles, VisibleTriangles
 from linkwright.picture.vectors import Floats, Indices, along, unit_vector, unit_vectors
 
-_KEY, _FILL, _SKY, _GROUND, _SPECULAR, _RIM = 0.74, 0.14, 0.34, 0.14, 0.09, 0.05
+_KEY_STRENGTH, _FILL_STRENGTH, _SKY_STRENGTH, _GROUND_STRENGTH, _SPECULAR_STRENGTH, _RIM_STRENGTH = (
+    0.74,
+    0.14,
+    0.34,
+    0.14,
+    0.09,
+    0.05,
+)
 """The strengths of the lights."""
 _WRAP = 0.35
 """The extent to which the strongest light reaches around a shape, so that no side is black."""
-_BATCH = 1 << 18
+_BATCH_SAMPLES = 1 << 18
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +77,7 @@ class Shader:
     Args:
         mesh: the triangles of the scene.
         screen: the same triangles on the grid of samples.
-        lights: the lights.
+        lights: the lights of the scene.
     """
 
     def __init__(self, mesh: Mesh, screen: ScreenTriangles, lights: Lights) -> None:
@@ -90,10 +97,10 @@ class Shader:
 
     def shade(self, visible: VisibleTriangles) -> ShadedSamples:
         """Return the colors of the samples at which triangles are visible."""
-        table, rows = self._table(visible.triangles)
+        table, rows = self._make_table(visible.triangles)
         parts = [
             self._shade(visible.x[part], visible.y[part], visible.triangles[part], table, rows[part])
-            for part in (slice(start, start + _BATCH) for start in range(0, len(rows), _BATCH))
+            for part in (slice(start, start + _BATCH_SAMPLES) for start in range(0, len(rows), _BATCH_SAMPLES))
         ]
         return ShadedSamples(
             np.concatenate([part.colors for part in parts]),
@@ -101,7 +108,7 @@ class Shader:
             np.concatenate([part.normals for part in parts]),
         )
 
-    def _table(self, triangles: Indices) -> tuple[Floats, Indices]:
+    def _make_table(self, triangles: Indices) -> tuple[Floats, Indices]:
         """Return the table of values of the visible triangles, and the table row of each sample.
 
         The columns are: the corner, the gradients of two barycentric coordinates, a normal and its two differences.
@@ -133,27 +140,31 @@ class Shader:
         normals = values[:, 6:9] + second[:, None] * values[:, 9:12] + third[:, None] * values[:, 12:15]
         normals = unit_vectors(normals)
         parts = self._mesh.parts[triangles]
-        albedo = self._albedo(triangles, parts, second, third)
-        return ShadedSamples(self._lit(albedo, normals), self._alphas[parts], normals)
+        albedo = self._compute_albedo(triangles, parts, second, third)
+        return ShadedSamples(self._apply_lights(albedo, normals), self._alphas[parts], normals)
 
-    def _lit(self, albedo: Floats, normals: Floats) -> Floats:
+    def _apply_lights(self, albedo: Floats, normals: Floats) -> Floats:
         lights = self._lights
         facing_camera = np.maximum(along(normals, lights.to_camera), 0.0)
         key = np.maximum((along(normals, lights.key) + _WRAP) / (1.0 + _WRAP), 0.0)
         key = (key + key * key) * 0.5  # smooths the border between light and shade
         fill = along(normals, lights.fill) * 0.5 + 0.5
         sky = (normals[:, 2] + 1.0) * 0.5
-        diffuse = _KEY * key + _FILL * fill * fill + (_GROUND + (_SKY - _GROUND) * sky)
+        diffuse = (
+            _KEY_STRENGTH * key
+            + _FILL_STRENGTH * fill * fill
+            + (_GROUND_STRENGTH + (_SKY_STRENGTH - _GROUND_STRENGTH) * sky)
+        )
         specular = np.maximum(along(normals, unit_vector(add_vectors(lights.key, lights.to_camera))), 0.0)
         for _ in range(5):
             specular = specular * specular
         away = 1.0 - facing_camera
         rim = away * away * away * sky
-        specular_and_rim = _SPECULAR * specular + _RIM * rim
+        specular_and_rim = _SPECULAR_STRENGTH * specular + _RIM_STRENGTH * rim
         lit: Floats = albedo * diffuse[:, None] + specular_and_rim[:, None]
         return lit
 
-    def _albedo(self, triangles: Indices, parts: Indices, second: Floats, third: Floats) -> Floats:
+    def _compute_albedo(self, triangles: Indices, parts: Indices, second: Floats, third: Floats) -> Floats:
         """Return the material colors of samples in linear RGB."""
         albedo = self._linear_colors[parts]
         for index, texture in self._textures.items():

@@ -12,7 +12,7 @@ from linkwright.picture.vectors import (
     cross_products,
     dot_products,
     repeat_indices,
-    sums_by_index,
+    sum_by_index,
     unit_vectors,
 )
 
@@ -51,17 +51,17 @@ def smooth_mesh(points: Array, faces: Indices, *, merged: bool = True) -> Smooth
             colors.
     """
     corners = faces.reshape(-1)
-    places = _welded_points(points)
+    places = _weld_points(points)
     welded = places[corners]
-    face_normals, weights = _corner_weights(points, faces)
+    face_normals, weights = _compute_corner_weights(points, faces)
     count = int(welded.max()) + 1
     of_corners = np.repeat(np.arange(len(faces)), 3)
-    means = unit_vectors(sums_by_index(welded, face_normals[of_corners] * weights[:, None], count))
+    means = unit_vectors(sum_by_index(welded, face_normals[of_corners] * weights[:, None], count))
     is_smooth_corner = dot_products(face_normals[of_corners], means[welded]) >= CREASE_COSINE
     is_rough = np.zeros(count, dtype=bool)
     is_rough[welded[~is_smooth_corner]] = True
     rough_corners = np.flatnonzero(is_rough[welded])
-    rough_normals = _creased_normals(rough_corners, welded, face_normals, weights)
+    rough_normals = _compute_creased_normals(rough_corners, welded, face_normals, weights)
     # Smooth vertices come first, then a vertex for each rough corner.
     groups = welded if merged else corners
     sources_of_groups = np.full(count if merged else len(points), -1)
@@ -77,7 +77,7 @@ def smooth_mesh(points: Array, faces: Indices, *, merged: bool = True) -> Smooth
     return SmoothMesh(sources, np.rint(normals * _NORMAL_GRID) / _NORMAL_GRID, new_faces.reshape(-1, 3))
 
 
-def _welded_points(points: Array) -> Indices:
+def _weld_points(points: Array) -> Indices:
     """Return a number for each point, equal for points at the same position."""
     low = points.min(axis=0)
     extent = float((points.max(axis=0) - low).max())
@@ -86,9 +86,10 @@ def _welded_points(points: Array) -> Indices:
     return np.asarray(np.unique(keys, return_inverse=True)[1], dtype=np.int64).reshape(-1)
 
 
-def _corner_weights(points: Array, faces: Indices) -> tuple[Array, Array]:
-    """Return the unit normals of triangles, and the weight of each triangle in the normals at its corners, flat.
+def _compute_corner_weights(points: Array, faces: Indices) -> tuple[Array, Array]:
+    """Return the unit normals of triangles, and the weight of each triangle at its corners.
 
+    The weights are those in the normals of the corners, as a flat array.
     The weights are those of N. Max, "Weights for computing vertex normals from facet normals" (1999): for points on a
     sphere the normals are exact, and how a rectangle is split into triangles does not matter.
     """
@@ -104,8 +105,11 @@ def _corner_weights(points: Array, faces: Indices) -> tuple[Array, Array]:
     return normals, weights.reshape(-1)
 
 
-def _creased_normals(rough_corners: Indices, welded: Indices, face_normals: Array, weights: Array) -> Array:
-    """Return a normal for each corner at a crease: the mean over the adjacent triangles that it meets smoothly."""
+def _compute_creased_normals(rough_corners: Indices, welded: Indices, face_normals: Array, weights: Array) -> Array:
+    """Return a normal for each corner at a crease.
+
+    The normal is the mean over the adjacent triangles that meet smoothly.
+    """
     faces = rough_corners // 3
     places = welded[rough_corners]
     order = np.argsort(places, kind="stable")
@@ -121,7 +125,7 @@ def _creased_normals(rough_corners: Indices, welded: Indices, face_normals: Arra
     meets = (own_faces != other_faces) & (
         dot_products(face_normals[own_faces], face_normals[other_faces]) >= CREASE_COSINE
     )
-    sums += sums_by_index(corner_indices[meets], weighted[neighbors[meets]], len(order))
+    sums += sum_by_index(corner_indices[meets], weighted[neighbors[meets]], len(order))
     normals = np.empty_like(sums)
     normals[order] = unit_vectors(sums)
     return normals

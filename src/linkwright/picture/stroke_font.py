@@ -13,8 +13,8 @@ from linkwright.geometry.arrays import Array
 
 LINE_HEIGHT = 8.0
 """The height of a line of text in units of the font, from the lowest point of small letters to the top of capitals."""
-_GAP = 1.8
-_SPACE = 2.4
+_LETTER_GAP = 1.8
+_SPACE_WIDTH = 2.4
 
 # Lines are separated by spaces; each point is a digit for x and one for y. The baseline of letters is y = 2, small
 # letters reach y = 6, and capitals reach y = 8.
@@ -114,7 +114,7 @@ _GLYPHS = {
     "}": "09181625140201 1425",
     "~": "0516344546",
 }
-_MISSING = "080242480808"
+_MISSING_GLYPH = "080242480808"
 
 
 def is_drawable(text: str) -> bool:
@@ -122,7 +122,7 @@ def is_drawable(text: str) -> bool:
     return all(character == " " or character in _GLYPHS for character in text)
 
 
-def text_lines(text: str) -> tuple[Array, float]:
+def make_text_lines(text: str) -> tuple[Array, float]:
     """Return the strokes of a text on a single line, and the width of the text.
 
     Returns:
@@ -133,13 +133,13 @@ def text_lines(text: str) -> tuple[Array, float]:
     position = 0.0
     for character in text:
         if character == " ":
-            position += _SPACE
+            position += _SPACE_WIDTH
             continue
         width = 0.0
-        for stroke in _GLYPHS.get(character, _MISSING).split():
+        for stroke in _GLYPHS.get(character, _MISSING_GLYPH).split():
             points = [(int(stroke[index]), int(stroke[index + 1])) for index in range(0, len(stroke), 2)]
             width = max(width, *(x for x, _ in points))
             placed = [(position + x, float(y)) for x, y in points]
             lines += pairwise(placed)
-        position += width + _GAP
-    return np.array(lines, dtype=np.float64).reshape(-1, 2, 2), max(position - _GAP, 0.0)
+        position += width + _LETTER_GAP
+    return np.array(lines, dtype=np.float64).reshape(-1, 2, 2), max(position - _LETTER_GAP, 0.0)

@@ -11,7 +11,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.exact_angles import circle
 from linkwright.geometry.single import Vector3, add_vectors, dot
-from linkwright.picture.camera import Camera, View, camera_axes, fitting_camera
+from linkwright.picture.camera import Camera, View, compute_camera_axes, fit_camera
 from linkwright.picture.rendering import Image, Style, render
 from linkwright.picture.scene import Scene
 from linkwright.process.processors import usable_processors
@@ -22,7 +22,7 @@ _SLICES = 64
 _MAX_THREADS = 4
 
 
-def turntable(
+def render_turntable(
     scene: Scene, view: View, size: tuple[int, int], style: Style, count: int, report: Callable[[int], None]
 ) -> list[Image]:
     """Render the images of one full turn around a scene.
@@ -35,7 +35,7 @@ def turntable(
         count: the number of images.
         report: called with the number of finished images after each.
     """
-    cameras = list(turning_cameras(view, size, scene.points, count))
+    cameras = list(iterate_turning_cameras(view, size, scene.points, count))
     images = []
     with ThreadPoolExecutor(max_workers=min(usable_processors(), _MAX_THREADS)) as pool:
         scene.mesh  # noqa: B018 - computed once, before the threads need it
@@ -49,21 +49,21 @@ def turntable(
     return images
 
 
-def turning_cameras(view: View, size: tuple[int, int], points: Array, count: int) -> Iterator[Camera]:
-    """Yield cameras on a circle around points of shape (n, 3), all at the same distance from the axis."""
+def iterate_turning_cameras(view: View, size: tuple[int, int], points: Array, count: int) -> Iterator[Camera]:
+    """Yield cameras on a circle around points (n, 3), all at the same distance from the axis."""
     low, high = points.min(axis=0), points.max(axis=0)
     pivot: Vector3 = (float(low[0] + high[0]) / 2, float(low[1] + high[1]) / 2, float(low[2] + high[2]) / 2)
-    first = fitting_camera(view, size, [_swept(points, pivot)])
+    first = fit_camera(view, size, [_sweep(points, pivot)])
     axes = (first.right, first.up, first.toward)
     offset = [middle - dot(pivot, axis) for middle, axis in zip(first.center, axes, strict=True)]
     for index in range(count):
-        right, up, toward = camera_axes(replace(view, azimuth=view.azimuth + 360.0 * index / count))
+        right, up, toward = compute_camera_axes(replace(view, azimuth=view.azimuth + 360.0 * index / count))
         center = add_vectors((dot(pivot, right), dot(pivot, up), dot(pivot, toward)), (offset[0], offset[1], offset[2]))
         yield replace(first, right=right, up=up, toward=toward, center=center)
 
 
-def _swept(points: Array, pivot: Vector3) -> Array:
-    """Return points around the volume that the points sweep when they turn about a vertical axis."""
+def _sweep(points: Array, pivot: Vector3) -> Array:
+    """Return points around the volume that points sweep when they turn about a vertical axis."""
     x, y, z = points[:, 0] - pivot[0], points[:, 1] - pivot[1], points[:, 2]
     radii = np.sqrt(x * x + y * y)
     low, high = float(z.min()), float(z.max())

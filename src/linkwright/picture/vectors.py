@@ -52,13 +52,13 @@ def unit_vector(vector: Vector3) -> Vector3:
     return scaled(vector, 1.0 / length(vector))
 
 
-def sums_by_index(indices: Indices, vectors: Floats, count: int) -> Array:
+def sum_by_index(indices: Indices, vectors: Floats, count: int) -> Array:
     """Sum the vectors that have the same index, one after the other, shape (count, 3)."""
     return np.stack([np.bincount(indices, vectors[:, axis], count) for axis in range(3)], axis=1)
 
 
 def repeat_indices(counts: Indices) -> tuple[Indices, Indices]:
-    """Return, for items with repetition counts, the item index of each repetition, and its number from 0."""
+    """Return the item index of each repetition, and its number from 0, for repetition counts."""
     items = np.repeat(np.arange(len(counts)), counts)
     starts = np.cumsum(counts) - counts
     return items, np.arange(len(items)) - starts[items]

@@ -11,7 +11,7 @@ from linkwright.geometry.shapes import Box, Capsule, Cylinder, Placement, Sphere
 from linkwright.geometry.single import IDENTITY, Transform, normalized, rotation_matrix
 from linkwright.geometry.surfaces import cone
 from linkwright.picture.bodies import Anchor, Body, Labels, Surface, Texture
-from linkwright.picture.materials import ROUND_SIDES, SurfaceLibrary, decoded_texture, shape_surface
+from linkwright.picture.materials import ROUND_SIDES, SurfaceLibrary, decode_texture, make_shape_surface
 from linkwright.picture.scene import Scene
 from linkwright.sdf.frames import FrameError, Frames, PlacedLink, links_of, placed_links
 from linkwright.sdf.links import Visual
@@ -42,14 +42,14 @@ def world_scene(sdf: Sdf, finder: ResourceFinder, *, library: SurfaceLibrary | N
     """
     reader = _WorldReader(library or SurfaceLibrary(), finder)
     bodies, anchors = [], []
-    for placed_link in _placed_links(sdf):
-        frame = _placement(placed_link.pose)
-        bodies.append(Body(placed_link.name, frame, tuple(reader.surfaces(placed_link))))
+    for placed_link in _iterate_placed_links(sdf):
+        frame = _placement_from_pose(placed_link.pose)
+        bodies.append(Body(placed_link.name, frame, tuple(reader.read_surfaces(placed_link))))
         anchors.append(Anchor(placed_link.name, frame.position))
     return Scene(bodies, reader.problems, Labels(tuple(anchors)))
 
 
-def _placed_links(sdf: Sdf) -> Iterator[PlacedLink]:
+def _iterate_placed_links(sdf: Sdf) -> Iterator[PlacedLink]:
     for world in sdf.worlds[:1]:
         yield from placed_links(world)
     if not sdf.worlds:
@@ -57,7 +57,7 @@ def _placed_links(sdf: Sdf) -> Iterator[PlacedLink]:
             yield from links_of(model, Frames(model), IDENTITY, model.name)
 
 
-def _placement(pose: Transform) -> Placement:
+def _placement_from_pose(pose: Transform) -> Placement:
     x, y, z, *quaternion = (round(value * _POSE_GRID) / _POSE_GRID for value in pose)
     return Placement(rotation_matrix(normalized(*quaternion)), (x, y, z))
 
@@ -75,51 +75,51 @@ class _WorldReader:
         self._finder = finder
         self._files: dict[tuple[str, Path], Path | Missing] = {}
 
-    def surfaces(self, placed_link: PlacedLink) -> Iterator[Surface]:
+    def read_surfaces(self, placed_link: PlacedLink) -> Iterator[Surface]:
         """Yield the surfaces of a link's visuals in the link's frame."""
         link, frames = placed_link.link, placed_link.frames
         for visual in link.visuals:
             try:
-                frame = _placement(frames.in_link(visual.pose, link.name))
+                frame = _placement_from_pose(frames.in_link(visual.pose, link.name))
             except FrameError:
                 continue  # The check of references reports this error.
-            for surface in self._visual(placed_link.name, visual):
+            for surface in self._read_visual(placed_link.name, visual):
                 surface_in_link = surface.placed(frame)
                 if surface_in_link.is_in_range:
                     yield surface_in_link
                 else:
                     self._add_incomplete(placed_link.name, phrase("a coordinate is out of range"))
 
-    def _visual(self, link: str, visual: Visual) -> Iterator[Surface]:
+    def _read_visual(self, link: str, visual: Visual) -> Iterator[Surface]:
         color, image = appearance(visual.material) if visual.material else (None, "")
         red, green, blue, alpha = color or _DEFAULT_COLOR
         alpha *= 1.0 - visual.transparency
-        texture = self._texture(link, visual, image) if image else None
+        texture = self._read_texture(link, visual, image) if image else None
         if texture is not None:
             red = green = blue = 1.0
         geometry = visual.geometry
         if isinstance(geometry, Mesh):
-            for surface, has_material in self._mesh(link, visual, geometry):
+            for surface, has_material in self._read_mesh(link, visual, geometry):
                 keeps_color = has_material and color is None and not image
                 yield surface.colored(surface.color if keeps_color else (red, green, blue), alpha)
             return
-        simple = self._simple(link, geometry, texture)
+        simple = self._read_simple_shape(link, geometry, texture)
         if simple is not None:
             yield simple.colored((red, green, blue), alpha)
 
-    def _simple(self, link: str, shape: Shape, texture: Texture | None) -> Surface | None:
+    def _read_simple_shape(self, link: str, shape: Shape, texture: Texture | None) -> Surface | None:
         if isinstance(shape, Box | Cylinder | Capsule | Sphere):
-            return shape_surface(shape, texture)
+            return make_shape_surface(shape, texture)
         if isinstance(shape, Ellipsoid):
-            return shape_surface(Sphere(1.0), texture).scaled(shape.radii)
+            return make_shape_surface(Sphere(1.0), texture).scaled(shape.radii)
         if isinstance(shape, Cone):
             return Surface.of_triangles(cone(shape.radius, shape.length, ROUND_SIDES), texture)
         if not isinstance(shape, Plane | Empty):
             self._add_incomplete(link, phrase("its shape is neither a mesh nor a simple shape"))
         return None
 
-    def _mesh(self, link: str, visual: Visual, mesh: Mesh) -> Iterator[tuple[Surface, bool]]:
-        path = self._file(visual, mesh.uri)
+    def _read_mesh(self, link: str, visual: Visual, mesh: Mesh) -> Iterator[tuple[Surface, bool]]:
+        path = self._find_file(visual, mesh.uri)
         if isinstance(path, Missing):
             self._add_incomplete(link, path.reason, path.hint)
             return
@@ -139,10 +139,10 @@ class _WorldReader:
             own_color = (1.0, 1.0, 1.0) if file_material is None else file_material.color
             yield surface.scaled(mesh.scale).colored(own_color, 1.0), file_material is not None
 
-    def _texture(self, link: str, visual: Visual, address: str) -> Texture | None:
-        path = self._file(visual, address)
+    def _read_texture(self, link: str, visual: Visual, address: str) -> Texture | None:
+        path = self._find_file(visual, address)
         try:
-            texture = None if isinstance(path, Missing) else decoded_texture(path.read_bytes())
+            texture = None if isinstance(path, Missing) else decode_texture(path.read_bytes())
         except OSError:
             texture = None
         if texture is None:
@@ -150,7 +150,7 @@ class _WorldReader:
             self._add(Diagnostic("PIC102", message, severity=Severity.WARNING))
         return texture
 
-    def _file(self, visual: Visual, address: str) -> Path | Missing:
+    def _find_file(self, visual: Visual, address: str) -> Path | Missing:
         source = visual.element.source if visual.element is not None else None
         key = address, Path.cwd() if source is None else Path(source.name).parent
         if key not in self._files:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.geometry.shapes import IDENTITY, Placement
-from linkwright.picture.link_frames import link_frames
+from linkwright.picture.link_frames import compute_link_frames
 from linkwright.urdf import Robot
 
 Array = NDArray[np.float64]
@@ -40,8 +40,8 @@ class SharedFrames:
 
     def __init__(self, old: Robot, new: Robot, links: Mapping[str, str]) -> None:
         self._links = links
-        self.old: Mapping[str, Placement] = link_frames(old, {})
-        own_frames = link_frames(new, {})
+        self.old: Mapping[str, Placement] = compute_link_frames(old, {})
+        own_frames = compute_link_frames(new, {})
         shared = (name for name in self.old if links.get(name) in own_frames)
         reference = next(shared, None)
         self.reference = "" if reference is None else links[reference]

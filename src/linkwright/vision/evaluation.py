@@ -33,7 +33,7 @@ class GroundTruth:
     classes: NDArray[np.int32]
     ignored: NDArray[np.bool_]
 
-    def selected(self, mask: NDArray[np.bool_]) -> GroundTruth:
+    def select(self, mask: NDArray[np.bool_]) -> GroundTruth:
         """Return the objects that a mask selects."""
         return GroundTruth(self.boxes[mask], self.classes[mask], self.ignored[mask])
 
@@ -122,9 +122,13 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Se
     """
     class_numbers = {name: index for index, name in enumerate(names)}
     detections = [_renumber_classes(class_numbers, detections) for detections in predictions]
-    results, confusion, sizes = [], _confusion_matrix(len(names), truth, detections), _recall_by_size(truth, detections)
+    results, confusion, sizes = (
+        [],
+        _compute_confusion_matrix(len(names), truth, detections),
+        _compute_recall_by_size(truth, detections),
+    )
     for class_number, name in enumerate(names):
-        precisions = _average_precisions(class_number, truth, detections)
+        precisions = _compute_average_precisions(class_number, truth, detections)
         correct_count = int(confusion[class_number, class_number])
         detected, objects = int(confusion[:, class_number].sum()), int(confusion[class_number].sum())
         results.append(
@@ -139,15 +143,17 @@ def evaluate(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Se
         )
     return Evaluation(
         len(truth),
-        _mean([result.ap50 for result in results]),
-        _mean([result.ap for result in results]),
+        _compute_mean([result.ap50 for result in results]),
+        _compute_mean([result.ap for result in results]),
         tuple(results),
         confusion,
         sizes,
     )
 
 
-def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], predictions: Sequence[Detections]) -> float:
+def find_best_f1_threshold(
+    names: Sequence[str], truth: Sequence[GroundTruth], predictions: Sequence[Detections]
+) -> float:
     """Return the score threshold at which F1 over all classes is highest.
 
     The arguments are those of `evaluate`.
@@ -162,13 +168,13 @@ def best_f1_threshold(names: Sequence[str], truth: Sequence[GroundTruth], predic
     for objects, image_predictions in zip(truth, predictions, strict=True):
         detections, counted_objects = (
             _renumber_classes(class_numbers, image_predictions),
-            objects.selected(~objects.ignored),
+            objects.select(~objects.ignored),
         )
         overlaps = intersection_over_union(detections.boxes, counted_objects.boxes) * (
             detections.classes[:, None] == counted_objects.classes[None]
         )
         is_hit = _match_objects(overlaps, _CONFUSION_OVERLAP) >= 0
-        is_ignored = _ignored_shares(detections.boxes, objects.boxes[objects.ignored]) >= _CONFUSION_OVERLAP
+        is_ignored = _compute_ignored_shares(detections.boxes, objects.boxes[objects.ignored]) >= _CONFUSION_OVERLAP
         is_counted = is_hit | ~is_ignored
         scores.append(detections.scores[is_counted])
         is_correct.append(is_hit[is_counted])
@@ -190,7 +196,7 @@ class _SortedDetections:
     scores: NDArray[np.float32]
     classes: NDArray[np.int32]
 
-    def selected(self, mask: NDArray[np.bool_]) -> _SortedDetections:
+    def select(self, mask: NDArray[np.bool_]) -> _SortedDetections:
         return _SortedDetections(self.boxes[mask], self.scores[mask], self.classes[mask])
 
 
@@ -199,10 +205,10 @@ def _renumber_classes(class_numbers: dict[str, int], detections: Detections) -> 
     order = np.argsort(-detections.scores, kind="stable")
     classes: NDArray[np.int32] = numbers[detections.classes[order]] if len(detections) else np.zeros(0, np.int32)
     sorted_detections = _SortedDetections(detections.boxes[order], detections.scores[order], classes)
-    return sorted_detections.selected(classes >= 0)
+    return sorted_detections.select(classes >= 0)
 
 
-def _average_precisions(
+def _compute_average_precisions(
     class_number: int, truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
 ) -> NDArray[np.float64] | None:
     """Return the average precisions of a class, shape (overlaps,), or None if it has no object."""
@@ -213,12 +219,12 @@ def _average_precisions(
     is_correct: list[NDArray[np.bool_]] = []
     is_wrong: list[NDArray[np.bool_]] = []
     for objects, detections in zip(truth, predictions, strict=True):
-        of_class = detections.selected(detections.classes == class_number)
+        of_class = detections.select(detections.classes == class_number)
         boxes = of_class.boxes[:MAX_DETECTIONS]
         scores.append(of_class.scores[:MAX_DETECTIONS])
-        objects_of_class = objects.selected(objects.classes == class_number)
+        objects_of_class = objects.select(objects.classes == class_number)
         overlaps = intersection_over_union(boxes, objects_of_class.boxes[~objects_of_class.ignored])
-        ignored_shares = _ignored_shares(boxes, objects_of_class.boxes[objects_of_class.ignored])
+        ignored_shares = _compute_ignored_shares(boxes, objects_of_class.boxes[objects_of_class.ignored])
         is_correct.append(np.stack([_match_objects(overlaps, min_overlap) >= 0 for min_overlap in OVERLAPS]))
         is_wrong.append(~is_correct[-1] & np.stack([ignored_shares < min_overlap for min_overlap in OVERLAPS]))
     all_scores: NDArray[np.float32] = np.concatenate(scores)
@@ -228,13 +234,13 @@ def _average_precisions(
     precisions = hits / np.maximum(hits + misses, 1)
     return np.array(
         [
-            _interpolated_precision(row / object_count, class_precision)
+            _compute_interpolated_precision(row / object_count, class_precision)
             for row, class_precision in zip(hits, precisions, strict=True)
         ]
     )
 
 
-def _ignored_shares(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[np.float64]:
+def _compute_ignored_shares(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> NDArray[np.float64]:
     """Return for each box the largest fraction of its area that is inside one ignored box."""
     if not len(hidden):
         return np.zeros(len(boxes))
@@ -246,7 +252,7 @@ def _ignored_shares(boxes: NDArray[np.float32], hidden: NDArray[np.float32]) -> 
     return shares
 
 
-def _interpolated_precision(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
+def _compute_interpolated_precision(recall: NDArray[np.float64], precision: NDArray[np.float64]) -> float:
     """Return the mean of the interpolated precision over 101 recall levels."""
     interpolated: NDArray[np.float64] = np.maximum.accumulate(precision[::-1])[::-1]
     indices = np.searchsorted(recall, _RECALL_LEVELS, side="left")
@@ -276,14 +282,14 @@ def _match_objects(overlaps: NDArray[np.float64], min_overlap: float) -> NDArray
     return matches
 
 
-def _confusion_matrix(
+def _compute_confusion_matrix(
     classes: int, truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
 ) -> NDArray[np.int64]:
     table: NDArray[np.int64] = np.zeros((classes + 1, classes + 1), np.int64)
     for objects, detections in zip(truth, predictions, strict=True):
-        certain = detections.selected(detections.scores >= _CONFUSION_SCORE)
-        ignored_objects = objects.selected(objects.ignored)
-        objects = objects.selected(~objects.ignored)
+        certain = detections.select(detections.scores >= _CONFUSION_SCORE)
+        ignored_objects = objects.select(objects.ignored)
+        objects = objects.select(~objects.ignored)
         overlaps = intersection_over_union(certain.boxes, objects.boxes)
         # Match objects of the same class first: a detection that also overlaps another object is correct.
         same_class_overlaps = overlaps * (certain.classes[:, None] == objects.classes[None])
@@ -293,7 +299,7 @@ def _confusion_matrix(
         remaining_overlaps[matches >= 0] = 0
         other_matches = _match_objects(remaining_overlaps, _CONFUSION_OVERLAP)
         matches = np.where(matches >= 0, matches, other_matches)
-        is_ignored = _ignored_shares(certain.boxes, ignored_objects.boxes) >= _CONFUSION_OVERLAP
+        is_ignored = _compute_ignored_shares(certain.boxes, ignored_objects.boxes) >= _CONFUSION_OVERLAP
         for number, index in enumerate(matches):
             if index < 0 and is_ignored[number]:
                 continue
@@ -308,14 +314,14 @@ _SIZE_RANGES = (("under 16 pixels", 0.0, 16.0), ("16 to 32 pixels", 16.0, 32.0),
 """Ranges of the longer side of a box, in pixels of the image."""
 
 
-def _recall_by_size(
+def _compute_recall_by_size(
     truth: Sequence[GroundTruth], predictions: Sequence[_SortedDetections]
 ) -> tuple[tuple[str, int, float], ...]:
     lengths: list[float] = []
     is_found: list[bool] = []
     for objects, detections in zip(truth, predictions, strict=True):
-        certain = detections.selected(detections.scores >= _CONFUSION_SCORE)
-        objects = objects.selected(~objects.ignored)
+        certain = detections.select(detections.scores >= _CONFUSION_SCORE)
+        objects = objects.select(~objects.ignored)
         same_class_overlaps = intersection_over_union(certain.boxes, objects.boxes) * (
             certain.classes[:, None] == objects.classes[None]
         )
@@ -329,6 +335,6 @@ def _recall_by_size(
     return tuple(rows)
 
 
-def _mean(values: Sequence[float | None]) -> float:
+def _compute_mean(values: Sequence[float | None]) -> float:
     defined_values = [value for value in values if value is not None]
     return sum(defined_values) / len(defined_values) if defined_values else 0.0

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from linkwright.cli import main
-from linkwright.learning.packing import making
+from linkwright.learning.packing import pack_builder
 from tests.learning.packing.fake_index import package_entry, write_source, write_wheel
 
 PROGRAM = """
@@ -84,7 +84,7 @@ def create_index(parent: Path, monkeypatch: pytest.MonkeyPatch) -> FakeIndex:
         "source 1.0": package_entry(source),
         "windows-only 1.0": package_entry(wheel["windows_only 1.0"], needs=[{"key": "pure 1.0"}]),
     }
-    monkeypatch.setattr(making, "locked_packages", lambda: table)
+    monkeypatch.setattr(pack_builder, "load_locked_packages", lambda: table)
     monkeypatch.setenv("PIP_NO_INDEX", "1")
     monkeypatch.setenv("PIP_FIND_LINKS", str(folder))
     monkeypatch.setenv("PIP_CONFIG_FILE", os.devnull)

@@ -24,7 +24,7 @@ from typing import Any
 
 from linkwright.learning.sandbox.identity import can_be_reached
 from linkwright.learning.sandbox.landlock import landlock_version
-from linkwright.learning.sandbox.linux import libc
+from linkwright.learning.sandbox.linux import load_libc
 from linkwright.learning.sandbox.outcome import Limits, Outcome, Protection
 from linkwright.learning.sandbox.plan import outcome_from_json, outcome_to_json
 
@@ -137,11 +137,11 @@ def _restrict(name: str) -> None:
 def _keep_capabilities(mask: int) -> None:
     for number in range(41):
         if not mask >> number & 1:
-            libc().prctl(24, ctypes.c_ulong(number), 0, 0, 0)
+            load_libc().prctl(24, ctypes.c_ulong(number), 0, 0, 0)
     header = (ctypes.c_uint32 * 2)(0x20080522, 0)
     low, high = mask & 0xFFFFFFFF, mask >> 32
     data = (ctypes.c_uint32 * 6)(low, low, 0, high, high, 0)
-    assert libc().capset(ctypes.byref(header), ctypes.byref(data)) == 0
+    assert load_libc().capset(ctypes.byref(header), ctypes.byref(data)) == 0
 
 
 def _deny(denied: dict[str, int], *, allow_user_namespace: bool, deny_landlock: bool) -> None:
@@ -165,8 +165,8 @@ def _deny(denied: dict[str, int], *, allow_user_namespace: bool, deny_landlock: 
     program.append((0x06, 0, 0, 0x7FFF0000))
     code = ctypes.create_string_buffer(b"".join(struct.pack("HBBI", *line) for line in program))
     filter_program = struct.pack("HxxxxxxQ", len(program), ctypes.addressof(code))
-    libc().prctl(38, 1, 0, 0, 0)  # without this, only root may add a filter
-    assert libc().prctl(22, 2, ctypes.create_string_buffer(filter_program), 0, 0) == 0 or not rules
+    load_libc().prctl(38, 1, 0, 0, 0)  # without this, only root may add a filter
+    assert load_libc().prctl(22, 2, ctypes.create_string_buffer(filter_program), 0, 0) == 0 or not rules
 
 
 def _main() -> None:

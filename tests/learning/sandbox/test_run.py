@@ -20,7 +20,7 @@ from linkwright.learning.sandbox import (
     Outcome,
     Protection,
     describe_exceeded,
-    protections_available,
+    find_available_protections,
     run,
     run_in_sandbox,
 )
@@ -86,7 +86,7 @@ try:
 except OSError:
     print("denied")
 """
-    if Protection.WRITE not in protections_available():
+    if Protection.WRITE not in find_available_protections():
         pytest.skip("this system does not offer that protection")
     outcome = run_python(student, program, str(course / "world"), readable=[course])
     assert outcome.stdout.split() == [b"flat", b"denied"]
@@ -165,7 +165,7 @@ with subprocess.Popen([*command, "pub", *words, "data: hello", "--rate", "20"], 
     print(subprocess.check_output([*command, "echo", *words, "--once"], text=True, timeout=50))
     talker.kill()
 """
-    if Protection.NETWORK not in protections_available():
+    if Protection.NETWORK not in find_available_protections():
         pytest.skip("this system does not offer that protection")
     assert b"data: hello" in run_python(student, program).stdout
 
@@ -180,7 +180,9 @@ def test_system_v_shared_memory_is_refused(student: Path) -> None:
 @pytest.mark.skipif(not Path("/bin/ps").exists(), reason="needs ps")
 def test_limits_hold_on_systems_other_than_linux(student: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     start = "from {module} import main"
-    monkeypatch.setattr(run, "_SUPERVISE", run._SUPERVISE.replace(start, f"sys.platform = 'darwin'; {start}"))
+    monkeypatch.setattr(
+        run, "_SUPERVISOR_CODE", run._SUPERVISOR_CODE.replace(start, f"sys.platform = 'darwin'; {start}")
+    )
     outcome = run_python(student, attacks.ENDLESS_LOOP, limits=Limits(seconds=60, cpu_seconds=0.5))
     assert outcome.exceeded is Exceeded.CPU_SECONDS
     assert outcome.protections == {Protection.LIMITS}

@@ -237,7 +237,9 @@ def test_voxel_columns_with_few_observations_are_unknown():
 
 def test_map_values_become_costs():
     def costs(**parameters):
-        return Interpretation(**parameters).table()[np.array([0, 50, 99, 100, -1], np.int8).astype(np.uint8)].tolist()
+        return (
+            Interpretation(**parameters).cost_table()[np.array([0, 50, 99, 100, -1], np.int8).astype(np.uint8)].tolist()
+        )
 
     assert costs() == [FREE, FREE, FREE, LETHAL, FREE]
     assert costs(track_unknown_space=True, lethal_threshold=50) == [FREE, LETHAL, LETHAL, LETHAL, UNKNOWN]

@@ -7,12 +7,12 @@ import pytest
 
 from linkwright.navigation.estimation.estimator import Estimator, Timing
 from linkwright.navigation.estimation.kalman import ExtendedKalmanFilter, Settings
-from linkwright.navigation.estimation.motion_model import SIZE, State
+from linkwright.navigation.estimation.motion_model import STATE_SIZE, State
 from tests.navigation.estimation.test_kalman import SECOND_NS, make_measurement
 
 
 def estimator(**timing):
-    kalman = ExtendedKalmanFilter(Settings(initial_covariance=np.eye(SIZE)))
+    kalman = ExtendedKalmanFilter(Settings(initial_covariance=np.eye(STATE_SIZE)))
     return Estimator(kalman, Timing(**{"sensor_timeout_ns": SECOND_NS, **timing}))
 
 

@@ -14,14 +14,14 @@ from linkwright.navigation.estimation.kalman import (
     Settings,
     UnscentedKalmanFilter,
 )
-from linkwright.navigation.estimation.motion_model import SIZE, State, state_jacobian, wrap_angle
+from linkwright.navigation.estimation.motion_model import STATE_SIZE, State, state_jacobian, wrap_angle
 
 SECOND_NS = 1_000_000_000
 FILTERS = pytest.mark.parametrize("filter_type", [ExtendedKalmanFilter, UnscentedKalmanFilter])
 
 
 def make_measurement(time_s, variance=0.01, threshold=inf, **values):
-    vector, covariance, measured = np.zeros(SIZE), np.zeros((SIZE, SIZE)), [False] * SIZE
+    vector, covariance, measured = np.zeros(STATE_SIZE), np.zeros((STATE_SIZE, STATE_SIZE)), [False] * STATE_SIZE
     for name, value in values.items():
         index = State[name.upper()]
         vector[index], covariance[index, index], measured[index] = value, variance, True
@@ -29,7 +29,7 @@ def make_measurement(time_s, variance=0.01, threshold=inf, **values):
 
 
 def diagonal_matrix(**values):
-    matrix = np.zeros((SIZE, SIZE))
+    matrix = np.zeros((STATE_SIZE, STATE_SIZE))
     for name, value in values.items():
         matrix[State[name.upper()], State[name.upper()]] = value
     return matrix
@@ -65,7 +65,7 @@ def solve_batch(settings, measurements, steps):
     count = len(measurements)
     free = np.flatnonzero(np.diag(settings.initial_covariance))
     size = len(free)
-    motions = [state_jacobian(np.zeros(SIZE), step)[np.ix_(free, free)] for step in steps]
+    motions = [state_jacobian(np.zeros(STATE_SIZE), step)[np.ix_(free, free)] for step in steps]
     rows, targets = [], []
 
     def add(block_by_time, target, covariance):
@@ -121,7 +121,7 @@ def test_filter_matches_batch_least_squares(filter_type):
 
 @FILTERS
 def test_velocity_is_estimated_from_positions(filter_type):
-    kalman = filter_type(Settings(initial_covariance=np.eye(SIZE)))
+    kalman = filter_type(Settings(initial_covariance=np.eye(STATE_SIZE)))
     for step in range(200):
         kalman.process(
             make_measurement(0.1 * step, 1e-4, x=0.5 * 0.1 * step, y=0.0, z=0.0, roll=0.0, pitch=0.0, yaw=0.0)
@@ -133,7 +133,7 @@ def test_velocity_is_estimated_from_positions(filter_type):
 @FILTERS
 def test_constant_turn_is_tracked(filter_type):
     # An uncertain heading shortens the mean displacement, so the heading is certain here.
-    kalman = filter_type(Settings(noise=np.eye(SIZE) * 1e-6))
+    kalman = filter_type(Settings(noise=np.eye(STATE_SIZE) * 1e-6))
     for step in range(1, 301):
         kalman.process(make_measurement(0.01 * step, 1e-6, vx=1.0, vy=0.0, vz=0.0, vroll=0.0, vpitch=0.0, vyaw=0.5))
     yaw = 0.5 * 2.99
@@ -203,7 +203,9 @@ def test_past_measurement_corrects_without_moving_time_back():
 
 
 def test_dynamic_process_noise_grows_with_velocity():
-    kalman = ExtendedKalmanFilter(Settings(uses_dynamic_noise=True, initial_covariance=np.zeros((SIZE, SIZE))))
+    kalman = ExtendedKalmanFilter(
+        Settings(uses_dynamic_noise=True, initial_covariance=np.zeros((STATE_SIZE, STATE_SIZE)))
+    )
     kalman.is_initialized = True
     kalman.predict(SECOND_NS)
     assert kalman.covariance[State.X, State.X] == 0.0
@@ -233,7 +235,7 @@ def test_commands_accelerate_within_limits_and_time_out():
 
 @FILTERS
 def test_reset_restores_initial_state(filter_type):
-    start = np.arange(SIZE) / 100.0
+    start = np.arange(STATE_SIZE) / 100.0
     kalman = filter_type(Settings(initial_state=start))
     kalman.process(make_measurement(0.0, x=3.0))
     kalman.reset()

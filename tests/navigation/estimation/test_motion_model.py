@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linkwright.navigation.estimation.motion_model import (
-    SIZE,
+    STATE_SIZE,
     State,
     predict_state,
     rotation,
@@ -24,7 +24,7 @@ states = st.tuples(*([numbers] * 3), numbers, st.floats(-1.0, 1.0), numbers, *([
 
 
 def moving_state(**values):
-    state = np.zeros(SIZE)
+    state = np.zeros(STATE_SIZE)
     for name, value in values.items():
         state[State[name.upper()]] = value
     return state
@@ -81,7 +81,7 @@ def test_rotation_matches_fixed_axis_rotations(state):
 def test_jacobian_matches_finite_differences(state, seconds):
     step = 1e-6
     columns = []
-    for index in range(SIZE):
+    for index in range(STATE_SIZE):
         higher, lower = state.copy(), state.copy()
         higher[index] += step
         lower[index] -= step

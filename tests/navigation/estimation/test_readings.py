@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkwright.geometry.single import IDENTITY, compose, quaternion_from_rpy, quaternion_multiply
-from linkwright.navigation.estimation.motion_model import ANGLES, POSITION, RATES, SIZE, TWIST, VELOCITY, State
+from linkwright.navigation.estimation.motion_model import ANGLES, POSITION, RATES, STATE_SIZE, TWIST, VELOCITY, State
 from linkwright.navigation.estimation.readings import (
     GRAVITY,
     PoseReader,
@@ -18,7 +18,7 @@ from linkwright.navigation.estimation.readings import (
 )
 
 SECOND_NS = 1_000_000_000
-ALL_MEASURED = (True,) * SIZE
+ALL_MEASURED = (True,) * STATE_SIZE
 COVARIANCE = np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 
 
@@ -27,7 +27,7 @@ def make_pose(x=0.0, y=0.0, z=0.0, rpy=(0.0, 0.0, 0.0)):
 
 
 def select_axes(*names):
-    return tuple(State(index).name in names for index in range(SIZE))
+    return tuple(State(index).name in names for index in range(STATE_SIZE))
 
 
 def measured_names(measured):
@@ -46,11 +46,11 @@ def test_pose_and_covariance_are_transformed_to_world():
 def test_relative_poses_start_at_first_pose():
     reader = PoseReader(ALL_MEASURED, relative=True)
     first = reader.read(make_pose(5.0, 1.0, rpy=(0, 0, pi / 2)), COVARIANCE, IDENTITY, 0)
-    assert first.values == pytest.approx(np.zeros(SIZE))
+    assert first.values == pytest.approx(np.zeros(STATE_SIZE))
     second = reader.read(make_pose(5.0, 3.0, rpy=(0, 0, pi / 2)), COVARIANCE, IDENTITY, SECOND_NS)
     assert second.values[POSITION] == pytest.approx([2.0, 0.0, 0.0])
     reader.reset()
-    assert reader.read(make_pose(9.0), COVARIANCE, IDENTITY, 0).values == pytest.approx(np.zeros(SIZE))
+    assert reader.read(make_pose(9.0), COVARIANCE, IDENTITY, 0).values == pytest.approx(np.zeros(STATE_SIZE))
 
 
 def test_differential_poses_give_velocities():

@@ -21,10 +21,10 @@ from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.following.pure_pursuit import (
     PurePursuitParameters,
     RegulatedPurePursuit,
-    curvature_to,
+    compute_curvature,
+    compute_rotation_speed,
     find_carrot,
-    rotation_speed,
-    speed_in_curve,
+    limit_speed_in_curve,
 )
 from linkwright.navigation.following.rotation_shim import RotationShim
 from linkwright.navigation.following.sampling import SamplingFollower, SamplingParameters, VelocityLimits
@@ -65,7 +65,7 @@ class TestMotions:
 class TestPurePursuit:
     @given(x=st.floats(0.05, 2.0), y=st.floats(-1.0, 1.0))
     def test_curvature_leads_to_carrot(self, x, y):
-        curvature = curvature_to(np.array([x, y]))
+        curvature = compute_curvature(np.array([x, y]))
         turn_angle = 2.0 * np.arctan2(y, x)
         length = turn_angle / curvature if abs(curvature) > 1e-9 else x
         end = predict_poses((0, 0, 0), np.array([[1.0, 0.0, curvature]]), np.array([length]))[0, 0]
@@ -79,8 +79,8 @@ class TestPurePursuit:
         assert find_carrot(poses_ahead, 5.0) == pytest.approx([1.0, 0.3])
 
     def test_curve_reduces_speed_in_proportion_to_radius(self):
-        assert speed_in_curve(0.5, 1.0 / 0.45, 0.9) == pytest.approx(0.25)
-        assert speed_in_curve(0.5, 0.1, 0.9) == 0.5
+        assert limit_speed_in_curve(0.5, 1.0 / 0.45, 0.9) == pytest.approx(0.25)
+        assert limit_speed_in_curve(0.5, 0.1, 0.9) == 0.5
 
     def test_command_follows_arc_to_carrot(self):
         path = path_through((0.0, 0.1), (3.0, 0.1))
@@ -120,7 +120,7 @@ class TestPurePursuit:
 
     @given(angle=st.floats(-pi, pi), current=st.floats(-1.8, 1.8))
     def test_rotation_speed_respects_acceleration(self, angle, current):
-        speed = rotation_speed(angle, current, PERIOD_S, 1.8, 3.2)
+        speed = compute_rotation_speed(angle, current, PERIOD_S, 1.8, 3.2)
         assert abs(speed - current) <= 3.2 * PERIOD_S + 1e-9
         assert abs(speed) <= 1.8 + 1e-9
 

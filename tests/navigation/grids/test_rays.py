@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
-from linkwright.navigation.grids.ray_counts import ray_counts
+from linkwright.navigation.grids.ray_counts import count_rays
 from linkwright.navigation.grids.rays import cast_rays, cells_on_lines
 
 _CELL = st.tuples(st.integers(-40, 40), st.integers(-40, 40))
@@ -82,7 +82,7 @@ def test_rays_do_not_pass_through_walls(seed: int) -> None:
 
 
 def test_ray_counts_counts_hits_and_passes() -> None:
-    hits, passes = ray_counts(
+    hits, passes = count_rays(
         (1, 5), np.array([0, 0]), np.array([[0, 3], [0, 4], [0, 9]]), np.array([True, False, True])
     )
     assert hits.tolist() == [[0, 0, 0, 1, 0]]

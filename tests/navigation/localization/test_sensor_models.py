@@ -10,7 +10,7 @@ import pytest
 from linkwright.geometry.single import IDENTITY, Transform, quaternion_from_rpy
 from linkwright.messages import get_message
 from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
-from linkwright.navigation.localization.beams import Beams, beams_of_scan
+from linkwright.navigation.localization.beams import Beams, beams_from_scan
 from linkwright.navigation.localization.motion_models import (
     MotionModel,
     Noise,
@@ -107,23 +107,23 @@ def _scan(ranges: list[float]) -> object:
 
 def test_beams_of_scan_are_in_robot_frame() -> None:
     pose: Transform = (0.5, 0.0, 0.3, *quaternion_from_rpy((0.0, 0.0, pi / 2)))
-    beams = beams_of_scan(_scan([1.0, 2.0, 3.0]), pose, 60)
+    beams = beams_from_scan(_scan([1.0, 2.0, 3.0]), pose, 60)
     assert beams.end_points == pytest.approx(np.array([[1.5, 0.0], [0.5, 2.0], [-2.5, 0.0]]))
     assert beams.angles == pytest.approx([0.0, pi / 2, pi])
 
 
 def test_beams_of_upside_down_laser_are_mirrored() -> None:
     upside_down: Transform = (0.0, 0.0, 0.3, *quaternion_from_rpy((pi, 0.0, 0.0)))
-    beams = beams_of_scan(_scan([1.0, 2.0, 3.0]), upside_down, 60)
+    beams = beams_from_scan(_scan([1.0, 2.0, 3.0]), upside_down, 60)
     assert beams.end_points == pytest.approx(np.array([[0.0, 1.0], [2.0, 0.0], [0.0, -3.0]]), abs=1e-12)
 
 
 def test_invalid_and_out_of_range_beams_are_clamped_or_omitted() -> None:
     nan, inf = float("nan"), float("inf")
-    assert beams_of_scan(_scan([nan, 0.05, inf]), IDENTITY, 60).ranges.tolist() == [5.0, 5.0]
-    assert beams_of_scan(_scan([1.0, 3.0, 4.5]), IDENTITY, 60, 2.0, 4.0).ranges.tolist() == [4.0, 3.0, 4.0]
-    assert len(beams_of_scan(_scan([1.0, 3.0, 4.5]), IDENTITY, 1).ranges) == 1
-    assert len(beams_of_scan(_scan([]), IDENTITY, 60).ranges) == 0
+    assert beams_from_scan(_scan([nan, 0.05, inf]), IDENTITY, 60).ranges.tolist() == [5.0, 5.0]
+    assert beams_from_scan(_scan([1.0, 3.0, 4.5]), IDENTITY, 60, 2.0, 4.0).ranges.tolist() == [4.0, 3.0, 4.0]
+    assert len(beams_from_scan(_scan([1.0, 3.0, 4.5]), IDENTITY, 1).ranges) == 1
+    assert len(beams_from_scan(_scan([]), IDENTITY, 60).ranges) == 0
 
 
 @pytest.mark.parametrize("model", [move_differentially, move_omnidirectionally])

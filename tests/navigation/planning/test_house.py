@@ -14,7 +14,7 @@ from linkwright.navigation.grids.grid import FREE, OCCUPIED, Grid
 from linkwright.navigation.grids.grid import UNKNOWN as UNSEEN
 from linkwright.navigation.maps.map_files import load_map
 from linkwright.navigation.planning.planner import run_to_end
-from linkwright.navigation.planning.potential import compute_potential, crossing_prices
+from linkwright.navigation.planning.potential import compute_crossing_prices, compute_potential
 from tests.places import GAZEBO_PACKAGE
 
 ROBOT_RADIUS_M = 0.22
@@ -42,7 +42,7 @@ def reachable_cells(grid: Grid) -> np.ndarray:
     costs = np.where(distances > 0.6, 0, costs).astype(np.uint8)
     costs[(grid.cells == UNSEEN) & (costs < INSCRIBED)] = UNKNOWN
     row, column = grid.cells_of(np.array(ROOM_POINTS["living room"]))
-    return np.isfinite(run_to_end(compute_potential(crossing_prices(costs), (int(row), int(column)))))
+    return np.isfinite(run_to_end(compute_potential(compute_crossing_prices(costs), (int(row), int(column)))))
 
 
 def free_or_outside(grid: Grid) -> np.ndarray:

@@ -15,7 +15,7 @@ from linkwright.navigation.grids.distances import distance_field
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.library import load_scipy
 from linkwright.navigation.planning.planner import PlanError, Problem, Settings, plan, run_to_end
-from linkwright.navigation.planning.potential import NEUTRAL_COST, compute_potential, crossing_prices
+from linkwright.navigation.planning.potential import NEUTRAL_COST, compute_crossing_prices, compute_potential
 from linkwright.navigation.planning.smoothing import Smoothing, smooth_path
 
 RESOLUTION_M = 0.1
@@ -111,7 +111,7 @@ def test_potential_in_open_space_is_distance():
 
 @pytest.mark.parametrize("seed", range(12))
 def test_potential_matches_dijkstra(seed):
-    crossing_costs = crossing_prices(inflated_costmap(make_rooms(seed)).grid.cells)
+    crossing_costs = compute_crossing_prices(inflated_costmap(make_rooms(seed)).grid.cells)
     potential, truth = run_to_end(compute_potential(crossing_costs, (2, 2))), dijkstra(crossing_costs, (2, 2))
     is_reached = np.isfinite(potential)
     assert np.array_equal(np.isfinite(truth), is_reached)
@@ -132,7 +132,7 @@ def test_potential_reaches_exactly_connected_cells(obstacles):
 
 @pytest.mark.parametrize("seed", range(6))
 def test_heuristic_search_gives_same_cost(seed):
-    crossing_costs = crossing_prices(inflated_costmap(make_rooms(seed)).grid.cells)
+    crossing_costs = compute_crossing_prices(inflated_costmap(make_rooms(seed)).grid.cells)
     full_potential = run_to_end(compute_potential(crossing_costs, (2, 2)))
     for heuristic in (False, True):
         directed_potential = run_to_end(compute_potential(crossing_costs, (2, 2), (57, 57), heuristic=heuristic))
@@ -154,7 +154,7 @@ def test_plan_in_open_space_is_straight():
 @pytest.mark.parametrize("seed", range(25))
 def test_plans_avoid_obstacles_at_near_optimal_cost(seed):
     robot = inflated_costmap(make_rooms(seed))
-    crossing_costs = crossing_prices(robot.grid.cells)
+    crossing_costs = compute_crossing_prices(robot.grid.cells)
     if not np.isfinite(crossing_costs[[2, 57], [2, 57]]).all():
         return
     truth = dijkstra(crossing_costs, (2, 2))[57, 57]

@@ -8,12 +8,12 @@ from math import inf
 import numpy as np
 import pytest
 
-from linkwright.navigation.slam.contradiction import contradiction_share
+from linkwright.navigation.slam.contradiction import compute_contradiction_share
 from linkwright.navigation.slam.matching import match_scan
 from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.navigation.slam.reference import LikelihoodField, Reference
 from linkwright.navigation.slam.scan import PlanarScan
-from linkwright.navigation.slam.search import Search, best_pose
+from linkwright.navigation.slam.search import Search, find_best_pose
 from linkwright.navigation.slam.steps import run_to_end
 from tests.navigation.slam.scenes import box_walls, flat_walls, make_scan
 
@@ -59,7 +59,7 @@ def test_branch_and_bound_matches_exhaustive_search(reference):
     search = Search(dimension=0.6, resolution=0.05, smear_deviation=0.1, angle_offset=0.2, angle_resolution=0.02)
     initial_pose = np.array([-1.9, -3.0, 0.1])
     likelihood = LikelihoodField(reference.points, search.cell, search.smear_deviation)
-    pose, response = run_to_end(best_pose(likelihood, scan.points, initial_pose, search))
+    pose, response = run_to_end(find_best_pose(likelihood, scan.points, initial_pose, search))
     grid, _ = likelihood.level(0)
     step = min(search.angle_resolution, 1.5 * 0.05 / np.quantile(np.hypot(*scan.points.T), 0.8))
     count = int(np.ceil(search.angle_offset / step - 1e-9))
@@ -124,6 +124,6 @@ def test_rotated_scan_is_found_with_larger_angle_search(reference):
 def test_contradiction_share_separates_scans_of_different_rooms():
     pose, near_pose = np.array([-4.0, -3.0, 0.3]), np.array([-3.2, -2.8, 1.0])
     first, second = make_scan(FLAT_WALLS, pose), make_scan(FLAT_WALLS, near_pose)
-    assert contradiction_share(first, pose, second, near_pose) < 0.05
+    assert compute_contradiction_share(first, pose, second, near_pose) < 0.05
     other_scan = make_scan(FLAT_WALLS, np.array([4.5, 0.0, 0.0]))
-    assert contradiction_share(first, pose, other_scan, near_pose) > 0.2
+    assert compute_contradiction_share(first, pose, other_scan, near_pose) > 0.2

@@ -88,7 +88,9 @@ def test_unknown_text_matches_no_command(commands: CommandSet, text: str) -> Non
 @pytest.mark.parametrize("language", ["en", "zh"])
 def test_engine_phrases_match_commands_and_stay_below_limit(commands: CommandSet, language: str) -> None:
     phrases = commands.phrases(language)
-    assert [text for text in phrases if commands.match_command(text) is None and commands.answer(text) is None] == []
+    assert [
+        text for text in phrases if commands.match_command(text) is None and commands.parse_answer(text) is None
+    ] == []
     assert len(phrases) == len(set(phrases)) < 500
     assert {"en": "turn left ninety degrees", "zh": "左转九十度"}[language] in phrases
 
@@ -101,7 +103,7 @@ def test_stop_is_recognized_within_other_words(commands: CommandSet) -> None:
 
 
 def test_yes_and_no_answers_are_recognized(commands: CommandSet) -> None:
-    assert [commands.answer(text) for text in ("yes", "是的", "no", "取消", "forward")] == [
+    assert [commands.parse_answer(text) for text in ("yes", "是的", "no", "取消", "forward")] == [
         True,
         True,
         False,

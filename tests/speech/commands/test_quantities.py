@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.speech.commands.numbers import parse_number
 from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
-from linkwright.speech.commands.words import words_of
+from linkwright.speech.commands.words import split_into_words
 
 NUMBERS = {
     "zero": 0,
@@ -96,17 +96,17 @@ QUANTITIES = [
 
 @pytest.mark.parametrize(("text", "value"), NUMBERS.items())
 def test_spoken_number_is_parsed(text: str, value: float) -> None:
-    assert parse_number(words_of(text)) == value
+    assert parse_number(split_into_words(text)) == value
 
 
 @pytest.mark.parametrize("text", NO_NUMBERS)
 def test_text_that_is_not_a_number_is_rejected(text: str) -> None:
-    assert parse_number(words_of(text)) is None
+    assert parse_number(split_into_words(text)) is None
 
 
 @pytest.mark.parametrize(("slot", "text", "value"), QUANTITIES)
 def test_spoken_quantity_is_parsed(slot: str, text: str, value: float) -> None:
-    assert parse_quantity(slot, words_of(text)) == pytest.approx(value)
+    assert parse_quantity(slot, split_into_words(text)) == pytest.approx(value)
 
 
 @pytest.mark.parametrize(
@@ -120,7 +120,7 @@ def test_spoken_quantity_is_parsed(slot: str, text: str, value: float) -> None:
     ],
 )
 def test_text_that_is_not_a_quantity_is_rejected(slot: str, text: str) -> None:
-    assert parse_quantity(slot, words_of(text)) is None
+    assert parse_quantity(slot, split_into_words(text)) is None
 
 
 @pytest.mark.parametrize("slot", GRAMMAR_VALUES)
@@ -129,5 +129,5 @@ def test_grammar_values_are_parsed(slot: str) -> None:
         text
         for texts in GRAMMAR_VALUES[slot].values()
         for text in texts
-        if parse_quantity(slot, words_of(text)) is None
+        if parse_quantity(slot, split_into_words(text)) is None
     ] == []

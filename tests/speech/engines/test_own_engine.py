@@ -13,7 +13,7 @@ import pytest
 
 from linkwright.loading import extensions
 from linkwright.speech.engine import EngineOptions, make_engine
-from linkwright.speech.sound.samples import BLOCK
+from linkwright.speech.sound.samples import BLOCK_LENGTH
 from tests.speech.voices import WORDS, say
 
 DOCS = Path(__file__).resolve().parents[3] / "docs"
@@ -58,8 +58,8 @@ def test_engine_recognizes_utterances(engine):
     results = []
     for phones in (WORDS["turn left"], "mumi", WORDS["stop"]):
         sound = say(phones, silence=0.8)
-        for start in range(0, len(sound), BLOCK):
-            results += engine.hear(sound[start : start + BLOCK])
+        for start in range(0, len(sound), BLOCK_LENGTH):
+            results += engine.hear(sound[start : start + BLOCK_LENGTH])
     assert [(result.text, result.final) for result in results] == [("turn left", True), ("", True), ("stop", True)]
     assert results[0].confidence == pytest.approx(np.exp(-0.1))
     assert all(result.start < result.end for result in results)

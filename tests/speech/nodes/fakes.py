@@ -13,9 +13,9 @@ from linkwright.loading import extensions
 from linkwright.messages import get_message
 from linkwright.nodes import NodeOptions
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
-from linkwright.speech.nodes.audio_messages import AUDIO_STAMPED, audio_stamped
+from linkwright.speech.nodes.audio_messages import AUDIO_STAMPED_TYPE, make_audio_stamped
 from linkwright.speech.nodes.voice_commander import VoiceCommander
-from linkwright.speech.sound.samples import BLOCK
+from linkwright.speech.sound.samples import BLOCK_LENGTH
 from tests.nodes.harness import NodeHarness
 from tests.waiting import eventually
 
@@ -81,7 +81,7 @@ class CommanderHarness:
         self.text = node.create_publisher(STRING, "/voice/text_input", 10)
         self.button = node.create_publisher(BOOL, "/voice/listen", 10)
         self.microphone_node = harness.graph.create_node("mouth")
-        self.sound = self.microphone_node.create_publisher(AUDIO_STAMPED, "/audio/audio_stamped", 10)
+        self.sound = self.microphone_node.create_publisher(AUDIO_STAMPED_TYPE, "/audio/audio_stamped", 10)
         self.commander = VoiceCommander(harness.graph, NodeOptions(parameters={"engine": "", **parameters}))
 
     @property
@@ -120,10 +120,10 @@ class CommanderHarness:
             stamp: the stamp of the sound in seconds; now by default.
         """
         ScriptedEngine.results_by_value[len(ScriptedEngine.results_by_value) + 1] = list(results)
-        block = np.full(BLOCK, len(ScriptedEngine.results_by_value), np.int16)
+        block = np.full(BLOCK_LENGTH, len(ScriptedEngine.results_by_value), np.int16)
         count_before = len(self.texts_by_topic["text"]) + len(self.texts_by_topic["partial_text"])
         sound_time = self.harness.node.get_clock().now() if stamp is None else Time(nanoseconds=round(stamp * 1e9))
-        self.sound.publish(audio_stamped(block.tobytes(), sound_time.to_msg()))
+        self.sound.publish(make_audio_stamped(block.tobytes(), sound_time.to_msg()))
         await self.harness.graph.settle()
         if results:
             expected_count = len(results) + count_before

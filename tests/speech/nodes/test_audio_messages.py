@@ -7,7 +7,13 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import Time, get_message
-from linkwright.speech.nodes.audio_messages import AudioFormat, AudioReader, audio_data, audio_info, audio_stamped
+from linkwright.speech.nodes.audio_messages import (
+    AudioFormat,
+    AudioReader,
+    make_audio_data,
+    make_audio_info,
+    make_audio_stamped,
+)
 
 TONE = np.sin(np.arange(1_600) * 2 * np.pi * 440 / 16_000) * 0.5
 
@@ -62,11 +68,11 @@ def test_samples_can_be_split_between_messages(channels):
 
 def test_published_audio_messages_are_read():
     data = encode_samples(TONE, "S16LE")
-    reader = AudioReader(AudioFormat.of(audio_info(AudioFormat())))
-    message = audio_stamped(data, Time(sec=3))
+    reader = AudioReader(AudioFormat.of(make_audio_info(AudioFormat())))
+    message = make_audio_stamped(data, Time(sec=3))
     assert message.header.stamp.sec == 3
-    assert np.array_equal(reader.read(message.audio.data), reader.read(audio_data(data).data))
-    info = audio_info(AudioFormat())
+    assert np.array_equal(reader.read(message.audio.data), reader.read(make_audio_data(data).data))
+    info = make_audio_info(AudioFormat())
     assert (info.channels, info.sample_rate, info.sample_format) == (1, 16_000, "S16LE")
     assert (info.coding_format, info.bitrate) == ("wave", 256)
 

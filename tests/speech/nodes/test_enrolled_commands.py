@@ -7,8 +7,8 @@ import pytest
 
 from linkwright.speech.enrolled.enrollment import enroll
 from linkwright.speech.enrolled.words import Words
-from linkwright.speech.nodes.audio_messages import audio_stamped
-from linkwright.speech.sound.samples import BLOCK, RATE
+from linkwright.speech.nodes.audio_messages import make_audio_stamped
+from linkwright.speech.sound.samples import BLOCK_LENGTH, RATE
 from tests.speech.nodes.fakes import CommanderHarness
 from tests.speech.voices import WORDS, say
 from tests.waiting import eventually
@@ -39,9 +39,9 @@ async def robot(harness, words_file):
 
 async def publish_sound(robot, samples):
     """Publish sound in blocks of 100 ms, as a microphone does."""
-    for start in range(0, len(samples), BLOCK):
+    for start in range(0, len(samples), BLOCK_LENGTH):
         robot.sound.publish(
-            audio_stamped(samples[start : start + BLOCK].tobytes(), robot.harness.node.get_clock().now().to_msg())
+            make_audio_stamped(samples[start : start + BLOCK_LENGTH].tobytes(), robot.harness.node.get_clock().now().to_msg())
         )
         await robot.harness.graph.settle()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from linkwright.speech.nodes.sound_gaps import SampleStamps, SoundGaps
-from linkwright.speech.sound.samples import BLOCK
+from linkwright.speech.sound.samples import BLOCK_LENGTH
 
 SECOND_NS = 10**9
 BLOCK_NS = SECOND_NS // 10
@@ -14,12 +14,12 @@ BLOCK_NS = SECOND_NS // 10
 def stamp_blocks(arrivals):
     """Return the stamps of blocks of a tenth of a second that arrived at these seconds."""
     stamps = SampleStamps()
-    return [stamps.stamp(BLOCK, round(arrival * SECOND_NS)) for arrival in arrivals]
+    return [stamps.compute_stamp(BLOCK_LENGTH, round(arrival * SECOND_NS)) for arrival in arrivals]
 
 
 def find_gaps(stamps):
     gaps = SoundGaps()
-    return [gaps.measure_gap(stamp, BLOCK) for stamp in stamps]
+    return [gaps.measure_gap(stamp, BLOCK_LENGTH) for stamp in stamps]
 
 
 def test_stamps_count_samples_despite_jitter():
@@ -47,13 +47,13 @@ def test_lost_blocks_are_reported_as_gap():
 
 def test_restarted_stream_has_no_gap():
     stamps = SampleStamps()
-    first = [stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND_NS)) for index in range(10)]
+    first = [stamps.compute_stamp(BLOCK_LENGTH, round((10.0 + 0.1 * index) * SECOND_NS)) for index in range(10)]
     stamps.restart()
-    assert stamps.stamp(BLOCK, 15 * SECOND_NS) == 15 * SECOND_NS - BLOCK_NS
+    assert stamps.compute_stamp(BLOCK_LENGTH, 15 * SECOND_NS) == 15 * SECOND_NS - BLOCK_NS
     gaps = SoundGaps()
-    assert not any(gaps.measure_gap(stamp, BLOCK) for stamp in first)
+    assert not any(gaps.measure_gap(stamp, BLOCK_LENGTH) for stamp in first)
     gaps.restart()
-    assert gaps.measure_gap(15 * SECOND_NS, BLOCK) == 0.0
+    assert gaps.measure_gap(15 * SECOND_NS, BLOCK_LENGTH) == 0.0
 
 
 def test_loss_reported_by_source_is_a_gap():
@@ -61,7 +61,9 @@ def test_loss_reported_by_source_is_a_gap():
     for index in range(100):
         lost_seconds = 0.4 if index >= 10 and index % 10 == 0 else 0.0
         gap_list.append(
-            gaps.measure_gap(stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND_NS), lost_seconds), BLOCK)
+            gaps.measure_gap(
+                stamps.compute_stamp(BLOCK_LENGTH, round((10.0 + 0.1 * index) * SECOND_NS), lost_seconds), BLOCK_LENGTH
+            )
         )
     assert [number for number, gap in enumerate(gap_list) if gap] == list(range(10, 100, 10))
     assert np.allclose([gap for gap in gap_list if gap], 0.4, atol=0.005)
@@ -71,9 +73,10 @@ def test_small_losses_are_accumulated_and_hide_no_large_one():
     stamps, gaps = SampleStamps(), SoundGaps()
     losses = {10: 0.01, 11: 0.04, 12: 0.03, 13: 0.5, 20: 0.02}
     result = [
-        stamps.stamp(BLOCK, round((10.0 + 0.1 * index) * SECOND_NS), losses.get(index, 0.0)) for index in range(30)
+        stamps.compute_stamp(BLOCK_LENGTH, round((10.0 + 0.1 * index) * SECOND_NS), losses.get(index, 0.0))
+        for index in range(30)
     ]
-    gap_list = [gaps.measure_gap(stamp, BLOCK) for stamp in result]
+    gap_list = [gaps.measure_gap(stamp, BLOCK_LENGTH) for stamp in result]
     assert [number for number, gap in enumerate(gap_list) if gap] == [12, 13]
     assert np.allclose([gap_list[12], gap_list[13]], [0.08, 0.5], atol=0.005)
 
@@ -82,7 +85,8 @@ def test_small_jumps_of_arrival_stamps_are_not_gaps():
     gaps = SoundGaps()
     delays = [0, 0, 0, 0, 0.03, 0, 0.04, 0, 0, 0, 0, 0.03, 0, 0.04, 0]
     assert not any(
-        gaps.measure_gap(round((10.0 + 0.1 * index + delay) * SECOND_NS), BLOCK) for index, delay in enumerate(delays)
+        gaps.measure_gap(round((10.0 + 0.1 * index + delay) * SECOND_NS), BLOCK_LENGTH)
+        for index, delay in enumerate(delays)
     )
 
 
@@ -90,15 +94,15 @@ def test_stamps_do_not_run_ahead_of_clock_for_any_reported_loss():
     stamps = SampleStamps()
     for index in range(20):
         time_ns = round((10.0 + 0.1 * index) * SECOND_NS)
-        assert stamps.stamp(BLOCK, time_ns, 1000.0) <= time_ns + 2 * SECOND_NS
+        assert stamps.compute_stamp(BLOCK_LENGTH, time_ns, 1000.0) <= time_ns + 2 * SECOND_NS
 
 
 def test_gap_is_reported_immediately_after_restart():
     gaps = SoundGaps()
-    assert not any(gaps.measure_gap(round((10.0 + 0.1 * index) * SECOND_NS), BLOCK) for index in range(5))
+    assert not any(gaps.measure_gap(round((10.0 + 0.1 * index) * SECOND_NS), BLOCK_LENGTH) for index in range(5))
     gaps.restart()
-    assert gaps.measure_gap(20 * SECOND_NS, BLOCK) == 0.0
-    assert gaps.measure_gap(20 * SECOND_NS + 3 * BLOCK_NS, BLOCK) == 0.2
+    assert gaps.measure_gap(20 * SECOND_NS, BLOCK_LENGTH) == 0.0
+    assert gaps.measure_gap(20 * SECOND_NS + 3 * BLOCK_NS, BLOCK_LENGTH) == 0.2
 
 
 def test_arrival_stamps_with_jitter_have_no_gaps():

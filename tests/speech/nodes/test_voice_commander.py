@@ -12,7 +12,7 @@ from linkwright.graph import ActionServer
 from linkwright.graph.actions.goal import CancelResponse, GoalEvent
 from linkwright.graph.endpoints.base import EndpointKind
 from linkwright.messages import get_action, get_message, get_service
-from linkwright.speech.nodes.audio_messages import audio_stamped
+from linkwright.speech.nodes.audio_messages import make_audio_stamped
 from tests.speech.nodes.fakes import STRING, final_result, partial_result
 from tests.waiting import eventually
 
@@ -323,7 +323,7 @@ async def test_unknown_engine_ends_node(engine, start_commander, logged):
 async def test_failing_engine_stops_robot_and_ends_node(engine, start_commander, logged):
     robot = start_commander(engine="told", open_listening=True)
     await robot.process(final_result("forward"))
-    robot.sound.publish(audio_stamped(b"\xff\x7f", robot.harness.node.get_clock().now().to_msg()))
+    robot.sound.publish(make_audio_stamped(b"\xff\x7f", robot.harness.node.get_clock().now().to_msg()))
     await eventually(robot.commander.finished.done)
     await robot.harness.graph.settle()
     assert robot.speed == (0.0, 0.0, 0.0)

@@ -177,7 +177,7 @@ async def test_second_page_waits_for_button():
 
 
 async def test_flooding_page_is_cut_off_until_next_press(monkeypatch):
-    monkeypatch.setattr(floor, "_LEAD", 0.05)
+    monkeypatch.setattr(floor, "_RESERVE_S", 0.05)
     async with sound_session() as (_, client, ears):
         await client.send("watch_voice", watched=True)
         await client.send("talk", mode="held")

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
-from linkwright.speech.enrolled.words import Words, words_path
+from linkwright.speech.enrolled.words import Words, find_words_path
 from tests.speech.page.test_voice import frame
 from tests.speech.voices import WORDS, say
 from tests.viewer.scene import Client, open_world, page
@@ -53,14 +53,14 @@ async def test_word_is_enrolled_from_recordings():
             assert result["seconds"] == pytest.approx(1.0 + 0.4, abs=0.3)
             message = await other.until("voice_words")
             assert (message["words"], message["enough"]) == ([{"name": "stop", "takes": count}], 3)
-        assert Words.read(words_path()).names == ("stop",)
+        assert Words.read(find_words_path()).names == ("stop",)
 
 
 async def test_recording_with_gaps_is_rejected():
     async with open_pages() as (client, _):
         result = await record(client, "stop", say(WORDS["stop"]), has_gaps=True)
         assert result["code"] == "VOICE212"
-        assert not Words.read(words_path()).names
+        assert not Words.read(find_words_path()).names
 
 
 async def test_silent_recording_is_rejected():
@@ -68,7 +68,7 @@ async def test_silent_recording_is_rejected():
         result = await record(client, "stop", np.zeros(16_000, np.int16))
         assert (result["code"], result["peak"]) == ("VOICE205", 0.0)
         assert "no audible word" in result["text"]
-        assert Words.read(words_path()).names == ()
+        assert Words.read(find_words_path()).names == ()
 
 
 async def test_words_are_renamed_and_removed_in_order():
@@ -93,7 +93,7 @@ async def test_words_file_is_exported_and_imported():
         await record(client, "stop", say(WORDS["stop"]))
         await client.send("request_words_file")
         text = (await client.until("voice_words_file"))["text"]
-        words_path().unlink()
+        find_words_path().unlink()
         await client.send("import_words", text=text)
         while (await client.until("voice_words"))["words"] != [{"name": "stop", "takes": 1}]:
             pass
@@ -101,17 +101,17 @@ async def test_words_file_is_exported_and_imported():
         while (problem := (await client.until("voice_words"))["problem"]) is None:
             pass
         assert "cannot be read as a file of enrolled words" in problem
-        assert Words.read(words_path()).names == ("stop",)
+        assert Words.read(find_words_path()).names == ("stop",)
 
 
 async def test_damaged_words_file_is_reported_and_kept():
     async with open_pages() as (client, other):
-        words_path().parent.mkdir(parents=True)
-        words_path().write_text("{")
+        find_words_path().parent.mkdir(parents=True)
+        find_words_path().write_text("{")
         await client.send("begin_take", name="stop")
         await client.send("end_take", has_gaps=False)
         assert "it is not JSON" in (await client.until("voice_words"))["problem"]
-        assert words_path().read_text() == "{"
+        assert find_words_path().read_text() == "{"
         await other.send("watch_words", watched=True)
         assert "it is not JSON" in (await other.until("voice_words"))["problem"]
 

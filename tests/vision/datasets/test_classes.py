@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.vision.datasets.classes import ClassRules, default_class, default_rules, find_objects, read_classes
+from linkwright.vision.datasets.classes import ClassRules, derive_class, find_objects, make_default_rules, read_classes
 from tests.simulation.worlds import load_simulation
 from tests.vision.datasets.places import write_yard
 
@@ -16,12 +16,12 @@ from tests.vision.datasets.places import write_yard
      ("traffic_cone_clone_1", "traffic_cone"), ("red", "red"), ("7", "7"), ("stop_sign", "stop_sign")],
 )  # fmt: skip
 def test_default_class_omits_numbers_and_colors(name, expected):
-    assert default_class(name) == expected
+    assert derive_class(name) == expected
 
 
 def test_walls_and_ground_are_not_objects(tmp_path):
     simulation = load_simulation(write_yard(tmp_path))
-    rules = default_rules([simulation])
+    rules = make_default_rules([simulation])
     assert list(rules.patterns) == ["ball", "crate", "drums"]
     objects = find_objects(simulation, rules)
     assert [(scene_object.name, scene_object.label) for scene_object in objects] == [
@@ -48,7 +48,7 @@ def test_classes_of_file_keep_order(tmp_path):
     path.write_text('mbot:\nball: [football, "*_ball"]\ncone: traffic_cone\n')
     rules = read_classes(path)
     assert list(rules.patterns) == ["mbot", "ball", "cone"]
-    assert [rules.class_number(name) for name in ("mbot", "red_ball", "traffic_cone", "ball")] == [0, 1, 2, None]
+    assert [rules.find_class_number(name) for name in ("mbot", "red_ball", "traffic_cone", "ball")] == [0, 1, 2, None]
 
 
 @pytest.mark.parametrize(

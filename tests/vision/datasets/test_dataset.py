@@ -15,9 +15,9 @@ from PIL import Image
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.datasets.dataset import make_dataset
-from linkwright.vision.datasets.labels import box_of
+from linkwright.vision.datasets.labels import find_bounding_box
 from linkwright.vision.datasets.options import SPLITS, Options
-from linkwright.vision.datasets.rendering import DatasetInput, DatasetRenderer, split_of
+from linkwright.vision.datasets.rendering import DatasetInput, DatasetRenderer, choose_split
 from tests.vision.datasets.masks import color_mask
 from tests.vision.datasets.places import BALL, GROUND, WALL, world_text, write_yard
 
@@ -121,7 +121,7 @@ def test_all_label_formats_agree(source, tmp_path):
                 objects += 1
         for annotation in text["annotations"]:
             mask = color_mask(tuple(annotation["segmentation"]["counts"]), *annotation["segmentation"]["size"])
-            left, top, right, bottom = box_of(mask)
+            left, top, right, bottom = find_bounding_box(mask)
             assert annotation["bbox"] == [left, top, right - left, bottom - top]
             assert annotation["area"] == mask.sum()
     card = json.loads((folder / "dataset.json").read_text())
@@ -166,10 +166,10 @@ def test_worker_processes_give_identical_files(source, tmp_path):
 
 def test_splits_have_requested_shares():
     options = replace(OPTIONS, splits=(0.5, 0.3, 0.2))
-    splits = [split_of(index, options) for index in range(200)]
+    splits = [choose_split(index, options) for index in range(200)]
     assert [splits.count(split) for split in SPLITS] == [100, 60, 40]
-    assert [split_of(index, options) for index in range(200)] == splits
-    assert {split_of(index, replace(OPTIONS, splits=(1.0, 0.0, 0.0))) for index in range(50)} == {"train"}
+    assert [choose_split(index, options) for index in range(200)] == splits
+    assert {choose_split(index, replace(OPTIONS, splits=(1.0, 0.0, 0.0))) for index in range(50)} == {"train"}
 
 
 def test_append_adds_images(source, tmp_path):

@@ -10,8 +10,8 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.rendering.choice import make_renderer
 from linkwright.simulation.rendering.renderer import Channels, axes_of
 from linkwright.vision.datasets.arrangement import Arrangement, arrange
-from linkwright.vision.datasets.classes import default_rules, find_objects
-from linkwright.vision.datasets.labels import box_of, label_image, run_lengths_of
+from linkwright.vision.datasets.classes import find_objects, make_default_rules
+from linkwright.vision.datasets.labels import encode_run_lengths, find_bounding_box, label_image
 from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.randomized_world import RandomizedWorld
 from tests.simulation.worlds import load_simulation
@@ -24,7 +24,7 @@ OPTIONS = Options(width=320, height=240)
 @pytest.fixture
 def world(tmp_path):
     simulation = load_simulation(write_yard(tmp_path))
-    world = RandomizedWorld(simulation, find_objects(simulation, default_rules([simulation])), 2, 4)
+    world = RandomizedWorld(simulation, find_objects(simulation, make_default_rules([simulation])), 2, 4)
     world.set_patterns(np.random.default_rng(0))
     yield world
     world.close()
@@ -48,7 +48,7 @@ def arrange_alone(arrangement, movable):
 def test_run_lengths_match_mask():
     masks = np.random.default_rng(0).random((20, 7, 5)) < 0.5
     for mask in (*masks, np.zeros((7, 5), bool), np.ones((7, 5), bool)):
-        counts = run_lengths_of(mask)
+        counts = encode_run_lengths(mask)
         assert sum(counts) == mask.size
         assert all(count > 0 for count in counts[1:])
         assert (color_mask(counts, 7, 5) == mask).all()
@@ -56,9 +56,9 @@ def test_run_lengths_match_mask():
 
 def test_box_of_mask_is_computed():
     mask = np.zeros((6, 8), bool)
-    assert box_of(mask) is None
+    assert find_bounding_box(mask) is None
     mask[2, 3] = mask[4, 1] = True
-    assert box_of(mask) == (1, 2, 4, 5)
+    assert find_bounding_box(mask) == (1, 2, 4, 5)
 
 
 def test_full_boxes_of_balls_match_projected_outlines(world):
@@ -108,7 +108,7 @@ def test_labels_match_mujoco_renderer(world):
     for arrangement in take_shots(world, 8):
         labels, _ = label_arrangement(world, arrangement)
         geoms = other.render(arrangement.optics, arrangement.pose, Channels.GEOMS).geoms
-        boxes = [box_of(np.isin(geoms, movable.geoms)) for movable in arrangement.placed_objects]
+        boxes = [find_bounding_box(np.isin(geoms, movable.geoms)) for movable in arrangement.placed_objects]
         for label in labels:
             if min(label.box[2] - label.box[0], label.box[3] - label.box[1]) >= 4:
                 assert min(np.abs(np.array(box) - label.box).max() for box in boxes if box is not None) <= 1
@@ -122,7 +122,7 @@ def test_visible_box_and_full_box_are_consistent(world):
         for label in labels:
             left, top, right, bottom = label.box
             assert color_mask(label.run_lengths, *geoms.shape).sum() == label.area
-            assert box_of(color_mask(label.run_lengths, *geoms.shape)) == label.box
+            assert find_bounding_box(color_mask(label.run_lengths, *geoms.shape)) == label.box
             assert label.full_box[0] <= left
             assert label.full_box[1] <= top
             assert label.full_box[2] >= right
@@ -168,7 +168,7 @@ def test_sign_is_ignored_unless_its_plate_is_visible(tmp_path, height, focal, ig
     path = tmp_path / "signs.world"
     path.write_text(world_text(SIGN_MODEL))
     simulation = load_simulation(path)
-    world = RandomizedWorld(simulation, find_objects(simulation, default_rules([simulation])), 1, 0)
+    world = RandomizedWorld(simulation, find_objects(simulation, make_default_rules([simulation])), 1, 0)
     try:
         world.set_patterns(np.random.default_rng(0))
         world.place_object(world.movable_objects[0], np.zeros(3), np.eye(3))

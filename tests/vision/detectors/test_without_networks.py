@@ -12,7 +12,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.images.color_words import RGB_BY_COLOR_WORD
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Limits
-from linkwright.vision.detectors.drawing import class_color, draw_detections
+from linkwright.vision.detectors.drawing import choose_class_color, draw_detections
 from linkwright.vision.detectors.options import DetectorOptions
 from linkwright.vision.detectors.registry import make_detector
 
@@ -169,8 +169,8 @@ def test_detections_are_drawn_on_copy_of_image():
     boxes = np.array([[50, 60, 150, 160], [200, 5, 400, 90]], np.float32)
     detections = Detections(boxes, np.array([0.9, 0.6], np.float32), np.array([0, 1], np.int32), ("ball", "box"))
     canvas = draw_detections(image, detections)
-    assert tuple(canvas[160, 100]) == class_color("ball")
-    assert tuple(canvas[90, 300]) == class_color("box")
+    assert tuple(canvas[160, 100]) == choose_class_color("ball")
+    assert tuple(canvas[90, 300]) == choose_class_color("box")
     assert (image == FLOOR).all()
     assert (draw_detections(image, Detections.empty(("ball",))) == image).all()
     marker = Detections(
@@ -180,8 +180,8 @@ def test_detections_are_drawn_on_copy_of_image():
         detections.names,
         np.array([[[50, 60], [150, 60], [150, 160], [50, 160]]], np.float32),
     )
-    assert tuple(draw_detections(image, marker)[160, 100]) == class_color("ball")
-    assert class_color("red") == class_color("red cube") == RGB_BY_COLOR_WORD["red"]
+    assert tuple(draw_detections(image, marker)[160, 100]) == choose_class_color("ball")
+    assert choose_class_color("red") == choose_class_color("red cube") == RGB_BY_COLOR_WORD["red"]
 
 
 NETWORKLESS_DETECTORS = ("colors", "aruco", "apriltag", "qr", "line")

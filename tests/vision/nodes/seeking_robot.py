@@ -153,7 +153,7 @@ class SeekingRobot(SteppedSimulation):
             corners = np.array(
                 [[-y - BALL_RADIUS_M, -z - BALL_RADIUS_M, x], [-y + BALL_RADIUS_M, -z + BALL_RADIUS_M, x]]
             )
-            pixels = camera.pixels(corners).ravel() + self._rng.normal(0, 0.7, 4)
+            pixels = camera.pixels_from_points(corners).ravel() + self._rng.normal(0, 0.7, 4)
             left, top, right, bottom = np.clip(pixels, 0, [_WIDTH, _HEIGHT] * 2)
             if right - left > 5 and bottom - top > 5:
                 array.detections.append(detection(header, left, top, right, bottom, self._object_name))

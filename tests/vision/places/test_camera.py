@@ -24,14 +24,14 @@ def test_pixel_and_ray_conversion_round_trip(lens):
         640, 480, K, lens, distortion_model="rational_polynomial" if len(lens) > 5 else "plumb_bob"
     )
     pixels = np.array([[320.0, 240.0], [10.0, 20.0], [600.0, 30.0], [300.0, 470.0]])
-    rays = camera.rays(pixels)
+    rays = camera.rays_from_pixels(pixels)
     assert rays[0] == pytest.approx([0, 0, 1], abs=1e-6)
-    assert camera.pixels(rays * 3.0) == pytest.approx(pixels, abs=1e-3)
+    assert camera.pixels_from_points(rays * 3.0) == pytest.approx(pixels, abs=1e-3)
 
 
 def test_projection_matrix_is_used_if_k_is_zero():
     camera = make_camera_model(640, 480, [0.0] * 9, [], P)
-    assert camera.rays(np.array([[720.0, 240.0]])) == pytest.approx(np.array([[1.0, 0.0, 1.0]]))
+    assert camera.rays_from_pixels(np.array([[720.0, 240.0]])) == pytest.approx(np.array([[1.0, 0.0, 1.0]]))
 
 
 def test_incomplete_camera_info_is_rejected():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.vision.places.object_colors import COLORS, classify_colors, object_color
+from linkwright.vision.places.object_colors import COLORS, classify_colors, find_object_color
 
 SAMPLES = {
     "red": [(200, 13, 15), (120, 10, 10), (230, 60, 50)],
@@ -40,20 +40,20 @@ def disc_image(color, ground=(180, 180, 180), shade=1.0):
 
 @pytest.mark.parametrize("shade", [1.0, 0.4])
 def test_color_of_shaded_ball_on_gray_ground_is_found(shade):
-    assert object_color(*disc_image((200, 20, 20), shade=shade)) == "red"
-    assert object_color(*disc_image((30, 60, 180), shade=shade)) == "blue"
+    assert find_object_color(*disc_image((200, 20, 20), shade=shade)) == "red"
+    assert find_object_color(*disc_image((30, 60, 180), shade=shade)) == "blue"
 
 
 def test_white_ball_with_black_spots_is_white():
     image, box = disc_image((245, 245, 245))
     image[50:60, 70:80] = 5
-    assert object_color(image, box) == "white"
+    assert find_object_color(image, box) == "white"
 
 
 def test_ambiguous_color_is_none():
     image, box = disc_image((200, 20, 20))
-    assert object_color(image, box + 500) is None
+    assert find_object_color(image, box + 500) is None
     stripes = np.zeros((60, 60, 3), np.uint8)
     for row, color in enumerate([(200, 10, 10), (20, 150, 30), (20, 40, 190), (240, 200, 20)] * 15):
         stripes[row] = color
-    assert object_color(stripes, np.array([0.0, 0.0, 60.0, 60.0])) is None
+    assert find_object_color(stripes, np.array([0.0, 0.0, 60.0, 60.0])) is None

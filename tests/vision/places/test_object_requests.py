@@ -7,9 +7,9 @@ import pytest
 from linkwright.vision.places.object_requests import (
     Answer,
     Sighting,
-    answer_phrase,
+    add_color_to_name,
     describe_sightings,
-    name_with_color,
+    make_answer_phrase,
     parse_request,
 )
 
@@ -96,11 +96,11 @@ def test_request_text_omits_verb():
 
 
 def test_answer_names_object_in_requested_language():
-    assert answer_phrase(Answer.SEARCHING, parse_request("red ball"), "en") == "I am looking for the red ball."
-    assert answer_phrase(Answer.SEARCHING, parse_request("traffic_cone"), "zh") == "我在找锥桶。"
-    assert answer_phrase(Answer.ARRIVED, parse_request("red ball"), "zh") == "我到红色的球这里了。"
-    assert answer_phrase(Answer.FOUND, parse_request("红球"), "zh") == "我看到红球了，正在过去。"
-    assert answer_phrase(Answer.LOST, parse_request("红球"), "en") == "I have lost the red ball."
+    assert make_answer_phrase(Answer.SEARCHING, parse_request("red ball"), "en") == "I am looking for the red ball."
+    assert make_answer_phrase(Answer.SEARCHING, parse_request("traffic_cone"), "zh") == "我在找锥桶。"
+    assert make_answer_phrase(Answer.ARRIVED, parse_request("red ball"), "zh") == "我到红色的球这里了。"
+    assert make_answer_phrase(Answer.FOUND, parse_request("红球"), "zh") == "我看到红球了，正在过去。"
+    assert make_answer_phrase(Answer.LOST, parse_request("红球"), "en") == "I have lost the red ball."
 
 
 def test_sightings_are_described_in_sentence():
@@ -128,6 +128,6 @@ def test_sightings_are_described_in_sentence():
 
 
 def test_name_with_color_is_translated():
-    assert name_with_color("traffic cone", "orange", "zh") == "橙色的锥桶"
-    assert name_with_color("red_ball", "blue", "en") == "red ball"
-    assert name_with_color("teapot", None, "zh") == "teapot"
+    assert add_color_to_name("traffic cone", "orange", "zh") == "橙色的锥桶"
+    assert add_color_to_name("red_ball", "blue", "en") == "red ball"
+    assert add_color_to_name("teapot", None, "zh") == "teapot"

@@ -17,7 +17,7 @@ def ball_depth_image(center, radius, background_depth=4.0, camera=CAMERA):
     """Return the depth image of a ball in front of a wall, and its box."""
     size = camera.width, camera.height
     columns, rows = np.meshgrid(np.arange(size[0]) + 0.5, np.arange(size[1]) + 0.5)
-    rays = camera.rays(np.stack([columns.ravel(), rows.ravel()], axis=1))
+    rays = camera.rays_from_pixels(np.stack([columns.ravel(), rows.ravel()], axis=1))
     center_point = np.asarray(center, np.float64)
     a, b, c = (rays**2).sum(axis=1), rays @ center_point, center_point @ center_point - radius**2
     root = b**2 - a * c
@@ -78,7 +78,7 @@ def drum_box(x, z, radius, height, above):
     turns = np.linspace(0, 2 * np.pi, 200)
     circle = np.stack([x + radius * np.cos(turns), np.zeros(200), z + radius * np.sin(turns)], axis=1)
     points = np.concatenate([circle + np.array([0, above, 0]), circle + np.array([0, above - height, 0])])
-    pixels = CAMERA.pixels(points)
+    pixels = CAMERA.pixels_from_points(points)
     return np.concatenate([pixels.min(axis=0), pixels.max(axis=0)])
 
 

@@ -10,7 +10,13 @@ import pytest
 
 from linkwright.vision.detections import Detections
 from linkwright.vision.evaluation import GroundTruth, evaluate
-from linkwright.vision.training.card import EvaluationReport, confusion_table, dataset_facts, describe_origin, make_card
+from linkwright.vision.training.card import (
+    EvaluationReport,
+    collect_dataset_facts,
+    describe_origin,
+    format_confusion_table,
+    make_card,
+)
 
 BOXES = np.array([[0, 0, 8, 8], [20, 20, 60, 60]], np.float32)
 
@@ -42,7 +48,7 @@ def test_card_of_perfect_network_has_no_failures():
 
 
 def test_confusion_table_has_row_per_label_and_column_per_detection():
-    assert confusion_table(make_figures([None, 0])) == [
+    assert format_confusion_table(make_figures([None, 0])) == [
         "| label \\ detection | ball | box | nothing |",
         "| --- | ---: | ---: | ---: |",
         "| ball |  |  | 1 |",
@@ -82,7 +88,7 @@ def test_card_names_evaluation_worlds_also_used_for_training(tmp_path):
 
 def test_card_describes_generation_of_dataset(tmp_path):
     write_card(tmp_path, "playground", card_options=[{"seed": 3, "most": 10}, {"seed": 4, "most": 10}])
-    assert dataset_facts(tmp_path) == {
+    assert collect_dataset_facts(tmp_path) == {
         "worlds": f"playground (sha256 {world_checksum('playground')[:12]})",
         "options of linkwright dataset": "seed 3, most 10; seed 4, most 10",
         "robots and models put in": "mbot.urdf",
@@ -93,4 +99,4 @@ def test_card_describes_generation_of_dataset(tmp_path):
 def test_foreign_dataset_has_no_facts(tmp_path, content):
     if content is not None:
         (tmp_path / "dataset.json").write_text(content)
-    assert dataset_facts(tmp_path) == {}
+    assert collect_dataset_facts(tmp_path) == {}

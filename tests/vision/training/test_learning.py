@@ -34,8 +34,8 @@ if IS_TRAINING_TESTED:
 
     from linkwright.vision.training.learning.export import export_to_onnx
     from linkwright.vision.training.learning.initial_weights import load_weights
-    from linkwright.vision.training.learning.losses import assign, loss, pairwise_iou
-    from linkwright.vision.training.learning.network import Network, Shape, cells
+    from linkwright.vision.training.learning.losses import assign_cells, compute_loss, pairwise_iou
+    from linkwright.vision.training.learning.network import Network, Shape, make_cells
     from linkwright.vision.training.learning.optimizer import orthogonalize
     from linkwright.vision.training.learning.training_loop import TrainingLoop
 
@@ -246,11 +246,11 @@ def test_generalized_iou_orders_disjoint_boxes():
 
 
 def test_cells_are_assigned_to_objects_and_ignored_regions():
-    cell_centers, _ = cells(64, 64)
+    cell_centers, _ = make_cells(64, 64)
     boxes = torch.cat((cell_centers - 12, cell_centers + 12), 1)[None]
     logits = torch.zeros(1, len(cell_centers), 2)
     objects = torch.tensor([[[1.0, 8, 8, 32, 32], [-2.0, 40, 40, 60, 60], [-1.0, -1, -1, -1, -1]]])
-    expected = assign(boxes, logits, cell_centers, objects)
+    expected = assign_cells(boxes, logits, cell_centers, objects)
     inside = (cell_centers >= 8).all(1) & (cell_centers <= 32).all(1)
     assert expected.is_assigned[0].sum() == 10
     assert not (expected.is_assigned[0] & ~inside).any()
@@ -263,7 +263,7 @@ def test_cells_are_assigned_to_objects_and_ignored_regions():
 def test_batch_without_objects_has_loss():
     network = Network(Shape(2, 4))
     boxes, logits = network(torch.rand(2, 3, 64, 64))
-    total, parts = loss(boxes, logits, cells(64, 64)[0], torch.full((2, 1, 5), -1.0))
+    total, parts = compute_loss(boxes, logits, make_cells(64, 64)[0], torch.full((2, 1, 5), -1.0))
     total.backward()
     assert parts[0] == 0
     assert torch.isfinite(total)

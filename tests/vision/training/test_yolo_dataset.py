@@ -11,10 +11,10 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.vision.training.images import (
     LabeledImages,
     augment,
+    compute_repeat_factors,
+    draw_repeated_indices,
     read_image,
     read_labeled_images,
-    repeat_factors,
-    repeated_indices,
 )
 from linkwright.vision.training.options import CropSettings, Options
 from linkwright.vision.training.yolo_dataset import open_dataset
@@ -177,8 +177,8 @@ def test_augmentation_is_deterministic_for_seed(shapes):
 
 def test_last_epochs_use_whole_images(shapes):
     options = Options(shapes, shapes, epochs=5, whole_epochs=2, width=96, height=96)
-    assert [options.view(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
-    assert options.view(4).scales[0] > options.view(0).scales[0]
+    assert [options.choose_crop(epoch).size for epoch in range(5)] == [(64, 64)] * 3 + [(96, 96)] * 2
+    assert options.choose_crop(4).scales[0] > options.choose_crop(0).scales[0]
     labeled_images = read_labeled_images(open_dataset(shapes).read("train"), 96, 96)
     whole_image_settings = CropSettings((96, 96), (1.0, 1.0))
     (_, objects) = augment(labeled_images, 0, whole_image_settings, np.random.default_rng(5))
@@ -194,11 +194,11 @@ def test_images_of_rare_classes_are_sampled_more_often():
 
     objects = (*[image(0)] * 16, *[image(1, 0)] * 8, image(2), image(-4, 0), image())
     labeled_images = LabeledImages(np.zeros((len(objects), 1, 1, 3), np.uint8), objects)
-    times = repeat_factors(labeled_images, 4)
+    times = compute_repeat_factors(labeled_images, 4)
     assert times[:24] == pytest.approx(1)  # classes 0 and 1 are at the median of 8, or more frequent
     assert times[24] == pytest.approx(np.sqrt(8))
     assert times[25:] == pytest.approx(1)  # images with only ignored objects, or without objects
-    chosen = [repeated_indices(times, np.random.default_rng(seed)) for seed in range(200)]
+    chosen = [draw_repeated_indices(times, np.random.default_rng(seed)) for seed in range(200)]
     counts = np.mean([np.bincount(indices, minlength=len(objects)) for indices in chosen], 0)
     assert counts[:24] == pytest.approx(1)
     assert counts[24] == pytest.approx(np.sqrt(8), abs=0.15)

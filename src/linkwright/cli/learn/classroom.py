@@ -28,10 +28,10 @@ def configure(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Show a course until the user interrupts the command."""
     from linkwright.hosting.plans import HostOptions
-    from linkwright.learning.classroom import open_classroom, workspace_at
+    from linkwright.learning.classroom import find_workspace, open_classroom
     from linkwright.learning.page.classroom_view import run_classroom
 
-    workspace = (arguments.workspace or workspace_at(Path.cwd(), arguments.course)).absolute()
+    workspace = (arguments.workspace or find_workspace(Path.cwd(), arguments.course)).absolute()
     classroom = open_classroom(workspace, arguments.course)
     try:
         workspace.mkdir(parents=True, exist_ok=True)

@@ -104,7 +104,7 @@ def run_grade(arguments: argparse.Namespace) -> int:
     from linkwright.learning.course import DEFAULT_COURSE, find_course, load_course
     from linkwright.learning.grading.grading import check_extras, grade_class
     from linkwright.learning.grading.journal import Journal
-    from linkwright.learning.grading.marks import class_size
+    from linkwright.learning.grading.marks import describe_class_size
     from linkwright.learning.grading.submissions import find_submissions
 
     course = load_course(find_course(arguments.course or DEFAULT_COURSE))
@@ -138,20 +138,20 @@ def run_grade(arguments: argparse.Namespace) -> int:
     _print_table(students)
     _print_protections(students)
     seconds = f"{time.monotonic() - start_time:.0f}"
-    print_message(localized(phrase("{size} in {seconds} s", size=class_size(students), seconds=seconds)))
+    print_message(localized(phrase("{size} in {seconds} s", size=describe_class_size(students), seconds=seconds)))
     if not is_complete:
         print_message(localized(phrase("some steps were not graded; run the command again to grade only these")))
     return FINE if all(student.is_graded for student in students) else FINDINGS
 
 
 def _choose_workers(arguments: argparse.Namespace) -> AbstractContextManager[RunJobs]:
-    from linkwright.learning.grading.workers import local_workers, ray_workers
-    from linkwright.learning.sandbox import protections_available
+    from linkwright.learning.grading.workers import open_local_workers, open_ray_workers
+    from linkwright.learning.sandbox import find_available_protections
 
     if arguments.ray is not None:
-        return ray_workers(arguments.ray)
-    protections_available()  # raises where there is no sandbox
-    return local_workers(arguments.workers or usable_processors())
+        return open_ray_workers(arguments.ray)
+    find_available_protections()  # raises where there is no sandbox
+    return open_local_workers(arguments.workers or usable_processors())
 
 
 def _select_steps(course: Course, arguments: argparse.Namespace) -> list[Step]:
@@ -210,18 +210,18 @@ def _write_outputs(
 ) -> None:
     from linkwright.files.whole_files import write_whole_file
     from linkwright.learning.grading import formats
-    from linkwright.learning.grading.journal import reporting_write_errors
-    from linkwright.learning.grading.page import grades_page
+    from linkwright.learning.grading.journal import report_write_errors
+    from linkwright.learning.grading.page import format_grades_page
 
     writers: list[tuple[Path | None, Callable[[], str]]] = [
-        (arguments.csv, lambda: formats.gradebook_csv(students, language())),
-        (arguments.nbgrader, lambda: formats.nbgrader_csv(students)),
-        (arguments.json, lambda: formats.grades_json(course, students, formats.limits_data(limits))),
-        (arguments.html, lambda: grades_page(course, students, language())),
+        (arguments.csv, lambda: formats.format_gradebook_csv(students, language())),
+        (arguments.nbgrader, lambda: formats.format_nbgrader_csv(students)),
+        (arguments.json, lambda: formats.format_grades_json(course, students, formats.limits_to_data(limits))),
+        (arguments.html, lambda: format_grades_page(course, students, language())),
     ]
     for path, write in writers:
         if path is not None:
-            with reporting_write_errors(path):
+            with report_write_errors(path):
                 write_whole_file(path, write())
 
 
@@ -249,10 +249,10 @@ def _format_sign(mark: Mark) -> str:
 
 def _print_protections(students: Sequence[StudentMarks]) -> None:
     """Print the protections that were not in force."""
-    from linkwright.learning.grading.formats import protections_in_force
+    from linkwright.learning.grading.formats import list_protections_in_force
     from linkwright.learning.sandbox import PROTECTIONS
 
-    enforced = protections_in_force(students)
+    enforced = list_protections_in_force(students)
     if not any(mark.protections for student in students for mark in student.marks.values()):
         return
     for protection, meaning in PROTECTIONS.items():

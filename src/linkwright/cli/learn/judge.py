@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from linkwright.learning.judging.exercise import Exercise
-    from linkwright.learning.judging.running import RunResult
+    from linkwright.learning.judging.runs import RunResult
     from linkwright.viewer import Viewer
 
 _PASS_SCORE = 50.0
@@ -38,12 +38,12 @@ def configure_exercises(parser: argparse.ArgumentParser) -> None:
 
 def run_exercises(arguments: argparse.Namespace) -> int:
     """List the exercises, or print the text of one."""
-    from linkwright.learning.judging.exercise import exercise_names, find_exercise
+    from linkwright.learning.judging.exercise import find_exercise, list_exercise_names
 
     if arguments.exercise is not None:
         print(find_exercise(arguments.exercise).text(language()))
         return 0
-    for name in exercise_names():
+    for name in list_exercise_names():
         exercise = find_exercise(name)
         minutes = localized(phrase("{minutes} min", minutes=exercise.minutes))
         print(f"{name:<20} {'*' * exercise.difficulty:<5} {minutes:>7}  {exercise.title.get(language())}")
@@ -71,7 +71,7 @@ def configure_judge(parser: argparse.ArgumentParser) -> None:
 def run_judge(arguments: argparse.Namespace) -> int:
     """Judge a program, and return 1 if its mean score is below 50."""
     from linkwright.learning.judging.exercise import find_exercise
-    from linkwright.learning.judging.running import judge_program
+    from linkwright.learning.judging.runs import judge_program
 
     exercise = find_exercise(arguments.exercise)
     program = arguments.program or Path(f"{exercise.id}.py")

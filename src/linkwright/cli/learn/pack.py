@@ -100,7 +100,7 @@ def _require_packaging() -> None:
 
 
 def _make_pack(folder: PackFolder, arguments: argparse.Namespace) -> list[Diagnostic]:
-    from linkwright.learning.packing.making import PackContents, make_pack, world_folders
+    from linkwright.learning.packing.pack_builder import PackContents, find_world_folders, make_pack
     from linkwright.learning.packing.pack_folder import PackSettings
     from linkwright.learning.packing.targets import PYTHONS, SYSTEMS
 
@@ -114,7 +114,7 @@ def _make_pack(folder: PackFolder, arguments: argparse.Namespace) -> list[Diagno
         own_wheels=arguments.wheel,
         models=_select_models(arguments.models),
         models_source=arguments.models_from,
-        worlds=[] if arguments.no_worlds else world_folders(),
+        worlds=[] if arguments.no_worlds else find_world_folders(),
         docs=_check_docs_folder(arguments.docs),
     )
     line = ProgressLine()
@@ -158,7 +158,7 @@ def _check_docs_folder(folder: Path | None) -> Path | None:
 
 
 def _check_pack(folder: PackFolder) -> list[Diagnostic]:
-    from linkwright.learning.packing.checking import check_pack
+    from linkwright.learning.packing.pack_verification import check_pack
 
     line = ProgressLine()
 
@@ -177,12 +177,12 @@ def _check_pack(folder: PackFolder) -> list[Diagnostic]:
 
 def _print_summary(folder: PackFolder, settings: PackSettings) -> None:
     """Print the contents of the pack, and the packages that it lacks for each system."""
-    from linkwright.learning.packing.pack_folder import installed_size
+    from linkwright.learning.packing.pack_folder import compute_installed_size
     from linkwright.learning.packing.targets import SYSTEMS
 
     for system in settings.systems:
         targets = [target for target in settings.targets if target.system == system]
-        size = installed_size(folder, targets)
+        size = compute_installed_size(folder, targets)
         print(
             localized(
                 phrase(

@@ -39,9 +39,9 @@ def _add_step(parser: argparse.ArgumentParser) -> None:
 
 
 def _open_classroom(arguments: argparse.Namespace) -> Classroom:
-    from linkwright.learning.classroom import enclosing_workspace, open_classroom
+    from linkwright.learning.classroom import find_enclosing_workspace, open_classroom
 
-    workspace = arguments.workspace or enclosing_workspace(Path.cwd())
+    workspace = arguments.workspace or find_enclosing_workspace(Path.cwd())
     return open_classroom(workspace.absolute(), arguments.course)
 
 
@@ -117,7 +117,7 @@ def run_check(arguments: argparse.Namespace) -> int:
         if next_step.address != step.address:
             print(localized(phrase("passed; the next step is {step}", step=next_step.address)))
         return 0
-    if count := len(classroom.steps_to_catch_up(step)):
+    if count := len(classroom.find_steps_to_catch_up(step)):
         command = f"linkwright learn catch-up {step.address}"
         message = phrase(
             "unfinished steps before this one: {count}; `{command}` copies their solutions from the course",
@@ -139,7 +139,7 @@ def configure_answer(parser: argparse.ArgumentParser) -> None:
 def run_answer(arguments: argparse.Namespace) -> int:
     """Store the answer to a step, and check the step."""
     classroom = _open_classroom(arguments)
-    classroom.answer(classroom.course.find_step(arguments.step), arguments.number)
+    classroom.record_answer(classroom.course.find_step(arguments.step), arguments.number)
     return run_check(arguments)
 
 

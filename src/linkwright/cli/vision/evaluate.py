@@ -28,7 +28,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Evaluate a detector, and print the results."""
-    from linkwright.vision.training.card import confusion_table, results_table
+    from linkwright.vision.training.card import format_confusion_table, format_results_table
     from linkwright.vision.training.training_run import evaluate_on_dataset
 
     figures = evaluate_on_dataset(arguments.model, arguments.dataset, arguments.split)
@@ -37,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps(data, indent=2, ensure_ascii=False))
         return FINE
     print(f"{figures.images} images: mAP50 {figures.map50:.3f}, mAP50-95 {figures.map:.3f}")
-    print("\n".join(results_table(figures)))
+    print("\n".join(format_results_table(figures)))
     if arguments.confusion:
-        print("\n".join(["", *confusion_table(figures)]))
+        print("\n".join(["", *format_confusion_table(figures)]))
     return FINE

@@ -94,7 +94,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Train a network, evaluate it, and print the results."""
-    from linkwright.vision.training.card import results_table
+    from linkwright.vision.training.card import format_results_table
     from linkwright.vision.training.options import Options
     from linkwright.vision.training.training_run import train_network
 
@@ -122,7 +122,7 @@ def run(arguments: argparse.Namespace) -> int:
     result = train_network(options, lambda epoch: _print_epoch(epoch, options.epochs))
     for report in result.reports:
         print(f"{report.title}: mAP50 {report.evaluation.map50:.3f}, mAP50-95 {report.evaluation.map:.3f}")
-        print("\n".join(results_table(report.evaluation)))
+        print("\n".join(format_results_table(report.evaluation)))
     print(result.network)
     print(result.card)
     return INTERRUPTED if result.was_interrupted else FINE

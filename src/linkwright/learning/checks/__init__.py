@@ -1,1 +1,1 @@
-"""The checks of lessons: their declaration, the objects that they inspect, and how they run."""
+"""The checks of lessons: their declaration, the objects that they inspect, and their runs."""

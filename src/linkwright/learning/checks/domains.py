@@ -10,7 +10,7 @@ _DOMAINS = range(1, 101)
 """The domains among which checks select, without 0, the default. Other programs use the ports of higher ones."""
 
 _FIRST_PORT = 7400
-_PORTS_OF_DOMAIN = 250
+_PORTS_PER_DOMAIN = 250
 
 _WAIT_S = 0.2
 
@@ -18,7 +18,7 @@ _locks: list[socket.socket] = []
 """Sockets that are open until the process ends, however it ends."""
 
 
-def hold_domain() -> int:
+def reserve_domain() -> int:
     """Reserve a ROS domain for this process until the process ends, and return its ID.
 
     The domain of the environment is never returned, because the learner's own programs use it.
@@ -31,15 +31,15 @@ def hold_domain() -> int:
     start = os.getpid() % len(domains)
     while True:
         for domain in domains[start:] + domains[:start]:
-            if _hold(domain):
+            if _lock_domain(domain):
                 return domain
         time.sleep(_WAIT_S)
 
 
-def _hold(domain: int) -> bool:
+def _lock_domain(domain: int) -> bool:
     lock = socket.socket()
     try:
-        lock.bind(("127.0.0.1", _FIRST_PORT + _PORTS_OF_DOMAIN * domain))
+        lock.bind(("127.0.0.1", _FIRST_PORT + _PORTS_PER_DOMAIN * domain))
         lock.listen()
     except OSError:
         lock.close()

@@ -8,10 +8,12 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Span, ph
 
 
 def describe_finding(finding: Diagnostic, file: str | None = None) -> Phrase:
-    """Return a finding as one line: its file, line and column, the message, the code, and the hint if it has one.
+    """Return a finding as one line.
+
+    The line has the file, the position, the message, the code, and the hint if there is one.
 
     Args:
-        finding: the finding.
+        finding: the finding about a file of the learner.
         file: the file to name if the finding has no place.
     """
     text = phrase("{message} [{code}]", message=finding.message, code=finding.code)

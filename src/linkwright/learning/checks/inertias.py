@@ -11,7 +11,7 @@ from linkwright.geometry.shapes import Box, Cylinder, Sphere
 from linkwright.urdf.model import Inertial
 
 
-def inertia_matrix(inertial: Inertial) -> NDArray[np.float64]:
+def make_inertia_matrix(inertial: Inertial) -> NDArray[np.float64]:
     """Return the inertia of a link in the frame of its `<inertial>`, shape (3, 3), in kg m²."""
     return np.array(
         [
@@ -22,13 +22,13 @@ def inertia_matrix(inertial: Inertial) -> NDArray[np.float64]:
     )
 
 
-def moments_of_inertia(
+def compute_moments_of_inertia(
     shape: Box | Cylinder | Sphere, mass: float, along: Sequence[float] | None = None
 ) -> tuple[float, float, float]:
     """Return the moments of a solid shape about x, y and z through its center, in kg m².
 
     Args:
-        shape: the shape.
+        shape: the solid shape with its size in m.
         mass: its mass in kg.
         along: the direction of a cylinder's axis, one of x, y and z; None for z.
     """

@@ -8,11 +8,11 @@ from collections.abc import Iterable
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.hosting.launch_log import LaunchLog
 
-_SKIPPED = "LAUNCH146"
+_SKIPPED_NODE_CODE = "LAUNCH146"
 
 
 class CheckedLog(LaunchLog):
-    """The log of a launch during a check, which also collects the problems reported by the launch.
+    """The log of a launch during a check, which also collects the launch's problems.
 
     Args:
         output: the stream for all lines.
@@ -27,7 +27,7 @@ class CheckedLog(LaunchLog):
         """Log findings about the learner's files, and collect the findings that are problems."""
         findings = list(diagnostics)
         for finding in findings:
-            if finding.code == _SKIPPED:
+            if finding.code == _SKIPPED_NODE_CODE:
                 self._problems.extend(
                     Diagnostic(finding.code, note.message, note.span, hint=finding.hint) for note in finding.notes
                 )

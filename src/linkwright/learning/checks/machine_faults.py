@@ -1,4 +1,7 @@
-"""Detect checks that failed because the machine lacks memory, disk space, processes or libraries."""
+"""Detect checks that failed because of the machine.
+
+The machine may lack memory, disk space, processes or libraries.
+"""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, nearest, phrase, quoted_names
 
-_MAX_FILES = 3
+_MAX_LISTED_FILES = 3
 _SKIPPED_FOLDERS = {"build", "install", "log", "__pycache__"}
 
 
@@ -50,27 +50,32 @@ def describe_missing_file(folder: Path, name: str, workspace: Path) -> Phrase:
 def _find_same_named_files(folder: Path, name: str) -> list[str]:
     """Return the files of a folder whose names differ only in case and punctuation from a name."""
     names = [file.relative_to(folder).as_posix() for file in _walk_files(folder)]
-    return [other for other in names if _key(Path(other).name) == _key(Path(name).name)][:_MAX_FILES]
+    return [other for other in names if _normalize_name(Path(other).name) == _normalize_name(Path(name).name)][
+        :_MAX_LISTED_FILES
+    ]
 
 
 def _find_similar_files(folder: Path, name: str) -> list[str]:
     """Return the files of a folder whose names resemble a name."""
     names = [file.relative_to(folder).as_posix() for file in _walk_files(folder)]
-    stem = _stem(name)
-    related = [other for other in names if _stem(other) == stem]
+    stem = _get_stem(name)
+    related = [other for other in names if _get_stem(other) == stem]
     suffix = Path(name).suffix
-    typos = nearest(name, [other for other in names if Path(other).suffix == suffix], _MAX_FILES)
+    typos = nearest(name, [other for other in names if Path(other).suffix == suffix], _MAX_LISTED_FILES)
     neighbors = [other for other in names if Path(other).parent == Path(name).parent and Path(other).suffix == suffix]
-    return list(dict.fromkeys([*related, *typos, *neighbors]))[:_MAX_FILES]
+    return list(dict.fromkeys([*related, *typos, *neighbors]))[:_MAX_LISTED_FILES]
 
 
-def _key(name: str) -> str:
-    """Return a name in lower case, without punctuation, to compare ``Display_launch.py`` and ``display.launch.py``."""
+def _normalize_name(name: str) -> str:
+    """Return a name in lower case, without punctuation.
+
+    So ``Display_launch.py`` and ``display.launch.py`` compare equal.
+    """
     return re.sub(r"[^a-z0-9]", "", name.casefold())
 
 
-def _stem(name: str) -> str:
-    return _key(Path(name).name.partition(".")[0])
+def _get_stem(name: str) -> str:
+    return _normalize_name(Path(name).name.partition(".")[0])
 
 
 def _walk_files(folder: Path) -> Iterator[Path]:

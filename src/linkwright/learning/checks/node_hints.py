@@ -12,7 +12,7 @@ _MESSAGE_CALL = re.compile(r"\b([A-Z]\w*)\(")
 
 
 def hint_about_line(error: Exception, line: str) -> Phrase | None:
-    """Return a hint about an exception of a node, from its text and the line that raised it, or None."""
+    """Return a hint about a node's exception, given the line that raised it, or None."""
     text = str(error)
     if type(error).__name__ == "NotInitializedException":
         return phrase("write rclpy.init(), with parentheses, before the first node is created")

@@ -13,9 +13,9 @@ import yaml
 from linkwright.descriptions import examine
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity, did_you_mean, phrase
 from linkwright.learning.checks.findings import add_hint, describe_error, describe_finding
-from linkwright.learning.checks.installed import files_of_setup
-from linkwright.learning.checks.launched import LaunchCheck
-from linkwright.learning.checks.misplaced import XML_SUFFIXES, describe_unread, explain_missing
+from linkwright.learning.checks.installed_files import list_setup_files
+from linkwright.learning.checks.launch_check import LaunchCheck
+from linkwright.learning.checks.misplaced_elements import XML_SUFFIXES, describe_unread, explain_missing
 from linkwright.learning.checks.missing_files import describe_missing_file
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.programs import find_program
@@ -33,9 +33,9 @@ class FileFolder:
     """A folder of the learner's files.
 
     Attributes:
-        folder: the folder.
+        folder: the path of the folder.
         finder: the finder of the workspace's packages.
-        workspace: the workspace.
+        workspace: the learner's workspace.
     """
 
     def __init__(self, folder: Path, finder: PackageFinder, workspace: Path | None = None) -> None:
@@ -91,7 +91,7 @@ class FileFolder:
         path = self.file(name)
         self.robot(name)
         for source in expand(path, packages=self.finder).dependencies:
-            overlay = _with_property(source, property_name, value)
+            overlay = _overlay_property(source, property_name, value)
             if overlay is not None:
                 circumstance = phrase("when the check sets {name} to {value}", name=property_name, value=value)
                 return self._read_robot(path, {}, overlay, circumstance)
@@ -129,7 +129,7 @@ class FileFolder:
             raise NotYet(describe_error(error)) from None
         errors = [finding for finding in description.diagnostics if _is_mistake(finding)]
         if errors or description.robot is None:
-            raise NotYet(describe_finding(min(errors, key=lambda finding: finding.code not in _CAUSES)))
+            raise NotYet(describe_finding(min(errors, key=lambda finding: finding.code not in _CAUSE_CODES)))
         if arguments:
             argument_text = " ".join(f"{key}:={value}" for key, value in arguments.items())
             circumstance = phrase("with {arguments}", arguments=argument_text)
@@ -142,7 +142,9 @@ class FileFolder:
         )
 
     def simulate(self, name: str) -> AbstractContextManager[SteppedSimulation]:
-        """Return a simulation of a file's robot in an empty world, completed as ``linkwright drive`` does.
+        """Return a simulation of a file's robot in an empty world.
+
+        Missing elements are added, as ``linkwright drive`` does.
 
         Args:
             name: the path in the folder.
@@ -150,7 +152,7 @@ class FileFolder:
         Raises:
             NotYet: the file is missing or not valid; or, at the start of the simulation, the robot cannot be driven.
         """
-        from linkwright.learning.checks.driven import simulate_completed
+        from linkwright.learning.checks.completed_robot import simulate_completed
 
         self.robot(name)
         return simulate_completed(self.file(name), self.finder)
@@ -173,7 +175,7 @@ class FileFolder:
         return None if document.root is None else yaml.constructor.SafeConstructor().construct_document(document.root)
 
     def expect_no_findings(self, name: str = "") -> None:
-        """Require that ``linkwright check`` finds no errors or warnings in a file, or in the whole folder.
+        """Require that ``linkwright check`` finds no errors or warnings in a file or the folder.
 
         Raises:
             NotYet: there is an error or a warning, or ``package.xml`` does not list a package that a launch file uses.
@@ -187,33 +189,36 @@ class FileFolder:
         except LinkwrightError as error:
             findings = list(error.diagnostics)
         serious = [
-            finding for finding in findings if finding.severity is not Severity.INFO or finding.code in _MISTAKES
+            finding for finding in findings if finding.severity is not Severity.INFO or finding.code in _MISTAKE_CODES
         ]
         if serious:
             raise NotYet(describe_finding(serious[0]))
 
 
-_MISTAKES = frozenset({"LW848"})
+_MISTAKE_CODES = frozenset({"LW848"})
 """Findings of the level info that fail a step: the package does not run on a computer that has only what it lists.
 
 Other findings of this level are advice, which a right solution may ignore.
 """
 
 _RUN_TIME_TAGS = {"depend", "exec_depend"}
-_UNDEFINED_MATERIAL = "URDF160"
-_CAUSES = {"URDF110", "URDF151"}
+_UNDEFINED_MATERIAL_CODE = "URDF160"
+_CAUSE_CODES = {"URDF110", "URDF151"}
 """Findings to report first: a name or a child that is written twice is also missing where it belongs."""
 
 
 def _is_mistake(finding: Diagnostic) -> bool:
-    """Return whether some reader of XML or URDF rejects a file because of a finding, even if urdfdom accepts it."""
+    """Return whether any reader of XML or URDF rejects a file because of a finding.
+
+    urdfdom may still accept the file.
+    """
     if finding.severity is Severity.ERROR:
         return True
-    return finding.code.startswith("XML") or finding.code == _UNDEFINED_MATERIAL
+    return finding.code.startswith("XML") or finding.code == _UNDEFINED_MATERIAL_CODE
 
 
-def _with_property(source: Path, name: str, value: str) -> Overlay | None:
-    """Return a file's text with another value of a property, or None if the file does not set it."""
+def _overlay_property(source: Path, name: str, value: str) -> Overlay | None:
+    """Return a file's text with another value of a property, or None if the file has none."""
     if source.suffix not in XML_SUFFIXES:
         return None
     document = parse_file(source)
@@ -230,10 +235,10 @@ class PackageCheck(FileFolder):
     """A package of the learner's workspace.
 
     Attributes:
-        name: the name.
+        name: the name of the package.
         folder: the folder with its sources.
         finder: the finder of the workspace's packages.
-        workspace: the workspace.
+        workspace: the learner's workspace.
     """
 
     def __init__(self, name: str, folder: Path, finder: PackageFinder, workspace: Path | None = None) -> None:
@@ -290,7 +295,9 @@ class PackageCheck(FileFolder):
             )
 
     def expect_installed(self, *names: str) -> None:
-        """Require that ``setup.py`` installs files into the package's share folder, at their paths in the package.
+        """Require that ``setup.py`` installs files into the package's share folder.
+
+        Each file must keep its path in the package.
 
         Args:
             names: the paths in the package, such as ``launch/display.launch.py``.
@@ -298,7 +305,7 @@ class PackageCheck(FileFolder):
         Raises:
             NotYet: ``setup.py`` fails, or does not install one of the files at its path.
         """
-        installed = files_of_setup(self.folder)
+        installed = list_setup_files(self.folder)
         marker = PurePosixPath("share/ament_index/resource_index/packages", self.name)
         if marker not in installed:
             raise NotYet(

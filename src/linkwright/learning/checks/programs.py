@@ -21,10 +21,10 @@ from linkwright.learning.checks.not_yet import NotYet
 if TYPE_CHECKING:
     from linkwright.packages.readers.installed import EntryPoint
 
-_BUDGET = re.compile(r"without waiting, at (.+?):(\d+)")
-_WITHOUT_COMMA = re.compile(r"""['"]\s*[\w-]+\s*=\s*[\w.]+:\w+\s*['"][ \t]*\n\s*['"]""")
-_WITHOUT_FUNCTION = re.compile(r"""['"]\s*([\w-]+)\s*=\s*([A-Za-z_]\w*(?:\.\w+)+)\s*['"]""")
-_ADDRESS = re.compile(r" at 0x[0-9a-f]+")
+_EXCEEDED_BUDGET = re.compile(r"without waiting, at (.+?):(\d+)")
+_ENTRY_WITHOUT_COMMA = re.compile(r"""['"]\s*[\w-]+\s*=\s*[\w.]+:\w+\s*['"][ \t]*\n\s*['"]""")
+_ENTRY_WITHOUT_FUNCTION = re.compile(r"""['"]\s*([\w-]+)\s*=\s*([A-Za-z_]\w*(?:\.\w+)+)\s*['"]""")
+_MEMORY_ADDRESS = re.compile(r" at 0x[0-9a-f]+")
 
 
 def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
@@ -41,19 +41,19 @@ def find_program(folder: Path, package: str, name: str) -> Callable[[], object]:
         NotYet: the package declares no such executable, or has no such module.
     """
     from linkwright import standins
-    from linkwright.learning.checks.installed import expect_valid_setup
+    from linkwright.learning.checks.installed_files import expect_valid_setup
     from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
 
     expect_valid_setup(folder)
     _expect_complete_entries(folder / "setup.py")
     entries = source_programs(folder).entry_points
     if name not in entries:
-        raise NotYet(_missing_executable(name, entries))
+        raise NotYet(_explain_missing_executable(name, entries))
     entry = entries[name]
     root = python_root(folder, package)
     path = None if root is None else module_file(root, entry.module)
     if root is None or path is None:
-        raise NotYet(_missing_module(name, entry, folder, package))
+        raise NotYet(_explain_missing_module(name, entry, folder, package))
     _expect_function(path, entry.function)
     standins.activate()
     if str(root) not in sys.path:
@@ -76,10 +76,10 @@ def _expect_complete_entries(path: Path) -> None:
         NotYet: a comma is missing between two entries, or an entry names only a module.
     """
     text = path.read_text(encoding="utf-8") if path.is_file() else ""
-    if match := _WITHOUT_COMMA.search(text):
+    if match := _ENTRY_WITHOUT_COMMA.search(text):
         line = text.count("\n", 0, match.start()) + 1
         raise NotYet(phrase("setup.py, line {line}: a comma is missing at the end of the line", line=line))
-    if match := _WITHOUT_FUNCTION.search(text):
+    if match := _ENTRY_WITHOUT_FUNCTION.search(text):
         line = text.count("\n", 0, match.start()) + 1
         module, _, function = match[2].rpartition(".")
         is_module = path.parent.joinpath(*match[2].split(".")).with_suffix(".py").is_file()
@@ -89,7 +89,7 @@ def _expect_complete_entries(path: Path) -> None:
         )
 
 
-def _missing_executable(name: str, entries: Mapping[str, EntryPoint]) -> Phrase:
+def _explain_missing_executable(name: str, entries: Mapping[str, EntryPoint]) -> Phrase:
     """Return the message for an executable that ``setup.py`` does not declare."""
     if similar := nearest(name, entries, 1):
         return phrase("setup.py declares no executable '{name}'; there is '{similar}'", name=name, similar=similar[0])
@@ -99,7 +99,7 @@ def _missing_executable(name: str, entries: Mapping[str, EntryPoint]) -> Phrase:
     return phrase("{message}; there is '{similar}'", message=message, similar=next(iter(entries)))
 
 
-def _missing_module(name: str, entry: EntryPoint, folder: Path, package: str) -> Phrase:
+def _explain_missing_module(name: str, entry: EntryPoint, folder: Path, package: str) -> Phrase:
     """Return the message for an executable whose module is missing, with the correct entry."""
     message = phrase("the module '{module}' of the executable '{name}' is missing", name=name, module=entry.module)
     for ending in (".py", f".{entry.function}", ".main"):
@@ -131,7 +131,7 @@ def _expect_function(path: Path, function: str) -> None:
         tree = ast.parse(path.read_bytes(), str(path))
     except (SyntaxError, ValueError) as error:
         raise NotYet(describe_failure(error, path.parent)) from None
-    names = {name for statement in tree.body for name in _names_of(statement)}
+    names = {name for statement in tree.body for name in _iterate_names(statement)}
     if function not in names and "*" not in names:
         message = phrase("{file} has no function '{function}'", file=path.name, function=function)
         for statement in tree.body:
@@ -151,7 +151,7 @@ def _expect_function(path: Path, function: str) -> None:
         raise NotYet(phrase("{message}; it has {names}", message=message, names=quoted_names(functions)))
 
 
-def _names_of(statement: ast.stmt) -> Iterator[str]:
+def _iterate_names(statement: ast.stmt) -> Iterator[str]:
     """Yield the names that a statement of a module defines."""
     if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
         yield statement.name
@@ -168,10 +168,10 @@ def _names_of(statement: ast.stmt) -> Iterator[str]:
 
 
 def describe_failure(error: Exception, workspace: Path) -> Phrase:
-    """Return an exception as one sentence, with the last line of the learner's files in its traceback."""
+    """Return an exception as one sentence, with the last traceback line in the learner's files."""
     from linkwright.launch.errors.user_code import hint_about
 
-    text = _ADDRESS.sub("", f"{type(error).__name__}: {error}")
+    text = _MEMORY_ADDRESS.sub("", f"{type(error).__name__}: {error}")
     if isinstance(error, ImportError):
         text = text.removesuffix(f" ({error.path})")  # of the module, which is none of the learner's files
     frames = traceback.extract_tb(error.__traceback__)
@@ -185,13 +185,13 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
     elif own_frames:
         path, line = own_frames[-1].filename, own_frames[-1].lineno or 1
         hint = (
-            _own_module_hint(error, Path(path))
+            _hint_about_own_module(error, Path(path))
             or hint_about(error)
             or hint_about_line(error, linecache.getline(path, line))
         )
         if isinstance(error, LinkwrightError):
             text, hint = error.diagnostics[0].message, error.diagnostics[0].hint or hint
-    elif match := _BUDGET.search(text):
+    elif match := _EXCEEDED_BUDGET.search(text):
         return phrase(
             "{file}, line {line}: a loop runs without waiting; call rclpy.spin_once(node) or time.sleep(...) in it; "
             "a callback must return, so remove a loop in it",
@@ -206,8 +206,8 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
     return add_hint(described, hint)
 
 
-def _own_module_hint(error: Exception, path: Path) -> Phrase | None:
-    """Return a hint if a module of the same package is imported without the package's name, or None."""
+def _hint_about_own_module(error: Exception, path: Path) -> Phrase | None:
+    """Return a hint if a module is imported without its package's name, or None."""
     name = error.name if isinstance(error, ModuleNotFoundError) else None
     if name is None or not path.with_name(f"{name}.py").is_file():
         return None

@@ -16,24 +16,24 @@ from linkwright.geometry.arrays import matrix_from_pose, row_from_pose
 from linkwright.geometry.shapes import Box, Cylinder, Sphere
 from linkwright.kinematics.tree import KinematicTree
 from linkwright.learning.checks.findings import add_hint
-from linkwright.learning.checks.inertias import inertia_matrix, moments_of_inertia
+from linkwright.learning.checks.inertias import compute_moments_of_inertia, make_inertia_matrix
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.urdf.model import Collision, Joint, Link, Mesh, Robot, Visual
 
 Vector = Sequence[float]
 Part = Literal["visual", "collision"]
 
-_LENGTH_TOLERANCE = 0.001
+_LENGTH_TOLERANCE_M = 0.001
 """The difference between lengths and positions that checks accept, in m."""
 
-_ANGLE_TOLERANCE = 0.02
+_ANGLE_TOLERANCE_RAD = 0.02
 """The difference between directions that checks accept, in rad: 1.57 instead of pi/2 passes."""
 
 _COLOR_TOLERANCE = 0.15
 """The maximum difference of red, green or blue, from 0 to 1, for equal colors."""
 
 _DEFAULT_AXIS = (1.0, 0.0, 0.0)
-_MAX_NAMES = 8
+_MAX_LISTED_NAMES = 8
 
 
 @dataclass(frozen=True)
@@ -53,13 +53,13 @@ class ShapeSpec:
 
 
 class _CheckedPart:
-    """The base class of a robot and its parts, which adds the circumstance of a check to messages."""
+    """The base class of checked parts, which adds the circumstance of a check to messages."""
 
     def __init__(self, circumstance: Phrase | None) -> None:
         self._circumstance = circumstance
 
-    def _not_yet(self, message: Phrase) -> NotYet:
-        """Return the exception for a check that is not satisfied, with the circumstance of the check."""
+    def _make_not_yet(self, message: Phrase) -> NotYet:
+        """Return the exception for an unsatisfied check, with the circumstance of the check."""
         if self._circumstance is None:
             return NotYet(message)
         return NotYet(phrase("{circumstance}: {message}", circumstance=self._circumstance, message=message))
@@ -69,7 +69,7 @@ class RobotCheck(_CheckedPart):
     """A robot of the learner.
 
     Attributes:
-        robot: the robot.
+        robot: the robot as read from its description.
         path: the file that it was read from.
     """
 
@@ -85,7 +85,7 @@ class RobotCheck(_CheckedPart):
         """Create the checks of a robot.
 
         Args:
-            robot: the robot.
+            robot: the robot as read from its description.
             path: the file that it was read from.
             circumstance: what is special about this robot, such as a property with another value.
             explain_missing: returns the reason why a link or joint of the files is missing, from its kind and name.
@@ -105,8 +105,8 @@ class RobotCheck(_CheckedPart):
         """
         link = self.robot.links.get(name)
         if link is None:
-            raise self._not_yet(self._missing("link", name, self.robot.links))
-        return LinkCheck(link, self._rotation(name), self._circumstance, self._explain_unread)
+            raise self._make_not_yet(self._explain_absence("link", name, self.robot.links))
+        return LinkCheck(link, self._compute_rotation(name), self._circumstance, self._explain_unread)
 
     def joint(self, name: str) -> JointCheck:
         """Return a joint.
@@ -116,15 +116,15 @@ class RobotCheck(_CheckedPart):
         """
         joint = self.robot.joints.get(name)
         if joint is None:
-            raise self._not_yet(self._missing("joint", name, self.robot.joints))
-        return JointCheck(joint, self._rotation(joint.child), self._circumstance)
+            raise self._make_not_yet(self._explain_absence("joint", name, self.robot.joints))
+        return JointCheck(joint, self._compute_rotation(joint.child), self._circumstance)
 
-    def _rotation(self, link: str) -> NDArray[np.float64]:
+    def _compute_rotation(self, link: str) -> NDArray[np.float64]:
         """Return the rotation of a link's frame in the root frame, with all joints at zero."""
         tree, frames = self._frames
         return np.asarray(frames[tree.link_index(link)][:3, :3])
 
-    def _missing(self, kind: Literal["link", "joint"], name: str, names: Iterable[str]) -> Phrase:
+    def _explain_absence(self, kind: Literal["link", "joint"], name: str, names: Iterable[str]) -> Phrase:
         """Return the message for a missing link or joint, with the reason or the existing names."""
         message = phrase("no link is called '{name}'", name=name)
         if kind == "joint":
@@ -136,13 +136,15 @@ class RobotCheck(_CheckedPart):
             return phrase("{message}; {reason}", message=message, reason=reason)
         if not names:
             return message
-        return phrase("{message}; the robot has {names}", message=message, names=quoted_names(names[:_MAX_NAMES]))
+        return phrase(
+            "{message}; the robot has {names}", message=message, names=quoted_names(names[:_MAX_LISTED_NAMES])
+        )
 
     def pose(self, link: str, frame: str | None = None) -> NDArray[np.float64]:
         """Return the pose of a link's frame with all joints at zero.
 
         Args:
-            link: the link.
+            link: the name of the link.
             frame: the link whose frame is the reference; None for the root link.
 
         Returns:
@@ -160,12 +162,12 @@ class RobotCheck(_CheckedPart):
         return np.asarray(np.linalg.inv(frames[tree.link_index(frame)]) @ pose)
 
     def expect_position(
-        self, link: str, position: Vector, *, frame: str | None = None, tolerance: float = _LENGTH_TOLERANCE
+        self, link: str, position: Vector, *, frame: str | None = None, tolerance: float = _LENGTH_TOLERANCE_M
     ) -> None:
         """Require a link's frame to be at a position with all joints at zero.
 
         Args:
-            link: the link.
+            link: the name of the link.
             position: x, y and z in m.
             frame: the link whose frame is the reference; None for the root link.
             tolerance: the greatest accepted distance, in m.
@@ -175,13 +177,13 @@ class RobotCheck(_CheckedPart):
         """
         actual = self.pose(link, frame)[:3, 3]
         if np.linalg.norm(actual - np.asarray(position)) > tolerance:
-            raise self._not_yet(
+            raise self._make_not_yet(
                 phrase(
                     "the frame of '{link}' is at {actual} in the frame of '{frame}', but should be at {expected}",
                     link=link,
-                    actual=_vector_text(actual),
+                    actual=_format_vector(actual),
                     frame=frame or self.robot.root,
-                    expected=_vector_text(position),
+                    expected=_format_vector(position),
                 )
             )
 
@@ -189,7 +191,7 @@ class RobotCheck(_CheckedPart):
         """Require an axis of a link's frame to point in a direction, with all joints at zero.
 
         Args:
-            link: the link.
+            link: the name of the link.
             axis: the axis in the link's frame, such as ``(1, 0, 0)``.
             direction: the direction in the frame of reference.
             frame: the link whose frame is the reference; None for the root link.
@@ -198,16 +200,16 @@ class RobotCheck(_CheckedPart):
             NotYet: the link is missing, or its axis points in another direction.
         """
         actual = self.pose(link, frame)[:3, :3] @ np.asarray(axis, float)
-        if _angle(actual, direction, either_sign=False) > _ANGLE_TOLERANCE:
-            raise self._not_yet(
+        if _compute_angle(actual, direction, either_sign=False) > _ANGLE_TOLERANCE_RAD:
+            raise self._make_not_yet(
                 phrase(
                     "the frame of '{link}' has the wrong orientation: its axis {axis} points along {actual} in the "
                     "frame of '{frame}', but should point along {expected}; check the rpy of its joint",
                     link=link,
-                    axis=_vector_text(axis),
-                    actual=_vector_text(actual),
+                    axis=_format_vector(axis),
+                    actual=_format_vector(actual),
                     frame=frame or self.robot.root,
-                    expected=_vector_text(direction),
+                    expected=_format_vector(direction),
                 )
             )
 
@@ -221,7 +223,7 @@ class JointCheck(_CheckedPart):
     """A joint of the learner's robot.
 
     Attributes:
-        joint: the joint.
+        joint: the joint as read from the description.
     """
 
     def __init__(
@@ -238,7 +240,7 @@ class JointCheck(_CheckedPart):
             NotYet: it has another type.
         """
         if self.joint.type not in types:
-            raise self._not_yet(
+            raise self._make_not_yet(
                 phrase(
                     "the joint '{joint}' has the type '{actual}', but should be {expected}",
                     joint=self.joint.name,
@@ -256,14 +258,14 @@ class JointCheck(_CheckedPart):
         if (self.joint.parent, self.joint.child) == (parent, child):
             return
         if (self.joint.parent, self.joint.child) == (child, parent):
-            raise self._not_yet(
+            raise self._make_not_yet(
                 phrase(
                     "the parent and the child of the joint '{joint}' are exchanged: the parent must be '{parent}'",
                     joint=self.joint.name,
                     parent=parent,
                 )
             )
-        raise self._not_yet(
+        raise self._make_not_yet(
             phrase(
                 "the joint '{joint}' connects '{actual_parent}' and '{actual_child}', but should connect '{parent}' "
                 "and '{child}'",
@@ -286,42 +288,44 @@ class JointCheck(_CheckedPart):
             NotYet: the axis is another one.
         """
         actual = self._rotation @ np.asarray(self.joint.axis, float)
-        if _angle(actual, axis, either_sign=either_sign) <= _ANGLE_TOLERANCE:
+        if _compute_angle(actual, axis, either_sign=either_sign) <= _ANGLE_TOLERANCE_RAD:
             return
         if not np.any(actual):
-            raise self._not_yet(
+            raise self._make_not_yet(
                 phrase(
                     "the axis of the joint '{joint}' has no direction; write <axis xyz=\"{expected}\"/>",
                     joint=self.joint.name,
-                    expected=_vector_text(axis),
+                    expected=_format_vector(axis),
                 )
             )
-        if _angle(actual, self.joint.axis, either_sign=True) > _ANGLE_TOLERANCE:
-            raise self._not_yet(
+        if _compute_angle(actual, self.joint.axis, either_sign=True) > _ANGLE_TOLERANCE_RAD:
+            raise self._make_not_yet(
                 phrase(
                     "the axis of the joint '{joint}' points along {actual}, because the rpy of a joint's <origin> "
                     "turns it, but should point along {expected}",
                     joint=self.joint.name,
-                    actual=_vector_text(actual),
-                    expected=_vector_text(axis),
+                    actual=_format_vector(actual),
+                    expected=_format_vector(axis),
                 )
             )
-        if _angle(actual, axis, either_sign=True) <= _ANGLE_TOLERANCE:
-            raise self._not_yet(phrase("the axis of the joint '{joint}' has the wrong sign", joint=self.joint.name))
+        if _compute_angle(actual, axis, either_sign=True) <= _ANGLE_TOLERANCE_RAD:
+            raise self._make_not_yet(
+                phrase("the axis of the joint '{joint}' has the wrong sign", joint=self.joint.name)
+            )
         if tuple(self.joint.axis) == _DEFAULT_AXIS:
-            raise self._not_yet(
+            raise self._make_not_yet(
                 phrase(
                     "the axis of the joint '{joint}' is 1 0 0, the default without <axis>, but should be {expected}",
                     joint=self.joint.name,
-                    expected=_vector_text(axis),
+                    expected=_format_vector(axis),
                 )
             )
-        raise self._not_yet(
+        raise self._make_not_yet(
             phrase(
                 "the axis of the joint '{joint}' is {actual}, but should be {expected}",
                 joint=self.joint.name,
-                actual=_vector_text(self.joint.axis),
-                expected=_vector_text(axis),
+                actual=_format_vector(self.joint.axis),
+                expected=_format_vector(axis),
             )
         )
 
@@ -330,7 +334,7 @@ class LinkCheck(_CheckedPart):
     """A link of the learner's robot.
 
     Attributes:
-        link: the link.
+        link: the link as read from the description.
     """
 
     def __init__(
@@ -359,10 +363,10 @@ class LinkCheck(_CheckedPart):
         """
         parts: Sequence[Visual | Collision] = self.link.visuals if part == "visual" else self.link.collisions
         self.expect_part(part)
-        all_objections = (_shape_difference(candidate, expected, self._rotation) for candidate in parts)
+        all_objections = (_describe_shape_difference(candidate, expected, self._rotation) for candidate in parts)
         objections = [objection for objection in all_objections if objection is not None]
         if len(objections) == len(parts):
-            raise self._not_yet(
+            raise self._make_not_yet(
                 phrase("the {part} of '{link}': {reason}", part=part, link=self.link.name, reason=objections[0])
             )
 
@@ -375,13 +379,13 @@ class LinkCheck(_CheckedPart):
         if self.link.visuals if part == "visual" else self.link.collisions:
             return
         message = phrase("the link '{link}' has no <{part}>", link=self.link.name, part=part)
-        raise self._not_yet(add_hint(message, self._explain_unread and self._explain_unread()))
+        raise self._make_not_yet(add_hint(message, self._explain_unread and self._explain_unread()))
 
     def expect_inertia(self, shape: Box | Cylinder | Sphere, *, along: Vector | None = None, factor: float) -> None:
         """Require the link to have the moments of inertia of a solid shape with the link's mass.
 
         Args:
-            shape: the shape.
+            shape: the solid shape with its size in m.
             along: the direction of a cylinder's axis in the root frame, with all joints at zero.
             factor: the greatest accepted ratio between a moment and the correct moment.
 
@@ -390,13 +394,13 @@ class LinkCheck(_CheckedPart):
         """
         inertial = self.link.inertial
         if inertial is None:
-            raise self._not_yet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
+            raise self._make_not_yet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
         rotation = self._rotation @ matrix_from_pose(row_from_pose(inertial.origin))[:3, :3]
-        actual = np.diag(rotation @ inertia_matrix(inertial) @ rotation.T)
-        expected = moments_of_inertia(shape, inertial.mass, along)
+        actual = np.diag(rotation @ make_inertia_matrix(inertial) @ rotation.T)
+        expected = compute_moments_of_inertia(shape, inertial.mass, along)
         for name, moment, right in zip(("ixx", "iyy", "izz"), actual, expected, strict=True):
             if not right / factor <= moment <= right * factor:
-                raise self._not_yet(
+                raise self._make_not_yet(
                     phrase(
                         "the moment {name} of '{link}' is {actual:.3g} kg m², but should be about {expected:.3g} "
                         "for a mass of {mass:g} kg; check the sizes and the rpy that the inertia macro receives",
@@ -419,14 +423,14 @@ class LinkCheck(_CheckedPart):
         """
         colors = [visual.material.rgba for visual in self.link.visuals if visual.material and visual.material.rgba]
         if not colors:
-            raise self._not_yet(phrase("the visual of '{link}' has no color", link=self.link.name))
+            raise self._make_not_yet(phrase("the visual of '{link}' has no color", link=self.link.name))
         if all(np.abs(np.subtract(color[:3], rgb)).max() > _COLOR_TOLERANCE for color in colors):
-            raise self._not_yet(
+            raise self._make_not_yet(
                 phrase(
                     "the visual of '{link}' has the color {actual}, but should have {expected}",
                     link=self.link.name,
-                    actual=_vector_text(colors[0][:3]),
-                    expected=_vector_text(rgb),
+                    actual=_format_vector(colors[0][:3]),
+                    expected=_format_vector(rgb),
                 )
             )
 
@@ -441,10 +445,10 @@ class LinkCheck(_CheckedPart):
             NotYet: the link has no mass, or another one.
         """
         if self.link.inertial is None:
-            raise self._not_yet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
+            raise self._make_not_yet(phrase("the link '{link}' has no <{part}>", link=self.link.name, part="inertial"))
         mass = self.link.inertial.mass
         if not lowest <= mass <= highest:
-            raise self._not_yet(
+            raise self._make_not_yet(
                 phrase(
                     "the mass of '{link}' is {mass:g} kg, but should be between {lowest:g} and {highest:g} kg",
                     link=self.link.name,
@@ -455,7 +459,9 @@ class LinkCheck(_CheckedPart):
             )
 
 
-def _shape_difference(part: Visual | Collision, expected: ShapeSpec, rotation: NDArray[np.float64]) -> Phrase | None:
+def _describe_shape_difference(
+    part: Visual | Collision, expected: ShapeSpec, rotation: NDArray[np.float64]
+) -> Phrase | None:
     """Return the difference between a part and the expected shape, or None if they are equal.
 
     The rotation is that of the link's frame in the root frame.
@@ -463,10 +469,12 @@ def _shape_difference(part: Visual | Collision, expected: ShapeSpec, rotation: N
     shape = part.geometry
     if isinstance(shape, Mesh) or type(shape) is not type(expected.shape):
         return phrase(
-            "it is a {actual}, but should be a {expected}", actual=_kind(shape), expected=_kind(expected.shape)
+            "it is a {actual}, but should be a {expected}",
+            actual=_get_shape_kind(shape),
+            expected=_get_shape_kind(expected.shape),
         )
-    for name, actual, expected_size in _sizes(shape, expected.shape):
-        if abs(actual - expected_size) > _LENGTH_TOLERANCE:
+    for name, actual, expected_size in _compare_sizes(shape, expected.shape):
+        if abs(actual - expected_size) > _LENGTH_TOLERANCE_M:
             return phrase(
                 "its {size} is {actual:g} m, but should be {expected:g} m",
                 size=name,
@@ -480,22 +488,25 @@ def _shape_difference(part: Visual | Collision, expected: ShapeSpec, rotation: N
         return phrase(
             "its rpy contains {angle:g}: angles are in radians, and a quarter turn is 1.5708", angle=largest_angle
         )
-    if expected.along is not None and _angle(direction, expected.along, either_sign=True) > _ANGLE_TOLERANCE:
+    if (
+        expected.along is not None
+        and _compute_angle(direction, expected.along, either_sign=True) > _ANGLE_TOLERANCE_RAD
+    ):
         return phrase(
             "its axis points along {actual}, but should point along {expected}",
-            actual=_vector_text(direction),
-            expected=_vector_text(expected.along),
+            actual=_format_vector(direction),
+            expected=_format_vector(expected.along),
         )
-    if expected.at is not None and np.linalg.norm(center - np.asarray(expected.at)) > _LENGTH_TOLERANCE:
+    if expected.at is not None and np.linalg.norm(center - np.asarray(expected.at)) > _LENGTH_TOLERANCE_M:
         return phrase(
             "its center is at {actual}, but should be at {expected}",
-            actual=_vector_text(center),
-            expected=_vector_text(expected.at),
+            actual=_format_vector(center),
+            expected=_format_vector(expected.at),
         )
     return None
 
 
-def _sizes(shape: object, expected: object) -> list[tuple[str, float, float]]:
+def _compare_sizes(shape: object, expected: object) -> list[tuple[str, float, float]]:
     """Return the name, the actual value and the expected value of each size of a shape, in m."""
     if isinstance(shape, Box) and isinstance(expected, Box):
         sizes = zip("xyz", shape.size, expected.size, strict=True)
@@ -504,16 +515,16 @@ def _sizes(shape: object, expected: object) -> list[tuple[str, float, float]]:
     return [(name, getattr(shape, name), getattr(expected, name)) for name in names]
 
 
-def _kind(shape: object) -> str:
+def _get_shape_kind(shape: object) -> str:
     return type(shape).__name__.lower()
 
 
-def _angle(first: Vector | NDArray[np.float64], second: Vector, *, either_sign: bool) -> float:
+def _compute_angle(first: Vector | NDArray[np.float64], second: Vector, *, either_sign: bool) -> float:
     """Return the angle between two directions in rad."""
     lengths = np.linalg.norm(first) * np.linalg.norm(second)
     cosine = float(np.dot(first, second) / lengths) if lengths else 0.0
     return float(np.arccos(np.clip(abs(cosine) if either_sign else cosine, -1.0, 1.0)))
 
 
-def _vector_text(vector: Vector | NDArray[np.float64]) -> str:
+def _format_vector(vector: Vector | NDArray[np.float64]) -> str:
     return " ".join(f"{round(float(value), 4) + 0.0:g}" for value in vector)

@@ -1,4 +1,4 @@
-"""Reasons why a learner's program publishes nothing on a topic, derived from the graph of a check."""
+"""Reasons why a learner's program publishes nothing, derived from the graph of a check."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from linkwright.learning.checks.not_yet import NotYet
 if TYPE_CHECKING:
     from linkwright.graph import Graph
 
-_TEST_NODE = "test"
+_TEST_NODE_NAME = "test"
 _GENERAL_TOPICS = {"/rosout", "/parameter_events", "/clock", "/tf", "/tf_static"}
 
 
@@ -32,7 +32,7 @@ def expect_published(test: Any, topic: str, type_name: str, messages: Any) -> No
 
 def _explain_silence(test: Any, topic: str, type_name: str) -> Phrase:
     silent = phrase("nothing is published on {topic}", topic=topic)
-    publishers = _endpoints(test, published=True)
+    publishers = _list_types_by_topic(test, published=True)
     types = publishers.get(topic)
     if types is not None and type_name not in types:
         return phrase(
@@ -43,7 +43,7 @@ def _explain_silence(test: Any, topic: str, type_name: str) -> Phrase:
         )
     if types is not None:
         return phrase("{silent}: {reason}", silent=silent, reason=_explain_idle(test))
-    if similar := _similar_files(topic, publishers):
+    if similar := _find_similar_topic(topic, publishers):
         return phrase("{silent}; the program publishes {similar}", silent=silent, similar=similar)
     if publishers:
         return phrase("{silent}; the program publishes {topics}", silent=silent, topics=", ".join(sorted(publishers)))
@@ -56,7 +56,9 @@ def _explain_idle(test: Any) -> Phrase:
     """Return the reason why a program with a publisher does not publish."""
     graph = test.graph
     subscriptions = {
-        name: types for name, types in _endpoints(test, published=False).items() if name not in _GENERAL_TOPICS
+        name: types
+        for name, types in _list_types_by_topic(test, published=False).items()
+        if name not in _GENERAL_TOPICS
     }
     published = {
         name: {info.topic_type for info in publishers}
@@ -100,9 +102,9 @@ def _explain_idle(test: Any) -> Phrase:
 def _is_incompatible(graph: Graph, topic: str) -> bool:
     from linkwright.graph.qos.compatibility import QoSCompatibility, qos_check_compatible
 
-    offered = [info for info in graph.get_publishers_info_by_topic(topic) if info.node_name != _TEST_NODE]
+    offered = [info for info in graph.get_publishers_info_by_topic(topic) if info.node_name != _TEST_NODE_NAME]
     offered = offered or graph.get_publishers_info_by_topic(topic)
-    requested = [info for info in graph.get_subscriptions_info_by_topic(topic) if info.node_name != _TEST_NODE]
+    requested = [info for info in graph.get_subscriptions_info_by_topic(topic) if info.node_name != _TEST_NODE_NAME]
     return any(
         qos_check_compatible(one.qos_profile, other.qos_profile)[0] is QoSCompatibility.ERROR
         for one in offered
@@ -110,8 +112,8 @@ def _is_incompatible(graph: Graph, topic: str) -> bool:
     )
 
 
-def _endpoints(test: Any, *, published: bool) -> dict[str, set[str]]:
-    """Return the types, by topic, of the publishers or of the subscriptions of the learner's programs."""
+def _list_types_by_topic(test: Any, *, published: bool) -> dict[str, set[str]]:
+    """Return the types by topic of the publishers or subscriptions of the learner's programs."""
     graph = test.graph
     find = graph.get_publisher_names_and_types_by_node if published else graph.get_subscriber_names_and_types_by_node
     endpoints: dict[str, set[str]] = {}
@@ -122,7 +124,7 @@ def _endpoints(test: Any, *, published: bool) -> dict[str, set[str]]:
     return endpoints
 
 
-def _similar_files(topic: str, topics: dict[str, set[str]]) -> str | None:
-    last = topic.rpartition("/")[2]
-    same = [other for other in topics if other.rpartition("/")[2] == last]
-    return next(iter([*same, *nearest(topic, topics, 1)]), None)
+def _find_similar_topic(topic: str, topics: dict[str, set[str]]) -> str | None:
+    base_name = topic.rpartition("/")[2]
+    same_named = [other for other in topics if other.rpartition("/")[2] == base_name]
+    return next(iter([*same_named, *nearest(topic, topics, 1)]), None)

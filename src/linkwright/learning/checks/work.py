@@ -8,7 +8,7 @@ from pathlib import Path
 from linkwright.diagnostics import LinkwrightError, Phrase, did_you_mean, phrase, quoted_names
 from linkwright.diagnostics.lookalikes import to_ascii_text
 from linkwright.learning.checks.findings import describe_error
-from linkwright.learning.checks.installed import expect_valid_setup
+from linkwright.learning.checks.installed_files import expect_valid_setup
 from linkwright.learning.checks.not_yet import NotYet
 from linkwright.learning.checks.packages import FileFolder, PackageCheck
 from linkwright.packages import PackageFinder
@@ -65,7 +65,7 @@ class Work(FileFolder):
         if name in found:
             return found[name]
         if (sources / name / "package.xml").is_file():
-            raise NotYet(_wrong_manifest(sources / name, name))
+            raise NotYet(_explain_wrong_manifest(sources / name, name))
         if (self.folder / name).is_dir():
             raise NotYet(phrase("the package '{name}' is beside the folder 'src'; move it into 'src'", name=name))
         if (sources / name).is_dir():
@@ -133,8 +133,8 @@ class Work(FileFolder):
         raise NotYet(phrase("{number:g} is not correct; measure again", number=number))
 
 
-def _wrong_manifest(folder: Path, name: str) -> Phrase:
-    """Return the message for a ``package.xml`` that has another name than its folder, or is not XML."""
+def _explain_wrong_manifest(folder: Path, name: str) -> Phrase:
+    """Return the message for a ``package.xml`` that is not XML, or has a wrong name."""
     try:
         parse_file(folder / "package.xml")
     except LinkwrightError as error:

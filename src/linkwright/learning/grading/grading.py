@@ -12,15 +12,15 @@ from linkwright.diagnostics import LinkwrightError, missing_extra, phrase
 from linkwright.diagnostics.extras import EXTRAS
 from linkwright.learning.checks.findings import describe_error
 from linkwright.learning.course import CASES_FILE, Course, Step
-from linkwright.learning.grading.journal import Journal, hash_folder, mark_key
+from linkwright.learning.grading.jobs import Job
+from linkwright.learning.grading.journal import Journal, compute_mark_key, hash_folder
 from linkwright.learning.grading.marks import Mark, StudentMarks
-from linkwright.learning.grading.running import Job
 from linkwright.learning.grading.submissions import Submission, copy_workspace
-from linkwright.learning.grading.workers import RunJobs, scratch_for_runs
+from linkwright.learning.grading.workers import RunJobs, create_scratch_folder
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.sandbox import Limits, permit_reading
 
-_DOMAINS = 100
+_DOMAIN_COUNT = 100
 
 Progress = Callable[[int, int], None]
 """Called with the number of finished checks, and of all."""
@@ -36,12 +36,12 @@ def grade_class(
     journal: Journal,
     progress: Progress,
 ) -> list[StudentMarks]:
-    """Check steps of a course on copies of the students' folders in the sandbox, and return the marks.
+    """Check steps on copies of the students' folders in the sandbox, and return the marks.
 
     A run is repeated alone at the end if other runs may have made it fail, or if the grader failed.
 
     Args:
-        course: the course.
+        course: the course with the lessons to grade.
         steps: the steps to check.
         submissions: the folders of the students.
         limits: the limits of each run.
@@ -53,27 +53,27 @@ def grade_class(
         LinkwrightError: LEARN121, the journal cannot be written; LEARN901, LEARN902, no run can use the sandbox.
     """
     marks: list[dict[str, Mark]] = [{} for _ in submissions]
-    with scratch_for_runs() as scratch:
+    with create_scratch_folder() as scratch:
         lessons = _copy_lessons(course, scratch)
         keyed_jobs = _make_jobs(steps, submissions, limits, lessons, scratch)
-        waiting: list[tuple[str, Job]] = []
+        pending_jobs: list[tuple[str, Job]] = []
         for key, job in keyed_jobs:
-            known = journal.find(key)
-            if known is None:
-                waiting.append((key, job))
+            stored_mark = journal.find(key)
+            if stored_mark is None:
+                pending_jobs.append((key, job))
             else:
-                marks[job.student][known.step] = known
-        done = len(keyed_jobs) - len(waiting)
-        for key, job, mark in _run_all(waiting, run_jobs):
+                marks[job.student][stored_mark.step] = stored_mark
+        done_count = len(keyed_jobs) - len(pending_jobs)
+        for key, job, mark in _run_all(pending_jobs, run_jobs):
             if mark.is_graded:
                 journal.add(key, mark)
             marks[job.student][mark.step] = mark
-            done += 1
-            progress(done, len(keyed_jobs))
+            done_count += 1
+            progress(done_count, len(keyed_jobs))
     points = {step.address: step.points for step in steps}
     return [
-        StudentMarks(submission, {step: given[step] for step in points if step in given}, points)
-        for submission, given in zip(submissions, marks, strict=True)
+        StudentMarks(submission, {step: student_marks[step] for step in points if step in student_marks}, points)
+        for submission, student_marks in zip(submissions, marks, strict=True)
     ]
 
 
@@ -112,15 +112,15 @@ def _make_jobs(
         for step in steps:
             answer = submission.progress.step(step.address).answer
             step_of_copy = replace(step, lesson=replace(step.lesson, folder=lessons / step.lesson.id))
-            domain = 1 + len(jobs) % _DOMAINS
+            domain = 1 + len(jobs) % _DOMAIN_COUNT
             job = Job(index, step_of_copy, copy, answer, limits, lessons, domain)
-            jobs.append((mark_key(job, course_hash, copy_hash), job))
+            jobs.append((compute_mark_key(job, course_hash, copy_hash), job))
     return jobs
 
 
 def _run_all(jobs: Sequence[tuple[str, Job]], run_jobs: RunJobs) -> Iterator[tuple[str, Job, Mark]]:
     """Run jobs in parallel, then repeat jobs alone that may have failed because of other jobs."""
-    again: list[tuple[str, Job]] = []
+    repeated_jobs: list[tuple[str, Job]] = []
     errors: list[LinkwrightError] = []
     has_mark = False
     for index, mark in run_jobs([job for _, job in jobs]):
@@ -129,12 +129,12 @@ def _run_all(jobs: Sequence[tuple[str, Job]], run_jobs: RunJobs) -> Iterator[tup
         if isinstance(mark, LinkwrightError):
             errors.append(mark)
         if not isinstance(mark, Mark) or mark.may_differ:
-            again.append((key, job))
+            repeated_jobs.append((key, job))
         else:
             yield key, job, mark
     if errors and not has_mark:
         raise errors[0]
-    for key, job in sorted(again, key=lambda pair: (pair[1].student, pair[1].domain)):
+    for key, job in sorted(repeated_jobs, key=lambda pair: (pair[1].student, pair[1].domain)):
         yield key, job, _run_alone(replace(job, is_repeated=True), run_jobs)
 
 

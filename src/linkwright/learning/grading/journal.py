@@ -12,14 +12,16 @@ from pathlib import Path
 
 from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
+from linkwright.learning.grading.jobs import Job
 from linkwright.learning.grading.marks import Mark
-from linkwright.learning.grading.running import Job
 
 SUFFIX = ".unfinished"
 
 
 class Journal:
-    """A store of marks by a hash of their inputs: the course, the student's files and answer, and the limits.
+    """A store of marks by a hash of their inputs.
+
+    The inputs are the course, the student's files and answer, and the limits.
 
     Args:
         path: the file; None to store nothing.
@@ -32,7 +34,7 @@ class Journal:
             self._read(path)
 
     def _read(self, path: Path) -> None:
-        with reporting_write_errors(path):
+        with report_write_errors(path):
             lines = path.read_text(encoding="utf-8", errors="replace").splitlines()
         for line in lines:
             with suppress(ValueError, KeyError, TypeError):  # a line that was not written completely
@@ -52,7 +54,7 @@ class Journal:
         if self.path is None:
             return
         line = json.dumps({"key": key, "mark": mark.to_data()})
-        with reporting_write_errors(self.path), self.path.open("a", encoding="utf-8") as file:
+        with report_write_errors(self.path), self.path.open("a", encoding="utf-8") as file:
             file.write(f"\n{line}")  # the last line of an interrupted run may be incomplete
 
     def remove(self) -> None:
@@ -62,7 +64,7 @@ class Journal:
 
 
 @contextmanager
-def reporting_write_errors(path: Path) -> Iterator[None]:
+def report_write_errors(path: Path) -> Iterator[None]:
     """Raise LEARN121 in place of an OSError in the context."""
     try:
         yield
@@ -86,7 +88,7 @@ def hash_folder(folder: Path) -> str:
     return digest.hexdigest()
 
 
-def mark_key(job: Job, course: str, copy: str) -> str:
+def compute_mark_key(job: Job, course: str, copy: str) -> str:
     """Return the key of a job's mark, a hash of all inputs of the mark."""
     parts = [__version__, course, copy, job.step.address, job.answer, asdict(job.limits)]
     return hashlib.sha256(json.dumps(parts).encode()).hexdigest()

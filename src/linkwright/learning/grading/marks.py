@@ -105,7 +105,7 @@ class StudentMarks:
         return sum(self.points.values())
 
 
-def class_size(students: Sequence[StudentMarks]) -> Phrase:
+def describe_class_size(students: Sequence[StudentMarks]) -> Phrase:
     """Return the number of students and of steps."""
     steps = len(students[0].points) if students else 0
     return phrase(

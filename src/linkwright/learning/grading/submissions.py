@@ -16,12 +16,12 @@ from linkwright.learning.course import Course
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.progress import PROGRESS_FILE, Progress, read_progress
 
-_ARCHIVES = {".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar"}
-_SKIPPED = {".git", "__pycache__", "__MACOSX"}
-_MAX_PROGRESS_SIZE = 1 << 20
+_ARCHIVE_SUFFIXES = {".zip", ".tar", ".gz", ".tgz", ".bz2", ".xz", ".7z", ".rar"}
+_SKIPPED_NAMES = {".git", "__pycache__", "__MACOSX"}
+_MAX_PROGRESS_BYTES = 1 << 20
 _MAX_FILES = 20_000
 _MAX_BYTES = 256 << 20
-_NESTING = 64
+_MAX_DEPTH = 64
 """The limits of a copied folder: the bytes of `learn.yaml`, files, bytes of all files, levels."""
 
 
@@ -50,7 +50,7 @@ class Submission:
 
 def find_submissions(folders: Sequence[Path], course: Course) -> list[Submission]:
     """Return the submission in each of the given folders, with notes."""
-    absolute_folders = list(dict.fromkeys(_absolute(folder) for folder in folders))
+    absolute_folders = list(dict.fromkeys(_make_absolute(folder) for folder in folders))
     counts = Counter(folder.name for folder in absolute_folders)
     submissions = []
     for folder in absolute_folders:
@@ -59,8 +59,11 @@ def find_submissions(folders: Sequence[Path], course: Course) -> list[Submission
     return submissions
 
 
-def _absolute(folder: Path) -> Path:
-    """Return the absolute path without ``..``, so that it ends with a name. Links are not followed."""
+def _make_absolute(folder: Path) -> Path:
+    """Return the absolute path without ``..``, so that it ends with a name.
+
+    Links are not followed.
+    """
     return Path(os.path.abspath(folder))  # noqa: PTH100 - `resolve` follows links
 
 
@@ -70,7 +73,7 @@ def _open_submission(student: str, folder: Path, course: Course) -> Submission:
         submission.folder = _find_workspace(folder)
     except NotADirectoryError:
         submission.is_readable = False
-        if folder.suffix.lower() in _ARCHIVES:
+        if folder.suffix.lower() in _ARCHIVE_SUFFIXES:
             submission.note(phrase("it is an archive; unpack it first"))
         else:
             submission.note(phrase("it is a file, not a student's folder"))
@@ -82,30 +85,40 @@ def _open_submission(student: str, folder: Path, course: Course) -> Submission:
     if (archive := _find_archive(submission.folder)) is not None:
         submission.is_readable = False
         submission.note(
-            phrase("the folder contains only the archive '{name}'; unpack it first", name=_readable(archive.name))
+            phrase("the folder contains only the archive '{name}'; unpack it first", name=_make_printable(archive.name))
         )
         return submission
     if submission.folder != folder:
-        submission.note(phrase("the workspace is the folder '{name}' in it", name=_readable(submission.folder.name)))
+        submission.note(
+            phrase("the workspace is the folder '{name}' in it", name=_make_printable(submission.folder.name))
+        )
     _read_claims(submission, course)
     return submission
 
 
 def _find_workspace(folder: Path) -> Path:
-    """Return the workspace: the folder, or its only subfolder, which unpacking an archive often creates."""
+    """Return the workspace: the folder, or its only subfolder.
+
+    Unpacking an archive often creates such a subfolder.
+    """
     entries = list(folder.iterdir())
     if _is_workspace(folder):
         return folder
-    subfolders = [path for path in entries if path.is_dir() and not path.is_symlink() and path.name not in _SKIPPED]
+    subfolders = [
+        path for path in entries if path.is_dir() and not path.is_symlink() and path.name not in _SKIPPED_NAMES
+    ]
     visible = [path for path in subfolders if not path.name.startswith(".")]
     return visible[0] if len(visible) == 1 and _is_workspace(visible[0]) else folder
 
 
 def _find_archive(folder: Path) -> Path | None:
-    """Return an archive in a folder that is not a workspace, or None. Downloads of a class contain archives."""
+    """Return an archive in a folder that is not a workspace, or None.
+
+    Downloads of a class contain archives.
+    """
     if _is_workspace(folder):
         return None
-    return next((path for path in sorted(folder.iterdir()) if path.suffix.lower() in _ARCHIVES), None)
+    return next((path for path in sorted(folder.iterdir()) if path.suffix.lower() in _ARCHIVE_SUFFIXES), None)
 
 
 def _is_workspace(folder: Path) -> bool:
@@ -117,7 +130,7 @@ def _read_claims(submission: Submission, course: Course) -> None:
     path = submission.folder / PROGRESS_FILE
     try:
         status = path.lstat()
-        if not stat.S_ISREG(status.st_mode) or status.st_size > _MAX_PROGRESS_SIZE:
+        if not stat.S_ISREG(status.st_mode) or status.st_size > _MAX_PROGRESS_BYTES:
             submission.note(phrase("{file} is a link or too large, and was not read", file=PROGRESS_FILE))
             return
         progress = read_progress(submission.folder)
@@ -141,10 +154,10 @@ def copy_workspace(submission: Submission, target: Path) -> bool:
 
     Links, special files and unreadable files are omitted and mentioned in the notes.
     """
-    left_out: Counter[str] = Counter()
+    omitted_counts: Counter[str] = Counter()
     count = size = 0
     target.mkdir()
-    for path, status in _entries(submission.folder, left_out):
+    for path, status in _walk_entries(submission.folder, omitted_counts):
         folder = target / path.relative_to(submission.folder)
         if stat.S_ISDIR(status.st_mode):
             folder.mkdir(exist_ok=True)
@@ -161,13 +174,13 @@ def copy_workspace(submission: Submission, target: Path) -> bool:
             shutil.copyfile(path, folder, follow_symlinks=False)
             folder.chmod(0o755 if status.st_mode & stat.S_IXUSR else 0o644)
         except OSError:
-            left_out["unreadable"] += 1
-    for kind, number in sorted(left_out.items()):
-        submission.note(_left_out(kind, number))
+            omitted_counts["unreadable"] += 1
+    for kind, number in sorted(omitted_counts.items()):
+        submission.note(_describe_omitted_files(kind, number))
     return True
 
 
-def _left_out(kind: str, count: int) -> Phrase:
+def _describe_omitted_files(kind: str, count: int) -> Phrase:
     if kind == "links":
         return counted("{count} link was left out", "{count} links were left out", count)
     if kind == "special":
@@ -187,33 +200,36 @@ def _left_out(kind: str, count: int) -> Phrase:
     )
 
 
-def _entries(folder: Path, left_out: Counter[str]) -> Iterator[tuple[Path, os.stat_result]]:
-    """Yield folders and regular files, each folder before its contents, in the same order on all systems."""
+def _walk_entries(folder: Path, omitted_counts: Counter[str]) -> Iterator[tuple[Path, os.stat_result]]:
+    """Yield folders and regular files, in the same order on all systems.
+
+    Each folder precedes its contents.
+    """
     waiting = [(folder, 0)]
     while waiting:
         current, depth = waiting.pop()
         try:
             paths = sorted(current.iterdir())
         except OSError:
-            left_out["unreadable"] += 1
+            omitted_counts["unreadable"] += 1
             continue
         for path in paths:
             status = path.lstat()
-            if path.name in _SKIPPED:
+            if path.name in _SKIPPED_NAMES:
                 continue
             if stat.S_ISLNK(status.st_mode):
-                left_out["links"] += 1
-            elif stat.S_ISDIR(status.st_mode) and depth < _NESTING:
+                omitted_counts["links"] += 1
+            elif stat.S_ISDIR(status.st_mode) and depth < _MAX_DEPTH:
                 yield path, status
                 waiting.append((path, depth + 1))
             elif stat.S_ISDIR(status.st_mode):
-                left_out["deep"] += 1
+                omitted_counts["deep"] += 1
             elif stat.S_ISREG(status.st_mode):
                 yield path, status
             else:
-                left_out["special"] += 1
+                omitted_counts["special"] += 1
 
 
-def _readable(name: str) -> str:
+def _make_printable(name: str) -> str:
     """Return the name of a file as text that can be printed and written as UTF-8."""
     return make_printable(os.fsencode(name).decode("utf-8", "replace"))

@@ -15,15 +15,15 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.files.scratch_folders import ScratchFolder
+from linkwright.learning.grading.jobs import Job, run_job
 from linkwright.learning.grading.marks import Mark
-from linkwright.learning.grading.running import Job, run_job
 from linkwright.learning.sandbox import permit_reading
 from linkwright.sweep.ray_cluster import LostTask, RayCluster, connect_to_ray
 
-Ended = Mark | LinkwrightError | None
+JobResult = Mark | LinkwrightError | None
 """The mark of a job, or why it has none: an error of the sandbox, or None if the process of the job was lost."""
 
-RunJobs = Callable[[Sequence[Job]], Iterator[tuple[int, Ended]]]
+RunJobs = Callable[[Sequence[Job]], Iterator[tuple[int, JobResult]]]
 """Runs jobs, and yields the end of each with its index."""
 
 FolderContent = dict[str, "tuple[int, bytes] | None"]
@@ -31,7 +31,7 @@ FolderContent = dict[str, "tuple[int, bytes] | None"]
 
 
 @contextmanager
-def scratch_for_runs() -> Iterator[Path]:
+def create_scratch_folder() -> Iterator[Path]:
     """Yield a folder that the users of runs may traverse but not list."""
     with ScratchFolder("grade", ignore_cleanup_errors=True) as name:
         Path(name).chmod(0o711)
@@ -39,14 +39,16 @@ def scratch_for_runs() -> Iterator[Path]:
 
 
 @contextmanager
-def local_workers(count: int) -> Iterator[RunJobs]:
+def open_local_workers(count: int) -> Iterator[RunJobs]:
     """Yield a function that runs jobs in parallel processes of this machine."""
     yield partial(_run_locally, count)
 
 
 @contextmanager
-def ray_workers(address: str) -> Iterator[RunJobs]:
-    """Send the course and copies of the folders to a Ray cluster, and yield a function that runs jobs there.
+def open_ray_workers(address: str) -> Iterator[RunJobs]:
+    """Yield a function that runs jobs in a Ray cluster.
+
+    The course and copies of the students' folders are sent to the cluster.
 
     Raises:
         LinkwrightError: SWEEP113, Ray is not installed; SWEEP114, there is no cluster at the address.
@@ -55,7 +57,7 @@ def ray_workers(address: str) -> Iterator[RunJobs]:
         yield partial(_run_on_ray, cluster)
 
 
-def _run_locally(count: int, jobs: Sequence[Job]) -> Iterator[tuple[int, Ended]]:
+def _run_locally(count: int, jobs: Sequence[Job]) -> Iterator[tuple[int, JobResult]]:
     spawn = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(count, mp_context=spawn, initializer=_end_with_grader, initargs=(os.getpid(),))
     try:
@@ -73,20 +75,26 @@ def _run_locally(count: int, jobs: Sequence[Job]) -> Iterator[tuple[int, Ended]]
 
 
 def _end_with_grader(grader: int) -> None:
-    """End this process when the grader ends, however it ends. The supervisor of its run then ends the run."""
+    """End this process when the grader ends, however it ends.
+
+    The supervisor of its run then ends the run.
+    """
     if sys.platform == "linux":
         from linkwright.learning.sandbox.linux import die_with_parent
 
         die_with_parent(signal.SIGTERM, grader)
 
 
-def _run_on_ray(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[int, Ended]]:
-    for index, mark in cluster.run_tasks(_run_in_cluster, _tasks(cluster, jobs)):
+def _run_on_ray(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[int, JobResult]]:
+    for index, mark in cluster.run_tasks(_run_in_cluster, _iterate_task_arguments(cluster, jobs)):
         yield index, None if isinstance(mark, LostTask) else mark
 
 
-def _tasks(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[object, ...]]:
-    """Yield the arguments of `_run_in_cluster`. A folder's content is sent when its first job begins."""
+def _iterate_task_arguments(cluster: RayCluster, jobs: Sequence[Job]) -> Iterator[tuple[object, ...]]:
+    """Yield the arguments of `_run_in_cluster`.
+
+    A folder's content is sent when its first job begins.
+    """
     course = copy = None
     content_of: Path | None = None
     for job in jobs:
@@ -101,7 +109,7 @@ def _run_in_cluster(course: FolderContent, copy: FolderContent, job: Job) -> Mar
 
     An error is returned instead of raised, because Ray would replace it with another error.
     """
-    with scratch_for_runs() as scratch:
+    with create_scratch_folder() as scratch:
         lessons, own_copy = scratch / "course", scratch / "copy"
         write_folder(lessons, course)
         permit_reading(lessons)

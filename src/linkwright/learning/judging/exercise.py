@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, phrase, quoted_names
-from linkwright.learning.course import courses_folder
-from linkwright.learning.errors import file_error, unreadable
+from linkwright.learning.course import find_courses_folder
+from linkwright.learning.errors import file_error, unreadable_file_error
 from linkwright.learning.local_text import LocalText
 
 if sys.version_info >= (3, 11):
@@ -27,7 +27,7 @@ class Figure:
 
     Attributes:
         name: the measured quantity.
-        unit: the unit.
+        unit: the unit of the quantity, such as ``s``.
         none: the value that is worth no points.
         half: the value that is worth 50 points.
         full: the value that is worth 100 points.
@@ -130,15 +130,15 @@ class Exercise:
         return (translated if translated.is_file() else self.folder / "README.md").read_text(encoding="utf-8")
 
 
-def exercises_folder() -> Path | None:
+def find_exercises_folder() -> Path | None:
     """Return the folder of the shipped exercises, or None if there is none."""
-    courses = courses_folder()
+    courses = find_courses_folder()
     return None if courses is None else courses / "exercises"
 
 
-def exercise_names() -> list[str]:
+def list_exercise_names() -> list[str]:
     """Return the names of the shipped exercises, from easy to difficult."""
-    folder = exercises_folder()
+    folder = find_exercises_folder()
     files = [] if folder is None else sorted(folder.glob(f"*/{EXERCISE_FILE}"))
     exercises = [load_exercise(file.parent) for file in files]
     return [exercise.id for exercise in sorted(exercises, key=lambda exercise: (exercise.difficulty, exercise.minutes))]
@@ -150,11 +150,11 @@ def find_exercise(name: str) -> Exercise:
     Raises:
         LinkwrightError: LEARN141, there is no such exercise; or the errors of `load_exercise`.
     """
-    shipped = exercises_folder()
+    shipped = find_exercises_folder()
     for folder in (Path(name), *([] if shipped is None else [shipped / name])):
         if (folder / EXERCISE_FILE).is_file():
             return load_exercise(folder)
-    names = exercise_names()
+    names = list_exercise_names()
     raise LinkwrightError(
         Diagnostic(
             "LEARN141",
@@ -180,18 +180,18 @@ def load_exercise(folder: Path) -> Exercise:
     try:
         data = tomllib.loads(path.read_text(encoding="utf-8"))
     except (OSError, UnicodeDecodeError) as error:
-        raise unreadable(path, error) from None
+        raise unreadable_file_error(path, error) from None
     except tomllib.TOMLDecodeError as error:
         raise file_error("LEARN104", path, phrase("the file is not valid TOML: {error}", error=str(error))) from None
     try:
-        return _exercise_from(folder, data)
+        return _exercise_from_data(folder, data)
     except KeyError as error:
         raise file_error("LEARN104", path, phrase("the key '{name}' is missing", name=str(error.args[0]))) from None
     except (TypeError, ValueError, AttributeError) as error:
         raise file_error("LEARN104", path, phrase("a value is not valid: {error}", error=str(error))) from None
 
 
-def _exercise_from(folder: Path, data: Mapping[str, Any]) -> Exercise:
+def _exercise_from_data(folder: Path, data: Mapping[str, Any]) -> Exercise:
     figure = data["figure"]
     half, full = float(figure["half"]), float(figure["full"])
     none = float(figure.get("none", 2.0 * half - full))
@@ -209,10 +209,10 @@ def _exercise_from(folder: Path, data: Mapping[str, Any]) -> Exercise:
         float(data["time_limit"]),
         float(data.get("collision_cost", 10.0)),
         Figure(LocalText(figure["name"]), str(figure["unit"]), none, half, full, int(figure.get("decimals", 1))),
-        _rival_from(folder, data["rival"]) if "rival" in data else None,
+        _rival_from_data(folder, data["rival"]) if "rival" in data else None,
         dict(data.get("settings", {})),
     )
 
 
-def _rival_from(folder: Path, data: Mapping[str, Any]) -> Rival:
+def _rival_from_data(folder: Path, data: Mapping[str, Any]) -> Rival:
     return Rival(str(data["model"]), folder / str(data["program"]), tuple(map(str, data["topics"])), str(data["start"]))

@@ -31,12 +31,12 @@ class Judge:
     time: a plugin of the world calls `update` 50 times per simulated second.
 
     Args:
-        exercise: the exercise.
+        exercise: the exercise that is judged.
         seed: the seed of the run, which determines everything that varies between runs.
 
     Attributes:
         TOPICS: the topics on which the program publishes its answers, with their types; see `on_message`.
-        exercise: the exercise.
+        exercise: the exercise that is judged.
         random: the random numbers of the run.
         time: the simulated time since the start, in s.
         figure: the number that is shown while the program runs, and judged at the end.
@@ -73,7 +73,10 @@ class Judge:
         """Prepare for a run, when all models are placed in the simulation."""
 
     def update(self) -> None:
-        """Inspect the world, and set `figure` and `progress`. Call `finish` or `fail` when the run has ended."""
+        """Inspect the world, and set `figure` and `progress`.
+
+        Call `finish` or `fail` when the run has ended.
+        """
         raise NotImplementedError
 
     def on_message(self, topic: str, message: Any) -> None:
@@ -101,9 +104,12 @@ class Judge:
         return self.simulation.model_pose(model or self.exercise.model)[2]
 
     def touched_models(self, model: str = "") -> set[str]:
-        """Return the names of the models, except the ground, that touch a model, by default the robot."""
+        """Return the names of the models that touch a model, by default the robot.
+
+        The ground is left out.
+        """
         own_name = model or self.exercise.model
-        names = self._names_by_geom()
+        names = self._list_model_names_by_geom()
         data = self.simulation.data
         touched = set()
         for first, second in data.contact.geom[: data.ncon]:
@@ -178,7 +184,7 @@ class Judge:
                 )
         self._last_contact = self.time
 
-    def _names_by_geom(self) -> list[str]:
+    def _list_model_names_by_geom(self) -> list[str]:
         """Return the name of the model of each geom of MuJoCo."""
         revision, names = self._geom_models
         if revision != self.simulation.revision:

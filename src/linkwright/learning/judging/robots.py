@@ -50,10 +50,10 @@ def write_robot(address: str, arguments: Mapping[str, object], exercise_folder: 
 
 
 def include_robot(robot: OtherRobot, exercise_folder: Path, folder: Path) -> str:
-    """Write the model of another robot into a folder, and return the ``<include>`` that adds it to a world.
+    """Write the model of another robot, and return the ``<include>`` that adds it to a world.
 
     Args:
-        robot: the robot.
+        robot: the robot that the scene adds.
         exercise_folder: the folder of the exercise, from which relative paths start.
         folder: the folder for the file.
 

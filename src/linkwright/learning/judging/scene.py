@@ -1,4 +1,4 @@
-"""The scene of a run: the robot's initial pose, and the models that a judge adds to the exercise's world."""
+"""The scene of a run: the robot's initial pose, and the models that a judge adds."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ class Scene:
             yaw: its rotation about z, in rad.
             mass: the mass in kg; None for a box that cannot be moved.
         """
-        self._add(name, center, yaw, f"<box><size>{_join(size)}</size></box>", color, mass, size)
+        self._add(name, center, yaw, f"<box><size>{_join_numbers(size)}</size></box>", color, mass, size)
 
     def add_cylinder(
         self,
@@ -93,26 +93,27 @@ class Scene:
     def add_tile(self, name: str, center: Sequence[float], size: float, color: Color = GREEN) -> None:
         """Add a flat colored square on the ground, without contacts."""
         box = f"<box><size>{size:.4f} {size:.4f} 0.002</size></box>"
-        visual = f'<visual name="visual"><geometry>{box}</geometry>{_material(color)}</visual>'
+        visual = f'<visual name="visual"><geometry>{box}</geometry>{_format_material(color)}</visual>'
         self._models.append(
-            f"<model name={quoteattr(name)}><static>true</static><pose>{_join((*center, 0.002))} 0 0 0</pose>"
+            f"<model name={quoteattr(name)}><static>true</static><pose>{_join_numbers((*center, 0.002))} 0 0 0</pose>"
             f'<link name="link">{visual}</link></model>'
         )
 
     def add_person(self, name: str, position: Sequence[float], color: Color = RED) -> None:
-        """Add a standing person in a long coat, which the judge moves with ``simulation.set_model_pose``."""
+        """Add a standing person, which the judge moves with ``simulation.set_model_pose``."""
         legs = "<cylinder><radius>0.16</radius><length>0.1</length></cylinder>"
         coat = "<cylinder><radius>0.18</radius><length>1.3</length></cylinder>"
         head = "<sphere><radius>0.13</radius></sphere>"
         parts = (("legs", 0.05, legs, BLACK), ("coat", 0.75, coat, color), ("head", 1.55, head, (0.8, 0.6, 0.5)))
         visuals = "".join(
-            f'<visual name="{part}"><pose>0 0 {z} 0 0 0</pose><geometry>{shape}</geometry>{_material(paint)}</visual>'
+            f'<visual name="{part}"><pose>0 0 {z} 0 0 0</pose><geometry>{shape}</geometry>'
+            f"{_format_material(paint)}</visual>"
             for part, z, shape, paint in parts
         )
         body = "<cylinder><radius>0.18</radius><length>1.6</length></cylinder>"
         collision = f'<collision name="body"><pose>0 0 0.8 0 0 0</pose><geometry>{body}</geometry></collision>'
         self._models.append(
-            f"<model name={quoteattr(name)}><pose>{_join((*position, 0.0))} 0 0 0</pose>"
+            f"<model name={quoteattr(name)}><pose>{_join_numbers((*position, 0.0))} 0 0 0</pose>"
             f'<link name="link"><kinematic>true</kinematic>{collision}{visuals}</link></model>'
         )
 
@@ -120,9 +121,9 @@ class Scene:
         """Add a cube on the ground, which the judge moves."""
         shape = f"<geometry><box><size>{size:.4f} {size:.4f} {size:.4f}</size></box></geometry>"
         self._models.append(
-            f"<model name={quoteattr(name)}><pose>{_join((*position, size / 2))} 0 0 0</pose>"
+            f"<model name={quoteattr(name)}><pose>{_join_numbers((*position, size / 2))} 0 0 0</pose>"
             f'<link name="link"><kinematic>true</kinematic><collision name="collision">{shape}</collision>'
-            f'<visual name="visual">{shape}{_material(color)}</visual></link></model>'
+            f'<visual name="visual">{shape}{_format_material(color)}</visual></link></model>'
         )
 
     def add_table(self, name: str, center: Sequence[float], yaw: float, half: float, color: Color = YELLOW) -> None:
@@ -141,27 +142,31 @@ class Scene:
         side = 2 * half + 0.06
         parts.append(("top", (0.0, 0.0, 0.52), f"<box><size>{side:.4f} {side:.4f} 0.04</size></box>"))
         shapes = "".join(
-            f'<collision name="{part}"><pose>{_join(place)} 0 0 0</pose><geometry>{shape}</geometry></collision>'
-            f'<visual name="{part}"><pose>{_join(place)} 0 0 0</pose><geometry>{shape}</geometry>'
-            f"{_material(color)}</visual>"
+            f'<collision name="{part}"><pose>{_join_numbers(place)} 0 0 0</pose>'
+            f"<geometry>{shape}</geometry></collision>"
+            f'<visual name="{part}"><pose>{_join_numbers(place)} 0 0 0</pose><geometry>{shape}</geometry>'
+            f"{_format_material(color)}</visual>"
             for part, place, shape in parts
         )
         self._models.append(
-            f"<model name={quoteattr(name)}><pose>{_join((*center, 0.0))} 0 0 {yaw:.5f}</pose>"
+            f"<model name={quoteattr(name)}><pose>{_join_numbers((*center, 0.0))} 0 0 {yaw:.5f}</pose>"
             f'<link name="link"><kinematic>true</kinematic>{shapes}</link></model>'
         )
 
     def add_line(self, name: str, points: Sequence[Sequence[float]], width: float, color: Color = BLACK) -> None:
-        """Add a flat line through points x, y on the ground, a loop if the last point equals the first."""
+        """Add a flat line through points x, y on the ground.
+
+        The line is a loop if the last point equals the first.
+        """
         pieces = []
         for index, (first, second) in enumerate(pairwise(points)):
             length = hypot(second[0] - first[0], second[1] - first[1]) + 0.6 * width
             pose = ((first[0] + second[0]) / 2, (first[1] + second[1]) / 2, 0.002)
             yaw = atan2(second[1] - first[1], second[0] - first[0])
             pieces.append(
-                f'<visual name="piece_{index}"><pose>{_join(pose)} 0 0 {yaw:.5f}</pose>'
+                f'<visual name="piece_{index}"><pose>{_join_numbers(pose)} 0 0 {yaw:.5f}</pose>'
                 f"<geometry><box><size>{length:.4f} {width:.4f} 0.002</size></box></geometry>"
-                f"{_material(color)}</visual>"
+                f"{_format_material(color)}</visual>"
             )
         self._models.append(
             f'<model name={quoteattr(name)}><static>true</static><link name="link">{"".join(pieces)}</link></model>'
@@ -198,15 +203,15 @@ class Scene:
         size: Sequence[float],
     ) -> None:
         body = "<static>true</static>" if mass is None else ""
-        inertial = "" if mass is None else _inertial(mass, size)
+        inertial = "" if mass is None else _format_inertial(mass, size)
         self._models.append(
-            f"<model name={quoteattr(name)}>{body}<pose>{_join(center)} 0 0 {yaw:.5f}</pose>"
+            f"<model name={quoteattr(name)}>{body}<pose>{_join_numbers(center)} 0 0 {yaw:.5f}</pose>"
             f'<link name="link">{inertial}<collision name="collision"><geometry>{shape}</geometry></collision>'
-            f'<visual name="visual"><geometry>{shape}</geometry>{_material(color)}</visual></link></model>'
+            f'<visual name="visual"><geometry>{shape}</geometry>{_format_material(color)}</visual></link></model>'
         )
 
 
-def _inertial(mass: float, size: Sequence[float]) -> str:
+def _format_inertial(mass: float, size: Sequence[float]) -> str:
     x, y, z = (length**2 for length in size)
     moments = (mass * (y + z) / 12, mass * (x + z) / 12, mass * (x + y) / 12)
     values = "".join(
@@ -215,10 +220,10 @@ def _inertial(mass: float, size: Sequence[float]) -> str:
     return f"<inertial><mass>{mass:.4f}</mass><inertia>{values}</inertia></inertial>"
 
 
-def _material(color: Color) -> str:
-    values = f"{_join(color)} 1"
+def _format_material(color: Color) -> str:
+    values = f"{_join_numbers(color)} 1"
     return f"<material><ambient>{values}</ambient><diffuse>{values}</diffuse></material>"
 
 
-def _join(values: Sequence[float]) -> str:
+def _join_numbers(values: Sequence[float]) -> str:
     return " ".join(f"{value:.5f}" for value in values)

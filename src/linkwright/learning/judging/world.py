@@ -66,7 +66,7 @@ def write_world(exercise: Exercise, seed: int, folder: Path, *, publishes: bool)
     """Write the world of a run and its robot into a folder.
 
     Args:
-        exercise: the exercise.
+        exercise: the exercise with its world and judge.
         seed: the seed of the run.
         folder: the folder, in which the file gets a name of its own.
         publishes: whether the judge publishes its state, which a judged program must not receive.
@@ -93,7 +93,7 @@ def write_world(exercise: Exercise, seed: int, folder: Path, *, publishes: bool)
 
 @dataclass(frozen=True, kw_only=True)
 class Parameters:
-    """The parameters of the plugin: the folder of the exercise, the seed of the run, and whether to publish."""
+    """The plugin's parameters: the exercise's folder, the run's seed, and whether to publish."""
 
     exercise: str
     seed: int = 0

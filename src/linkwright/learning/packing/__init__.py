@@ -1,1 +1,1 @@
-"""Packs: folders, for example on memory sticks, from which a class installs Linkwright offline."""
+"""Packs: folders from which a class installs Linkwright offline, as from memory sticks."""

@@ -1,4 +1,4 @@
-"""The installers of a pack: a script for each system, and the Python program that the scripts start."""
+"""The installers of a pack: a script for each system, and the Python program they start."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from linkwright.files.whole_files import write_whole_file
 from linkwright.learning.packing.pack_folder import PackFolder, PackSettings
 from linkwright.learning.packing.targets import SYSTEMS
 
-_TEMPLATES = Path(__file__).with_name("installer")
-_COPIES = {
+_TEMPLATE_FOLDER = Path(__file__).with_name("installer")
+_TEMPLATES_BY_FILE = {
     "install.py": "install.py",
     "install.sh": "install.sh",
     "install.command": "install.sh",
@@ -20,8 +20,8 @@ _COPIES = {
     "README.txt": "README.txt",
 }
 """The files of a pack -> their templates. macOS opens files named ``.command`` in a terminal."""
-_EXECUTABLE = {"install.sh", "install.command"}
-_WINDOWS_LINES = {"install.bat", "no-python.txt", "README.txt"}
+_EXECUTABLE_FILES = {"install.sh", "install.command"}
+_FILES_WITH_WINDOWS_LINE_ENDS = {"install.bat", "no-python.txt", "README.txt"}
 """The files with the line ends of Windows, whose command interpreter and old editors need them."""
 
 
@@ -31,27 +31,27 @@ def write_installers(folder: PackFolder, settings: PackSettings) -> None:
     Raises:
         OSError: a file cannot be written.
     """
-    pythons = preferred_pythons(settings.missing, settings.pythons)
+    pythons = sort_pythons(settings.missing, settings.pythons)
     replacements = {
         "@PYTHONS@": " ".join(pythons),
         "@DIGITS@": " ".join(version.replace(".", "") for version in pythons),
         "@VERSION@": settings.version,
         "@SYSTEMS@": ", ".join(SYSTEMS[system].label for system in settings.systems),
     }
-    for name, template in _COPIES.items():
-        text = (_TEMPLATES / template).read_text(encoding="utf-8")
+    for name, template in _TEMPLATES_BY_FILE.items():
+        text = (_TEMPLATE_FOLDER / template).read_text(encoding="utf-8")
         for placeholder, value in replacements.items():
             text = text.replace(placeholder, value)
-        if name in _WINDOWS_LINES:
+        if name in _FILES_WITH_WINDOWS_LINE_ENDS:
             text = text.replace("\n", "\r\n")
         write_whole_file(folder.path / name, text)
-        if name in _EXECUTABLE:
+        if name in _EXECUTABLE_FILES:
             with suppress(OSError):  # memory sticks often have no permissions
                 (folder.path / name).chmod(0o755)
 
 
-def preferred_pythons(missing: Mapping[str, Mapping[str, Sequence[str]]], pythons: Sequence[str]) -> list[str]:
-    """Return the Python versions, sorted by the fewest missing parts of Linkwright, then newest first."""
+def sort_pythons(missing: Mapping[str, Mapping[str, Sequence[str]]], pythons: Sequence[str]) -> list[str]:
+    """Return the Python versions, those with the fewest missing parts first, then the newest."""
 
     def rank(python: str) -> tuple[int, int]:
         parts = [len(texts["en"]) for target, texts in missing.items() if target.endswith(f"-py{python}")]

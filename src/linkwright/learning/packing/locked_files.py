@@ -20,7 +20,7 @@ from packaging.utils import InvalidWheelFilename, parse_wheel_filename
 from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, joined, phrase
 from linkwright.learning.packing.targets import Target
 
-TABLE = Path(__file__).with_name("wheels.json")
+TABLE_FILE = Path(__file__).with_name("wheels.json")
 OWN_PACKAGES = ("linkwright-core", "linkwright")
 """The distributions of Linkwright itself, which are not in the table's files."""
 
@@ -53,13 +53,13 @@ class LockedFile:
 
 
 @cache
-def locked_packages() -> Packages:
+def load_locked_packages() -> Packages:
     """Return the packages in the table ``wheels.json``."""
-    packages: Packages = json.loads(TABLE.read_text(encoding="utf-8"))
+    packages: Packages = json.loads(TABLE_FILE.read_text(encoding="utf-8"))
     return packages
 
 
-def known_extras(packages: Packages) -> list[str]:
+def list_known_extras(packages: Packages) -> list[str]:
     """Return the extras of Linkwright that the table has packages for."""
     return sorted(packages["linkwright"]["extras"])
 
@@ -70,7 +70,7 @@ def check_extras(extras: Sequence[str], packages: Packages) -> None:
     Raises:
         LinkwrightError: LEARN301 if an extra is unknown.
     """
-    known = known_extras(packages)
+    known = list_known_extras(packages)
     for name in extras:
         if name not in known:
             hint = did_you_mean(name, known) or phrase("choose from {names}", names=joined(known))
@@ -78,9 +78,10 @@ def check_extras(extras: Sequence[str], packages: Packages) -> None:
             raise LinkwrightError(Diagnostic("LEARN301", message, hint=hint))
 
 
-def needed_packages(target: Target, extras: Iterable[str], packages: Packages) -> list[str]:
-    """Return the keys of the packages, except `OWN_PACKAGES`, that Linkwright with some extras needs on a target.
+def find_needed_packages(target: Target, extras: Iterable[str], packages: Packages) -> list[str]:
+    """Return the keys of the packages that Linkwright with some extras needs on a target.
 
+    `OWN_PACKAGES` are left out.
     The result always includes pip, which installs the other packages.
     """
     environment = target.markers
@@ -102,38 +103,38 @@ def needed_packages(target: Target, extras: Iterable[str], packages: Packages) -
 
 
 def _is_satisfied(marker: str, environment: dict[str, str]) -> bool:
-    return _parsed_marker(marker).evaluate(environment)
+    return _parse_marker(marker).evaluate(environment)
 
 
 @cache
-def _parsed_marker(marker: str) -> Marker:
+def _parse_marker(marker: str) -> Marker:
     return Marker(marker)
 
 
-def needed_files(target: Target, extras: Iterable[str], packages: Packages) -> Iterator[LockedFile]:
+def find_needed_files(target: Target, extras: Iterable[str], packages: Packages) -> Iterator[LockedFile]:
     """Yield the files that Linkwright with some extras needs on a target.
 
     For a package without wheels, this is the source distribution. Packages without a suitable wheel are omitted;
     tests ensure that no such package is needed.
     """
-    for key in needed_packages(target, extras, packages):
+    for key in find_needed_packages(target, extras, packages):
         name, version = key.split(" ")
         files = [LockedFile(name, version, *row) for row in packages[key]["files"]]
-        chosen = best_wheel((file.name for file in files if file.is_wheel), target)
+        chosen = choose_best_wheel((file.name for file in files if file.is_wheel), target)
         yield from (file for file in files if (file.name == chosen if chosen else not file.is_wheel))
 
 
-def best_wheel(names: Iterable[str], target: Target) -> str | None:
+def choose_best_wheel(names: Iterable[str], target: Target) -> str | None:
     """Return the file name of the best wheel for a target, or None if no wheel is suitable.
 
     Of wheels for the same Python, the best one supports the oldest systems.
     """
-    ranked = [(rank, name) for name in names if (rank := wheel_rank(name, target)) is not None]
+    ranked = [(rank, name) for name in names if (rank := rank_wheel(name, target)) is not None]
     return min(ranked)[1] if ranked else None
 
 
-def wheel_rank(name: str, target: Target) -> int | None:
-    """Return the rank of a wheel for a target, 0 for the best, or None if the wheel is not suitable."""
+def rank_wheel(name: str, target: Target) -> int | None:
+    """Return the rank of a wheel for a target, 0 for the best; None for an unsuitable wheel."""
     try:
         tags = parse_wheel_filename(name)[3]
     except InvalidWheelFilename:

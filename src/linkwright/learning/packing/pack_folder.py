@@ -13,9 +13,9 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, fo
 from linkwright.files.whole_files import write_whole_file
 from linkwright.learning.packing.targets import Target, select_targets
 
-_SETTINGS, _SUMS = "pack.json", "SHA256SUMS"
+_SETTINGS_FILE, _SUMS_FILE = "pack.json", "SHA256SUMS"
 _BLOCK_BYTES = 1 << 20
-_DIGEST = re.compile(r"--hash=sha256:([0-9a-f]{64})")
+_DIGEST_OPTION = re.compile(r"--hash=sha256:([0-9a-f]{64})")
 
 
 @dataclass(frozen=True)
@@ -86,17 +86,17 @@ class PackFolder:
             OSError: it cannot be created.
         """
         self.path.mkdir(parents=True, exist_ok=True)
-        if any(self.path.iterdir()) and not (self.path / _SETTINGS).exists():
+        if any(self.path.iterdir()) and not (self.path / _SETTINGS_FILE).exists():
             message = phrase("'{path}' is neither empty nor a pack", path=display_path(self.path))
             hint = phrase("pass a new folder, or one that `linkwright learn pack` created")
             raise LinkwrightError(Diagnostic("LEARN307", message, hint=hint))
         self.wheels.mkdir(exist_ok=True)
         self.requirements(select_targets((), ())[0]).parent.mkdir(exist_ok=True)
-        (self.path / _SUMS).unlink(missing_ok=True)
+        (self.path / _SUMS_FILE).unlink(missing_ok=True)
 
     def write_settings(self, settings: PackSettings) -> None:
         """Write the settings."""
-        write_whole_file(self.path / _SETTINGS, json.dumps(asdict(settings), indent=2, ensure_ascii=False) + "\n")
+        write_whole_file(self.path / _SETTINGS_FILE, json.dumps(asdict(settings), indent=2, ensure_ascii=False) + "\n")
 
     def read_settings(self) -> PackSettings:
         """Return the settings.
@@ -104,21 +104,23 @@ class PackFolder:
         Raises:
             LinkwrightError: LEARN307 if the folder is not a pack.
         """
-        file = self.path / _SETTINGS
+        file = self.path / _SETTINGS_FILE
         try:
             settings = PackSettings(**json.loads(file.read_text(encoding="utf-8")))
         except (OSError, ValueError, TypeError) as error:
             message = phrase(
-                "'{path}' is not a pack: {reason}", path=display_path(self.path), reason=foreign(_reason(error))
+                "'{path}' is not a pack: {reason}",
+                path=display_path(self.path),
+                reason=foreign(_describe_reason(error)),
             )
             raise LinkwrightError(Diagnostic("LEARN307", message)) from None
         return settings
 
     def files(self) -> Iterator[Path]:
-        """Yield the files of the pack, except the checksums and the Python archives that a teacher adds."""
+        """Yield the files of the pack, except checksums and Python archives added by a teacher."""
         for path in sorted(self.path.rglob("*")):
             relative = path.relative_to(self.path)
-            if path.is_file() and relative.parts[0] not in (_SUMS, "python"):
+            if path.is_file() and relative.parts[0] not in (_SUMS_FILE, "python"):
                 yield relative
 
     def write_sums(self, known: Mapping[Path, str]) -> None:
@@ -130,8 +132,8 @@ class PackFolder:
         lines = []
         for file in self.files():
             path = self.path / file
-            lines.append(f"{known.get(path) or sha256_of(path)}  {file.as_posix()}\n")
-        write_whole_file(self.path / _SUMS, "".join(lines))
+            lines.append(f"{known.get(path) or compute_sha256(path)}  {file.as_posix()}\n")
+        write_whole_file(self.path / _SUMS_FILE, "".join(lines))
 
     def read_sums(self) -> dict[str, str]:
         """Return the checksums by file.
@@ -140,7 +142,7 @@ class PackFolder:
             LinkwrightError: LEARN305 if the pack is not complete.
         """
         try:
-            lines = (self.path / _SUMS).read_text(encoding="utf-8").splitlines()
+            lines = (self.path / _SUMS_FILE).read_text(encoding="utf-8").splitlines()
             return {name: digest for digest, name in (line.split("  ", 1) for line in lines)}
         except (OSError, ValueError):
             message = phrase("the pack '{path}' is not complete", path=display_path(self.path))
@@ -148,11 +150,11 @@ class PackFolder:
             raise LinkwrightError(Diagnostic("LEARN305", message, hint=hint)) from None
 
 
-def _reason(error: Exception) -> str:
+def _describe_reason(error: Exception) -> str:
     return getattr(error, "strerror", None) or str(error)
 
 
-def sha256_of(path: Path) -> str:
+def compute_sha256(path: Path) -> str:
     """Return the SHA-256 of a file.
 
     Raises:
@@ -165,12 +167,12 @@ def sha256_of(path: Path) -> str:
     return digest.hexdigest()
 
 
-def installed_size(folder: PackFolder, targets: Iterable[Target]) -> int:
+def compute_installed_size(folder: PackFolder, targets: Iterable[Target]) -> int:
     """Return the total size, in bytes, of the wheels that some targets need."""
     sums = folder.read_sums()
     digests = {
         digest
         for target in targets
-        for digest in _DIGEST.findall(folder.requirements(target).read_text(encoding="utf-8"))
+        for digest in _DIGEST_OPTION.findall(folder.requirements(target).read_text(encoding="utf-8"))
     }
     return sum((folder.path / file).stat().st_size for file, digest in sums.items() if digest in digests)

@@ -22,16 +22,16 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign,
 from linkwright.learning.packing.locked_files import LockedFile
 from linkwright.learning.packing.targets import SYSTEMS, Target
 
-_DRAFTS = ".download"
+_DRAFT_FOLDER = ".download"
 """The folder in a folder of wheels in which pip writes."""
-_CODE = re.compile(r"\x1b\[[0-9;]*m")
+_COLOR_CODE = re.compile(r"\x1b\[[0-9;]*m")
 _END_OF_BUILD = "[end of output]"
-_OPTIONS = ("--disable-pip-version-check", "--no-input", "--progress-bar", "off")
-_PINNED = "LINKWRIGHT_PINNED_CORE"
+_PIP_OPTIONS = ("--disable-pip-version-check", "--no-input", "--progress-bar", "off")
+_PINNED_VARIABLE = "LINKWRIGHT_PINNED_CORE"
 """The environment variable with which `hatch_build.py` makes wheels as in a release."""
 
 
-def download(files: Sequence[LockedFile], target: Target, wheels: Path) -> None:
+def download_wheels(files: Sequence[LockedFile], target: Target, wheels: Path) -> None:
     """Download wheels that fit a target into a folder.
 
     Raises:
@@ -43,7 +43,7 @@ def download(files: Sequence[LockedFile], target: Target, wheels: Path) -> None:
     arguments += ["--python-version", target.python]
     for platform in sorted(platforms) or SYSTEMS[target.system].platforms[:1]:
         arguments += ["--platform", platform]
-    with _draft_folder(wheels) as drafts:
+    with _create_draft_folder(wheels) as drafts:
         _write_requirements(files, drafts)
         _run_pip(
             [*arguments, "--dest", str(drafts), "-r", str(drafts / "requirements.txt")], [file.name for file in files]
@@ -52,14 +52,14 @@ def download(files: Sequence[LockedFile], target: Target, wheels: Path) -> None:
             (drafts / file.name).replace(wheels / file.name)
 
 
-def build(file: LockedFile, wheels: Path) -> Path:
+def build_wheel(file: LockedFile, wheels: Path) -> Path:
     """Build the wheel of a source distribution in a folder, and return the wheel.
 
     Raises:
         LinkwrightError: LEARN303 if pip fails, or the wheel is for this system only.
         OSError: the folder cannot be written.
     """
-    with _draft_folder(wheels) as drafts:
+    with _create_draft_folder(wheels) as drafts:
         _write_requirements([file], drafts)
         arguments = ["wheel", "--no-deps", "--require-hashes", "--wheel-dir", str(drafts)]
         _run_pip([*arguments, "-r", str(drafts / "requirements.txt")], [file.name])
@@ -71,15 +71,15 @@ def build(file: LockedFile, wheels: Path) -> Path:
 
 
 def build_checkout(checkout: Path, wheels: Path) -> list[Path]:
-    """Build the wheels of a checkout of Linkwright in a folder, as for a release, and return them.
+    """Build and return the wheels of a checkout of Linkwright, as for a release.
 
     Raises:
         LinkwrightError: LEARN303 if pip fails.
         OSError: the folder cannot be written.
     """
-    with _draft_folder(wheels) as drafts:
+    with _create_draft_folder(wheels) as drafts:
         arguments = ["wheel", "--no-deps", "--wheel-dir", str(drafts), str(checkout / "core"), str(checkout)]
-        _run_pip(arguments, [str(checkout)], {_PINNED: "1"})
+        _run_pip(arguments, [str(checkout)], {_PINNED_VARIABLE: "1"})
         return [wheel.replace(wheels / wheel.name) for wheel in sorted(drafts.glob("*.whl"))]
 
 
@@ -89,9 +89,9 @@ def is_for_all_systems(name: str) -> bool:
 
 
 @contextmanager
-def _draft_folder(wheels: Path) -> Iterator[Path]:
+def _create_draft_folder(wheels: Path) -> Iterator[Path]:
     """Yield an empty folder, so that an interruption leaves no partial file among the wheels."""
-    drafts = wheels / _DRAFTS
+    drafts = wheels / _DRAFT_FOLDER
     shutil.rmtree(drafts, ignore_errors=True)
     drafts.mkdir(parents=True)
     try:
@@ -108,7 +108,7 @@ def _write_requirements(files: Iterable[LockedFile], folder: Path) -> None:
 def _run_pip(
     arguments: Sequence[str], requested_names: Sequence[str], variables: Mapping[str, str] | None = None
 ) -> None:
-    command = [*_pip_command(), arguments[0], *_OPTIONS, *arguments[1:]]
+    command = [*_find_pip_command(), arguments[0], *_PIP_OPTIONS, *arguments[1:]]
     environment = {**os.environ, **(variables or {}), "PIP_REQUIRE_VIRTUALENV": "0"}
     done = subprocess.run(  # noqa: S603 - pip, with Linkwright's own arguments
         command,
@@ -123,23 +123,23 @@ def _run_pip(
     if done.returncode:
         message = phrase(
             "pip cannot download or build {files}: {reason}",
-            files=_first_names(requested_names),
-            reason=foreign(_reason(done.stderr)),
+            files=_join_first_names(requested_names),
+            reason=foreign(_find_reason(done.stderr)),
         )
         hint = phrase("repeat the command to continue; it keeps the files that the pack has")
         raise LinkwrightError(Diagnostic("LEARN303", message, hint=hint))
 
 
-def _first_names(names: Sequence[str]) -> Phrase:
+def _join_first_names(names: Sequence[str]) -> Phrase:
     """Return a phrase that lists the first of some names, and counts the others."""
     if len(names) <= 3:
         return joined(names)
     return phrase("{names} and {count} others", names=joined(names[:2]), count=len(names) - 2)
 
 
-def _reason(output: str) -> str:
+def _find_reason(output: str) -> str:
     """Return the line of pip's output that contains the reason."""
-    lines = [line.strip() for line in _CODE.sub("", output).splitlines() if line.strip()]
+    lines = [line.strip() for line in _COLOR_CODE.sub("", output).splitlines() if line.strip()]
     if _END_OF_BUILD in lines:  # the last line of a program that pip ran is its exception
         return lines[max(lines.index(_END_OF_BUILD) - 1, 0)]
     broken_connections = [line for line in lines if "connection broken" in line]
@@ -147,7 +147,7 @@ def _reason(output: str) -> str:
     return re.sub(r"^(ERROR|WARNING): ", "", (broken_connections[-1:] or errors or lines or ["pip"])[0])
 
 
-def _pip_command() -> list[str]:
+def _find_pip_command() -> list[str]:
     if find_spec("pip") is not None:
         return [sys.executable, "-m", "pip"]
     if pip := shutil.which("pip") or shutil.which("pip3"):

@@ -1,4 +1,4 @@
-"""The systems and Pythons that packs support: their names, wheel tags and environment markers."""
+"""The systems and Pythons that packs support, with wheel tags and environment markers."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ PYTHONS = ("3.10", "3.11", "3.12", "3.13", "3.14")
 
 _GLIBC_MINORS = range(28, 4, -1)
 """The minor versions of glibc 2 whose wheels fit. Debian 10, Ubuntu 20.04 and RHEL 8 have 2.28 or newer."""
-_MACOS = (15, 0)
+_NEWEST_MACOS = (15, 0)
 """The newest macOS whose wheels fit. Of several wheels, the one for the oldest macOS is chosen."""
-_ALIASES = {5: "manylinux1", 12: "manylinux2010", 17: "manylinux2014"}
+_PLATFORM_ALIASES = {5: "manylinux1", 12: "manylinux2010", 17: "manylinux2014"}
 """The older names of platforms by the minor version of glibc."""
-_ANY_PATCH = "99"
+_LATEST_PATCH = "99"
 """The patch release that markers see. Requirements for older ones are for Pythons that have been fixed since."""
 
 
@@ -45,11 +45,11 @@ class System:
         if self.platform == "win32":
             return ["win_amd64"]
         if self.platform == "darwin":
-            return list(mac_platforms(_MACOS, self.machine))
+            return list(mac_platforms(_NEWEST_MACOS, self.machine))
         names: list[str] = []
         for minor in _GLIBC_MINORS:
             names += [f"manylinux_2_{minor}_{self.machine}"]
-            names += [f"{_ALIASES[minor]}_{self.machine}"] if minor in _ALIASES else []
+            names += [f"{_PLATFORM_ALIASES[minor]}_{self.machine}"] if minor in _PLATFORM_ALIASES else []
         return names
 
 
@@ -87,7 +87,7 @@ class Target:
     @cached_property
     def tag_ranks(self) -> dict[Tag, int]:
         """The ranks of the tags of suitable wheels; lower is better."""
-        return {tag: rank for rank, tag in enumerate(_tags(self.system, self.python))}
+        return {tag: rank for rank, tag in enumerate(_list_tags(self.system, self.python))}
 
     @property
     def markers(self) -> dict[str, str]:
@@ -96,22 +96,25 @@ class Target:
         return {
             "extra": "",
             "implementation_name": "cpython",
-            "implementation_version": f"{self.python}.{_ANY_PATCH}",
+            "implementation_version": f"{self.python}.{_LATEST_PATCH}",
             "os_name": "nt" if system.platform == "win32" else "posix",
             "platform_machine": system.machine,
             "platform_python_implementation": "CPython",
             "platform_release": "",
             "platform_system": system.platform_system,
             "platform_version": "",
-            "python_full_version": f"{self.python}.{_ANY_PATCH}",
+            "python_full_version": f"{self.python}.{_LATEST_PATCH}",
             "python_version": self.python,
             "sys_platform": system.platform,
         }
 
 
 @cache
-def _tags(system: str, python: str) -> tuple[Tag, ...]:
-    """Return the suitable tags; for each interpreter and ABI, tags of the oldest systems come first."""
+def _list_tags(system: str, python: str) -> tuple[Tag, ...]:
+    """Return the suitable tags.
+
+    For each interpreter and ABI, tags of the oldest systems come first.
+    """
     version = [int(part) for part in python.split(".")]
     platforms = SYSTEMS[system].platforms[::-1]
     interpreter = f"cp{''.join(python.split('.'))}"
@@ -129,10 +132,10 @@ def select_targets(systems: Sequence[str], pythons: Sequence[str]) -> list[Targe
     """
     _check_names("systems", systems, SYSTEMS)
     _check_names("Pythons", pythons, PYTHONS)
-    return list(_targets(systems or list(SYSTEMS), pythons or PYTHONS))
+    return list(_iterate_targets(systems or list(SYSTEMS), pythons or PYTHONS))
 
 
-def _targets(systems: Sequence[str], pythons: Sequence[str]) -> Iterator[Target]:
+def _iterate_targets(systems: Sequence[str], pythons: Sequence[str]) -> Iterator[Target]:
     for system in SYSTEMS:
         if system in systems:
             yield from (Target(system, python) for python in PYTHONS if python in pythons)

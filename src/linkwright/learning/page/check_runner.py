@@ -6,8 +6,8 @@ import asyncio
 from collections.abc import Callable
 from pathlib import Path
 
+from linkwright.learning.checks.check_process import CheckProcess, create_check_server
 from linkwright.learning.checks.results import StepResult
-from linkwright.learning.checks.running import CheckProcess, create_check_server
 from linkwright.learning.course import Step
 
 _NICENESS = 5

@@ -56,7 +56,7 @@ class ClassroomView(ModelView):
     """
 
     def __init__(self, classroom: Classroom, finder: PackageFinder, options: HostOptions, log: LaunchLog) -> None:
-        shown = classroom.shown_file(classroom.current_step)
+        shown = classroom.find_shown_file(classroom.current_step)
         super().__init__(XacroCall(shown or classroom.workspace), finder, options, log)
         self._classroom = classroom
         self._is_shown = False

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, phrase
-from linkwright.learning.page.guide import Guide, problem_of
+from linkwright.learning.page.guide import Guide, problem_message
 from linkwright.page.audience import Page
 from linkwright.page.protocol import learning as messages
 from linkwright.page.protocol.message import ServerMessage
@@ -13,7 +13,10 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 
 class CourseFeature(PageFeature):
-    """The page feature of a course or an exercise. It ignores all requests before `show` is called."""
+    """The page feature of a course or an exercise.
+
+    It ignores all requests before `show` is called.
+    """
 
     RECEIVES = (
         messages.AnswerStep,
@@ -50,7 +53,7 @@ class CourseFeature(PageFeature):
         try:
             self._guide.handle(message)
         except LinkwrightError as error:
-            page.send(problem_of(error))
+            page.send(problem_message(error))
         else:
             page.send(messages.CourseProblem("", ""))
 

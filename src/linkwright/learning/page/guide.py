@@ -30,7 +30,7 @@ class Guide(Protocol):
         """Stop all activities of the guide."""
 
 
-def problem_of(error: LinkwrightError) -> messages.CourseProblem:
+def problem_message(error: LinkwrightError) -> messages.CourseProblem:
     """Return the message that reports an error to pages."""
     diagnostic = error.diagnostics[0]
     return messages.CourseProblem(diagnostic.message, diagnostic.hint or "")

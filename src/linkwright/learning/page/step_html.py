@@ -24,7 +24,7 @@ _CHINESE_PAIR = re.compile(f"[{_CHINESE}][{_CHINESE}“”‘’…—]|[“”�
 """Two characters between which Chinese text has no space; quotation marks and dashes are also those of English."""
 
 
-def step_html(text: str, folder: Path) -> str:
+def render_html(text: str, folder: Path) -> str:
     """Return the HTML of a Markdown text.
 
     HTML in the text is escaped. An image is embedded if it is a file below the lesson's folder; other
@@ -34,11 +34,11 @@ def step_html(text: str, folder: Path) -> str:
         text: the Markdown.
         folder: the folder of the lesson, from which the paths of images are resolved.
     """
-    return _renderer().render(text, {"folder": folder}) if text else ""
+    return _create_renderer().render(text, {"folder": folder}) if text else ""
 
 
 @lru_cache(maxsize=1)
-def _renderer() -> MarkdownIt:
+def _create_renderer() -> MarkdownIt:
     from markdown_it import MarkdownIt
 
     renderer = MarkdownIt("commonmark", {"html": False}).enable("table")
@@ -47,7 +47,7 @@ def _renderer() -> MarkdownIt:
     return renderer
 
 
-def _render_line_end(_renderer: Any, tokens: Sequence[Token], index: int, _options: Any, _env: Any) -> str:
+def _render_line_end(_create_renderer: Any, tokens: Sequence[Token], index: int, _options: Any, _env: Any) -> str:
     last_character = next((token.content[-1] for token in reversed(tokens[:index]) if token.content), "")
     next_character = next((token.content[0] for token in tokens[index + 1 :] if token.content), "")
     return "" if _CHINESE_PAIR.match(last_character + next_character) else "\n"
@@ -55,7 +55,7 @@ def _render_line_end(_renderer: Any, tokens: Sequence[Token], index: int, _optio
 
 def _render_image(renderer: Any, tokens: Sequence[Token], index: int, options: Any, env: Any) -> str:
     token = tokens[index]
-    address = _data_address(env["folder"], str(token.attrGet("src") or ""))
+    address = _make_data_url(env["folder"], str(token.attrGet("src") or ""))
     description = renderer.renderInlineAsText(token.children or [], options, env)
     token.attrSet("alt", description)
     if address is None:
@@ -64,7 +64,7 @@ def _render_image(renderer: Any, tokens: Sequence[Token], index: int, options: A
     return renderer.renderToken(tokens, index, options, env)  # type: ignore[no-any-return]
 
 
-def _data_address(folder: Path, name: str) -> str | None:
+def _make_data_url(folder: Path, name: str) -> str | None:
     """Return an image of a lesson as a data URL, or None if the lesson has no such image."""
     try:
         path = (folder / name).resolve(strict=True)

@@ -18,7 +18,7 @@ much longer ones."""
 
 
 def remove_harmful(folder: str) -> tuple[str, ...]:
-    """Delete files that could harm a reader of a folder, and return their paths relative to the folder.
+    """Delete files that could harm a reader of a folder, and return their relative paths.
 
     Symbolic links out of the folder, and hard links to files outside it, lead a reader to other users' files.
     A reader waits forever for named pipes, sockets and devices, and fails at very deep folders. All folders and files
@@ -26,15 +26,15 @@ def remove_harmful(folder: str) -> tuple[str, ...]:
     """
     _permit_owner(folder, os.lstat(folder))
     removed = []
-    too_deep = [path for path in _paths_of(folder) if len(path) > _MAX_PATH_LENGTH]
+    too_deep = [path for path in _list_paths(folder) if len(path) > _MAX_PATH_LENGTH]
     for path in too_deep:
         _delete_folder(path, folder)
     links: Counter[tuple[int, int]] = Counter()
     linked: list[tuple[str, os.stat_result]] = []
-    for path in _paths_of(folder):
+    for path in _list_paths(folder):
         status = os.lstat(path)
         if stat.S_ISLNK(status.st_mode):
-            if _leads_out(path, folder):
+            if _does_link_lead_out(path, folder):
                 removed.append(path)
         elif not stat.S_ISREG(status.st_mode) and not stat.S_ISDIR(status.st_mode):
             removed.append(path)
@@ -53,8 +53,11 @@ def remove_harmful(folder: str) -> tuple[str, ...]:
     return tuple(sorted(os.path.relpath(path, folder) for path in removed + too_deep))
 
 
-def remove_files_of(user: int) -> None:
-    """Delete the files of a user in world-writable folders. No process of the user may be running."""
+def remove_user_files(user: int) -> None:
+    """Delete the files of a user in world-writable folders.
+
+    No process of the user may be running.
+    """
     for folder in _SHARED_FOLDERS:
         with contextlib.suppress(OSError), os.scandir(folder) as entries:
             for entry in entries:
@@ -63,12 +66,15 @@ def remove_files_of(user: int) -> None:
                         _delete(entry.path)
 
 
-def give_to(user: int, group: int, folder: str) -> None:
-    """Change the owner of a folder and its contents to a user if this process runs as root. Links are not followed."""
+def change_owner(user: int, group: int, folder: str) -> None:
+    """Change the owner of a folder and its contents to a user if this process runs as root.
+
+    Links are not followed.
+    """
     if os.geteuid() != 0:
         return
     os.chown(folder, user, group, follow_symlinks=False)
-    for path in _paths_of(folder):
+    for path in _list_paths(folder):
         if stat.S_ISDIR((status := os.lstat(path)).st_mode) or status.st_nlink == 1:
             os.chown(path, user, group, follow_symlinks=False)
 
@@ -108,9 +114,10 @@ def _delete_folder(path: str, folder: str) -> None:
     os.rmdir(base)
 
 
-def _paths_of(folder: str) -> list[str]:
-    """Return all paths in a folder, each folder before its contents, without folders that are nested too deeply.
+def _list_paths(folder: str) -> list[str]:
+    """Return all paths in a folder, each folder before its contents.
 
+    Folders that are nested too deeply are left out.
     Folders are made readable during the search.
     """
     found = []
@@ -126,7 +133,7 @@ def _paths_of(folder: str) -> list[str]:
     return found
 
 
-def _leads_out(path: str, folder: str) -> bool:
+def _does_link_lead_out(path: str, folder: str) -> bool:
     real_folder = os.path.realpath(folder)
     target = os.path.realpath(path)
     return target != real_folder and not target.startswith(real_folder + os.sep)

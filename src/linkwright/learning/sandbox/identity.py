@@ -24,7 +24,7 @@ def find_unused_user() -> int | None:
     count = min(_count_mapped("/proc/self/uid_map"), _count_mapped("/proc/self/gid_map"))
     if count > _HIGH_USERS + 2**23:
         return _HIGH_USERS + os.getpid()
-    busy = _users_of_processes()
+    busy = _list_users_of_processes()
     for offset in range(len(_LOW_USERS)):
         user = _LOW_USERS[(os.getpid() + offset) % len(_LOW_USERS)]
         if user < count and user not in busy and not _is_known(user):
@@ -49,7 +49,7 @@ def can_be_reached(paths: list[str]) -> bool:
 
 
 def is_readable_for_others(path: str) -> bool:
-    """Return whether a user without files may read a file or list a folder that the user can reach."""
+    """Return whether a user without files may read a reachable file or list a reachable folder."""
     needed = 0o005 if os.path.isdir(path) else 0o004
     return os.stat(path).st_mode & needed == needed
 
@@ -63,7 +63,7 @@ def _count_mapped(path: str) -> int:
     return 0
 
 
-def _users_of_processes() -> set[int]:
+def _list_users_of_processes() -> set[int]:
     users = set()
     for entry in os.scandir("/proc"):
         if entry.name.isdecimal():

@@ -1,5 +1,6 @@
-"""Landlock: the Linux kernel restricts the paths that a process and its descendants may access.
+"""Landlock: the Linux kernel restricts the paths that a process may access.
 
+The restriction also applies to the descendants of the process.
 Landlock needs Linux 5.13 or later, but no privileges. Newer versions of its interface protect more.
 """
 
@@ -89,7 +90,10 @@ def restrict(readable: Iterable[str], listable: Iterable[str], writable: Iterabl
 
 
 def _create_ruleset(version: int, handled: int) -> tuple[int, bool]:
-    """Return a ruleset, and whether it restricts signals, which kernels of RHEL 9 with version 6 cannot."""
+    """Return a ruleset, and whether it restricts signals.
+
+    Kernels of RHEL 9 report version 6, but cannot restrict signals.
+    """
     size = 8 if version < 4 else 16 if version < 6 else 24
     scopes = (_SCOPE_ABSTRACT_SOCKETS | _SCOPE_SIGNALS, _SCOPE_ABSTRACT_SOCKETS, 0) if version >= 6 else (0,)
     for scope in scopes:

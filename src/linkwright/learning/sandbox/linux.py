@@ -45,18 +45,18 @@ CAP_SYS_PTRACE = 19
 
 
 @cache
-def libc() -> ctypes.CDLL:
+def load_libc() -> ctypes.CDLL:
     """Return the C library of this process."""
     return ctypes.CDLL(None, use_errno=True)
 
 
-def call(name: str, *arguments: object) -> int:
+def call_libc(name: str, *arguments: object) -> int:
     """Call a function of the C library whose negative return value means a failure.
 
     Raises:
         OSError: The function failed.
     """
-    result = int(getattr(libc(), name)(*arguments))
+    result = int(getattr(load_libc(), name)(*arguments))
     if result < 0:
         error = ctypes.get_errno()
         raise OSError(error, f"{name}: {os.strerror(error)}")
@@ -65,17 +65,17 @@ def call(name: str, *arguments: object) -> int:
 
 def system_call(number: int, *arguments: object) -> int:
     """Make a system call, and raise an OSError if it fails."""
-    return call("syscall", ctypes.c_long(number), *arguments)
+    return call_libc("syscall", ctypes.c_long(number), *arguments)
 
 
 def unshare(flags: int) -> None:
     """Move this process, or its next children, into new namespaces."""
-    call("unshare", ctypes.c_int(flags))
+    call_libc("unshare", ctypes.c_int(flags))
 
 
 def mount(source: str, target: str, kind: str = "", flags: int = 0, data: str = "") -> None:
     """Mount a file system, or bind-mount a folder."""
-    call(
+    call_libc(
         "mount",
         source.encode(),
         os.fsencode(target),
@@ -95,7 +95,10 @@ class _MountAttributes(ctypes.Structure):
 
 
 def make_read_only(path: str, *, with_mounts_below: bool = True) -> None:
-    """Make a mount read-only, without set-user-ID programs, optionally with all mounts below it (Linux 5.12)."""
+    """Make a mount read-only, without set-user-ID programs.
+
+    Including all mounts below it requires Linux 5.12.
+    """
     attributes = _MountAttributes(attr_set=_MOUNT_ATTR_RDONLY | _MOUNT_ATTR_NOSUID)
     system_call(
         _SYS_MOUNT_SETATTR,
@@ -110,18 +113,21 @@ def make_read_only(path: str, *, with_mounts_below: bool = True) -> None:
 def change_root(path: str) -> None:
     """Make a mount the root folder of this mount namespace, and unmount the previous root."""
     os.chdir(path)
-    call("pivot_root", b".", b".")
-    call("umount2", b".", ctypes.c_int(_MNT_DETACH))
+    call_libc("pivot_root", b".", b".")
+    call_libc("umount2", b".", ctypes.c_int(_MNT_DETACH))
     os.chdir("/")
 
 
 def _prctl(option: int, argument: int) -> None:
     zero = ctypes.c_ulong(0)
-    call("prctl", ctypes.c_int(option), ctypes.c_ulong(argument), zero, zero, zero)
+    call_libc("prctl", ctypes.c_int(option), ctypes.c_ulong(argument), zero, zero, zero)
 
 
 def die_with_parent(signal_number: int, parent: int) -> None:
-    """Request a signal to this process when its parent ends. A change of credentials cancels the request."""
+    """Request a signal to this process when its parent ends.
+
+    A change of credentials cancels the request.
+    """
     _prctl(_PR_SET_PDEATHSIG, signal_number)
     if os.getppid() != parent:
         os.kill(os.getpid(), signal_number)
@@ -148,7 +154,7 @@ def drop_capabilities() -> None:
             _prctl(_PR_CAPBSET_DROP, capability)
     header = _CapabilityHeader(_CAPABILITY_VERSION_3, 0)
     no_rights = (ctypes.c_uint32 * 6)()
-    call("capset", ctypes.byref(header), ctypes.byref(no_rights))
+    call_libc("capset", ctypes.byref(header), ctypes.byref(no_rights))
 
 
 def has_capability(number: int) -> bool:
@@ -161,6 +167,6 @@ def has_capability(number: int) -> bool:
 
 
 def set_file_user(user: int, group: int) -> None:
-    """Access files as another user, without changing the user that the kernel checks for signals."""
-    libc().setfsgid(ctypes.c_uint(group))
-    libc().setfsuid(ctypes.c_uint(user))
+    """Access files as another user, but receive signals as the current user."""
+    load_libc().setfsgid(ctypes.c_uint(group))
+    load_libc().setfsuid(ctypes.c_uint(user))

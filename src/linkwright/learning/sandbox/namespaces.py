@@ -1,4 +1,4 @@
-"""Linux namespaces, which separate the processes, mounts, network and IPC of a run from the system."""
+"""Linux namespaces, which isolate the processes, mounts, network and IPC of a run."""
 
 from __future__ import annotations
 

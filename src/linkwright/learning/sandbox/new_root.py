@@ -83,12 +83,12 @@ class _Root:
             path = os.path.normpath(link.parent.resolve() / target / subpath)
         return None
 
-    def _at(self, path: str) -> str:
+    def _get_path_in_root(self, path: str) -> str:
         return self.base + path
 
     def _bind(self, source: int, path: str) -> str:
         """Mount an opened file or folder at its path in the new root, and return the mount point."""
-        place = self._at(path)
+        place = self._get_path_in_root(path)
         if Path(f"/proc/self/fd/{source}").is_dir():
             Path(place).mkdir(parents=True, exist_ok=True)
         else:
@@ -100,23 +100,26 @@ class _Root:
     def mount_temporary_folders(self, size: int) -> None:
         """Mount the in-memory folders of the run, before the mounts inside them."""
         for path in ("/dev/shm", "/tmp"):
-            Path(self._at(path)).mkdir(parents=True)
-            mount("linkwright", self._at(path), "tmpfs", MS_NOSUID | MS_NODEV, f"mode=1777,size={size}")
+            Path(self._get_path_in_root(path)).mkdir(parents=True)
+            mount("linkwright", self._get_path_in_root(path), "tmpfs", MS_NOSUID | MS_NODEV, f"mode=1777,size={size}")
 
     def mount_devices(self) -> None:
         for name, source in self._devices.items():
             self._bind(source, f"/dev/{name}")
         for name, target in (("fd", "fd"), ("stdin", "fd/0"), ("stdout", "fd/1"), ("stderr", "fd/2")):
-            Path(self._at(f"/dev/{name}")).symlink_to(f"/proc/self/{target}")
-        Path(self._at("/dev/pts")).mkdir()
-        Path(self._at("/dev/ptmx")).symlink_to("pts/ptmx")
+            Path(self._get_path_in_root(f"/dev/{name}")).symlink_to(f"/proc/self/{target}")
+        Path(self._get_path_in_root("/dev/pts")).mkdir()
+        Path(self._get_path_in_root("/dev/ptmx")).symlink_to("pts/ptmx")
         with contextlib.suppress(OSError):  # terminals are missing then
             options = "newinstance,ptmxmode=0666,mode=620"
-            mount("devpts", self._at("/dev/pts"), "devpts", MS_NOSUID | MS_NOEXEC, options)
+            mount("devpts", self._get_path_in_root("/dev/pts"), "devpts", MS_NOSUID | MS_NOEXEC, options)
 
     def mount_proc(self, *, own_processes: bool) -> None:
-        """Mount /proc of the new process namespace. If that is not allowed, /proc has only files about the machine."""
-        proc = Path(self._at("/proc"))
+        """Mount /proc of the new process namespace.
+
+        If that is not allowed, /proc has only files about the machine.
+        """
+        proc = Path(self._get_path_in_root("/proc"))
         proc.mkdir()
         if own_processes:
             with contextlib.suppress(OSError):
@@ -136,8 +139,8 @@ class _Root:
                 done.append(real)
         for link, target in self._links.items():
             with contextlib.suppress(OSError):  # the link exists in a mounted folder
-                Path(self._at(link)).parent.mkdir(parents=True, exist_ok=True)
-                Path(self._at(link)).symlink_to(target)
+                Path(self._get_path_in_root(link)).parent.mkdir(parents=True, exist_ok=True)
+                Path(self._get_path_in_root(link)).symlink_to(target)
 
     def bind_folder(self) -> None:
         """Mount the folder of the run, which may be inside a readable folder."""

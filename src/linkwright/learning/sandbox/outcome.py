@@ -10,7 +10,10 @@ MEBIBYTE = 1024 * 1024
 
 @dataclass(frozen=True)
 class Limits:
-    """The resources that all processes of a run together may use. Times are in seconds, sizes in bytes."""
+    """The resources that all processes of a run together may use.
+
+    Times are in seconds, sizes in bytes.
+    """
 
     seconds: float = 120.0
     """Wall time, without the time in which a process of the run waited for a processor (see `PatientClock`)."""

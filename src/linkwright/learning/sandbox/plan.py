@@ -1,4 +1,4 @@
-"""The JSON messages between the grader and the supervisor of a run: the plan and the outcome."""
+"""The JSON messages between the grader and a run's supervisor: the plan and the outcome."""
 
 from __future__ import annotations
 

@@ -29,10 +29,10 @@ class ProcessUsage:
     memory: int
 
 
-def descendants(root: int) -> list[ProcessUsage]:
+def find_descendants(root: int) -> list[ProcessUsage]:
     """Return all descendants of a process."""
     children: dict[int, list[ProcessUsage]] = {}
-    for process in _all_processes():
+    for process in _iterate_processes():
         children.setdefault(process.parent, []).append(process)
     processes: list[ProcessUsage] = []
     waiting = [root]
@@ -43,14 +43,14 @@ def descendants(root: int) -> list[ProcessUsage]:
     return processes
 
 
-def _all_processes() -> Iterator[ProcessUsage]:
+def _iterate_processes() -> Iterator[ProcessUsage]:
     if sys.platform == "linux":
         for name in os.listdir("/proc"):
             if name.isdecimal():
                 with contextlib.suppress(OSError, ValueError, IndexError):
                     yield _read_process(int(name))
     else:
-        yield from _processes_of_ps()
+        yield from _read_processes_from_ps()
 
 
 def _read_process(pid: int) -> ProcessUsage:
@@ -58,13 +58,15 @@ def _read_process(pid: int) -> ProcessUsage:
     with open(f"/proc/{pid}/stat", "rb") as file:
         fields = file.read().rpartition(b")")[2].split()  # the name before it may contain anything
     cpu_ticks = sum(int(field) for field in fields[11:15])
-    return ProcessUsage(pid, int(fields[1]), int(fields[17]), cpu_ticks / _TICKS_PER_SECOND, int(fields[21]) * _PAGE)
+    return ProcessUsage(
+        pid, int(fields[1]), int(fields[17]), cpu_ticks / _TICKS_PER_SECOND, int(fields[21]) * _PAGE_BYTES
+    )
 
 
-_PAGE = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
+_PAGE_BYTES = os.sysconf("SC_PAGE_SIZE") if hasattr(os, "sysconf") else 4096
 
 
-def own_memory(process: ProcessUsage) -> int:
+def measure_own_memory(process: ProcessUsage) -> int:
     """Return the proportional memory of a process in bytes, without file pages.
 
     If the system does not report it, return the whole resident memory.
@@ -78,8 +80,8 @@ def own_memory(process: ProcessUsage) -> int:
     return process.memory if total is None else total
 
 
-def written_bytes(pid: int) -> int:
-    """Return the bytes that a process and its ended children wrote to disks; 0 if that cannot be read."""
+def read_written_bytes(pid: int) -> int:
+    """Return the bytes that a process and its ended children wrote to disks; 0 if unknown."""
     with contextlib.suppress(OSError, ValueError), open(f"/proc/{pid}/io", "rb") as file:
         for line in file:
             name, _, value = line.partition(b":")
@@ -88,7 +90,7 @@ def written_bytes(pid: int) -> int:
     return 0
 
 
-def nameless_files(pid: int) -> dict[tuple[int, int], int]:
+def find_nameless_files(pid: int) -> dict[tuple[int, int], int]:
     """Return the sizes in bytes of a process's open files without a name, by device and inode.
 
     Such files were deleted, or created by memfd_create(2).
@@ -103,7 +105,7 @@ def nameless_files(pid: int) -> dict[tuple[int, int], int]:
     return sizes
 
 
-def _processes_of_ps() -> Iterator[ProcessUsage]:
+def _read_processes_from_ps() -> Iterator[ProcessUsage]:
     """Return the processes from the output of ps(1) in the POSIX format, which lacks threads."""
     command = ["ps", "-A", "-o", "pid=,ppid=,rss=,time="]
     with subprocess.Popen(  # noqa: S603 - fixed arguments
@@ -114,10 +116,10 @@ def _processes_of_ps() -> Iterator[ProcessUsage]:
         with contextlib.suppress(ValueError):
             pid, parent, kibibytes, time = line.split()
             if int(pid) != table.pid:
-                yield ProcessUsage(int(pid), int(parent), 1, _seconds_of(time), int(kibibytes) * 1024)
+                yield ProcessUsage(int(pid), int(parent), 1, _parse_ps_time(time), int(kibibytes) * 1024)
 
 
-def _seconds_of(time: str) -> float:
+def _parse_ps_time(time: str) -> float:
     """Convert a time in the format of ps, [[days-]hours:]minutes:seconds, to seconds."""
     days, _, clock = time.rpartition("-")
     seconds = 0.0
@@ -138,7 +140,7 @@ def end_descendants(user: int | None) -> None:
         if user is not None:
             _kill_processes_of(user)
         for pid in _stop_descendants():
-            _signal(pid, signal.SIGKILL)
+            _send_signal(pid, signal.SIGKILL)
         if not _wait_for_one_child():
             return
 
@@ -146,20 +148,23 @@ def end_descendants(user: int | None) -> None:
 def _stop_descendants() -> set[int]:
     """Stop all descendants, including children that appear during the search, and return them."""
     stopped: set[int] = set()
-    while found := {process.pid for process in descendants(os.getpid())} - stopped:
+    while found := {process.pid for process in find_descendants(os.getpid())} - stopped:
         for pid in found:
-            _signal(pid, signal.SIGSTOP)
+            _send_signal(pid, signal.SIGSTOP)
         stopped |= found
     return stopped
 
 
-def _signal(pid: int, number: int) -> None:
+def _send_signal(pid: int, number: int) -> None:
     with contextlib.suppress(ProcessLookupError, PermissionError):
         os.kill(pid, number)
 
 
 def _kill_processes_of(user: int) -> None:
-    """Kill all processes of a user at once with kill(2) and -1, which no concurrent fork escapes."""
+    """Kill all processes of a user at once.
+
+    No concurrent fork escapes kill(2) with -1.
+    """
     from linkwright.learning.sandbox.identity import become
 
     if (child := os.fork()) == 0:

@@ -17,11 +17,11 @@ from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.learning.sandbox.contents import remove_harmful
 from linkwright.learning.sandbox.outcome import Limits, Outcome, Protection
 from linkwright.learning.sandbox.plan import Plan, outcome_from_json
-from linkwright.learning.sandbox.readable import readable_everywhere
+from linkwright.learning.sandbox.readable import list_readable_paths
 
-_SUPERVISE = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from {module} import main; main()"
+_SUPERVISOR_CODE = "import json, sys; sys.path[:] = json.loads(sys.argv[1]); from {module} import main; main()"
 _MODULE = "linkwright.learning.sandbox.supervisor"
-_PASSED_ON = ("PATH", "LANG", "LC_ALL", "LC_CTYPE", "LC_MESSAGES", "LINKWRIGHT_LANG", "TZ")
+_INHERITED_VARIABLES = ("PATH", "LANG", "LC_ALL", "LC_CTYPE", "LC_MESSAGES", "LINKWRIGHT_LANG", "TZ")
 
 
 def run_in_sandbox(
@@ -65,7 +65,7 @@ def run_in_sandbox(
     plan = Plan(
         arguments=tuple(arguments),
         folder=str(folder),
-        readable=(*readable_everywhere(), *(str(path.absolute()) for path in readable)),
+        readable=(*list_readable_paths(), *(str(path.absolute()) for path in readable)),
         environment=_make_environment(folder, scratch, environment or {}),
         limits=limits,
         processors=tuple(processors),
@@ -77,7 +77,7 @@ def run_in_sandbox(
 
 
 @cache
-def protections_available() -> frozenset[Protection]:
+def find_available_protections() -> frozenset[Protection]:
     """Return the protections that this system supports, determined by running an empty program."""
     with ScratchFolder("sandbox") as folder:
         Path(folder).chmod(0o711)
@@ -86,16 +86,19 @@ def protections_available() -> frozenset[Protection]:
 
 
 def _make_environment(folder: Path, scratch: Path, variables: Mapping[str, str]) -> dict[str, str]:
-    passed_on = {name: os.environ[name] for name in _PASSED_ON if name in os.environ}
+    passed_on = {name: os.environ[name] for name in _INHERITED_VARIABLES if name in os.environ}
     folders = {"HOME": str(folder), "TMPDIR": str(scratch)}
     programs = os.pathsep.join([os.path.dirname(sys.executable), passed_on.get("PATH", os.defpath)])
     return {**passed_on, "PATH": programs, **folders, **variables}
 
 
 def _supervise(plan: Plan) -> Outcome:
-    """Run the supervisor, and wait for its end. After an interruption, the supervisor first ends the run."""
+    """Run the supervisor, and wait for its end.
+
+    After an interruption, the supervisor first ends the run.
+    """
     search_path = json.dumps([os.path.abspath(path) for path in sys.path if path])
-    command = [sys.executable, "-I", "-S", "-c", _SUPERVISE.format(module=_MODULE), search_path]
+    command = [sys.executable, "-I", "-S", "-c", _SUPERVISOR_CODE.format(module=_MODULE), search_path]
     with subprocess.Popen(  # noqa: S603 - our own program
         command,
         stdin=subprocess.PIPE,
@@ -106,17 +109,17 @@ def _supervise(plan: Plan) -> Outcome:
         start_new_session=True,
     ) as supervisor:
         try:
-            answer, problem = supervisor.communicate(plan.to_json())
+            output, problem = supervisor.communicate(plan.to_json())
         except BaseException:
             supervisor.terminate()
             raise
     if supervisor.returncode < 0:  # the program has ended its supervisor; only where there is no protection from that
         return Outcome(supervisor.returncode, b"", b"", None, frozenset(), remove_harmful(plan.folder))
-    if supervisor.returncode != 0 or not answer:
-        raise _failure(problem.strip() or f"the supervisor ended with status {supervisor.returncode}")
-    return outcome_from_json(answer)
+    if supervisor.returncode != 0 or not output:
+        raise _sandbox_error(problem.strip() or f"the supervisor ended with status {supervisor.returncode}")
+    return outcome_from_json(output)
 
 
-def _failure(reason: str, hint: Phrase | None = None) -> LinkwrightError:
+def _sandbox_error(reason: str, hint: Phrase | None = None) -> LinkwrightError:
     message = phrase("the program cannot run in the sandbox: {reason}", reason=foreign(reason))
     return LinkwrightError(Diagnostic("LEARN901", message, hint=hint))

@@ -15,7 +15,7 @@ import socket
 import struct
 import sys
 
-from linkwright.learning.sandbox.linux import call
+from linkwright.learning.sandbox.linux import call_libc
 
 _IO_URING_SETUP = 425
 _ARCHITECTURES = {
@@ -43,8 +43,9 @@ class _Program(ctypes.Structure):
 
 
 def filter_system_calls(*, forbid_local_servers: bool) -> bool:
-    """Filter the system calls of this process and its descendants, and return whether the system supports it.
+    """Filter the system calls of this process and its descendants.
 
+    Returns whether the system supports filters.
     The process must have called `forbid_new_privileges` before.
 
     Args:
@@ -75,7 +76,7 @@ def filter_system_calls(*, forbid_local_servers: bool) -> bool:
     code = ctypes.create_string_buffer(b"".join(struct.pack("HBBI", *instruction) for instruction in instructions))
     program = _Program(len(instructions), ctypes.addressof(code))
     try:
-        call("prctl", _PR_SET_SECCOMP, ctypes.c_ulong(_SECCOMP_MODE_FILTER), ctypes.byref(program))
+        call_libc("prctl", _PR_SET_SECCOMP, ctypes.c_ulong(_SECCOMP_MODE_FILTER), ctypes.byref(program))
     except OSError:
         return False
     return True

@@ -13,18 +13,18 @@ import signal
 import sys
 from types import FrameType
 
-from linkwright.learning.sandbox.contents import give_to, remove_files_of, remove_harmful
+from linkwright.learning.sandbox.contents import change_owner, remove_harmful, remove_user_files
 from linkwright.learning.sandbox.outcome import Exceeded, Outcome, Protection
 from linkwright.learning.sandbox.plan import Plan, outcome_to_json
 from linkwright.learning.sandbox.processes import end_descendants
-from linkwright.learning.sandbox.starting import Confinement, Messages, Start
+from linkwright.learning.sandbox.run_start import Confinement, Messages, Start
 from linkwright.learning.sandbox.usage import Watchdog
 
-_INTERVAL_S = 0.05
+_POLL_INTERVAL_S = 0.05
 _NAMESPACES = frozenset({"processes", "mounts", "ipc", "network"})
 _TRUNCATE_VERSION = 3
 """The version of Landlock since which the size of files outside cannot be changed."""
-_NOT_PROGRAMS = ("/etc/", "/proc/", "/sys/")
+_FOLDERS_WITHOUT_PROGRAMS = ("/etc/", "/proc/", "/sys/")
 _UMASK = 0o022
 """That of the run, whatever that of the grader: the user of the run passes through the new root folder."""
 
@@ -62,7 +62,10 @@ class _Supervisor:
         self._end_requested = True
 
     def run(self) -> Outcome:
-        """Run the program until it ends or exceeds a limit, end all its processes, and return the outcome."""
+        """Run the program until it ends or exceeds a limit, and return the outcome.
+
+        All processes of the run have ended when this method returns.
+        """
         folder = self._plan.folder
         if sys.platform == "linux":
             from linkwright.learning.sandbox.linux import adopt_orphans
@@ -80,24 +83,24 @@ class _Supervisor:
         finally:
             if not os.path.samestat(os.lstat(folder), self._owner):
                 raise RunFailedError("the program has replaced its folder")
-            give_to(self._owner.st_uid, self._owner.st_gid, folder)
+            change_owner(self._owner.st_uid, self._owner.st_gid, folder)
         self._output.read_all()
-        exceeded = exceeded or watchdog.find_exceeded_at_end() or self._exceeded_by_signal()
+        exceeded = exceeded or watchdog.find_exceeded_at_end() or self._find_limit_of_signal()
         return Outcome(
             status=-signal.SIGKILL if self._status is None else self._status,
             stdout=bytes(self._output.stdout),
             stderr=bytes(self._output.stderr),
             exceeded=exceeded,
-            protections=protections_of(self._confinement),
+            protections=find_protections(self._confinement),
             removed=remove_harmful(folder),
             seconds=watchdog.seconds,
             cpu_seconds=watchdog.cpu_seconds,
         )
 
     def _remove_temporary_files(self) -> None:
-        """Delete the run's files in shared folders of the system if they are identifiable by their user."""
+        """Delete the run's files in shared folders of the system, if their user identifies them."""
         if self._confinement.user is not None and "root" not in self._confinement.namespaces:
-            remove_files_of(self._confinement.user)
+            remove_user_files(self._confinement.user)
 
     def _start(self) -> None:
         """Start the program with all namespaces, or with the namespaces that this system allows."""
@@ -117,7 +120,7 @@ class _Supervisor:
             return None
         from linkwright.learning.sandbox.identity import find_unused_user, is_readable_for_others
 
-        programs = [path for path in self._plan.readable if not path.startswith(_NOT_PROGRAMS)]
+        programs = [path for path in self._plan.readable if not path.startswith(_FOLDERS_WITHOUT_PROGRAMS)]
         return find_unused_user() if all(map(is_readable_for_others, programs)) else None
 
     def _can_reach(self) -> bool:
@@ -127,7 +130,7 @@ class _Supervisor:
 
     def _try_to_start(self, user: int | None, namespaces: frozenset[str], *, needs_root_folder: bool = False) -> bool:
         owner = (self._owner.st_uid, self._owner.st_gid) if user is None else (user, user)
-        give_to(*owner, self._plan.folder)
+        change_owner(*owner, self._plan.folder)
         self._confinement.user = user
         self._messages = Messages()
         go_reader, go_pipe = os.pipe()
@@ -151,7 +154,10 @@ class _Supervisor:
         return is_started
 
     def _follow_start(self, go_pipe: int) -> bool:
-        """Handle the messages of the start until the program runs, and return whether the namespaces are usable."""
+        """Handle the messages of the start until the program runs.
+
+        Returns whether the namespaces are usable.
+        """
         while (message := self._messages.receive()) is not None:
             if "map" in message:
                 from linkwright.learning.sandbox.namespaces import map_users
@@ -163,7 +169,7 @@ class _Supervisor:
                     return False
                 os.write(go_pipe, b"y")
             elif "applied" in message:
-                self._confinement.take(message["applied"])
+                self._confinement.update(message["applied"])
                 return True
             elif "failed" in message:
                 raise RunFailedError(message["failed"])
@@ -178,7 +184,7 @@ class _Supervisor:
         for source in sources:
             poll.register(source, select.POLLIN)
         while True:
-            for descriptor, _ in poll.poll(_INTERVAL_S * 1000):
+            for descriptor, _ in poll.poll(_POLL_INTERVAL_S * 1000):
                 is_open = self._take_message() if descriptor == self._messages.reader else self._output.read(descriptor)
                 if not is_open:
                     poll.unregister(descriptor)
@@ -204,15 +210,15 @@ class _Supervisor:
         with contextlib.suppress(ChildProcessError):
             while (ended := os.waitpid(-1, os.WNOHANG))[0]:
                 if ended[0] == self._leader and self._status is None:
-                    self._status = self._status_of_leader(ended[1])
+                    self._status = self._get_leader_status(ended[1])
 
-    def _status_of_leader(self, status: int) -> int:
+    def _get_leader_status(self, status: int) -> int:
         if "processes" not in self._confinement.namespaces:
             return os.waitstatus_to_exitcode(status)
         message = self._messages.receive()  # the leader is not the program, whose status came before
         return -signal.SIGKILL if message is None or "ended" not in message else int(message["ended"])
 
-    def _exceeded_by_signal(self) -> Exceeded | None:
+    def _find_limit_of_signal(self) -> Exceeded | None:
         if self._status == -signal.SIGXCPU:
             return Exceeded.CPU_SECONDS
         if self._status == -signal.SIGXFSZ:
@@ -256,7 +262,7 @@ class _Output:
                 pass
 
 
-def protections_of(confinement: Confinement) -> frozenset[Protection]:
+def find_protections(confinement: Confinement) -> frozenset[Protection]:
     """Return the protections that a confinement provides."""
     if sys.platform != "linux":
         return frozenset({Protection.LIMITS})

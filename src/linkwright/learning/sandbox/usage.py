@@ -12,7 +12,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from linkwright.learning.sandbox.outcome import Exceeded, Limits
-from linkwright.learning.sandbox.processes import ProcessUsage, descendants, nameless_files, own_memory, written_bytes
+from linkwright.learning.sandbox.processes import (
+    ProcessUsage,
+    find_descendants,
+    find_nameless_files,
+    measure_own_memory,
+    read_written_bytes,
+)
 from linkwright.process.patience import PatientClock
 
 _INTERVAL_S = 0.04
@@ -37,7 +43,7 @@ def measure_folder(folder: str) -> FolderUsage:
     """
     total = files = largest = 0
     counted: set[tuple[int, int]] = set()
-    for status in _walk(folder):
+    for status in _walk_folder(folder):
         if status is None:
             return FolderUsage(total, 1 << 60, largest)
         files += 1
@@ -50,7 +56,7 @@ def measure_folder(folder: str) -> FolderUsage:
     return FolderUsage(total, files, largest)
 
 
-def _walk(folder: str) -> Iterator[os.stat_result | None]:
+def _walk_folder(folder: str) -> Iterator[os.stat_result | None]:
     """Yield the status of each path below a folder, or None for a path that is too long."""
     waiting = [folder]
     while waiting:
@@ -61,7 +67,7 @@ def _walk(folder: str) -> Iterator[os.stat_result | None]:
 
 
 def _list_folder(folder: str) -> Iterator[tuple[str, os.stat_result | None]]:
-    """Yield the paths in a folder with their status, except paths that were deleted or made unreadable."""
+    """Yield the paths in a folder with their status, except deleted and unreadable paths."""
     try:
         with os.scandir(folder) as entries:
             for entry in entries:
@@ -117,7 +123,7 @@ class Watchdog:
         return self._check_folder()
 
     def _check_processes(self) -> Exceeded | None:
-        processes = descendants(os.getpid())
+        processes = find_descendants(os.getpid())
         ended = os.times()
         now = ended.children_user + ended.children_system + sum(process.cpu_seconds for process in processes)
         self.cpu_seconds = max(self.cpu_seconds, now)
@@ -125,28 +131,36 @@ class Watchdog:
             return Exceeded.CPU_SECONDS
         if sum(process.threads for process in processes) > self._limits.processes:
             return Exceeded.PROCESSES
-        with self._access_to_processes():
+        with self._access_processes():
             return self._check_memory(processes) or self._check_written(processes)
 
     def _check_memory(self, processes: list[ProcessUsage]) -> Exceeded | None:
-        """Compare the memory with the limit, first by a fast sum that counts shared pages repeatedly."""
+        """Compare the memory with the limit.
+
+        A fast sum that counts shared pages repeatedly is checked first.
+        """
         sizes: dict[tuple[int, int], int] = {}
         for process in processes:
-            sizes.update(nameless_files(process.pid))
+            sizes.update(find_nameless_files(process.pid))
         self._nameless_on_disk = sum(size for (device, _), size in sizes.items() if device == self._device)
         room = self._limits.memory - sum(sizes.values()) + self._nameless_on_disk
-        is_exceeded = sum(process.memory for process in processes) > room and sum(map(own_memory, processes)) > room
+        is_exceeded = (
+            sum(process.memory for process in processes) > room and sum(map(measure_own_memory, processes)) > room
+        )
         return Exceeded.MEMORY if is_exceeded else None
 
     def _check_written(self, processes: list[ProcessUsage]) -> Exceeded | None:
         """Compare the written bytes with the limit. A parent's bytes include its ended children's."""
-        written = sum(written_bytes(pid) for pid in (os.getpid(), *(process.pid for process in processes)))
+        written = sum(read_written_bytes(pid) for pid in (os.getpid(), *(process.pid for process in processes)))
         is_exceeded = max(written, self._nameless_on_disk) > self._limits.disk_bytes
         return Exceeded.DISK_BYTES if is_exceeded else None
 
     @contextlib.contextmanager
-    def _access_to_processes(self) -> Iterator[None]:
-        """Access /proc as the user of the run if this process is root without the right to trace processes."""
+    def _access_processes(self) -> Iterator[None]:
+        """Access /proc as the user of the run.
+
+        This is only needed if this process is root without the right to trace processes.
+        """
         if self.user is None or self._may_trace:
             yield
             return

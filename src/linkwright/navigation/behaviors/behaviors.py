@@ -114,7 +114,7 @@ class Spin(Behavior):
             parameters.max_rotational_vel,
         )
         velocity = Velocity(yaw=copysign(speed, self._angle))
-        predicted_poses = _predicted_poses(pose, velocity, min(parameters.simulate_ahead_time, remaining_angle / speed))
+        predicted_poses = _predict_poses(pose, velocity, min(parameters.simulate_ahead_time, remaining_angle / speed))
         if not is_free(predicted_poses):
             return Step(Outcome.COLLISION, traveled=self._turned_angle)
         return Step(Outcome.RUNNING, velocity, self._turned_angle)
@@ -144,7 +144,7 @@ class DriveStraight(Behavior):
         if remaining_distance <= 0.0:
             return Step(Outcome.DONE, traveled=traveled)
         velocity = Velocity(self._speed)
-        if not is_free(_predicted_poses(pose, velocity, min(self._look_ahead, remaining_distance / abs(self._speed)))):
+        if not is_free(_predict_poses(pose, velocity, min(self._look_ahead, remaining_distance / abs(self._speed)))):
             return Step(Outcome.COLLISION, traveled=traveled)
         return Step(Outcome.RUNNING, velocity, traveled)
 
@@ -171,7 +171,7 @@ def slow_near_obstacles(pose: Pose, velocity: Velocity, seconds: float, is_free:
         seconds: how far ahead the motion is checked for collisions, in seconds.
         is_free: checks poses for collisions; see `IsFree`.
     """
-    predicted_poses = _predicted_poses(pose, velocity, seconds)
+    predicted_poses = _predict_poses(pose, velocity, seconds)
     for index in range(len(predicted_poses)):
         if not is_free(predicted_poses[index : index + 1]):
             fraction = index / len(predicted_poses)
@@ -179,7 +179,7 @@ def slow_near_obstacles(pose: Pose, velocity: Velocity, seconds: float, is_free:
     return velocity
 
 
-def _predicted_poses(pose: Pose, velocity: Velocity, seconds: float) -> NDArray[np.float64]:
+def _predict_poses(pose: Pose, velocity: Velocity, seconds: float) -> NDArray[np.float64]:
     """Return the poses predicted at a constant velocity, of shape (poses, 3)."""
     count = max(2, round(seconds / _CHECK_INTERVAL) + 1)
     poses: NDArray[np.float64] = predict_poses(pose, np.array([velocity]), np.linspace(0.0, seconds, count)[1:])[0]

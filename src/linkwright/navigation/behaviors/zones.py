@@ -92,23 +92,23 @@ class ZoneRule:
     def limit_velocity(self, shape: Shape, points: Points, velocity: Velocity) -> Velocity | None:
         """Return the permitted velocity, or None if the zone does not restrict `velocity`."""
         if self.action is ZoneAction.APPROACH:
-            seconds = self._time_to_collision(shape, points, velocity)
-            return None if seconds is None else _scaled(velocity, seconds / self.time_before_collision)
+            seconds = self._find_time_to_collision(shape, points, velocity)
+            return None if seconds is None else _scale(velocity, seconds / self.time_before_collision)
         if self.action is ZoneAction.NOTHING or np.count_nonzero(shape.contains(points)) < self.min_points:
             return None
         if self.action is ZoneAction.STOP:
             return Velocity(0.0, 0.0, 0.0)
         if self.action is ZoneAction.SLOWDOWN:
-            return _scaled(velocity, self.slowdown_ratio)
-        return _scaled(velocity, self._limit_ratio(velocity))
+            return _scale(velocity, self.slowdown_ratio)
+        return _scale(velocity, self._compute_limit_ratio(velocity))
 
-    def _limit_ratio(self, velocity: Velocity) -> float:
+    def _compute_limit_ratio(self, velocity: Velocity) -> float:
         speed = hypot(velocity.x, velocity.y)
         linear_ratio = self.linear_limit / speed if speed else 1.0
         angular_ratio = self.angular_limit / abs(velocity.yaw) if velocity.yaw else 1.0
         return min(max(min(linear_ratio, angular_ratio), 0.0), 1.0)
 
-    def _time_to_collision(self, shape: Shape, points: Points, velocity: Velocity) -> float | None:
+    def _find_time_to_collision(self, shape: Shape, points: Points, velocity: Velocity) -> float | None:
         """Return the seconds until enough points are inside the shape at this velocity.
 
         Returns None if that does not happen within `time_before_collision`.
@@ -132,7 +132,7 @@ class SpeedRange:
     """The shape of a zone for a range of velocities.
 
     Attributes:
-        shape: the shape.
+        shape: the polygon that applies to velocities in these ranges.
         linear: the minimum and maximum velocity along x, in m/s; for a holonomic robot, the minimum and maximum speed
             in any direction.
         angular: the minimum and maximum angular velocity, in rad/s.
@@ -192,7 +192,7 @@ def limit_by_zones(velocity: Velocity, zones: Sequence[tuple[str, ZoneRule, Shap
     return verdict
 
 
-def _scaled(velocity: Velocity, ratio: float) -> Velocity:
+def _scale(velocity: Velocity, ratio: float) -> Velocity:
     return Velocity(velocity.x * ratio, velocity.y * ratio, velocity.yaw * ratio)
 
 

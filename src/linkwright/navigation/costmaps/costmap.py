@@ -23,7 +23,7 @@ LETHAL: Final = 254
 UNKNOWN: Final = 255
 """The cell has not been observed."""
 
-_STEPS_PER_CELL = 2.0
+_OUTLINE_POINTS_PER_CELL = 2.0
 """The number of checked points per cell of the outline of a footprint."""
 
 
@@ -79,7 +79,7 @@ class Costmap:
             Costs of shape (...); `LETHAL` if part of the outline is outside the grid and no part is in an unknown cell.
         """
         poses = np.asarray(poses, np.float64)
-        outline_points = outline(footprint, self.grid.resolution / _STEPS_PER_CELL)
+        outline_points = outline(footprint, self.grid.resolution / _OUTLINE_POINTS_PER_CELL)
         cosine, sine = np.cos(poses[..., 2, None]), np.sin(poses[..., 2, None])
         x = poses[..., 0, None] + cosine * outline_points[:, 0] - sine * outline_points[:, 1]
         y = poses[..., 1, None] + sine * outline_points[:, 0] + cosine * outline_points[:, 1]

@@ -112,9 +112,9 @@ class ObstacleLayer(PersistentLayer):
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
         """Free the cells on the rays to the points, and return the window around these cells."""
-        start, ends, _ = ray_ends(observation, grid)
+        start, ends, _ = find_ray_ends(observation, grid)
         cells, _ = cells_on_lines(start, ends)
-        cells = cells[grid.contains(cells) & _beyond_min_range(cells, start, observation, grid)]
+        cells = cells[grid.contains(cells) & _find_cells_beyond_min_range(cells, start, observation, grid)]
         self.layer_grid.cells[cells[:, 0], cells[:, 1]] = FREE
         return Window.around(cells, grid)
 
@@ -135,7 +135,7 @@ class ObstacleLayer(PersistentLayer):
         return obstacle_points
 
 
-def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArray[np.float64]]:
+def find_ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArray[np.float64]]:
     """Return the sensor's cell and the end cells of its clearing rays.
 
     Returns:
@@ -158,7 +158,7 @@ def ray_ends(observation: Observation, grid: Grid) -> tuple[Cells, Cells, NDArra
     return start, cells[ray_indices], ends[ray_indices, 2]
 
 
-def _beyond_min_range(cells: Cells, start: Cells, observation: Observation, grid: Grid) -> NDArray[np.bool_]:
+def _find_cells_beyond_min_range(cells: Cells, start: Cells, observation: Observation, grid: Grid) -> NDArray[np.bool_]:
     """Return a mask of the cells beyond the minimum range for clearing."""
     min_range = observation.source.raytrace_min_range / grid.resolution
     offsets = cells - start

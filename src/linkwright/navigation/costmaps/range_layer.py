@@ -96,7 +96,7 @@ class RangeLayer(PersistentLayer):
         super().match_grid(grid, _UNKNOWN_PROBABILITY)
 
     def clear(self, window: Window, *, clear_outside: bool) -> None:
-        """Set the cells in a window, or all cells outside it, to the probability of an unknown cell."""
+        """Set the cells in a window, or all cells outside it, to the probability of unknown cells."""
         super().clear(window, clear_outside=clear_outside)
         self.layer_grid.cells[self.layer_grid.cells == UNKNOWN] = _UNKNOWN_PROBABILITY
 

@@ -39,7 +39,7 @@ class Interpretation:
     lethal_threshold: int = 100
     trinary: bool = True
 
-    def table(self) -> Costs:
+    def cost_table(self) -> Costs:
         """Return the cost for each byte of an occupancy grid, of shape (256,)."""
         values = np.arange(256)
         costs = np.full(256, FREE) if self.trinary else values * LETHAL // max(1, self.lethal_threshold)
@@ -83,7 +83,7 @@ class StaticLayer(Layer):
 
         The cells of `occupancy` are of type int8: occupancies in percent, or -1 for unknown.
         """
-        costs = self.interpretation.table()[occupancy.cells.astype(np.uint8)]
+        costs = self.interpretation.cost_table()[occupancy.cells.astype(np.uint8)]
         self.map = Grid(cells=costs, resolution=occupancy.resolution, x=occupancy.x, y=occupancy.y, yaw=occupancy.yaw)
         self._needs_rewrite = True
 
@@ -96,7 +96,7 @@ class StaticLayer(Layer):
         map_grid = self.map
         if map_grid is None or min(top, left) < 0 or top + rows > map_grid.rows or left + columns > map_grid.columns:
             return False
-        map_grid.cells[top : top + rows, left : left + columns] = self.interpretation.table()[
+        map_grid.cells[top : top + rows, left : left + columns] = self.interpretation.cost_table()[
             occupancy.astype(np.uint8)
         ]
         self._needs_rewrite = True
@@ -111,7 +111,7 @@ class StaticLayer(Layer):
         self._needs_rewrite = True
 
     def is_current(self, time_ns: int) -> bool:
-        """Return whether there is a map whose pose is known or will be requested by the next update."""
+        """Return whether there is a map whose pose is known or requested by the next update."""
         return self.map is not None and (self._map_pose is not None or self._needs_rewrite)
 
     def update_window(self, window: Window, context: UpdateContext, grid: Grid) -> Window:
@@ -136,12 +136,12 @@ class StaticLayer(Layer):
         if self.map is None or self._map_pose is None:
             return
         window_cells = grid.cells[window.cells]
-        covered, costs = self._aligned_cells(grid, window) or self._sampled_cells(grid, window)
+        covered, costs = self._find_aligned_cells(grid, window) or self._sample_cells(grid, window)
         window_cells[covered] = np.maximum(window_cells[covered], costs) if self._use_maximum else costs
         if self._footprint_clearing:
             free_footprint(grid.cells, context, grid, window)
 
-    def _aligned_cells(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
+    def _find_aligned_cells(self, grid: Grid, window: Window) -> tuple[tuple[slice, slice], Costs] | None:
         """Return the index of the window's cells that the map covers, and the costs of these cells.
 
         Returns None if the grids are not aligned.
@@ -166,7 +166,7 @@ class StaticLayer(Layer):
         )
         return covered, map_grid.cells[map_window.cells]
 
-    def _sampled_cells(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
+    def _sample_cells(self, grid: Grid, window: Window) -> tuple[NDArray[np.bool_], Costs]:
         """Return a mask of the window's cells that the map covers, and the costs of these cells.
 
         The map is sampled at the cell centers, for grids that are not aligned.

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from linkwright.navigation.costmaps.costmap import FREE, LETHAL, UNKNOWN
 from linkwright.navigation.costmaps.layer import Window, shift_cells
 from linkwright.navigation.costmaps.observations import Observation, ObservationBuffer
-from linkwright.navigation.costmaps.obstacle_layer import Cells, HeightRange, ObstacleLayer, ray_ends
+from linkwright.navigation.costmaps.obstacle_layer import Cells, HeightRange, ObstacleLayer, find_ray_ends
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.rays import cells_on_lines
 
@@ -94,14 +94,14 @@ class VoxelLayer(ObstacleLayer):
 
     def clear_rays(self, observation: Observation, grid: Grid) -> Window:
         """Free the voxels on the rays to the points, and return the window around their cells."""
-        start, ends, heights = ray_ends(observation, grid)
+        start, ends, heights = find_ray_ends(observation, grid)
         cells, ray_indices = cells_on_lines(start, ends)
         steps = np.bincount(ray_indices, minlength=len(ends))
         first_steps = np.concatenate(([0], np.cumsum(steps)[:-1])) if len(ends) else steps
         fractions = (np.arange(len(ray_indices)) - first_steps[ray_indices]) / np.maximum(steps[ray_indices] - 1, 1)
         cell_heights = observation.origin[2] + fractions * (heights[ray_indices] - observation.origin[2])
         min_range = observation.source.raytrace_min_range / grid.resolution
-        levels, is_cleared = self._levels(cell_heights)
+        levels, is_cleared = self._find_levels(cell_heights)
         is_cleared &= grid.contains(cells) & (((cells - start) ** 2).sum(axis=1) >= min_range**2)
         cells, bits = cells[is_cleared], np.left_shift(1, levels[is_cleared]).astype(np.uint16)
         np.bitwise_and.at(self._occupied, (cells[:, 0], cells[:, 1]), ~bits)
@@ -113,7 +113,7 @@ class VoxelLayer(ObstacleLayer):
         """Mark the voxels that contain points, and return the window around their cells."""
         points = self.obstacles(observation)
         cells = grid.cells_of(points[:, :2])
-        levels, is_marked = self._levels(points[:, 2])
+        levels, is_marked = self._find_levels(points[:, 2])
         is_marked &= grid.contains(cells)
         cells, bits = cells[is_marked], np.left_shift(1, levels[is_marked]).astype(np.uint16)
         np.bitwise_or.at(self._occupied, (cells[:, 0], cells[:, 1]), bits)
@@ -121,7 +121,7 @@ class VoxelLayer(ObstacleLayer):
         self._update_costs(cells)
         return Window.around(cells, grid)
 
-    def _levels(self, heights: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    def _find_levels(self, heights: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Return the level of each height, and a mask of the heights that are within the levels."""
         levels = np.floor((heights - self._voxels.origin_z) / self._voxels.z_resolution).astype(np.int64)
         is_within = (levels >= 0) & (levels < self._voxels.z_voxels)

@@ -19,21 +19,22 @@ _FLATTENING = 1.0 / 298.257223563
 _ECCENTRICITY_SQUARED = _FLATTENING * (2.0 - _FLATTENING)
 _ECCENTRICITY = sqrt(_ECCENTRICITY_SQUARED)
 _N = _FLATTENING / (2.0 - _FLATTENING)
-_SCALE, _FALSE_EASTING, _FALSE_NORTHING = 0.9996, 500000.0, 10000000.0
-_RECTIFYING = _EQUATORIAL_RADIUS_M / (1.0 + _N) * (1.0 + _N**2 / 4.0 + _N**4 / 64.0)
-_FORWARD = (
+"""The third flattening of the ellipsoid, n in the sources."""
+_CENTRAL_SCALE, _FALSE_EASTING_M, _FALSE_NORTHING_M = 0.9996, 500000.0, 10000000.0
+_RECTIFYING_RADIUS_M = _EQUATORIAL_RADIUS_M / (1.0 + _N) * (1.0 + _N**2 / 4.0 + _N**4 / 64.0)
+_FORWARD_COEFFICIENTS = (
     _N / 2.0 - 2.0 * _N**2 / 3.0 + 5.0 * _N**3 / 16.0 + 41.0 * _N**4 / 180.0,
     13.0 * _N**2 / 48.0 - 3.0 * _N**3 / 5.0 + 557.0 * _N**4 / 1440.0,
     61.0 * _N**3 / 240.0 - 103.0 * _N**4 / 140.0,
     49561.0 * _N**4 / 161280.0,
 )
-_BACKWARD = (
+_INVERSE_COEFFICIENTS = (
     _N / 2.0 - 2.0 * _N**2 / 3.0 + 37.0 * _N**3 / 96.0 - _N**4 / 360.0,
     _N**2 / 48.0 + _N**3 / 15.0 - 437.0 * _N**4 / 1440.0,
     17.0 * _N**3 / 480.0 - 37.0 * _N**4 / 840.0,
     4397.0 * _N**4 / 161280.0,
 )
-_ITERATIONS = 6
+_ITERATION_COUNT = 6
 """The number of iterations for the latitude. Each reduces the error by a factor of hundreds."""
 
 
@@ -72,11 +73,14 @@ def utm_from_degrees(latitude: float, longitude: float, zone: UtmZone) -> tuple[
     xi = atan2(conformal, cos(offset))
     eta = asinh(sin(offset) / hypot(conformal, cos(offset)))
     north, east = xi, eta
-    for order, factor in enumerate(_FORWARD, 1):
+    for order, factor in enumerate(_FORWARD_COEFFICIENTS, 1):
         north += factor * sin(2 * order * xi) * cosh(2 * order * eta)
         east += factor * cos(2 * order * xi) * sinh(2 * order * eta)
-    false_northing = 0.0 if zone.is_northern else _FALSE_NORTHING
-    return _FALSE_EASTING + _SCALE * _RECTIFYING * east, false_northing + _SCALE * _RECTIFYING * north
+    false_northing = 0.0 if zone.is_northern else _FALSE_NORTHING_M
+    return (
+        _FALSE_EASTING_M + _CENTRAL_SCALE * _RECTIFYING_RADIUS_M * east,
+        false_northing + _CENTRAL_SCALE * _RECTIFYING_RADIUS_M * north,
+    )
 
 
 def degrees_from_utm(easting: float, northing: float, zone: UtmZone) -> tuple[float, float]:
@@ -84,15 +88,15 @@ def degrees_from_utm(easting: float, northing: float, zone: UtmZone) -> tuple[fl
 
     This is the inverse of `utm_from_degrees`.
     """
-    north = (northing - (0.0 if zone.is_northern else _FALSE_NORTHING)) / (_SCALE * _RECTIFYING)
-    east = (easting - _FALSE_EASTING) / (_SCALE * _RECTIFYING)
+    north = (northing - (0.0 if zone.is_northern else _FALSE_NORTHING_M)) / (_CENTRAL_SCALE * _RECTIFYING_RADIUS_M)
+    east = (easting - _FALSE_EASTING_M) / (_CENTRAL_SCALE * _RECTIFYING_RADIUS_M)
     xi, eta = north, east
-    for order, factor in enumerate(_BACKWARD, 1):
+    for order, factor in enumerate(_INVERSE_COEFFICIENTS, 1):
         xi -= factor * sin(2 * order * north) * cosh(2 * order * east)
         eta -= factor * cos(2 * order * north) * sinh(2 * order * east)
     target = sin(xi) / hypot(sinh(eta), cos(xi))
     tau = target / (1.0 - _ECCENTRICITY_SQUARED)
-    for _ in range(_ITERATIONS):
+    for _ in range(_ITERATION_COUNT):
         sigma = sinh(_ECCENTRICITY * atanh(_ECCENTRICITY * tau / hypot(1.0, tau)))
         conformal = tau * hypot(1.0, sigma) - sigma * hypot(1.0, tau)
         slope = (1.0 + (1.0 - _ECCENTRICITY_SQUARED) * tau * tau) / (1.0 - _ECCENTRICITY_SQUARED)
@@ -125,20 +129,20 @@ class TangentPlane:
 
     def point_from_geodetic(self, latitude: float, longitude: float, altitude: float) -> Vector3:
         """Convert latitude and longitude in degrees and altitude in meters to a point in meters."""
-        x, y, z = _geocentric(latitude, longitude, altitude)
-        ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
+        x, y, z = _geocentric_from_geodetic(latitude, longitude, altitude)
+        ox, oy, oz = _geocentric_from_geodetic(self.latitude, self.longitude, self.altitude)
         east, north, up = self._axes()
         offset = (x - ox, y - oy, z - oz)
         return dot(east, offset), dot(north, offset), dot(up, offset)
 
     def geodetic_from_point(self, point: Vector3) -> Vector3:
         """Convert a point in meters to latitude and longitude in degrees and altitude in meters."""
-        ox, oy, oz = _geocentric(self.latitude, self.longitude, self.altitude)
+        ox, oy, oz = _geocentric_from_geodetic(self.latitude, self.longitude, self.altitude)
         axes = self._axes()
         x, y, z = (
             sum(axis[index] * coordinate for axis, coordinate in zip(axes, point, strict=True)) for index in range(3)
         )
-        return _geodetic(ox + x, oy + y, oz + z)
+        return _geodetic_from_geocentric(ox + x, oy + y, oz + z)
 
     def _axes(self) -> tuple[Vector3, Vector3, Vector3]:
         phi, lam = radians(self.latitude), radians(self.longitude)
@@ -149,7 +153,7 @@ class TangentPlane:
         )
 
 
-def _geocentric(latitude: float, longitude: float, altitude: float) -> Vector3:
+def _geocentric_from_geodetic(latitude: float, longitude: float, altitude: float) -> Vector3:
     phi, lam = radians(latitude), radians(longitude)
     radius = _EQUATORIAL_RADIUS_M / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
     axis_distance = (radius + altitude) * cos(phi)
@@ -160,10 +164,10 @@ def _geocentric(latitude: float, longitude: float, altitude: float) -> Vector3:
     )
 
 
-def _geodetic(x: float, y: float, z: float) -> Vector3:
+def _geodetic_from_geocentric(x: float, y: float, z: float) -> Vector3:
     axis_distance = hypot(x, y)
     phi, altitude = atan2(z, axis_distance * (1.0 - _ECCENTRICITY_SQUARED)), 0.0
-    for _ in range(_ITERATIONS):
+    for _ in range(_ITERATION_COUNT):
         radius = _EQUATORIAL_RADIUS_M / sqrt(1.0 - _ECCENTRICITY_SQUARED * sin(phi) ** 2)
         altitude = (
             axis_distance * cos(phi)

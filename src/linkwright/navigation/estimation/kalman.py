@@ -19,7 +19,7 @@ from linkwright.navigation.estimation.motion_model import (
     ACCELERATION,
     POSE,
     RATES,
-    SIZE,
+    STATE_SIZE,
     TWIST,
     Matrix,
     State,
@@ -122,8 +122,8 @@ class Settings:
     """
 
     noise: Matrix = field(default_factory=lambda: np.diag(DEFAULT_NOISE))
-    initial_covariance: Matrix = field(default_factory=lambda: np.eye(SIZE) * 1e-9)
-    initial_state: Vector = field(default_factory=lambda: np.zeros(SIZE))
+    initial_covariance: Matrix = field(default_factory=lambda: np.eye(STATE_SIZE) * 1e-9)
+    initial_state: Vector = field(default_factory=lambda: np.zeros(STATE_SIZE))
     uses_dynamic_noise: bool = False
     control: Control | None = None
 
@@ -192,14 +192,14 @@ class KalmanFilter(ABC):
 
         Returns whether the measurement was used: it must contain finite values, and pass the Mahalanobis test.
         """
-        used_indices = _used_indices(measurement)
+        used_indices = _find_used_indices(measurement)
         if not used_indices:
             return False
         innovation = measurement.values[used_indices] - self.state[used_indices]
         for row, index in enumerate(used_indices):
             if index in _ANGLES:
                 innovation[row] = wrap_angle(float(innovation[row]))
-        noise = _measurement_noise(measurement, used_indices)
+        noise = _select_noise(measurement, used_indices)
         try:
             inverse = np.linalg.inv(self.covariance[np.ix_(used_indices, used_indices)] + noise)
         except np.linalg.LinAlgError:
@@ -208,7 +208,7 @@ class KalmanFilter(ABC):
             return False
         gain = self.covariance[:, used_indices] @ inverse
         self.state = self.state + gain @ innovation
-        correction = np.eye(SIZE)
+        correction = np.eye(STATE_SIZE)
         correction[:, used_indices] -= gain
         self.covariance = correction @ self.covariance @ correction.T + gain @ noise @ gain.T
         wrap_state_angles(self.state)
@@ -218,13 +218,13 @@ class KalmanFilter(ABC):
     def _predict(self, seconds: float) -> None: ...
 
     def _initialize(self, measurement: Measurement) -> None:
-        used_indices = _used_indices(measurement)
+        used_indices = _find_used_indices(measurement)
         self.state[used_indices] = measurement.values[used_indices]
         self.covariance[np.ix_(used_indices, used_indices)] = measurement.covariance[np.ix_(used_indices, used_indices)]
         self.time_ns = measurement.time_ns
         self.is_initialized = True
 
-    def _process_noise(self, seconds: float) -> Matrix:
+    def _compute_process_noise(self, seconds: float) -> Matrix:
         noise = self.settings.noise
         if self.settings.uses_dynamic_noise:
             noise = noise.copy()
@@ -252,7 +252,7 @@ class ExtendedKalmanFilter(KalmanFilter):
     """A Kalman filter that linearizes the motion at the state."""
 
     def _predict(self, seconds: float) -> None:
-        jacobian, noise = state_jacobian(self.state, seconds), self._process_noise(seconds)
+        jacobian, noise = state_jacobian(self.state, seconds), self._compute_process_noise(seconds)
         self.state = predict_state(self.state, seconds)
         self.covariance = jacobian @ self.covariance @ jacobian.T + noise
 
@@ -270,16 +270,16 @@ class UnscentedKalmanFilter(KalmanFilter):
     def __init__(
         self, settings: Settings | None = None, *, alpha: float = 0.001, kappa: float = 0.0, beta: float = 2.0
     ) -> None:
-        spread = alpha * alpha * (SIZE + kappa) - SIZE
-        self._scale = sqrt(SIZE + spread)
-        self._weights = np.full(2 * SIZE + 1, 0.5 / (SIZE + spread))
-        self._weights[0] = spread / (SIZE + spread)
+        spread = alpha * alpha * (STATE_SIZE + kappa) - STATE_SIZE
+        self._scale = sqrt(STATE_SIZE + spread)
+        self._weights = np.full(2 * STATE_SIZE + 1, 0.5 / (STATE_SIZE + spread))
+        self._weights[0] = spread / (STATE_SIZE + spread)
         self._covariance_weights = self._weights.copy()
         self._covariance_weights[0] += 1.0 - alpha * alpha + beta
         super().__init__(settings)
 
     def _predict(self, seconds: float) -> None:
-        noise = self._process_noise(seconds)
+        noise = self._compute_process_noise(seconds)
         root = _square_root(self.covariance) * self._scale
         points = [self.state, *(self.state + column for column in root.T), *(self.state - column for column in root.T)]
         predicted_points = np.array([predict_state(point, seconds) for point in points])
@@ -308,7 +308,7 @@ def _square_root(covariance: Matrix) -> Matrix:
     return root
 
 
-def _used_indices(measurement: Measurement) -> list[int]:
+def _find_used_indices(measurement: Measurement) -> list[int]:
     """Return the indices of the used values that are finite and have a finite variance."""
     values, covariance = measurement.values, measurement.covariance
     return [
@@ -318,7 +318,7 @@ def _used_indices(measurement: Measurement) -> list[int]:
     ]
 
 
-def _measurement_noise(measurement: Measurement, used_indices: list[int]) -> Matrix:
+def _select_noise(measurement: Measurement, used_indices: list[int]) -> Matrix:
     noise = measurement.covariance[np.ix_(used_indices, used_indices)].copy()
     for row in range(len(used_indices)):
         noise[row, row] = max(abs(noise[row, row]), MIN_VARIANCE)

@@ -38,7 +38,7 @@ class State(IntEnum):
     AZ = 14
 
 
-SIZE = len(State)
+STATE_SIZE = len(State)
 POSITION, ANGLES = slice(0, 3), slice(3, 6)
 POSE = slice(0, 6)
 VELOCITY, RATES = slice(6, 9), slice(9, 12)
@@ -89,7 +89,7 @@ def state_jacobian(state: Vector, seconds: float) -> Matrix:
     """Return the Jacobian of `predict_state` with respect to the state, shape (15, 15)."""
     roll, pitch, yaw = state[ANGLES].tolist()
     rotation_matrix, angle_rates = rotation(roll, pitch, yaw), _angle_rates(state)
-    jacobian = np.eye(SIZE)
+    jacobian = np.eye(STATE_SIZE)
     jacobian[POSITION, VELOCITY] = rotation_matrix * seconds
     jacobian[POSITION, ACCELERATION] = rotation_matrix * (0.5 * seconds * seconds)
     jacobian[ANGLES, RATES] = angle_rates * seconds

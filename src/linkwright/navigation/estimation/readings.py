@@ -30,7 +30,7 @@ from linkwright.navigation.estimation.motion_model import (
     POSE,
     POSITION,
     RATES,
-    SIZE,
+    STATE_SIZE,
     TWIST,
     VELOCITY,
     Matrix,
@@ -43,7 +43,7 @@ GRAVITY = 9.80665
 """The standard acceleration of gravity in m/s2."""
 _PLANAR_ZEROS = (State.Z, State.ROLL, State.PITCH, State.VZ, State.VROLL, State.VPITCH, State.AZ)
 """The quantities that are zero for a body on a plane."""
-_FLAT_VARIANCE = 1e-6
+_PLANAR_VARIANCE = 1e-6
 _MIN_INFLUENCE = 1e-6
 
 UsedFlags = tuple[bool, ...]
@@ -121,37 +121,39 @@ class PoseReader:
     def _read(
         self, pose: Transform, covariance: Matrix, sensor: Transform, rotation_to_world: Matrix, time_ns: int
     ) -> Reading | None:
-        pose, finite_flags = _finite_pose(pose, self.used)
+        pose, finite_flags = _replace_non_finite(pose, self.used)
         if not any(finite_flags):
             return None
         used = (
-            *_rotated_components(self.used, finite_flags, rotation_to_world, POSITION),
-            *_rotated_components(self.used, finite_flags, rotation_to_world, ANGLES),
+            *_rotate_flags(self.used, finite_flags, rotation_to_world, POSITION),
+            *_rotate_flags(self.used, finite_flags, rotation_to_world, ANGLES),
         )
-        block_rotation = _block_diagonal(rotation_to_world)
+        block_rotation = _make_block_diagonal(rotation_to_world)
         rotated_covariance = block_rotation @ covariance @ block_rotation.T
         if self.differential:
             previous, self._previous = self._previous, (pose, rotated_covariance, time_ns)
             if previous is None or time_ns <= previous[2]:
                 return None
-            return self._velocity_reading(previous, sensor, used)
+            return self._make_velocity_reading(previous, sensor, used)
         if self.relative:
             if self._first is None:
                 self._first = pose
             pose = compose(invert(self._first), pose)
         pose = compose(sensor, pose)
-        reading = _empty_reading()
+        reading = _make_empty_reading()
         reading.values[POSITION] = pose[:3]
         reading.values[ANGLES] = rpy_from_quaternion(pose[3:])
         reading.covariance[POSE, POSE] = rotated_covariance
         return _with_flags(reading, (*used, *([False] * 9)), two_d=self.two_d)
 
-    def _velocity_reading(self, previous: tuple[Transform, Matrix, int], sensor: Transform, used: UsedFlags) -> Reading:
+    def _make_velocity_reading(
+        self, previous: tuple[Transform, Matrix, int], sensor: Transform, used: UsedFlags
+    ) -> Reading:
         assert self._previous is not None
         pose, covariance, time_ns = self._previous
         seconds = (time_ns - previous[2]) / 1e9
         motion = compose((0.0, 0.0, 0.0, *sensor[3:]), compose(invert(previous[0]), pose))
-        reading = _empty_reading()
+        reading = _make_empty_reading()
         reading.values[VELOCITY] = np.array(motion[:3]) / seconds
         reading.values[RATES] = np.array(rpy_from_quaternion(motion[3:])) / seconds
         reading.covariance[TWIST, TWIST] = (covariance + previous[1]) * seconds
@@ -180,10 +182,10 @@ def read_twist(
         two_d: whether the body moves on a plane.
     """
     rotation_to_body = rotation_matrix(mounting[3:])
-    block_rotation = _block_diagonal(rotation_to_body)
-    finite_flags = _finite_flags(_finite_flags(used, VELOCITY, linear), RATES, angular)
+    block_rotation = _make_block_diagonal(rotation_to_body)
+    finite_flags = _clear_non_finite_flags(_clear_non_finite_flags(used, VELOCITY, linear), RATES, angular)
     linear, angular = _finite_or_zero(linear), _finite_or_zero(angular)
-    reading = _empty_reading()
+    reading = _make_empty_reading()
     x, y, z = mounting[:3]
     roll, pitch, yaw = rates.tolist()
     reading.values[VELOCITY] = rotation_to_body @ linear + (
@@ -195,8 +197,8 @@ def read_twist(
     reading.covariance[TWIST, TWIST] = block_rotation @ covariance @ block_rotation.T
     mask = (
         *([False] * 6),
-        *_rotated_components(used, finite_flags, rotation_to_body, VELOCITY),
-        *_rotated_components(used, finite_flags, rotation_to_body, RATES),
+        *_rotate_flags(used, finite_flags, rotation_to_body, VELOCITY),
+        *_rotate_flags(used, finite_flags, rotation_to_body, RATES),
         *([False] * 3),
     )
     return _with_flags(reading, mask, two_d=two_d)
@@ -215,13 +217,13 @@ def read_acceleration(
         two_d: whether the body moves on a plane.
     """
     rotation_to_body = rotation_matrix(mounting[3:])
-    finite_flags = _finite_flags(used, ACCELERATION, acceleration)
-    reading = _empty_reading()
+    finite_flags = _clear_non_finite_flags(used, ACCELERATION, acceleration)
+    reading = _make_empty_reading()
     reading.values[ACCELERATION] = rotation_to_body @ _finite_or_zero(acceleration)
     reading.covariance[ACCELERATION, ACCELERATION] = rotation_to_body @ covariance @ rotation_to_body.T
     return _with_flags(
         reading,
-        (*([False] * 12), *_rotated_components(used, finite_flags, rotation_to_body, ACCELERATION)),
+        (*([False] * 12), *_rotate_flags(used, finite_flags, rotation_to_body, ACCELERATION)),
         two_d=two_d,
     )
 
@@ -238,8 +240,8 @@ def subtract_gravity(acceleration: Vector, orientation: Quaternion, gravity: flo
     return remaining
 
 
-def _empty_reading() -> Reading:
-    return Reading(np.zeros(SIZE), np.zeros((SIZE, SIZE)), ())
+def _make_empty_reading() -> Reading:
+    return Reading(np.zeros(STATE_SIZE), np.zeros((STATE_SIZE, STATE_SIZE)), ())
 
 
 def _with_flags(reading: Reading, used: UsedFlags, *, two_d: bool) -> Reading:
@@ -247,23 +249,23 @@ def _with_flags(reading: Reading, used: UsedFlags, *, two_d: bool) -> Reading:
         used = tuple(flag or index in _PLANAR_ZEROS for index, flag in enumerate(used))
         for index in _PLANAR_ZEROS:
             reading.values[index] = 0.0
-            reading.covariance[index, index] = _FLAT_VARIANCE
+            reading.covariance[index, index] = _PLANAR_VARIANCE
     return reading._replace(used=used)
 
 
-def _finite_pose(pose: Transform, used: UsedFlags) -> tuple[Transform, UsedFlags]:
+def _replace_non_finite(pose: Transform, used: UsedFlags) -> tuple[Transform, UsedFlags]:
     """Return a pose without non-finite values, and flags of the used values that are finite.
 
     A non-finite coordinate becomes 0, and a non-finite orientation becomes the identity.
     """
     x, y, z = (value if isfinite(value) else 0.0 for value in pose[:3])
-    finite_flags = _finite_flags(used, POSITION, np.array(pose[:3]))
+    finite_flags = _clear_non_finite_flags(used, POSITION, np.array(pose[:3]))
     if all(isfinite(value) for value in pose[3:]):
         return (x, y, z, *pose[3:]), finite_flags
     return (x, y, z, *IDENTITY[3:]), tuple(flag and not 3 <= index < 6 for index, flag in enumerate(finite_flags))
 
 
-def _finite_flags(used: UsedFlags, section: slice, values: Vector) -> UsedFlags:
+def _clear_non_finite_flags(used: UsedFlags, section: slice, values: Vector) -> UsedFlags:
     """Return the flags, with the flags of non-finite values in a section of the state cleared."""
     flags = list(used)
     flags[section] = [bool(value) for value in np.array(used[section]) & np.isfinite(values)]
@@ -275,29 +277,27 @@ def _finite_or_zero(values: Vector) -> Vector:
     return numbers
 
 
-def _rotated_components(
-    used: UsedFlags, finite_flags: UsedFlags, rotation_to_body: Matrix, section: slice
-) -> UsedFlags:
+def _rotate_flags(used: UsedFlags, finite_flags: UsedFlags, rotation_to_body: Matrix, section: slice) -> UsedFlags:
     """Return flags of the body's components that depend only on finite sensor components."""
     lost_flags = tuple(used_flag and not finite_flag for used_flag, finite_flag in zip(used, finite_flags, strict=True))
     return tuple(
         bool(is_affected and not depends_on_lost)
         for is_affected, depends_on_lost in zip(
-            _affected_components(finite_flags, rotation_to_body, section),
-            _affected_components(lost_flags, rotation_to_body, section),
+            _find_affected_components(finite_flags, rotation_to_body, section),
+            _find_affected_components(lost_flags, rotation_to_body, section),
             strict=True,
         )
     )
 
 
-def _affected_components(flags: UsedFlags, rotation_to_body: Matrix, section: slice) -> NDArray[np.bool_]:
+def _find_affected_components(flags: UsedFlags, rotation_to_body: Matrix, section: slice) -> NDArray[np.bool_]:
     """Return a mask of the body's components that depend on a flagged sensor component."""
     columns = rotation_to_body[:, np.array(flags[section], dtype=bool)]
     is_affected: NDArray[np.bool_] = np.sum(columns * columns, axis=1) >= _MIN_INFLUENCE * _MIN_INFLUENCE
     return is_affected
 
 
-def _block_diagonal(rotation_matrix_3d: Matrix) -> Matrix:
+def _make_block_diagonal(rotation_matrix_3d: Matrix) -> Matrix:
     matrix = np.zeros((6, 6))
     matrix[:3, :3] = matrix[3:, 3:] = rotation_matrix_3d
     return matrix

@@ -78,15 +78,15 @@ class RegulatedPurePursuit(Follower):
         """Return the velocity for the next cycle, as described in `Follower.compute_velocity`."""
         parameters = self.parameters
         points = to_robot_frame(control_input.pose, control_input.path[:, :2])
-        cusp = _cusp_index(points) if parameters.allow_reversing else len(points)
+        cusp = _find_cusp(points) if parameters.allow_reversing else len(points)
         points = points[: cusp + 1]
-        lookahead = self._lookahead_distance(control_input.velocity.x)
+        lookahead = self._compute_lookahead_distance(control_input.velocity.x)
         carrot = find_carrot(points, lookahead)
         sign = -1.0 if parameters.allow_reversing and carrot[0] < 0.0 else 1.0
         goal_distance = hypot(*to_robot_frame(control_input.pose, control_input.path[-1, :2]))
         if parameters.use_rotate_to_heading and goal_distance < control_input.xy_tolerance:
             command = self._turn_in_place(wrap_angle(control_input.path[-1, 2] - control_input.pose[2]), control_input)
-        elif self._must_turn(angle := atan2(sign * carrot[1], sign * carrot[0])):
+        elif self._must_turn_in_place(angle := atan2(sign * carrot[1], sign * carrot[0])):
             command = self._turn_in_place(angle, control_input)
         else:
             curvature_point = (
@@ -94,14 +94,14 @@ class RegulatedPurePursuit(Follower):
                 if parameters.use_fixed_curvature_lookahead
                 else carrot
             )
-            curvature = curvature_to(curvature_point)
-            speed = self._speed(curvature, points, control_input)
+            curvature = compute_curvature(curvature_point)
+            speed = self._regulate_speed(curvature, points, control_input)
             command = Velocity(sign * speed, 0.0, sign * speed * curvature)
         if parameters.use_collision_detection:
             self._check_for_collision(command, hypot(*carrot), control_input)
         return command
 
-    def _lookahead_distance(self, speed: float) -> float:
+    def _compute_lookahead_distance(self, speed: float) -> float:
         parameters = self.parameters
         if not parameters.use_velocity_scaled_lookahead_dist:
             return parameters.lookahead_dist
@@ -109,14 +109,14 @@ class RegulatedPurePursuit(Follower):
             max(abs(speed) * parameters.lookahead_time, parameters.min_lookahead_dist), parameters.max_lookahead_dist
         )
 
-    def _must_turn(self, angle: float) -> bool:
+    def _must_turn_in_place(self, angle: float) -> bool:
         parameters = self.parameters
         return parameters.use_rotate_to_heading and abs(angle) > parameters.rotate_to_heading_min_angle
 
     def _turn_in_place(self, angle: float, control_input: ControlInput) -> Velocity:
         parameters = self.parameters
         return Velocity(
-            yaw=rotation_speed(
+            yaw=compute_rotation_speed(
                 angle,
                 control_input.velocity.yaw,
                 control_input.period,
@@ -125,17 +125,18 @@ class RegulatedPurePursuit(Follower):
             )
         )
 
-    def _speed(self, curvature: float, points: NDArray[np.float64], control_input: ControlInput) -> float:
+    def _regulate_speed(self, curvature: float, points: NDArray[np.float64], control_input: ControlInput) -> float:
         """Return the speed in m/s, reduced in curves, near obstacles and near the path's end."""
         parameters = self.parameters
         speed = self._max_speed
         if parameters.use_regulated_linear_velocity_scaling:
             speed = min(
-                speed, speed_in_curve(self._max_speed, curvature, parameters.regulated_linear_scaling_min_radius)
+                speed, limit_speed_in_curve(self._max_speed, curvature, parameters.regulated_linear_scaling_min_radius)
             )
         if parameters.use_cost_regulated_linear_velocity_scaling:
             speed = min(
-                speed, self._speed_near_obstacles(control_input.pose, control_input.costmap, control_input.footprint)
+                speed,
+                self._limit_speed_near_obstacles(control_input.pose, control_input.costmap, control_input.footprint),
             )
         speed = min(max(speed, parameters.regulated_linear_scaling_min_speed), self._max_speed)
         remaining_distance = float(distances_along(points)[-1])
@@ -147,7 +148,7 @@ class RegulatedPurePursuit(Follower):
             speed = min(speed, max(approach_speed, parameters.min_approach_linear_velocity))
         return speed
 
-    def _speed_near_obstacles(self, pose: Pose, costmap: Costmap, footprint: Footprint) -> float:
+    def _limit_speed_near_obstacles(self, pose: Pose, costmap: Costmap, footprint: Footprint) -> float:
         """Return the speed limit at a pose, in m/s.
 
         The distance from obstacles is derived from the inflated cost. Beyond `cost_scaling_dist`, the limit is the
@@ -203,7 +204,7 @@ def find_carrot(points: NDArray[np.float64], lookahead: float) -> NDArray[np.flo
     return point
 
 
-def curvature_to(point: NDArray[np.float64]) -> float:
+def compute_curvature(point: NDArray[np.float64]) -> float:
     """Return the curvature, in 1/m, of the arc from the robot to a point in the robot's frame.
 
     The robot faces along x, so the curvature is 2 y / (x^2 + y^2).
@@ -212,7 +213,7 @@ def curvature_to(point: NDArray[np.float64]) -> float:
     return 2.0 * float(point[1]) / squared_distance if squared_distance > _MIN_SQUARED_DISTANCE else 0.0
 
 
-def speed_in_curve(speed: float, curvature: float, min_radius: float) -> float:
+def limit_speed_in_curve(speed: float, curvature: float, min_radius: float) -> float:
     """Return the speed in a curve, in m/s.
 
     If the radius of the curve is below `min_radius`, in meters, the speed is reduced in proportion to the radius.
@@ -221,7 +222,7 @@ def speed_in_curve(speed: float, curvature: float, min_radius: float) -> float:
     return speed * min(1.0, float(radius) / min_radius) if min_radius > 0.0 else speed
 
 
-def rotation_speed(angle: float, current: float, period: float, max_speed: float, acceleration: float) -> float:
+def compute_rotation_speed(angle: float, current: float, period: float, max_speed: float, acceleration: float) -> float:
     """Return the angular velocity, in rad/s, for the next cycle of a rotation to an angle.
 
     From this velocity, the rotation can stop at the angle.
@@ -256,7 +257,7 @@ def is_free(control_input: ControlInput, command: Velocity, seconds: float) -> b
     return not bool(np.any(costs == LETHAL))
 
 
-def _cusp_index(points: NDArray[np.float64]) -> int:
+def _find_cusp(points: NDArray[np.float64]) -> int:
     """Return the index of the first point at which the path reverses, or of the last point."""
     steps = np.diff(points, axis=0)
     reversal_indices = np.flatnonzero((steps[:-1] * steps[1:]).sum(axis=1) < 0.0)

@@ -18,7 +18,7 @@ from linkwright.navigation.following.follower import (
     distances_along,
     to_robot_frame,
 )
-from linkwright.navigation.following.pure_pursuit import is_free, rotation_speed
+from linkwright.navigation.following.pure_pursuit import compute_rotation_speed, is_free
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +74,7 @@ class RotationShim(Follower):
         if not self._is_turning:
             return self._primary.compute_velocity(control_input)
         command = Velocity(
-            yaw=rotation_speed(
+            yaw=compute_rotation_speed(
                 angle,
                 control_input.velocity.yaw,
                 control_input.period,

@@ -26,7 +26,7 @@ from linkwright.navigation.following.follower import (
     to_robot_frame,
     wrap_angle,
 )
-from linkwright.navigation.following.pure_pursuit import is_free, rotation_speed
+from linkwright.navigation.following.pure_pursuit import compute_rotation_speed, is_free
 
 _MIN_VELOCITY, _MAX_VELOCITY, _MAX_ACCELERATION = (
     Velocity(0.0, 0.0, -1.0),
@@ -77,7 +77,7 @@ class SamplingParameters:
     min_turn_angle: float = 1.2
 
 
-_MAX_FOOTPRINTS = 60
+_MAX_CHECKED_FOOTPRINTS = 60
 """The maximum number of velocities that are checked with the footprint, best first. This check is slow."""
 _LOOK_AHEAD = 0.35
 """The distance from a motion's end to the point ahead on the path that the robot should face, in meters."""
@@ -104,21 +104,21 @@ class SamplingFollower(Follower):
         x, y, yaw = control_input.pose
         goal = control_input.path[-1]
         if hypot(goal[0] - x, goal[1] - y) < control_input.xy_tolerance:
-            return self._turn_velocity(wrap_angle(float(goal[2]) - yaw), control_input)
-        angle = self._angle_to_path(control_input)
+            return self._compute_turn_velocity(wrap_angle(float(goal[2]) - yaw), control_input)
+        angle = self._find_angle_to_path(control_input)
         self._is_turning = abs(angle) > (
             self.parameters.min_turn_angle / 3.0 if self._is_turning else self.parameters.min_turn_angle
         )
         if self._is_turning and self.parameters.limits.max_velocity.y <= 0.0:
-            return self._turn_velocity(angle, control_input)
-        return self._best_velocity(control_input)
+            return self._compute_turn_velocity(angle, control_input)
+        return self._choose_velocity(control_input)
 
-    def _angle_to_path(self, control_input: ControlInput) -> float:
+    def _find_angle_to_path(self, control_input: ControlInput) -> float:
         points = to_robot_frame(control_input.pose, control_input.path[:, :2])
         index = min(int(np.searchsorted(distances_along(control_input.path), _LOOK_AHEAD)), len(points) - 1)
         return atan2(float(points[index, 1]), float(points[index, 0]))
 
-    def _turn_velocity(self, angle: float, control_input: ControlInput) -> Velocity:
+    def _compute_turn_velocity(self, angle: float, control_input: ControlInput) -> Velocity:
         """Return the velocity to rotate in place by an angle, after a check for collisions.
 
         Raises:
@@ -128,7 +128,9 @@ class SamplingFollower(Follower):
         command = Velocity(
             _brake(current.x, limits.deceleration.x, control_input.period),
             _brake(current.y, limits.deceleration.y, control_input.period),
-            rotation_speed(angle, current.yaw, control_input.period, limits.max_velocity.yaw, limits.acceleration.yaw),
+            compute_rotation_speed(
+                angle, current.yaw, control_input.period, limits.max_velocity.yaw, limits.acceleration.yaw
+            ),
         )
         yaw_rate = abs(command.yaw)
         seconds = min(self.parameters.simulated_seconds, abs(angle) / yaw_rate) if yaw_rate > 0.0 else 0.0
@@ -136,7 +138,7 @@ class SamplingFollower(Follower):
             raise FollowingError("there is an obstacle where the robot would turn")
         return command
 
-    def _best_velocity(self, control_input: ControlInput) -> Velocity:
+    def _choose_velocity(self, control_input: ControlInput) -> Velocity:
         """Return the next cycle's velocity towards the best collision-free candidate.
 
         Footprints are checked in the order of the scores, best first.
@@ -145,7 +147,7 @@ class SamplingFollower(Follower):
             FollowingError: every candidate that was checked leads to a collision.
         """
         parameters = self.parameters
-        candidates = self._candidates(control_input)
+        candidates = self._sample_candidates(control_input)
         motions = predict_poses(
             control_input.pose,
             candidates,
@@ -155,14 +157,14 @@ class SamplingFollower(Follower):
         costs[costs == UNKNOWN] = 0.0
         max_costs: NDArray[np.float64] = costs.max(axis=1)
         free_indices = np.flatnonzero(max_costs < INSCRIBED)
-        motion_costs = self._motion_costs(motions[free_indices], max_costs[free_indices] / INSCRIBED, control_input)
-        for index in free_indices[np.argsort(motion_costs)][:_MAX_FOOTPRINTS]:
+        motion_costs = self._rate_motions(motions[free_indices], max_costs[free_indices] / INSCRIBED, control_input)
+        for index in free_indices[np.argsort(motion_costs)][:_MAX_CHECKED_FOOTPRINTS]:
             best = Velocity(*map(float, candidates[index]))
             if max_costs[index] <= 0.0 or is_free(control_input, best, parameters.simulated_seconds):
-                return self._reachable(best, control_input)
+                return self._limit_change(best, control_input)
         raise FollowingError("every sampled velocity leads to a collision")
 
-    def _candidates(self, control_input: ControlInput) -> NDArray[np.float64]:
+    def _sample_candidates(self, control_input: ControlInput) -> NDArray[np.float64]:
         """Return velocities that are reachable within the simulated time, of shape (candidates, 3)."""
         parameters, limits = self.parameters, self.parameters.limits
         max_velocity = (min(limits.max_velocity.x, self._max_speed), limits.max_velocity.y, limits.max_velocity.yaw)
@@ -179,7 +181,7 @@ class SamplingFollower(Follower):
         candidates: NDArray[np.float64] = np.stack([axis_samples.ravel() for axis_samples in mesh], axis=-1)
         return candidates
 
-    def _reachable(self, target: Velocity, control_input: ControlInput) -> Velocity:
+    def _limit_change(self, target: Velocity, control_input: ControlInput) -> Velocity:
         """Return the velocity nearest to a target that the robot can reach in the next cycle.
 
         All components complete the same fraction of their change.
@@ -194,7 +196,7 @@ class SamplingFollower(Follower):
                 fraction = min(fraction, max_change / abs(new_speed - old_speed))
         return Velocity(*(before + fraction * (after - before) for before, after in zip(current, target, strict=True)))
 
-    def _motion_costs(
+    def _rate_motions(
         self, motions: NDArray[np.float64], costs: NDArray[np.float64], control_input: ControlInput
     ) -> NDArray[np.float64]:
         """Return the costs of motions, in meters of the path, of shape (motions,).

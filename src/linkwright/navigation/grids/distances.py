@@ -9,7 +9,7 @@ from linkwright.navigation.grids.library import load_scipy
 
 
 def distance_field(is_marked: NDArray[np.bool_], resolution: float) -> NDArray[np.float64]:
-    """Return the distance from the center of each cell to the center of the nearest marked cell.
+    """Return the distance of each cell from the nearest marked cell, between the cells' centers.
 
     Args:
         is_marked: the mask of marked cells, of shape (rows, columns).

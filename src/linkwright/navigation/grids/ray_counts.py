@@ -12,7 +12,7 @@ from linkwright.navigation.grids.rays import cells_on_lines
 Counts = NDArray[np.int64]
 
 
-def ray_counts(
+def count_rays(
     shape: tuple[int, int],
     start: NDArray[np.integer[Any]],
     ends: NDArray[np.integer[Any]],

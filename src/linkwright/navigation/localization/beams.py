@@ -32,7 +32,7 @@ class Beams:
     range_max: float
 
     @property
-    def is_hit(self) -> NDArray[np.bool_]:
+    def hit_mask(self) -> NDArray[np.bool_]:
         """A mask of the beams that hit an obstacle, of shape (n,)."""
         is_hit: NDArray[np.bool_] = self.ranges < self.range_max
         return is_hit
@@ -45,7 +45,7 @@ class Beams:
         return angles
 
 
-def beams_of_scan(
+def beams_from_scan(
     scan: Any, laser_in_robot: Transform, max_beams: int, min_range: float = -1.0, range_max: float = -1.0
 ) -> Beams:
     """Return evenly spaced beams of a sensor_msgs/LaserScan, without beams whose range is NaN.

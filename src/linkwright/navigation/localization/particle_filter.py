@@ -88,9 +88,9 @@ class ParticleFilter:
         self.set_particles(np.array(pose) + deviations @ axes.T)
 
     def update_weights(self, likelihoods: NDArray[np.float64]) -> None:
-        """Multiply the weights by the likelihoods, normalize them, and update the recovery averages.
+        """Multiply the weights by the likelihoods, and normalize them.
 
-        If all products are 0, the particles get equal weights instead.
+        If all products are 0, the particles get equal weights instead. The recovery averages are updated as well.
         """
         weights = self.weights * likelihoods
         total = float(weights.sum())
@@ -128,7 +128,7 @@ class ParticleFilter:
             new_particles[replaced] = random_particles(len(replaced))
             self._slow_average = self._fast_average = 0.0
         slow_average, fast_average = self._slow_average, self._fast_average
-        self.set_particles(new_particles[: self._required_count(new_particles)].copy())
+        self.set_particles(new_particles[: self._compute_required_count(new_particles)].copy())
         self._slow_average, self._fast_average = slow_average, fast_average
 
     def has_converged(self) -> bool:
@@ -138,35 +138,35 @@ class ParticleFilter:
 
     def estimate(self) -> Estimate:
         """Return the mean pose of the most likely cluster, and the covariance of all particles."""
-        clusters = _clusters(self.particles)
+        clusters = _label_clusters(self.particles)
         weights = np.bincount(clusters, self.weights)
         best_cluster = int(weights.argmax())
         members = clusters == best_cluster
-        x, y, yaw, _ = _mean(self.particles[members], self.weights[members])
-        return Estimate((x, y, yaw), float(weights[best_cluster]), self._covariance())
+        x, y, yaw, _ = _compute_mean(self.particles[members], self.weights[members])
+        return Estimate((x, y, yaw), float(weights[best_cluster]), self._compute_covariance())
 
-    def _covariance(self) -> NDArray[np.float64]:
-        x, y, _, concentration = _mean(self.particles, self.weights)
+    def _compute_covariance(self) -> NDArray[np.float64]:
+        x, y, _, concentration = _compute_mean(self.particles, self.weights)
         offsets = self.particles[:, :2] - (x, y)
         covariance = np.zeros((3, 3))
         covariance[:2, :2] = (offsets * self.weights[:, None]).T @ offsets
         covariance[2, 2] = -2.0 * np.log(min(1.0, max(concentration, 1e-12)))
         return covariance
 
-    def _required_count(self, particles: Poses) -> int:
+    def _compute_required_count(self, particles: Poses) -> int:
         """Return the number of drawn particles that KLD sampling keeps.
 
         The number grows with the number of bins that the particles occupy.
         """
-        _, first_indices = np.unique(_bins(particles)[0], return_index=True)
+        _, first_indices = np.unique(_assign_bins(particles)[0], return_index=True)
         is_new_bin = np.zeros(len(particles), np.int64)
         is_new_bin[first_indices] = 1
         bins = np.cumsum(is_new_bin)
-        limits = np.array([self._kld_count(count) for count in range(int(bins[-1]) + 1)])
+        limits = np.array([self._compute_kld_count(count) for count in range(int(bins[-1]) + 1)])
         sufficient = np.flatnonzero(np.arange(1, len(particles) + 1) > limits[bins])
         return int(sufficient[0]) + 1 if len(sufficient) else len(particles)
 
-    def _kld_count(self, bins: int) -> int:
+    def _compute_kld_count(self, bins: int) -> int:
         """Return the number of particles needed for a number of occupied bins.
 
         Source: Fox, "KLD-sampling", with the approximation of Wilson and Hilferty.
@@ -179,7 +179,7 @@ class ParticleFilter:
         return min(max(count, settings.min_particles), settings.max_particles)
 
 
-def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
+def _assign_bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
     """Return the bin number of each particle, and the difference between neighbors along x.
 
     Neighbors along y differ by the number of yaw bins, and neighbors in yaw differ by 1 and wrap after a full turn.
@@ -191,12 +191,12 @@ def _bins(particles: Poses) -> tuple[NDArray[np.int64], int]:
     return bins[:, 0] * along_x + bins[:, 1] * _YAW_BINS + bins[:, 2] % _YAW_BINS, along_x
 
 
-def _clusters(particles: Poses) -> NDArray[np.int64]:
+def _label_clusters(particles: Poses) -> NDArray[np.int64]:
     """Return the index of each particle's cluster.
 
     Adjacent bins belong to the same cluster.
     """
-    numbers, along_x = _bins(particles)
+    numbers, along_x = _assign_bins(particles)
     bins, bin_indices = np.unique(numbers, return_inverse=True)
     yaw = bins % _YAW_BINS
     own_indices = np.arange(len(bins))
@@ -214,7 +214,7 @@ def _clusters(particles: Poses) -> NDArray[np.int64]:
     return clusters
 
 
-def _mean(particles: Poses, weights: NDArray[np.float64]) -> tuple[float, float, float, float]:
+def _compute_mean(particles: Poses, weights: NDArray[np.float64]) -> tuple[float, float, float, float]:
     """Return the weighted mean of x, y and yaw, and the concentration of the yaws, 0 to 1."""
     total = float(weights.sum())
     fractions = weights / total if total > 0.0 else np.full(len(weights), 1.0 / len(weights))

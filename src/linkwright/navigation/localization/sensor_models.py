@@ -20,7 +20,7 @@ from linkwright.navigation.localization.motion_models import Poses
 
 Likelihoods = NDArray[np.float64]
 MODELS = ("likelihood_field", "likelihood_field_prob", "beam")
-_FIT_DISTANCE = 0.15
+_FIT_DISTANCE_M = 0.15
 """The maximum distance from the end of a beam to an obstacle of the map for the beam to fit, in meters."""
 
 
@@ -90,18 +90,18 @@ class MapLikelihoods:
         Likelihoods are positive and not normalized.
         """
         if model == "beam":
-            return self._beam_likelihoods(particles, beams)
+            return self._compute_beam_likelihoods(particles, beams)
         is_product = model == "likelihood_field_prob"
-        is_hit = beams.end_points[beams.is_hit]
-        if not len(is_hit):
+        hit_points = beams.end_points[beams.hit_mask]
+        if not len(hit_points):
             return np.ones(len(particles))
-        cells = self._end_cells(particles, is_hit)
-        values = self._contributions_by_cell(model, beams.range_max).take(cells)
+        cells = self._find_end_cells(particles, hit_points)
+        values = self._compute_contributions(model, beams.range_max).take(cells)
         if not is_product:
             sums: Likelihoods = values.sum(axis=1, dtype=np.float64)
             return 1.0 + sums
         if beam_skipping is not None:
-            values = values[:, self._unskipped_beams(cells, beam_skipping)]
+            values = values[:, self._select_unskipped_beams(cells, beam_skipping)]
         exponents = values.sum(axis=1, dtype=np.float64)
         # Likelihoods are relative to the best one because a product of so many factors would underflow to 0.
         likelihoods: Likelihoods = np.exp(exponents - exponents.max())
@@ -112,14 +112,14 @@ class MapLikelihoods:
 
         Returns None if no beam hit anything.
         """
-        is_hit = beams.end_points[beams.is_hit]
-        if not len(is_hit):
+        hit_points = beams.end_points[beams.hit_mask]
+        if not len(hit_points):
             return None
-        distances = self._distances.take(self._end_cells(np.array([pose]), is_hit))
-        return float((distances <= _FIT_DISTANCE).mean())
+        distances = self._distances.take(self._find_end_cells(np.array([pose]), hit_points))
+        return float((distances <= _FIT_DISTANCE_M).mean())
 
     def random_poses(self, count: int, random: np.random.Generator) -> Poses:
-        """Return random poses that are uniformly distributed in the free cells, of shape (count, 3).
+        """Return random poses of shape (count, 3), uniformly distributed over the free cells.
 
         If no cell is free, the poses are distributed over the whole map.
         """
@@ -130,7 +130,7 @@ class MapLikelihoods:
         points = self.grid.centers_of(cells) + random.uniform(-0.5, 0.5, (count, 2)) * self.grid.resolution
         return np.column_stack((points, random.uniform(-np.pi, np.pi, count)))
 
-    def _contributions_by_cell(self, model: str, range_max: float) -> NDArray[np.float32]:
+    def _compute_contributions(self, model: str, range_max: float) -> NDArray[np.float32]:
         """Return a beam's contribution to the likelihood for each cell in which the beam can end."""
         key = (model, range_max)
         if self._cached_table is None or self._cached_table[0] != key:
@@ -139,7 +139,7 @@ class MapLikelihoods:
             self._cached_table = (key, table.astype(np.float32))
         return self._cached_table[1]
 
-    def _end_cells(self, particles: Poses, ends: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _find_end_cells(self, particles: Poses, ends: NDArray[np.float64]) -> NDArray[np.int64]:
         """Return the end cells of beams, shape (particles, beams).
 
         The cells are flat indices into the map with its border.
@@ -166,12 +166,12 @@ class MapLikelihoods:
         cells += columns.astype(np.int64)
         return cells
 
-    def _unskipped_beams(self, cells: NDArray[np.int64], beam_skipping: BeamSkipping) -> NDArray[np.bool_]:
+    def _select_unskipped_beams(self, cells: NDArray[np.int64], beam_skipping: BeamSkipping) -> NDArray[np.bool_]:
         fits: NDArray[np.bool_] = self._distances.take(cells) < beam_skipping.distance
         is_kept: NDArray[np.bool_] = fits.mean(axis=0) > beam_skipping.threshold
         return is_kept if 1.0 - is_kept.mean() < beam_skipping.error_threshold else np.ones_like(is_kept)
 
-    def _beam_likelihoods(self, particles: Poses, beams: Beams) -> Likelihoods:
+    def _compute_beam_likelihoods(self, particles: Poses, beams: Beams) -> Likelihoods:
         settings, measured, max_range = self._settings, beams.ranges, beams.range_max
         cosine, sine = np.cos(particles[:, 2]), np.sin(particles[:, 2])
         x, y = beams.origin

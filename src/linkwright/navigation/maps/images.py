@@ -29,7 +29,7 @@ from linkwright.files.input_files import read_file
 MAX_PIXELS = 1 << 28
 """The maximum number of pixels of a map that is read, because the header of a small file can declare any size."""
 _MAX_FILE_BYTES = 1 << 30
-_PGM = re.compile(rb"P([25])" + rb"(?:\s|#[^\n]*\n)+(\d{1,9})" * 3 + rb"\s")
+_PGM_HEADER = re.compile(rb"P([25])" + rb"(?:\s|#[^\n]*\n)+(\d{1,9})" * 3 + rb"\s")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,12 +59,12 @@ def read_image(path: Path) -> MapImage:
         raise LinkwrightError(Diagnostic("NAV203", message, hint=missing_file_hint(path))) from None
     except OSError as error:
         raise _unreadable_error(path, foreign(error.strerror or error)) from None
-    header = _PGM.match(data)
+    header = _PGM_HEADER.match(data)
     return _parse_pgm(path, data, header) if header else _read_with_pillow(path, data)
 
 
 def encode_pgm(pixels: NDArray[np.uint8]) -> bytes:
-    """Encode gray pixels of shape (rows, columns) as a binary PGM, in the form that nav2 writes."""
+    """Encode gray pixels of shape (rows, columns) as a binary PGM, in the form used by nav2."""
     rows, columns = pixels.shape
     return b"P5\n%d %d\n255\n" % (columns, rows) + np.ascontiguousarray(pixels).tobytes()
 
@@ -80,7 +80,7 @@ def encode_with_pillow(pixels: NDArray[np.uint8], kind: str) -> bytes:
         LinkwrightError: NAV204, Pillow is not installed.
         ValueError: Pillow cannot write the format, or cannot write these pixels in it.
     """
-    image = _pillow().fromarray(pixels) if pixels.ndim == 2 else _gray_with_opacity(pixels)
+    image = _import_pillow().fromarray(pixels) if pixels.ndim == 2 else _make_gray_image_with_opacity(pixels)
     file = BytesIO()
     try:
         image.save(file, format=kind)
@@ -89,9 +89,9 @@ def encode_with_pillow(pixels: NDArray[np.uint8], kind: str) -> bytes:
     return file.getvalue()
 
 
-def _gray_with_opacity(pixels: NDArray[np.uint8]) -> Any:
+def _make_gray_image_with_opacity(pixels: NDArray[np.uint8]) -> Any:
     gray = pixels[..., 0]
-    return _pillow().fromarray(np.stack((gray, gray, gray, pixels[..., 1]), axis=-1))
+    return _import_pillow().fromarray(np.stack((gray, gray, gray, pixels[..., 1]), axis=-1))
 
 
 def _parse_pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
@@ -121,7 +121,7 @@ def _parse_pgm(path: Path, data: bytes, header: re.Match[bytes]) -> MapImage:
 
 
 def _read_with_pillow(path: Path, data: bytes) -> MapImage:
-    pillow = _pillow()
+    pillow = _import_pillow()
     try:
         with pillow.open(BytesIO(data)) as file:
             if file.width * file.height > MAX_PIXELS:
@@ -137,7 +137,7 @@ def _read_with_pillow(path: Path, data: bytes) -> MapImage:
     return MapImage(values[..., :3].mean(axis=-1), values[..., 3] if has_opacity else None)
 
 
-def _pillow() -> Any:
+def _import_pillow() -> Any:
     try:
         from PIL import Image  # Import Pillow only when it is needed, because it is an optional extra.
     except ModuleNotFoundError as error:

@@ -17,8 +17,8 @@ from linkwright.navigation.maps.pixels import UNKNOWN_DARKNESS, cells_of_image, 
 OCCUPIED_THRESH = 0.65
 FREE_THRESH = 0.25
 """The default thresholds of nav2's map saver."""
-_FORMATS = ("bmp", "pgm", "png")
-_WITHOUT_OPACITY = ("pgm", "jpg", "jpeg", "bmp")
+_IMAGE_FORMATS = ("bmp", "pgm", "png")
+_FORMATS_WITHOUT_OPACITY = ("pgm", "jpg", "jpeg", "bmp")
 
 
 def _ignore_warning(_line: str) -> None:
@@ -75,13 +75,13 @@ def save_map(
     """
     _check_thresholds(settings)
     extension = (settings.image_format or ("png" if settings.mode is MapMode.SCALE else "pgm")).lower()
-    if extension not in _FORMATS:
-        hint = did_you_mean(extension, _FORMATS)
+    if extension not in _IMAGE_FORMATS:
+        hint = did_you_mean(extension, _IMAGE_FORMATS)
         warn(
             f"Requested image format '{extension}' is not one of the recommended formats: 'bmp', 'pgm', 'png'"
             + (f"; {hint}" if hint else "")
         )
-    if settings.mode is MapMode.SCALE and extension in _WITHOUT_OPACITY:
+    if settings.mode is MapMode.SCALE and extension in _FORMATS_WITHOUT_OPACITY:
         warn(
             f"Map mode 'scale' requires transparency, but format '{extension}' does not support it. "
             "Consider switching image format to 'png'."
@@ -92,7 +92,7 @@ def save_map(
             "With 0.196 they stay unknown."
         )
     pixels = pixels_of_cells(grid.cells, settings.mode, settings.occupied_thresh, settings.free_thresh)
-    if extension in _WITHOUT_OPACITY and pixels.ndim == 3:
+    if extension in _FORMATS_WITHOUT_OPACITY and pixels.ndim == 3:
         pixels = pixels[..., 0]
     try:
         data = encode_pgm(pixels) if extension == "pgm" else encode_with_pillow(pixels, extension)
@@ -100,8 +100,8 @@ def save_map(
         warn(f"Format '{extension}' is not usable. Using 'png' instead: {error}")
         extension, data = "png", encode_with_pillow(pixels, "png")
     image_path, yaml_path = Path(f"{settings.name}.{extension}"), Path(f"{settings.name}.yaml")
-    _write(image_path, data)
-    _write(yaml_path, _yaml_text(grid, settings, image_path.name).encode())
+    _write_file(image_path, data)
+    _write_file(yaml_path, _format_yaml(grid, settings, image_path.name).encode())
     return image_path, yaml_path
 
 
@@ -117,7 +117,7 @@ def _check_thresholds(settings: MapSaveSettings) -> None:
         raise LinkwrightError(Diagnostic("NAV205", problem))
 
 
-def _write(path: Path, data: bytes) -> None:
+def _write_file(path: Path, data: bytes) -> None:
     try:
         write_whole_file(path, data)
     except OSError as error:
@@ -126,7 +126,7 @@ def _write(path: Path, data: bytes) -> None:
         raise LinkwrightError(Diagnostic("NAV206", message)) from None
 
 
-def _yaml_text(grid: Grid, settings: MapSaveSettings, image: str) -> str:
+def _format_yaml(grid: Grid, settings: MapSaveSettings, image: str) -> str:
     origin = ", ".join(_format_number(number) for number in (grid.x, grid.y, grid.yaw))
     return (
         f"image: {image}\nmode: {settings.mode.value}\nresolution: "

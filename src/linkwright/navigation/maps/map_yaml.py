@@ -23,9 +23,9 @@ from linkwright.diagnostics import (
 )
 from linkwright.files.yaml_documents import YamlDocument, read_source
 
-_REQUIRED = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
-_TRUE = frozenset({"true", "yes", "on", "y"})
-_FALSE = frozenset({"false", "no", "off", "n"})
+_REQUIRED_KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
+_TRUE_WORDS = frozenset({"true", "yes", "on", "y"})
+_FALSE_WORDS = frozenset({"false", "no", "off", "n"})
 
 
 class MapMode(Enum):
@@ -80,82 +80,82 @@ class _Reader:
 
     def read(self, path: Path) -> MapYaml:
         self._collect_keys()
-        missing = [key for key in _REQUIRED if key not in self._nodes]
+        missing = [key for key in _REQUIRED_KEYS if key not in self._nodes]
         if missing:
-            hint = did_you_mean(missing[0], [key for key in self._nodes if key not in _REQUIRED])
-            raise self._error(phrase("'{key}' is missing in the map", key=missing[0]), None, hint)
-        origin = self._origin()
+            hint = did_you_mean(missing[0], [key for key in self._nodes if key not in _REQUIRED_KEYS])
+            raise self._make_error(phrase("'{key}' is missing in the map", key=missing[0]), None, hint)
+        origin = self._read_origin()
         return MapYaml(
-            image=path.parent / self._text("image"),
-            resolution=self._resolution(),
+            image=path.parent / self._read_text("image"),
+            resolution=self._read_resolution(),
             origin=(origin[0], origin[1], origin[2]),
-            negate=self._negate(),
-            occupied_thresh=self._threshold("occupied_thresh"),
-            free_thresh=self._threshold("free_thresh"),
-            mode=self._mode(),
+            negate=self._read_negate(),
+            occupied_thresh=self._read_threshold("occupied_thresh"),
+            free_thresh=self._read_threshold("free_thresh"),
+            mode=self._read_mode(),
         )
 
     def _collect_keys(self) -> None:
         root = self._document.root
         if not isinstance(root, yaml.MappingNode):
             message = phrase(
-                "the YAML file of a map must be a mapping with the keys {names}", names=", ".join(_REQUIRED)
+                "the YAML file of a map must be a mapping with the keys {names}", names=", ".join(_REQUIRED_KEYS)
             )
-            raise self._error(message, root)
+            raise self._make_error(message, root)
         for key, value in root.value:
             if isinstance(key, yaml.ScalarNode):
                 self._nodes.setdefault(key.value, value)
 
-    def _text(self, key: str) -> str:
+    def _read_text(self, key: str) -> str:
         node = self._nodes[key]
         if not isinstance(node, yaml.ScalarNode) or not node.value:
-            raise self._error(phrase("'{key}' must be a file name", key=key), node)
+            raise self._make_error(phrase("'{key}' must be a file name", key=key), node)
         return str(node.value)
 
-    def _number(self, node: yaml.Node, key: str) -> float:
+    def _parse_number(self, node: yaml.Node, key: str) -> float:
         try:
             value = float(node.value) if isinstance(node, yaml.ScalarNode) else None
         except ValueError:
             value = None
         if value is None or not isfinite(value):
-            raise self._error(phrase("'{key}' must be a number", key=key), node)
+            raise self._make_error(phrase("'{key}' must be a number", key=key), node)
         return value
 
-    def _resolution(self) -> float:
+    def _read_resolution(self) -> float:
         node = self._nodes["resolution"]
-        value = self._number(node, "resolution")
+        value = self._parse_number(node, "resolution")
         if not value > 0.0:
-            raise self._error(phrase("'resolution' must be more than 0 (meters per pixel)"), node)
+            raise self._make_error(phrase("'resolution' must be more than 0 (meters per pixel)"), node)
         return value
 
-    def _origin(self) -> list[float]:
+    def _read_origin(self) -> list[float]:
         node = self._nodes["origin"]
         if not isinstance(node, yaml.SequenceNode):
-            raise self._error(phrase("'origin' must be a list of x, y and yaw"), node)
+            raise self._make_error(phrase("'origin' must be a list of x, y and yaw"), node)
         if len(node.value) != 3:
             message = phrase("'origin' must have 3 values (x, y, yaw), but has {count}", count=len(node.value))
-            raise self._error(message, node)
-        return [self._number(number, "origin") for number in node.value]
+            raise self._make_error(message, node)
+        return [self._parse_number(number, "origin") for number in node.value]
 
-    def _threshold(self, key: str) -> float:
+    def _read_threshold(self, key: str) -> float:
         node = self._nodes[key]
-        value = self._number(node, key)
+        value = self._parse_number(node, key)
         if not 0.0 <= value <= 1.0:
             hint = phrase("write 0.65 for 65 %") if value > 1.0 else None
-            raise self._error(phrase("'{key}' must be between 0 and 1", key=key), node, hint)
+            raise self._make_error(phrase("'{key}' must be between 0 and 1", key=key), node, hint)
         return value
 
-    def _negate(self) -> bool:
+    def _read_negate(self) -> bool:
         node = self._nodes["negate"]
         text = str(node.value).lower() if isinstance(node, yaml.ScalarNode) else ""
-        if text in _TRUE or text in _FALSE:
-            return text in _TRUE
+        if text in _TRUE_WORDS or text in _FALSE_WORDS:
+            return text in _TRUE_WORDS
         try:
             return int(text) != 0
         except ValueError:
-            raise self._error(phrase("'negate' must be 0 or 1"), node) from None
+            raise self._make_error(phrase("'negate' must be 0 or 1"), node) from None
 
-    def _mode(self) -> MapMode:
+    def _read_mode(self) -> MapMode:
         node = self._nodes.get("mode")
         if node is None:
             return MapMode.TRINARY
@@ -163,8 +163,8 @@ class _Reader:
         mode_names = [map_mode.value for map_mode in MapMode]
         if text not in mode_names:
             message = phrase("'mode' must be one of {known}", known=", ".join(mode_names))
-            raise self._error(message, node, did_you_mean(text, mode_names))
+            raise self._make_error(message, node, did_you_mean(text, mode_names))
         return MapMode(text)
 
-    def _error(self, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:
+    def _make_error(self, message: Phrase, node: yaml.Node | None, hint: Phrase | None = None) -> LinkwrightError:
         return self._document.error(message, node, hint)

@@ -20,7 +20,7 @@ from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
 from linkwright.navigation.grids.occupancy import BadGridError, grid_from_message
-from linkwright.navigation.localization.beams import Beams, beams_of_scan
+from linkwright.navigation.localization.beams import Beams, beams_from_scan
 from linkwright.navigation.localization.motion_models import Pose, wrap_angle
 from linkwright.navigation.localization.particle_filter import Estimate, ParticleFilter
 from linkwright.navigation.localization.sensor_models import MapLikelihoods
@@ -34,7 +34,7 @@ _SCAN_TIMEOUT_S = 15.0
 _UNKNOWN_COVARIANCE = np.diag((0.25, 0.25, (np.pi / 12.0) ** 2))
 _MIN_FIT = 0.3
 """A scan does not fit if at most this share of its beams ends near an obstacle of the map."""
-_MAX_MISFITS = 5
+_MAX_CONSECUTIVE_MISFITS = 5
 """A warning is logged after this number of consecutive scans that do not fit the map."""
 
 
@@ -181,7 +181,7 @@ class AmclNode(ManagedNode):
                 continue
             self._queued_scans.popleft()
             settings = self._settings
-            beams = beams_of_scan(
+            beams = beams_from_scan(
                 scan,
                 laser,
                 settings.parameters.max_beams,
@@ -194,7 +194,7 @@ class AmclNode(ManagedNode):
 
     def _update(self, beams: Beams, robot_in_odom: Transform, stamp_ns: int) -> None:
         assert self._map is not None, "scans wait for the map"
-        settings, odometry = self._settings, _planar_pose(robot_in_odom)
+        settings, odometry = self._settings, _planar_pose_from_transform(robot_in_odom)
         must_update = not self._has_begun or self._is_update_requested or self._has_moved(odometry)
         if self._has_begun and must_update:
             settings.motion_model(self._filter.particles, self._odometry, odometry, settings.noise, self._filter.random)
@@ -258,7 +258,7 @@ class AmclNode(ManagedNode):
             )
             return
         self._pose, self._covariance = estimate.pose, estimate.covariance
-        self._map_to_odom = compose(_spatial_pose(estimate.pose), invert(robot_in_odom))
+        self._map_to_odom = compose(_transform_from_planar_pose(estimate.pose), invert(robot_in_odom))
         message = get_message(_POSE_TYPE)()
         message.header.frame_id = self._settings.global_frame
         message.header.stamp = Time.from_nanoseconds(stamp_ns)
@@ -277,7 +277,7 @@ class AmclNode(ManagedNode):
         if fit is None:
             return
         self._misfit_count = 0 if fit > _MIN_FIT else self._misfit_count + 1
-        if self._misfit_count >= _MAX_MISFITS:
+        if self._misfit_count >= _MAX_CONSECUTIVE_MISFITS:
             self.get_logger().warning(
                 f"only {fit:.0%} of the beams end near an obstacle of the map: the pose or the map is wrong. "
                 "Set the pose with 2D Pose Estimate, or call /reinitialize_global_localization and drive",
@@ -331,11 +331,11 @@ class AmclNode(ManagedNode):
             logger.error("Received initial pose contains NaNs or Infs! Ignoring as invalid!")
             return
         covariance[2, :2] = covariance[:2, 2] = 0.0  # nav2 also ignores these covariances.
-        self._set_pose(self._moved_by_odometry(pose, message.header.stamp.nanoseconds), covariance)
+        self._set_pose(self._move_by_odometry(pose, message.header.stamp.nanoseconds), covariance)
         if not self._is_localizing:
             logger.warning("Received initial pose request, but AMCL is not yet in the active state")
 
-    def _moved_by_odometry(self, pose: Pose, stamp_ns: int) -> Pose:
+    def _move_by_odometry(self, pose: Pose, stamp_ns: int) -> Pose:
         """Return an earlier pose, moved by the odometry since its time.
 
         The pose is returned unchanged if its time is 0 or the odometry is unknown.
@@ -347,7 +347,9 @@ class AmclNode(ManagedNode):
             new_pose, _ = self._buffer.lookup(self._settings.odom_frame, self._settings.base_frame, 0)
         except TransformException:
             return pose
-        return _planar_pose(compose(_spatial_pose(pose), compose(invert(old_pose), new_pose)))
+        return _planar_pose_from_transform(
+            compose(_transform_from_planar_pose(pose), compose(invert(old_pose), new_pose))
+        )
 
     def _set_pose(self, pose: Pose, covariance: NDArray[np.float64]) -> None:
         seconds = self.get_clock().now().nanoseconds / 1e9
@@ -386,11 +388,11 @@ class _DestroyableListener:
         self._listener.unregister()
 
 
-def _planar_pose(pose: Transform) -> Pose:
+def _planar_pose_from_transform(pose: Transform) -> Pose:
     return pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]
 
 
-def _spatial_pose(pose: Pose) -> Transform:
+def _transform_from_planar_pose(pose: Pose) -> Transform:
     return (pose[0], pose[1], 0.0, *quaternion_from_rpy((0.0, 0.0, pose[2])))
 
 

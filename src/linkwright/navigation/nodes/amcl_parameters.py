@@ -24,8 +24,8 @@ _MOTION_MODELS: dict[str, MotionModel] = {
     "omnidirectional": move_omnidirectionally,
     "nav2_amcl::OmniMotionModel": move_omnidirectionally,
 }
-_POSITIVE = ("max_particles", "min_particles", "max_beams", "resample_interval", "sigma_hit", "pf_err")
-_NON_NEGATIVE = ("laser_likelihood_max_dist", *(f"alpha{number}" for number in range(1, 6)))
+_POSITIVE_PARAMETERS = ("max_particles", "min_particles", "max_beams", "resample_interval", "sigma_hit", "pf_err")
+_NON_NEGATIVE_PARAMETERS = ("laser_likelihood_max_dist", *(f"alpha{number}" for number in range(1, 6)))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,9 +118,9 @@ def read_parameters(node: Node) -> AmclSettings:
         LinkwrightError: NODE433, a parameter has an invalid value.
     """
     parameters, laser, particles = declare_parameters(node)
-    for name in (*_POSITIVE, *_NON_NEGATIVE):
+    for name in (*_POSITIVE_PARAMETERS, *_NON_NEGATIVE_PARAMETERS):
         value: Any = node.get_parameter(name).value
-        if value < 0 or (name in _POSITIVE and value == 0):
+        if value < 0 or (name in _POSITIVE_PARAMETERS and value == 0):
             raise invalid_value_error(name, value, node.get_name())
     if parameters.laser_model_type not in MODELS:
         raise invalid_value_error("laser_model_type", parameters.laser_model_type, node.get_name(), MODELS)
@@ -137,7 +137,7 @@ def read_parameters(node: Node) -> AmclSettings:
         base_frame=parameters.base_frame_id.removeprefix("/"),
         odom_frame=parameters.odom_frame_id.removeprefix("/"),
         global_frame=parameters.global_frame_id.removeprefix("/"),
-        motion_model=_motion_model(node, parameters.robot_model_type),
+        motion_model=_find_motion_model(node, parameters.robot_model_type),
         # alpha1: rotation from rotation, alpha2: rotation from translation, alpha3: translation from translation,
         # alpha4: translation from rotation.
         noise=Noise(parameters.alpha1, parameters.alpha2, parameters.alpha3, parameters.alpha4, parameters.alpha5),
@@ -148,7 +148,7 @@ def read_parameters(node: Node) -> AmclSettings:
     )
 
 
-def _motion_model(node: Node, name: str) -> MotionModel:
+def _find_motion_model(node: Node, name: str) -> MotionModel:
     motion = _MOTION_MODELS.get(name)
     if motion is None:
         node.get_logger().warning(

@@ -40,7 +40,7 @@ from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.settings import check_positive, invalid_value_error
 from linkwright.nodes.velocity_topic import VelocityTopic, choose_velocity_types
 
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 _COSTMAP_TIMEOUT_S = 5.0
 """The age in seconds at which a costmap is out of date."""
 _ERROR_CODES = {Outcome.TIMEOUT: "TIMEOUT", Outcome.COLLISION: "COLLISION_AHEAD"}
@@ -116,15 +116,17 @@ class BehaviorNode(ManagedNode):
         Raises:
             LinkwrightError: a parameter is missing or has an invalid value.
         """
-        self._period = 1.0 / check_positive(self, "cycle_frequency", self._value("cycle_frequency"))
+        self._period = 1.0 / check_positive(self, "cycle_frequency", self._get_parameter_value("cycle_frequency"))
         costmap_type, polygon = get_message("nav2_msgs/msg/Costmap"), get_message("geometry_msgs/msg/PolygonStamped")
         self.register(
-            self.create_subscription(costmap_type, self._topic_name("costmap"), self._on_costmap, LATCHED_QOS)
+            self.create_subscription(costmap_type, self._get_topic_name("costmap"), self._on_costmap, LATCHED_QOS)
         )
-        self.register(self.create_subscription(polygon, self._topic_name("footprint"), self._on_footprint, _DEPTH))
-        teleop_topic = self._value("cmd_vel_teleop")
+        self.register(
+            self.create_subscription(polygon, self._get_topic_name("footprint"), self._on_footprint, _QUEUE_DEPTH)
+        )
+        teleop_topic = self._get_parameter_value("cmd_vel_teleop")
         for message_type in choose_velocity_types(self, teleop_topic, self._publishes_stamped):
-            self.register(self.create_subscription(message_type, teleop_topic, self._on_teleop_velocity, _DEPTH))
+            self.register(self.create_subscription(message_type, teleop_topic, self._on_teleop_velocity, _QUEUE_DEPTH))
         self._output = VelocityTopic(self, "cmd_vel", self._publishes_stamped)
         for plugin in get_string_list(self, "behavior_plugins", list(_BEHAVIOR_TYPES)):
             plugin_type = get_plugin_type(
@@ -165,7 +167,7 @@ class BehaviorNode(ManagedNode):
         if self._running is not None and self._running[0] is not server:
             self._running[0].abort("UNKNOWN", f"{name} replaced it")
         self._halt()
-        start = self._pose() if name not in ("wait", "assisted_teleop") else (0.0, 0.0, 0.0)
+        start = self._find_robot_pose() if name not in ("wait", "assisted_teleop") else (0.0, 0.0, 0.0)
         if start is None:
             server.abort("TF_ERROR", "Initial robot pose is not available.")
             return
@@ -183,18 +185,20 @@ class BehaviorNode(ManagedNode):
     def _create_behavior(self, name: str, goal: Any, start: Pose) -> Behavior | str:
         """Return the behavior for a goal, or the reason why the goal is aborted."""
         if name == "wait":
-            return Wait(_seconds(goal.time))
-        allowance = _seconds(goal.time_allowance)
+            return Wait(_seconds_from_duration(goal.time))
+        allowance = _seconds_from_duration(goal.time_allowance)
         if name == "spin":
             parameters = SpinParameters(
-                max_rotational_vel=self._value("max_rotational_vel"),
-                min_rotational_vel=self._value("min_rotational_vel"),
-                rotational_acc_lim=self._value("rotational_acc_lim"),
-                simulate_ahead_time=self._value("simulate_ahead_time"),
+                max_rotational_vel=self._get_parameter_value("max_rotational_vel"),
+                min_rotational_vel=self._get_parameter_value("min_rotational_vel"),
+                rotational_acc_lim=self._get_parameter_value("rotational_acc_lim"),
+                simulate_ahead_time=self._get_parameter_value("simulate_ahead_time"),
             )
             return Spin(goal.target_yaw, allowance, parameters, start)
         if name == "assisted_teleop":
-            return _AssistedTeleop(allowance, self._value("projection_time"), lambda: self._requested_velocity)
+            return _AssistedTeleop(
+                allowance, self._get_parameter_value("projection_time"), lambda: self._requested_velocity
+            )
         if goal.target.y or goal.target.z:
             return f"{name} drives only along x, but its target has y or z"
         distance, speed = goal.target.x, abs(goal.speed)
@@ -204,7 +208,7 @@ class BehaviorNode(ManagedNode):
             return "Speed and command sign did not match"
         if not speed > 0.0:
             return f"{name} needs a speed other than 0"
-        return DriveStraight(distance, speed, allowance, self._value("simulate_ahead_time"), start)
+        return DriveStraight(distance, speed, allowance, self._get_parameter_value("simulate_ahead_time"), start)
 
     def _run_cycle(self) -> None:
         if self._running is None:
@@ -215,31 +219,31 @@ class BehaviorNode(ManagedNode):
         if server.is_canceled:
             self.get_logger().info(f"Canceling {name}")
             self._halt()
-            server.end_canceled(total_elapsed_time=_duration(elapsed))
+            server.end_canceled(total_elapsed_time=_duration_from_seconds(elapsed))
             return
-        pose = self._pose() if name != "wait" else (0.0, 0.0, 0.0)
+        pose = self._find_robot_pose() if name != "wait" else (0.0, 0.0, 0.0)
         if pose is None:
             self._finish(server, name, "TF_ERROR", "the pose of the robot is not known", elapsed)
             return
-        if name != "wait" and (reason := self._missing_data_reason()):
+        if name != "wait" and (reason := self._find_missing_data_reason()):
             self._finish(server, name, "UNKNOWN", reason, elapsed)
             return
         step = behavior.step(pose, elapsed, self._is_free)
         if step.outcome is Outcome.RUNNING:
             if name != "wait":
                 self._output.publish((step.velocity.x, step.velocity.y, 0.0), (0.0, 0.0, step.velocity.yaw))
-            server.publish_feedback(**_feedback(name, step, elapsed, server.goal))
+            server.publish_feedback(**_make_feedback(name, step, elapsed, server.goal))
         elif step.outcome is Outcome.DONE:
             self.get_logger().info(f"{name} completed successfully")
             self._halt()
-            server.succeed(total_elapsed_time=_duration(elapsed))
+            server.succeed(total_elapsed_time=_duration_from_seconds(elapsed))
         else:
             self._finish(server, name, _ERROR_CODES[step.outcome], step.outcome.value, elapsed)
 
     def _finish(self, server: GoalServer, name: str, code: str, reason: str, elapsed: float) -> None:
         self.get_logger().warning(f"{name} failed: {reason}")
         self._halt()
-        server.abort(code, reason, total_elapsed_time=_duration(elapsed))
+        server.abort(code, reason, total_elapsed_time=_duration_from_seconds(elapsed))
 
     def _halt(self) -> None:
         """End the cycles of the running behavior, and stop the robot if the behavior moved it."""
@@ -250,7 +254,7 @@ class BehaviorNode(ManagedNode):
 
     # --- costmap, pose and requests -----------------------------------------------------------------------------------
 
-    def _missing_data_reason(self) -> str:
+    def _find_missing_data_reason(self) -> str:
         """Return the reason why obstacles are unknown, or an empty string if they are known."""
         if self._costmap is None or self._footprint is None:
             return "no costmap has been received yet"
@@ -263,10 +267,10 @@ class BehaviorNode(ManagedNode):
         assert self._footprint is not None, "`_missing_data_reason` checked it"
         return not bool(np.any(self._costmap.footprint_cost(poses, self._footprint) == LETHAL))
 
-    def _pose(self) -> Pose | None:
+    def _find_robot_pose(self) -> Pose | None:
         """Return the robot's pose in the frame of the costmap, or None if it is unknown."""
-        frame = self._costmap_frame or self._value("local_frame")
-        pose = self._poses.pose(frame, self._value("robot_base_frame"), 0)
+        frame = self._costmap_frame or self._get_parameter_value("local_frame")
+        pose = self._poses.pose(frame, self._get_parameter_value("robot_base_frame"), 0)
         return None if pose is None else (pose[0], pose[1], rpy_from_quaternion(pose[3:])[2])
 
     def _on_costmap(self, message: Any) -> None:
@@ -278,7 +282,7 @@ class BehaviorNode(ManagedNode):
         """Store a published footprint, transformed to the robot's frame at the time of the message."""
         pose = self._poses.pose(
             message.header.frame_id,
-            self._value("robot_base_frame"),
+            self._get_parameter_value("robot_base_frame"),
             Time.from_msg(message.header.stamp).nanoseconds,
         )
         if pose is None:
@@ -293,16 +297,16 @@ class BehaviorNode(ManagedNode):
         twist = message.twist if hasattr(message, "twist") else message
         self._requested_velocity = Velocity(twist.linear.x, twist.linear.y, twist.angular.z)
 
-    def _topic_name(self, kind: str) -> str:
+    def _get_topic_name(self, kind: str) -> str:
         """Return the name of the costmap or footprint topic.
 
         Humble's parameter is used if it is set, and Jazzy's parameter otherwise.
         """
-        humble_topic = str(self._value(f"{kind}_topic"))
-        jazzy_topic = str(self._value(f"local_{kind}_topic"))
+        humble_topic = str(self._get_parameter_value(f"{kind}_topic"))
+        jazzy_topic = str(self._get_parameter_value(f"local_{kind}_topic"))
         return humble_topic if f"{kind}_topic" in self._humble_parameters else jazzy_topic
 
-    def _value(self, name: str) -> Any:
+    def _get_parameter_value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
 
@@ -313,20 +317,20 @@ class BehaviorServer(ManagedServer):
     NODE = BehaviorNode
 
 
-def _feedback(name: str, step: Step, elapsed: float, goal: Any) -> dict[str, Any]:
+def _make_feedback(name: str, step: Step, elapsed: float, goal: Any) -> dict[str, Any]:
     """Return the fields of a behavior's feedback."""
     if name == "spin":
         return {"angular_distance_traveled": float(step.traveled)}
     if name == "wait":
-        return {"time_left": _duration(max(0.0, _seconds(goal.time) - elapsed))}
+        return {"time_left": _duration_from_seconds(max(0.0, _seconds_from_duration(goal.time) - elapsed))}
     if name == "assisted_teleop":
-        return {"current_teleop_duration": _duration(elapsed)}
+        return {"current_teleop_duration": _duration_from_seconds(elapsed)}
     return {"distance_traveled": float(step.traveled)}
 
 
-def _seconds(message: Any) -> float:
+def _seconds_from_duration(message: Any) -> float:
     return float(message.sec + message.nanosec / 1e9)
 
 
-def _duration(seconds: float) -> Any:
+def _duration_from_seconds(seconds: float) -> Any:
     return Duration(seconds=seconds).to_msg()

@@ -18,11 +18,11 @@ from linkwright.graph import Clock, ClockType, Node
 from linkwright.messages import get_message
 
 TOPIC = "bond"
-TIMEOUT = 4.0
+TIMEOUT_S = 4.0
 """The seconds without a heartbeat after which nav2 considers the other end dead."""
-PERIOD = 0.1
+PERIOD_S = 0.1
 """The seconds between nav2's heartbeats."""
-_DEPTH = 100
+_QUEUE_DEPTH = 100
 
 
 def _ignore_event() -> None:
@@ -46,8 +46,8 @@ class Bond:
         node: Node,
         name: str,
         *,
-        timeout: float = TIMEOUT,
-        period: float = PERIOD,
+        timeout: float = TIMEOUT_S,
+        period: float = PERIOD_S,
         on_formed: Callable[[], None] = _ignore_event,
         on_broken: Callable[[], None] = _ignore_event,
     ) -> None:
@@ -59,8 +59,8 @@ class Bond:
         self._clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
         self.is_formed = False
         self.is_broken = False
-        self._publisher = node.create_publisher(status, TOPIC, _DEPTH)
-        self._subscription = node.create_subscription(status, TOPIC, self._receive, _DEPTH)
+        self._publisher = node.create_publisher(status, TOPIC, _QUEUE_DEPTH)
+        self._subscription = node.create_subscription(status, TOPIC, self._receive, _QUEUE_DEPTH)
         self._subscription.deliver_in_batches()  # The heartbeats of all bonds in the system arrive on this topic.
         self._timer = node.create_timer(period, self._on_timer, clock=self._clock)
         self._send(is_active=True)

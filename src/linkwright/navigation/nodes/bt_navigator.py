@@ -29,17 +29,17 @@ from linkwright.navigation.nodes.managed import ManagedServer
 from linkwright.navigation.nodes.plugins import get_string_list
 from linkwright.navigation.nodes.steps import SentGoal, Step, StepError, StepNode
 
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 _COSTMAP_TOPIC = "global_costmap/costmap_raw"
 _UNKNOWN_COST = 255
 """The cost of positions that are unknown or outside the map."""
 _MAX_RECOVERIES = 6
 """The number of recoveries after which a goal is aborted."""
-_REPLANNING_PERIODS = {"pose": 1.0, "poses": 3.0}
+_REPLANNING_PERIODS_S = {"pose": 1.0, "poses": 3.0}
 """The seconds between two plans for each action, as in nav2's trees."""
-_PASSED_DISTANCE = 0.7
+_PASSED_DISTANCE_M = 0.7
 """The distance within which an intermediate pose counts as passed, in meters."""
-_SPIN_ANGLE, _WAIT_SECONDS, _BACK_UP_DISTANCE, _BACK_UP_SPEED = 1.57, 5.0, 0.3, 0.05
+_SPIN_ANGLE_RAD, _WAIT_S, _BACK_UP_DISTANCE_M, _BACK_UP_SPEED_M_S = 1.57, 5.0, 0.3, 0.05
 _EXTRA_TIME_S = 10.0
 
 
@@ -64,8 +64,10 @@ class NavigatorNode(StepNode):
     def configure(self) -> None:
         """Create the subscriptions, the clients and the action servers."""
         pose, odometry = get_message("geometry_msgs/msg/PoseStamped"), get_message("nav_msgs/msg/Odometry")
-        self.register(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _DEPTH))
-        self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
+        self.register(self.create_subscription(pose, "goal_pose", self._on_goal_pose, _QUEUE_DEPTH))
+        self.register(
+            self.create_subscription(odometry, self._get_parameter_value("odom_topic"), self._on_odometry, _QUEUE_DEPTH)
+        )
         costmap_type = get_message("nav2_msgs/msg/Costmap")
         self.register(self.create_subscription(costmap_type, _COSTMAP_TOPIC, self._on_costmap, LATCHED_QOS))
         self._clients = {
@@ -84,7 +86,9 @@ class NavigatorNode(StepNode):
             "poses": self._create_server("NavigateThroughPoses", "navigate_through_poses", "poses"),
         }
         for variant in ("pose", "poses"):
-            tree = self._value(f"default_nav_{'to_pose' if variant == 'pose' else 'through_poses'}_bt_xml")
+            tree = self._get_parameter_value(
+                f"default_nav_{'to_pose' if variant == 'pose' else 'through_poses'}_bt_xml"
+            )
             if tree and not _is_default_tree(tree):
                 self._log_ignored_tree(tree)
 
@@ -123,7 +127,7 @@ class NavigatorNode(StepNode):
         """Start navigating for a goal, and abort a running goal of the other action."""
         poses = [goal.pose] if variant == "pose" else list(goal.poses)
         goal_position = poses[-1].pose.position
-        x, y = self._robot_position() or (float("nan"),) * 2
+        x, y = self._find_robot_position() or (float("nan"),) * 2
         self.get_logger().info(
             f"Begin navigating from current location ({x:.2f}, {y:.2f}) to ({goal_position.x:.2f}, "
             f"{goal_position.y:.2f})"
@@ -137,9 +141,12 @@ class NavigatorNode(StepNode):
     def publish_feedback(self, server: GoalServer) -> None:
         """Publish the robot's pose and the remaining distance and time as feedback for the goal."""
         pose = get_message("geometry_msgs/msg/PoseStamped")()
-        robot_pose = self._robot_transform()
+        robot_pose = self._find_robot_pose()
         if robot_pose is not None:
-            pose.header.frame_id, pose.header.stamp = self._value("global_frame"), self.get_clock().now().to_msg()
+            pose.header.frame_id, pose.header.stamp = (
+                self._get_parameter_value("global_frame"),
+                self.get_clock().now().to_msg(),
+            )
             pose.pose.position.x, pose.pose.position.y, pose.pose.position.z = robot_pose[:3]
             orientation = pose.pose.orientation
             orientation.x, orientation.y, orientation.z, orientation.w = robot_pose[3:]
@@ -149,7 +156,9 @@ class NavigatorNode(StepNode):
             "distance_remaining": remaining_distance,
             "number_of_recoveries": self._recovery_count,
             "navigation_time": Duration(nanoseconds=self.now_ns() - self._started_ns).to_msg(),
-            "estimated_time_remaining": Duration(seconds=remaining_distance / max(self._speed, _MIN_SPEED)).to_msg(),
+            "estimated_time_remaining": Duration(
+                seconds=remaining_distance / max(self._speed, _MIN_SPEED_M_S)
+            ).to_msg(),
         }
         if server is self._servers["poses"]:
             feedback["number_of_poses_remaining"] = len(self._poses)
@@ -189,7 +198,7 @@ class NavigatorNode(StepNode):
     def _plan_and_drive(self, variant: str) -> Step:
         """Plan a path and follow it, with periodic replanning."""
         path = yield from self._plan_with_retry(variant)
-        path_goal = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
+        path_goal = SentGoal(self._clients["follow_path"], self._make_follow_path_goal(path))
         is_cleared = False
         planned_ns = self.now_ns()
         try:
@@ -202,14 +211,14 @@ class NavigatorNode(StepNode):
                         raise StepError("UNKNOWN", path_goal.reason("the controller failed"))
                     is_cleared = True
                     yield from self._clear("local")
-                    path_goal = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
+                    path_goal = SentGoal(self._clients["follow_path"], self._make_follow_path_goal(path))
                 elif path_goal.has_succeeded:
                     return
-                elif self.now_ns() - planned_ns > _REPLANNING_PERIODS[variant] * 1e9:
+                elif self.now_ns() - planned_ns > _REPLANNING_PERIODS_S[variant] * 1e9:
                     path = yield from self._plan_with_retry(variant)
                     planned_ns = self.now_ns()
                     if not path_goal.is_over:
-                        path_goal = SentGoal(self._clients["follow_path"], self._follow_path_goal(path))
+                        path_goal = SentGoal(self._clients["follow_path"], self._make_follow_path_goal(path))
         finally:
             path_goal.cancel()
 
@@ -223,7 +232,7 @@ class NavigatorNode(StepNode):
         try:
             return (yield from self._plan(variant))
         except StepError as failure:
-            if reason := self._refusal_reason():
+            if reason := self._find_refusal_reason():
                 raise StepError("UNKNOWN", f"{reason}: {failure}", is_final=True) from None
             raise
 
@@ -240,10 +249,10 @@ class NavigatorNode(StepNode):
         if not path.poses:
             raise StepError("NO_VALID_PATH", "the planner found no path")
         self._path = path
-        self._remaining_distance = _path_length(path)
+        self._remaining_distance = _measure_path(path)
         return path
 
-    def _refusal_reason(self) -> str:
+    def _find_refusal_reason(self) -> str:
         """Return the reason why the robot cannot be at the goal, or an empty string.
 
         Unless a pose has no frame, the reason comes from the global costmap.
@@ -263,14 +272,14 @@ class NavigatorNode(StepNode):
         return ""
 
     def _drop_passed_poses(self) -> None:
-        robot_position = self._robot_position()
+        robot_position = self._find_robot_position()
         while robot_position is not None and len(self._poses) > 1:
             pose_position = self._poses[0].pose.position
-            if hypot(pose_position.x - robot_position[0], pose_position.y - robot_position[1]) > _PASSED_DISTANCE:
+            if hypot(pose_position.x - robot_position[0], pose_position.y - robot_position[1]) > _PASSED_DISTANCE_M:
                 return
             self._poses = self._poses[1:]
 
-    def _follow_path_goal(self, path: Any) -> Any:
+    def _make_follow_path_goal(self, path: Any) -> Any:
         return get_action("nav2_msgs/action/FollowPath").Goal(path=path, controller_id="FollowPath")
 
     def _clear_costmaps(self) -> Step:
@@ -287,18 +296,18 @@ class NavigatorNode(StepNode):
         yield from self.wait_until(future.done, client.service_name)
 
     def _spin(self) -> Step:
-        goal = get_action("nav2_msgs/action/Spin").Goal(target_yaw=_SPIN_ANGLE)
+        goal = get_action("nav2_msgs/action/Spin").Goal(target_yaw=_SPIN_ANGLE_RAD)
         goal.time_allowance = Duration(seconds=_EXTRA_TIME_S).to_msg()
         yield from self.run_remote_goal(self._clients["spin"], goal, "the robot could not spin")
 
     def _wait(self) -> Step:
         goal = get_action("nav2_msgs/action/Wait").Goal()
-        goal.time = Duration(seconds=_WAIT_SECONDS).to_msg()
+        goal.time = Duration(seconds=_WAIT_S).to_msg()
         yield from self.run_remote_goal(self._clients["wait"], goal, "the robot could not wait")
 
     def _back_up(self) -> Step:
-        goal = get_action("nav2_msgs/action/BackUp").Goal(speed=_BACK_UP_SPEED)
-        goal.target.x = _BACK_UP_DISTANCE
+        goal = get_action("nav2_msgs/action/BackUp").Goal(speed=_BACK_UP_SPEED_M_S)
+        goal.target.x = _BACK_UP_DISTANCE_M
         goal.time_allowance = Duration(seconds=_EXTRA_TIME_S).to_msg()
         yield from self.run_remote_goal(self._clients["backup"], goal, "the robot could not back up")
 
@@ -317,22 +326,24 @@ class NavigatorNode(StepNode):
     def _on_odometry(self, message: Any) -> None:
         twist = message.twist.twist
         self._speed = hypot(twist.linear.x, twist.linear.y)
-        robot_position = self._robot_position() if self._path is not None else None
+        robot_position = self._find_robot_position() if self._path is not None else None
         if robot_position is not None:
-            self._remaining_distance = _remaining_distance(self._path, *robot_position)
+            self._remaining_distance = _find_remaining_distance(self._path, *robot_position)
 
-    def _robot_transform(self) -> Any:
+    def _find_robot_pose(self) -> Any:
         """Return the robot's pose in the global frame, or None if it is unknown."""
         try:
-            return self._buffer.lookup(self._value("global_frame"), self._value("robot_base_frame"), 0)[0]
+            return self._buffer.lookup(
+                self._get_parameter_value("global_frame"), self._get_parameter_value("robot_base_frame"), 0
+            )[0]
         except TransformException:
             return None
 
-    def _robot_position(self) -> tuple[float, float] | None:
-        robot_pose = self._robot_transform()
+    def _find_robot_position(self) -> tuple[float, float] | None:
+        robot_pose = self._find_robot_pose()
         return None if robot_pose is None else (robot_pose[0], robot_pose[1])
 
-    def _value(self, name: str) -> Any:
+    def _get_parameter_value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
 
@@ -348,12 +359,12 @@ def _is_default_tree(path: str) -> bool:
     return path.rpartition("/")[2] in _DEFAULT_TREES
 
 
-def _path_length(path: Any) -> float:
+def _measure_path(path: Any) -> float:
     positions = [pose.pose.position for pose in path.poses]
     return sum(hypot(end.x - start.x, end.y - start.y) for start, end in pairwise(positions))
 
 
-def _remaining_distance(path: Any, x: float, y: float) -> float:
+def _find_remaining_distance(path: Any, x: float, y: float) -> float:
     """Return the remaining distance from a position along a path, in meters.
 
     The result is the distance to the nearest pose of the path plus the length of the path from that pose to the end.
@@ -377,7 +388,7 @@ _DEFAULT_TREES = (
     "navigate_to_pose_w_replanning_and_recovery.xml",
     "navigate_through_poses_w_replanning_and_recovery.xml",
 )
-_MIN_SPEED = 0.1
+_MIN_SPEED_M_S = 0.1
 """The minimum speed for the estimate of the remaining time, in m/s."""
 _STRING_LISTS = ("plugin_lib_names", "navigators", "error_code_names", "error_code_name_prefixes")
 _PARAMETERS: dict[str, Any] = {

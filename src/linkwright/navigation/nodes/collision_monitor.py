@@ -29,7 +29,7 @@ from linkwright.navigation.nodes.plugins import get_string_list
 from linkwright.nodes.parameter_tables import ParameterTable
 from linkwright.nodes.velocity_topic import VelocityTopic, choose_velocity_types
 
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 _SILENT_SENSOR_ZONE = "invalid source"
 """The name that nav2 reports as the zone when a sensor publishes nothing."""
 _ACTION_MESSAGES = {
@@ -93,13 +93,15 @@ class MonitorNode(ManagedNode):
             self._zones.append(self.register(Zone(self, name, self._transforms, base_frame)))
         topic = parameters.state_topic
         if topic:
-            self._state = self.register(self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _DEPTH))
+            self._state = self.register(
+                self.create_publisher("nav2_msgs/msg/CollisionMonitorState", topic, _QUEUE_DEPTH)
+            )
         self._output = VelocityTopic(self, parameters.cmd_vel_out_topic, self._is_stamped)
         topic = parameters.cmd_vel_in_topic
         for message_type in choose_velocity_types(self, topic, self._is_stamped):
             commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
             callback = commander.tracking_callback(self._on_velocity)
-            subscription: Subscription[Any] = self.create_subscription(message_type, topic, callback, _DEPTH)
+            subscription: Subscription[Any] = self.create_subscription(message_type, topic, callback, _QUEUE_DEPTH)
             commander.watch(self.register(subscription))
 
     def activate(self) -> None:

@@ -22,7 +22,7 @@ from linkwright.perception.nodes.laser_filters import to_scan
 from linkwright.perception.nodes.pointcloud_to_laserscan import read_points
 from linkwright.perception.scans.projection import points_from_scan
 
-_MAX_QUEUED = 20
+_MAX_QUEUED_MESSAGES = 20
 
 
 class Source:
@@ -42,22 +42,25 @@ class Source:
     def __init__(self, node: Node, name: str, transforms: BufferCore, base_frame: str, fixed_frame: str | None) -> None:
         self.name = name
         self._node, self._transforms, self._base_frame, self._fixed_frame = node, transforms, base_frame, fixed_frame
-        self._queued_messages: deque[Any] = deque(maxlen=_MAX_QUEUED)
+        self._queued_messages: deque[Any] = deque(maxlen=_MAX_QUEUED_MESSAGES)
         readers: dict[str, tuple[str, Callable[[Any], NDArray[np.float64] | None]]] = {
             "scan": ("LaserScan", _points_from_scan),
             "pointcloud": ("PointCloud2", self._points_from_cloud),
             "range": ("Range", self._points_from_range),
         }
-        kind = str(self._value("type", "scan"))
+        kind = str(self._get_parameter_value("type", "scan"))
         if kind not in readers:
             raise invalid_value_error(f"{name}.type", kind, node.get_name(), list(readers))
         message, self._read = readers[kind]
         if kind == "pointcloud":
-            self._height_range = float(self._value("min_height", 0.05)), float(self._value("max_height", 0.5))
+            self._height_range = (
+                float(self._get_parameter_value("min_height", 0.05)),
+                float(self._get_parameter_value("max_height", 0.5)),
+            )
         if kind == "range":
-            self._spacing = float(self._value("obstacles_angle", pi / 180.0))
-        self._value("enabled", True)
-        topic = str(self._value("topic", "scan"))
+            self._spacing = float(self._get_parameter_value("obstacles_angle", pi / 180.0))
+        self._get_parameter_value("enabled", True)
+        topic = str(self._get_parameter_value("topic", "scan"))
         type_ = get_message(f"sensor_msgs/msg/{message}")
         self._subscription = node.create_subscription(type_, topic, self._receive, SENSOR_DATA_QOS)
 
@@ -75,14 +78,14 @@ class Source:
             timeout: the maximum age of the points in seconds, unless the sensor has its own ``source_timeout``; 0 for
                 no limit.
         """
-        if not self._value("enabled", True):
+        if not self._get_parameter_value("enabled", True):
             return np.zeros((0, 2))
-        sensor_timeout = float(self._value("source_timeout", timeout))
-        current_points = self._current_points(now_ns, sensor_timeout)
+        sensor_timeout = float(self._get_parameter_value("source_timeout", timeout))
+        current_points = self._find_current_points(now_ns, sensor_timeout)
         return np.zeros((0, 2)) if current_points is None and sensor_timeout == 0.0 else current_points
 
-    def _current_points(self, now_ns: int, timeout: float) -> Points | None:
-        newest = self._newest()
+    def _find_current_points(self, now_ns: int, timeout: float) -> Points | None:
+        newest = self._find_newest()
         if newest is None or (timeout and now_ns - newest[0].header.stamp.nanoseconds > timeout * 1e9):
             return None
         message, pose = newest
@@ -96,20 +99,20 @@ class Source:
             ]
         return robot_points[:, :2]
 
-    def _newest(self) -> tuple[Any, Transform] | None:
+    def _find_newest(self) -> tuple[Any, Transform] | None:
         """Return the latest message whose transform is available, and the sensor's pose.
 
         Returns None if there is no such message. Transforms often arrive later than the messages.
         """
         for message in reversed(self._queued_messages):
-            pose = self._pose(message.header.frame_id, message.header.stamp.nanoseconds)
+            pose = self._find_sensor_pose(message.header.frame_id, message.header.stamp.nanoseconds)
             if pose is not None:
                 while self._queued_messages[0] is not message:
                     self._queued_messages.popleft()
                 return message, pose
         return None
 
-    def _pose(self, frame: str, stamp_ns: int) -> Transform | None:
+    def _find_sensor_pose(self, frame: str, stamp_ns: int) -> Transform | None:
         """Return the sensor's pose at the time of a message, in the robot's current frame.
 
         Returns None if a transform is not available.
@@ -122,7 +125,7 @@ class Source:
         except TransformException:
             return None
 
-    def _value(self, name: str, default: Any) -> Any:
+    def _get_parameter_value(self, name: str, default: Any) -> Any:
         return get_or_declare(self._node, f"{self.name}.{name}", default)
 
     def _receive(self, message: Any) -> None:

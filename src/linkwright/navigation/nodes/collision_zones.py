@@ -24,9 +24,9 @@ _ACTIONS = {
     "limit": ZoneAction.LIMIT,
     "none": ZoneAction.NOTHING,
 }
-_TYPES = ("polygon", "circle", "velocity_polygon")
-_POLYGON = "geometry_msgs/msg/PolygonStamped"
-_DEPTH = 10
+_ZONE_TYPES = ("polygon", "circle", "velocity_polygon")
+_POLYGON_TYPE = "geometry_msgs/msg/PolygonStamped"
+_QUEUE_DEPTH = 10
 
 
 class Zone:
@@ -49,12 +49,12 @@ class Zone:
         self._shape: Shape | None = None
         self._polygon: Any = None
         self._ranges: list[SpeedRange] = []
-        self._value("enabled", True)
+        self._get_parameter_value("enabled", True)
         self.rule = self._read_rule()
         self._sources = get_string_list(node, f"{name}.sources_names", [])
-        kind = str(self._value("type", "polygon"))
-        if kind not in _TYPES:
-            raise invalid_value_error(f"{name}.type", kind, node.get_name(), _TYPES)
+        kind = str(self._get_parameter_value("type", "polygon"))
+        if kind not in _ZONE_TYPES:
+            raise invalid_value_error(f"{name}.type", kind, node.get_name(), _ZONE_TYPES)
         if kind == "velocity_polygon":
             self._ranges = [
                 self._read_range(polygon) for polygon in get_string_list(node, f"{name}.velocity_polygons", [])
@@ -62,9 +62,9 @@ class Zone:
         else:
             self._read_shape(kind)
         self._publisher: Any = None
-        if self._value("visualize", False):
-            topic = str(self._value("polygon_pub_topic", name))
-            self._publisher = self._register(node.create_publisher(get_message(_POLYGON), topic, _DEPTH))
+        if self._get_parameter_value("visualize", False):
+            topic = str(self._get_parameter_value("polygon_pub_topic", name))
+            self._publisher = self._register(node.create_publisher(get_message(_POLYGON_TYPE), topic, _QUEUE_DEPTH))
 
     def destroy(self) -> None:
         """Destroy the publisher and the subscriptions."""
@@ -78,7 +78,7 @@ class Zone:
 
         Returns None if the zone is disabled or has no shape yet.
         """
-        if not self._value("enabled", True):
+        if not self._get_parameter_value("enabled", True):
             return None
         for speed_range in self._ranges:
             if speed_range.covers(velocity):
@@ -99,7 +99,7 @@ class Zone:
             or not self._publisher.get_subscription_count()
         ):
             return
-        message, point = get_message(_POLYGON)(), get_message("geometry_msgs/msg/Point32")
+        message, point = get_message(_POLYGON_TYPE)(), get_message("geometry_msgs/msg/Point32")
         message.header.frame_id = self._base_frame
         message.header.stamp = self._node.get_clock().now().to_msg()
         message.polygon.points = [point(x=float(x), y=float(y)) for x, y in self._shape.corners]
@@ -107,68 +107,68 @@ class Zone:
 
     # --- parameters --------------------------------------------------------------------------------------------------
 
-    def _value(self, name: str, default: Any) -> Any:
+    def _get_parameter_value(self, name: str, default: Any) -> Any:
         return get_or_declare(self._node, f"{self.name}.{name}", default)
 
     def _read_rule(self) -> ZoneRule:
-        action_name = str(self._value("action_type", ""))
+        action_name = str(self._get_parameter_value("action_type", ""))
         if action_name not in _ACTIONS:
             raise invalid_value_error(f"{self.name}.action_type", action_name, self._node.get_name(), list(_ACTIONS))
-        min_points = int(self._value("min_points", 4))
+        min_points = int(self._get_parameter_value("min_points", 4))
         if f"{self.name}.max_points" in self._node.undeclared_overrides():  # Humble's parameter.
-            min_points = int(self._value("max_points", 3)) + 1
+            min_points = int(self._get_parameter_value("max_points", 3)) + 1
         default_rule = ZoneRule(_ACTIONS[action_name])
         names = [
             *(("slowdown_ratio",) if default_rule.action is ZoneAction.SLOWDOWN else ()),
             *(("linear_limit", "angular_limit") if default_rule.action is ZoneAction.LIMIT else ()),
             *(("time_before_collision", "simulation_time_step") if default_rule.action is ZoneAction.APPROACH else ()),
         ]
-        values = {name: float(self._value(name, getattr(default_rule, name))) for name in names}
+        values = {name: float(self._get_parameter_value(name, getattr(default_rule, name))) for name in names}
         for name in ("time_before_collision", "simulation_time_step"):
             if values.get(name, 1.0) <= 0.0:
                 raise invalid_value_error(f"{self.name}.{name}", values[name], self._node.get_name())
         return ZoneRule(default_rule.action, min_points, **values)
 
     def _read_range(self, polygon: str) -> SpeedRange:
-        corners = self._corners(f"{polygon}.points")
+        corners = self._read_corners(f"{polygon}.points")
         if corners is None:
             raise invalid_value_error(f"{self.name}.{polygon}.points", "", self._node.get_name())
-        bounds = [float(self._value(f"{polygon}.{item}", 0.0)) for item in _RANGE_PARAMETERS]
+        bounds = [float(self._get_parameter_value(f"{polygon}.{item}", 0.0)) for item in _RANGE_PARAMETERS]
         direction = None
-        if self._value("holonomic", False):
+        if self._get_parameter_value("holonomic", False):
             direction = (
-                float(self._value(f"{polygon}.direction_start_angle", -np.pi)),
-                float(self._value(f"{polygon}.direction_end_angle", np.pi)),
+                float(self._get_parameter_value(f"{polygon}.direction_start_angle", -np.pi)),
+                float(self._get_parameter_value(f"{polygon}.direction_end_angle", np.pi)),
             )
         return SpeedRange(Polygon(corners), (bounds[0], bounds[1]), (bounds[2], bounds[3]), direction)
 
     def _read_shape(self, kind: str) -> None:
         """Read the shape from parameters, or subscribe to the topic that provides it."""
-        polygon = get_message(_POLYGON)
+        polygon = get_message(_POLYGON_TYPE)
         if kind == "circle":
-            radius = float(self._value("radius", 0.0))
+            radius = float(self._get_parameter_value("radius", 0.0))
             if radius > 0.0:
                 self._shape = Circle(radius)
                 return
-            topic = str(self._value("polygon_sub_topic", ""))
+            topic = str(self._get_parameter_value("polygon_sub_topic", ""))
             if not topic:
                 raise invalid_value_error(f"{self.name}.radius", radius, self._node.get_name())
             number = get_message("std_msgs/msg/Float32")
-            self._register(self._node.create_subscription(number, topic, self._on_radius, _DEPTH))
+            self._register(self._node.create_subscription(number, topic, self._on_radius, _QUEUE_DEPTH))
             return
-        corners = self._corners("points")
+        corners = self._read_corners("points")
         if corners is not None:
             self._shape = Polygon(corners)
         elif self.rule.action is ZoneAction.APPROACH:
-            topic = str(self._value("footprint_topic", "local_costmap/published_footprint"))
-            self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
+            topic = str(self._get_parameter_value("footprint_topic", "local_costmap/published_footprint"))
+            self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _QUEUE_DEPTH))
         else:
-            topic = str(self._value("polygon_sub_topic", ""))
+            topic = str(self._get_parameter_value("polygon_sub_topic", ""))
             if not topic:
                 raise invalid_value_error(f"{self.name}.points", "", self._node.get_name())
-            self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _DEPTH))
+            self._register(self._node.create_subscription(polygon, topic, self._on_polygon, _QUEUE_DEPTH))
 
-    def _corners(self, name: str) -> Footprint | None:
+    def _read_corners(self, name: str) -> Footprint | None:
         """Return the corners from a parameter, or None if the parameter is not set.
 
         The parameter is a string in Jazzy and a list of numbers in Humble.

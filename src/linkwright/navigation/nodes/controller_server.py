@@ -37,11 +37,11 @@ from linkwright.nodes.options import NodeOptions
 from linkwright.nodes.settings import check_positive
 from linkwright.nodes.velocity_topic import VelocityTopic
 
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 _WARNING_PERIOD_S = 2.0
-_MIN_WAIT = 3.0
+_MIN_WAIT_S = 3.0
 """The minimum time that the robot waits for missing data before the goal is aborted, in seconds."""
-_MAX_PATH_FRAME_AGE = 5.0
+_MAX_PATH_FRAME_AGE_S = 5.0
 """The maximum age of the pose of the path's frame, in seconds."""
 
 
@@ -88,7 +88,7 @@ class ControllerNode(ManagedNode):
         Raises:
             LinkwrightError: a parameter is missing or has an invalid value.
         """
-        self._frequency = check_positive(self, "controller_frequency", self._value("controller_frequency"))
+        self._frequency = check_positive(self, "controller_frequency", self._get_parameter_value("controller_frequency"))
         humble_checkers = [self._humble_progress_checker] if self._humble_progress_checker else None
         self._progress = {
             checker: make_progress_checker(self, checker)
@@ -100,8 +100,14 @@ class ControllerNode(ManagedNode):
         self._followers = {name: make_follower(self, name) for name in names}
         self.costmap.trigger_configure()
         odometry, limit = get_message("nav_msgs/msg/Odometry"), get_message("nav2_msgs/msg/SpeedLimit")
-        self.register(self.create_subscription(odometry, self._value("odom_topic"), self._on_odometry, _DEPTH))
-        self.register(self.create_subscription(limit, self._value("speed_limit_topic"), self._on_speed_limit, _DEPTH))
+        self.register(
+            self.create_subscription(odometry, self._get_parameter_value("odom_topic"), self._on_odometry, _QUEUE_DEPTH)
+        )
+        self.register(
+            self.create_subscription(
+                limit, self._get_parameter_value("speed_limit_topic"), self._on_speed_limit, _QUEUE_DEPTH
+            )
+        )
         self._output = VelocityTopic(self, "cmd_vel", self._is_stamped)
         self._goals = self.register(GoalServer(self, "nav2_msgs/action/FollowPath", "follow_path", self._start))
 
@@ -182,19 +188,19 @@ class ControllerNode(ManagedNode):
             return
         try:
             self._drive(goals)
-        except _TemporarilyUnavailableError as problem:
-            self._wait(problem)
+        except _TemporarilyUnavailableError as error:
+            self._wait(error)
         except GoalError as failure:
             self._fail(failure)
 
-    def _wait(self, problem: _TemporarilyUnavailableError) -> None:
+    def _wait(self, error: _TemporarilyUnavailableError) -> None:
         """Stop the robot until missing data arrive, or abort the goal after a timeout."""
         self._publish(ZERO_VELOCITY)
         waited_seconds = (self.now_ns() - self._last_valid_ns) / 1e9
-        if waited_seconds > max(self._value("costmap_update_timeout"), _MIN_WAIT):
-            self._fail(GoalError(problem.code, f"{problem}; the goal is aborted"))
+        if waited_seconds > max(self._get_parameter_value("costmap_update_timeout"), _MIN_WAIT_S):
+            self._fail(GoalError(error.code, f"{error}; the goal is aborted"))
         else:
-            message = f"{problem}; the robot waits"
+            message = f"{error}; the robot waits"
             self.get_logger().warning(message, throttle_duration_sec=_WARNING_PERIOD_S)
 
     def _drive(self, goals: GoalServer) -> None:
@@ -204,13 +210,15 @@ class ControllerNode(ManagedNode):
             GoalError: the goal must be aborted, or data are temporarily unavailable.
         """
         now_ns = self.now_ns()
-        frame = self._frame_pose(self._path_frame, _MAX_PATH_FRAME_AGE)
-        pose = self._frame_pose(self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value)
+        frame = self._find_frame_pose(self._path_frame, _MAX_PATH_FRAME_AGE_S)
+        pose = self._find_frame_pose(
+            self.costmap.robot_base_frame, self.costmap.get_parameter("transform_tolerance").value
+        )
         if not self.costmap.is_current:
             raise _TemporarilyUnavailableError("CONTROLLER_TIMED_OUT", "the costmap is not current")
         x, y, yaw = _relative_pose(frame, pose)
         self._path.update_progress(x, y)
-        velocity = self._velocity()
+        velocity = self._get_current_velocity()
         if self._goal_checker.is_reached((x, y, yaw), self._goal_in_path, self._measured_velocity):
             self.get_logger().info("Reached the goal!")
             self._halt()
@@ -245,7 +253,7 @@ class ControllerNode(ManagedNode):
         Raises:
             GoalError: there was no valid velocity for longer than ``failure_tolerance``.
         """
-        tolerance = self._value("failure_tolerance")
+        tolerance = self._get_parameter_value("failure_tolerance")
         if not tolerance:
             raise GoalError("NO_VALID_CONTROL", reason)
         self.get_logger().warning(reason, throttle_duration_sec=_WARNING_PERIOD_S)
@@ -253,11 +261,11 @@ class ControllerNode(ManagedNode):
         if 0.0 < tolerance < (now_ns - self._last_valid_ns) / 1e9:
             raise GoalError("PATIENCE_EXCEEDED", "Controller patience exceeded")
 
-    def _velocity(self) -> Velocity:
+    def _get_current_velocity(self) -> Velocity:
         """Return the last commanded velocity, or the measured velocity before the first command."""
         return self._measured_velocity if self._command is None else self._command
 
-    def _frame_pose(self, frame: str, max_age: float) -> Pose:
+    def _find_frame_pose(self, frame: str, max_age: float) -> Pose:
         """Return the pose of a frame in the frame of the costmap.
 
         Raises:
@@ -277,11 +285,11 @@ class ControllerNode(ManagedNode):
             raise _TemporarilyUnavailableError("TF_ERROR", f"the pose of {frame} in {target} is {age:.2f} s old")
         return pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]
 
-    def _fail(self, failure: GoalError) -> None:
-        self.get_logger().error(str(failure))
+    def _fail(self, error: GoalError) -> None:
+        self.get_logger().error(str(error))
         self._halt()
         assert self._goals is not None, "it is configured"
-        self._goals.abort(failure.code, str(failure))
+        self._goals.abort(error.code, str(error))
 
     def _halt(self) -> None:
         """End the control cycles, and stop the robot."""
@@ -298,7 +306,7 @@ class ControllerNode(ManagedNode):
     def _on_odometry(self, message: Any) -> None:
         twist = message.twist.twist
         measured = (twist.linear.x, twist.linear.y, twist.angular.z)
-        thresholds = (self._value(f"min_{axis}_velocity_threshold") for axis in ("x", "y", "theta"))
+        thresholds = (self._get_parameter_value(f"min_{axis}_velocity_threshold") for axis in ("x", "y", "theta"))
         self._measured_velocity = Velocity(
             *(value if abs(value) > threshold else 0.0 for value, threshold in zip(measured, thresholds, strict=True))
         )
@@ -307,7 +315,7 @@ class ControllerNode(ManagedNode):
         for follower in self._followers.values():
             follower.limit_speed(message.speed_limit, is_percentage=message.percentage)
 
-    def _value(self, name: str) -> Any:
+    def _get_parameter_value(self, name: str) -> Any:
         return self.get_parameter(name).value
 
 

@@ -162,7 +162,9 @@ class CostmapNode(ManagedNode):
         return self.transform_pose((0.0, 0.0, 0.0), self.robot_base_frame)
 
     def transform_pose(self, pose: Pose, frame: str, time_ns: int = 0) -> Pose | None:
-        """Transform a pose to the frame of the costmap, or return None if no transform is available.
+        """Transform a pose to the frame of the costmap.
+
+        Returns None if no transform is available.
 
         Args:
             pose: x, y (meters) and yaw (radians).
@@ -197,11 +199,14 @@ class CostmapNode(ManagedNode):
         self._layer_context = LayerContext(self, self.transforms, self.global_frame, self._on_map)
         self._ignore_filters()
         make_layers(self._layer_context, get_string_list(self, "plugins", list(DEFAULT_LAYERS)))
-        resolution = self._positive_value("resolution")
-        rows, columns = (max(1, int(self._positive_value(name) / resolution)) for name in ("height", "width"))
+        resolution = self._get_positive_value("resolution")
+        rows, columns = (max(1, int(self._get_positive_value(name) / resolution)) for name in ("height", "width"))
         cells = np.zeros((rows, columns), np.uint8)
         grid = Grid(
-            cells=cells, resolution=resolution, x=self._parameter_values.origin_x, y=self._parameter_values.origin_y
+            cells=cells,
+            resolution=resolution,
+            x=self._parameter_values.origin_x,
+            y=self._parameter_values.origin_y,
         )
         self._layered = LayeredCostmap(
             grid,
@@ -260,7 +265,7 @@ class CostmapNode(ManagedNode):
     def _parameter_values(self) -> CostmapParameters:
         return self._table.values
 
-    def _positive_value(self, name: str) -> float:
+    def _get_positive_value(self, name: str) -> float:
         value: float = getattr(self._parameter_values, name)
         if not value > 0:
             raise invalid_value_error(name, value, self.get_name())
@@ -269,7 +274,7 @@ class CostmapNode(ManagedNode):
     def _read_footprint(self) -> Footprint:
         text = self._parameter_values.footprint
         if self.uses_radius:
-            return circle(self._positive_value("robot_radius"))
+            return circle(self._get_positive_value("robot_radius"))
         try:
             return parse_footprint(text)
         except BadFootprintError as error:
@@ -316,7 +321,7 @@ class CostmapNode(ManagedNode):
         if layered is None or layered.is_rolling:
             return
         old_grid = layered.costmap.grid
-        new_grid = _axis_aligned_grid(grid) if frame == self.global_frame else grid
+        new_grid = _make_axis_aligned_grid(grid) if frame == self.global_frame else grid
         if (old_grid.rows, old_grid.columns, old_grid.resolution, old_grid.x, old_grid.y) != (
             new_grid.rows,
             new_grid.columns,
@@ -445,7 +450,7 @@ def _adapt_tf_remapping(server: Node, rule: tuple[str, str]) -> tuple[str, str]:
     return source, join(server.get_namespace(), target)
 
 
-def _axis_aligned_grid(grid: Grid) -> Grid:
+def _make_axis_aligned_grid(grid: Grid) -> Grid:
     """Return an axis-aligned grid that contains another grid.
 
     Only the size, origin and resolution of the result are meaningful.

@@ -106,7 +106,7 @@ def make_layers(context: LayerContext, names: list[str]) -> None:
 
 
 def apply_parameters(context: LayerContext, changed: list[Parameter]) -> bool:
-    """Apply changed parameters to the layers, and return whether any of them belongs to a layer."""
+    """Apply changed parameters to the layers, and return whether any belongs to a layer."""
     is_layer_changed = False
     for changed_parameter in changed:
         name, _, parameter = changed_parameter.name.partition(".")

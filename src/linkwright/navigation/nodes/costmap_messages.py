@@ -19,7 +19,7 @@ from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.grids.occupancy import occupancy_message
 
 
-def _percentages() -> Costs:
+def _compute_percentages() -> Costs:
     costs = np.arange(256)
     table = 1 + 97 * (costs - 1) // 251
     table[0], table[INSCRIBED], table[LETHAL], table[UNKNOWN] = 0, 99, 100, 255
@@ -27,7 +27,7 @@ def _percentages() -> Costs:
     return percentages
 
 
-PERCENTAGES = _percentages()
+PERCENTAGES = _compute_percentages()
 """The value in an occupancy grid for each cost, as an unsigned byte: 255 is -1."""
 
 
@@ -106,7 +106,7 @@ class CostmapPublisher:
             self._full_publisher.publish(occupancy_message(percentages, self._frame, stamp))
         elif not window.is_empty:
             cells = PERCENTAGES[grid.cells[window.cells]].tobytes()
-            message = self._update_message("map_msgs/msg/OccupancyGridUpdate", array("b", cells), window, stamp)
+            message = self._make_update_message("map_msgs/msg/OccupancyGridUpdate", array("b", cells), window, stamp)
             message.width, message.height = window.right - window.left, window.bottom - window.top
             self._updates.publish(message)
         if is_full or not window.is_empty:
@@ -122,11 +122,11 @@ class CostmapPublisher:
             and not window.is_empty
         ):
             cells = array("B", self._costmap.costmap.grid.cells[window.cells].tobytes())
-            message = self._update_message("nav2_msgs/msg/CostmapUpdate", cells, window, stamp)
+            message = self._make_update_message("nav2_msgs/msg/CostmapUpdate", cells, window, stamp)
             message.size_x, message.size_y = window.right - window.left, window.bottom - window.top
             self._raw_update_publisher.publish(message)
 
-    def _update_message(self, message_type: str, cells: Any, window: Window, stamp: Any) -> Any:
+    def _make_update_message(self, message_type: str, cells: Any, window: Window, stamp: Any) -> Any:
         message = get_message(message_type)()
         message.header.frame_id, message.header.stamp = self._frame, stamp
         message.x, message.y, message.data = window.left, window.top, cells

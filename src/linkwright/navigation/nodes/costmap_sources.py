@@ -37,7 +37,7 @@ from linkwright.perception.nodes.laser_filters import to_scan
 from linkwright.perception.nodes.pointcloud_to_laserscan import read_points
 from linkwright.perception.scans.projection import points_from_scan
 
-_MAX_QUEUED = 50
+_MAX_QUEUED_MESSAGES = 50
 _MAX_POINTS = 40_000
 """The maximum number of points of a cloud. Every n-th point of a larger cloud is used."""
 _RANGE_MARGIN = 1e-4
@@ -57,7 +57,7 @@ class SensorTopic(ABC):
 
     def __init__(self, node: Node, topic: str, message_name: str, transforms: BufferCore, frame: str) -> None:
         self._transforms, self._frame = transforms, frame
-        self._queued_messages: deque[Any] = deque(maxlen=_MAX_QUEUED)
+        self._queued_messages: deque[Any] = deque(maxlen=_MAX_QUEUED_MESSAGES)
         message = get_message(f"sensor_msgs/msg/{message_name}")
         self._subscription = node.create_subscription(message, topic, self._receive, SENSOR_DATA_QOS)
 
@@ -71,7 +71,9 @@ class SensorTopic(ABC):
         Older messages without a transform are dropped.
         """
         messages = list(self._queued_messages)
-        placed_messages = [(message, pose) for message in messages if (pose := self._pose(message)) is not None]
+        placed_messages = [
+            (message, pose) for message in messages if (pose := self._find_sensor_pose(message)) is not None
+        ]
         if not placed_messages:
             return
         later_messages = messages[messages.index(placed_messages[-1][0]) + 1 :]
@@ -92,7 +94,7 @@ class SensorTopic(ABC):
     def _receive(self, message: Any) -> None:
         self._queued_messages.append(message)
 
-    def _pose(self, message: Any) -> Transform | None:
+    def _find_sensor_pose(self, message: Any) -> Transform | None:
         header = message.header
         try:
             return self._transforms.lookup(self._frame, header.frame_id, header.stamp.nanoseconds)[0]

@@ -72,13 +72,13 @@ def _make_rotation_shim(node: Node, plugin: str) -> Follower:
 
 def _make_basic_follower(node: Node, plugin: str, kind: str) -> Follower:
     if kind == DWB:
-        return SamplingFollower(_dwb_parameters(node, plugin))
+        return SamplingFollower(_read_dwb_parameters(node, plugin))
     if kind == MPPI:
-        return SamplingFollower(_mppi_parameters(node, plugin))
+        return SamplingFollower(_read_mppi_parameters(node, plugin))
     return RegulatedPurePursuit(declare_table(node, PurePursuitParameters, plugin))
 
 
-def _dwb_parameters(node: Node, plugin: str) -> SamplingParameters:
+def _read_dwb_parameters(node: Node, plugin: str) -> SamplingParameters:
     """Return the sampling settings with DWB's limits, simulated time and defaults."""
 
     def value(name: str, default: float) -> float:
@@ -95,7 +95,7 @@ def _dwb_parameters(node: Node, plugin: str) -> SamplingParameters:
     return SamplingParameters(limits=limits, simulated_seconds=value("sim_time", 1.7))
 
 
-def _mppi_parameters(node: Node, plugin: str) -> SamplingParameters:
+def _read_mppi_parameters(node: Node, plugin: str) -> SamplingParameters:
     """Return the sampling settings with MPPI's limits, simulated time and defaults."""
 
     def value(name: str, default: float) -> float:

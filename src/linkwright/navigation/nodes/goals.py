@@ -98,7 +98,7 @@ class GoalServer:
         The arguments are the fields of the result.
         """
         if (goal := self._take_active_goal()) is not None:
-            goal.succeed(self._result("", "", fields))
+            goal.succeed(self._make_result("", "", fields))
 
     def abort(self, code: str, reason: str, **fields: Any) -> None:
         """End the active goal with the status aborted.
@@ -109,15 +109,15 @@ class GoalServer:
             fields: the fields of the result.
         """
         if (goal := self._take_active_goal()) is not None:
-            goal.abort(self._result(code, reason, fields))
+            goal.abort(self._make_result(code, reason, fields))
 
     def end_canceled(self, **fields: Any) -> None:
-        """End the active goal with the status canceled, or aborted if no cancellation was requested."""
+        """End the active goal as canceled, or as aborted if no cancellation was requested."""
         if (goal := self._take_active_goal()) is not None:
             if goal.is_cancel_requested:
-                goal.canceled(self._result("", "", fields))
+                goal.canceled(self._make_result("", "", fields))
             else:
-                goal.abort(self._result("", "", fields))
+                goal.abort(self._make_result("", "", fields))
 
     def destroy(self) -> None:
         """Abort the active goal, and destroy the action server."""
@@ -141,7 +141,7 @@ class GoalServer:
         self.active_goal = goal
         self._on_goal_accepted(goal)
 
-    def _result(self, code: str, reason: str, fields: dict[str, Any]) -> Any:
+    def _make_result(self, code: str, reason: str, fields: dict[str, Any]) -> Any:
         result = self._type.Result()
         if code and hasattr(result, "error_code"):
             result.error_code = getattr(result, code, 0)

@@ -16,7 +16,7 @@ from linkwright.graph import Graph, Node, Parameter, ParameterType
 from linkwright.graph.lifecycle.states import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED, LifecycleState
 from linkwright.graph.loop.node_handle import ReentrantCallbackGroup
 from linkwright.messages import get_service
-from linkwright.navigation.nodes.bond import TIMEOUT, Bond
+from linkwright.navigation.nodes.bond import TIMEOUT_S, Bond
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.service_waits import wait_for_future, wait_for_service
@@ -34,8 +34,8 @@ class _Transition(Enum):
     DEACTIVATE = (4, "Deactivating", INACTIVE)
     SHUTDOWN = (5, "Shutting down", FINALIZED)
 
-    def __init__(self, transition_id: int, line: str, goal: LifecycleState) -> None:
-        self.number, self.line, self.goal = transition_id, line, goal
+    def __init__(self, transition_id: int, line: str, goal_state: LifecycleState) -> None:
+        self.number, self.line, self.goal_state = transition_id, line, goal_state
 
 
 class _State(Enum):
@@ -48,7 +48,7 @@ class _State(Enum):
     UNKNOWN = auto()
 
 
-_HEALTH = {
+_HEALTH_BY_STATE = {
     _State.UNCONFIGURED: Health(Level.OK, "Managed nodes are unconfigured"),
     _State.INACTIVE: Health(Level.OK, "Managed nodes are inactive"),
     _State.ACTIVE: Health(Level.OK, "Managed nodes are active"),
@@ -100,7 +100,7 @@ class _ManagedNodeClient:
         response = await self._call(self._change_client, request, log_period)
         return (
             bool(response is not None and response.success)
-            and await self.get_state(log_period) == transition.goal.state_id
+            and await self.get_state(log_period) == transition.goal_state.state_id
         )
 
     async def get_state(self, log_period: float) -> int | None:
@@ -168,7 +168,7 @@ class LifecycleManager(SingleNode):
             ("std_srvs/srv/Trigger", "is_active", self._on_is_active),
         ):
             self._node.create_service(get_service(service_type), f"{name}/{service}", callback, callback_group=group)
-        DiagnosticUpdater(self._node, "Nav2 Health", lambda: _HEALTH[self._state], hardware_id="Nav2")
+        DiagnosticUpdater(self._node, "Nav2 Health", lambda: _HEALTH_BY_STATE[self._state], hardware_id="Nav2")
         if self._autostart:
             self._start_task(self._run_exclusively(self._startup))
 
@@ -190,7 +190,7 @@ class LifecycleManager(SingleNode):
             raise invalid_value_error("node_names", self._names, node.get_name())
         declare = node.declare_parameter
         self._autostart: bool = declare("autostart", False).value
-        self._bond_timeout: float = declare("bond_timeout", TIMEOUT).value
+        self._bond_timeout: float = declare("bond_timeout", TIMEOUT_S).value
         self._log_period: float = declare("service_timeout", 5.0).value
         self._max_respawn_seconds: float = declare("bond_respawn_max_duration", 10.0).value
         self._reconnects: bool = declare("attempt_respawn_reconnection", True).value
@@ -288,7 +288,7 @@ class LifecycleManager(SingleNode):
         Nodes are configured and activated in order, and taken down in reverse order.
 
         Args:
-            transition: the transition.
+            transition: the transition that each managed node runs.
             ignore_failures: whether to continue after a failure.
             skipped: a node that is left out; None for no node.
         """

@@ -9,7 +9,7 @@ from linkwright.diagnostics import LinkwrightError, render
 from linkwright.graph import Graph, Node, Timer
 from linkwright.graph.lifecycle.managed_node import LifecycleNodeMixin
 from linkwright.graph.lifecycle.states import ACTIVE, LifecycleState, TransitionCallbackReturn
-from linkwright.navigation.nodes.bond import PERIOD, Bond
+from linkwright.navigation.nodes.bond import PERIOD_S, Bond
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node_with_class, handle_start_errors
 from linkwright.nodes.settings import log_unknown_parameters
 
@@ -39,7 +39,7 @@ class ManagedNode(LifecycleNodeMixin, Node):
         self._timer: Timer | None = None
         self._has_logged_unknown = False
         self.get_logger().info("Creating")
-        self._heartbeat_period: float = self.declare_parameter("bond_heartbeat_period", PERIOD).value
+        self._heartbeat_period: float = self.declare_parameter("bond_heartbeat_period", PERIOD_S).value
         self._is_autostarted: bool = self.declare_parameter("autostart_node", False).value
         self.declare()
 

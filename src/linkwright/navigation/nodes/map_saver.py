@@ -161,7 +161,7 @@ class MapSaver(SingleNode):
             self.finished.set_result(0)
             return
         with handle_start_errors(self._node):
-            saving = _MapReceiver(self._node)
+            receiver = _MapReceiver(self._node)
             log_unknown_parameters(self._node)
         try:
             option_values = _parse_options(program_arguments)
@@ -169,7 +169,7 @@ class MapSaver(SingleNode):
             self._node.get_logger().error(str(error))
             self.finished.set_result(_INVALID_ARGUMENT_STATUS)
             return
-        self._task = asyncio.get_running_loop().create_task(self._run(saving, option_values))
+        self._task = asyncio.get_running_loop().create_task(self._run(receiver, option_values))
 
     def close(self) -> None:
         """Cancel a running save, and close the node."""
@@ -177,10 +177,10 @@ class MapSaver(SingleNode):
             self._task.cancel()
         super().close()
 
-    async def _run(self, saving: _MapReceiver, arguments: dict[str, str]) -> None:
+    async def _run(self, receiver: _MapReceiver, arguments: dict[str, str]) -> None:
         free, occupied = (float(arguments.get(option, 0.0)) for option in ("--free", "--occ"))
-        mode = saving.parse_mode(arguments.get("--mode", ""))
-        is_saved = await saving.save(
+        mode = receiver.parse_mode(arguments.get("--mode", ""))
+        is_saved = await receiver.save(
             arguments.get("-t", "map"), arguments.get("-f", ""), arguments.get("--fmt", ""), mode, free, occupied
         )
         if not self.finished.done():

@@ -77,14 +77,14 @@ class MapServerNode(ManagedNode):
             self._load(request.map_url)
         except LinkwrightError as error:
             self.log_error(error)
-            response.result = _result_code(error, response)
+            response.result = _find_result_code(error, response)
             return response
         self._publisher.publish(self._map)
         response.map, response.result = self._map, response.RESULT_SUCCESS
         return response
 
 
-def _result_code(error: LinkwrightError, response: Any) -> int:
+def _find_result_code(error: LinkwrightError, response: Any) -> int:
     """Return nav2's result code for an error."""
     results: dict[str, int] = {
         "NAV201": response.RESULT_MAP_DOES_NOT_EXIST,

@@ -30,10 +30,10 @@ def poses_from_messages(stamped: Any) -> NDArray[np.float64]:
 
     Poses are x, y (meters) and yaw (radians).
     """
-    return np.array([pose_of(pose) for pose in stamped], np.float64).reshape(-1, 3)
+    return np.array([pose_from_message(pose) for pose in stamped], np.float64).reshape(-1, 3)
 
 
-def pose_of(stamped: Any) -> tuple[float, float, float]:
+def pose_from_message(stamped: Any) -> tuple[float, float, float]:
     """Convert a geometry_msgs/PoseStamped to x, y (meters) and yaw (radians)."""
     position, orientation = stamped.pose.position, stamped.pose.orientation
     quaternion = (orientation.x, orientation.y, orientation.z, orientation.w)

@@ -26,7 +26,7 @@ from linkwright.navigation.costmaps.layered import Pose
 from linkwright.navigation.nodes.costmap import CostmapNode, make_costmap
 from linkwright.navigation.nodes.goals import GoalError, GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
-from linkwright.navigation.nodes.paths import path_message, pose_of, poses_from_messages
+from linkwright.navigation.nodes.paths import path_message, pose_from_message, poses_from_messages
 from linkwright.navigation.nodes.plugins import declare_unused, get_plugin_type, get_string_list
 from linkwright.navigation.nodes.slices import WAIT, SlicedWork
 from linkwright.navigation.planning.planner import PlanError, Settings, plan
@@ -182,7 +182,7 @@ class PlannerNode(ManagedNode):
 
     def _plan_to_pose(self, request: Any) -> Work:
         yield from self._wait_until_current()
-        start, goal = self._start_pose(request), self._pose_in_costmap(request.goal)
+        start, goal = self._find_start_pose(request), self._pose_in_costmap(request.goal)
         return (yield from self._plan(start, goal, request.planner_id))
 
     def _plan_through_poses(self, request: Any) -> Work:
@@ -190,7 +190,7 @@ class PlannerNode(ManagedNode):
         goals = getattr(request.goals, "poses", request.goals)
         if not len(goals):
             raise GoalError("NO_VIAPOINTS_GIVEN", "No viapoints given")
-        start = self._start_pose(request)
+        start = self._find_start_pose(request)
         paths = []
         for goal in goals:
             path = yield from self._plan(start, self._pose_in_costmap(goal), request.planner_id)
@@ -217,7 +217,7 @@ class PlannerNode(ManagedNode):
             )
             raise GoalError(error.problem.value, str(error)) from None
 
-    def _start_pose(self, request: Any) -> Pose:
+    def _find_start_pose(self, request: Any) -> Pose:
         if request.use_start:
             return self._pose_in_costmap(request.start)
         pose = self.costmap.robot_pose()
@@ -226,7 +226,7 @@ class PlannerNode(ManagedNode):
         return pose
 
     def _pose_in_costmap(self, stamped: Any) -> Pose:
-        pose = self.costmap.transform_pose(pose_of(stamped), stamped.header.frame_id)
+        pose = self.costmap.transform_pose(pose_from_message(stamped), stamped.header.frame_id)
         if pose is None:
             raise GoalError("TF_ERROR", "Unable to transform poses to global frame")
         return pose

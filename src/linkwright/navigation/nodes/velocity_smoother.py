@@ -24,11 +24,11 @@ from linkwright.navigation.nodes.velocity_smoothing import AxisLimits, smooth_ve
 from linkwright.nodes.velocity_topic import VelocityTopic, choose_velocity_types
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 _AXES = tuple((part, axis) for part in ("linear", "angular") for axis in "xyz")
 _PLANAR = (0, 1, 5)
 """The axes of limits with three entries: x, y and yaw."""
-_LIMITS = {
+_DEFAULT_LIMITS = {
     "max_velocity": [0.5, 0.0, 2.5],
     "min_velocity": [-0.5, 0.0, -2.5],
     "max_accel": [2.5, 0.0, 3.2],
@@ -51,7 +51,7 @@ class _ManagedSmoother(ManagedNode):
         self.declare_parameter("smoothing_frequency", 20.0)
         self.declare_parameter("feedback", "OPEN_LOOP")
         self.declare_parameter("scale_velocities", False)
-        for name, value in _LIMITS.items():
+        for name, value in _DEFAULT_LIMITS.items():
             self.declare_parameter(name, value)
         self.declare_parameter("odom_topic", "odom")
         self.declare_parameter("odom_duration", 0.1)
@@ -63,7 +63,7 @@ class _ManagedSmoother(ManagedNode):
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Configure the node, unless a parameter has an invalid value."""
-        problem = self._parameter_error({})
+        problem = self._find_parameter_error({})
         if problem is not None:
             self.get_logger().error(str(problem))
             return TransitionCallbackReturn.FAILURE
@@ -77,13 +77,15 @@ class _ManagedSmoother(ManagedNode):
         commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
         for message_type in choose_velocity_types(self, "cmd_vel", is_stamped):
             subscription: Subscription[Any] = self.create_subscription(
-                message_type, "cmd_vel", commander.tracking_callback(self._receive), _DEPTH
+                message_type, "cmd_vel", commander.tracking_callback(self._receive), _QUEUE_DEPTH
             )
             commander.watch(self.register(subscription))
         if self._get_parameter_value("feedback") == "CLOSED_LOOP":
             odometry = get_message("nav_msgs/msg/Odometry")
             self.register(
-                self.create_subscription(odometry, self._get_parameter_value("odom_topic"), self._on_odometry, _DEPTH)
+                self.create_subscription(
+                    odometry, self._get_parameter_value("odom_topic"), self._on_odometry, _QUEUE_DEPTH
+                )
             )
 
     def activate(self) -> None:
@@ -113,7 +115,7 @@ class _ManagedSmoother(ManagedNode):
         self._uses_feedback: bool = self._get_parameter_value("feedback") == "CLOSED_LOOP"
         self._timeout: float = self._get_parameter_value("velocity_timeout")
         self._odometry_window: float = self._get_parameter_value("odom_duration")
-        columns = [list(self._get_parameter_value(name)) for name in _LIMITS]
+        columns = [list(self._get_parameter_value(name)) for name in _DEFAULT_LIMITS]
         if len(columns[0]) == len(_PLANAR):  # Three entries are limits for x, y and yaw.
             columns = [_expand_to_axes(column) for column in columns]
         self._limits = [
@@ -122,7 +124,7 @@ class _ManagedSmoother(ManagedNode):
         ]
 
     def _check_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
-        problem = self._parameter_error({parameter.name: parameter.value for parameter in parameters})
+        problem = self._find_parameter_error({parameter.name: parameter.value for parameter in parameters})
         return SetParametersResult(successful=problem is None, reason="" if problem is None else str(problem))
 
     def _apply_parameters(self) -> None:
@@ -136,7 +138,7 @@ class _ManagedSmoother(ManagedNode):
             if self.is_cycling and old_frequency != self._frequency:
                 self.begin_cycles(1.0 / self._frequency, self._smooth)
 
-    def _parameter_error(self, changed: Mapping[str, Any]) -> Phrase | None:
+    def _find_parameter_error(self, changed: Mapping[str, Any]) -> Phrase | None:
         """Return an error message if a change would make a parameter invalid, and None otherwise."""
 
         def value(name: str) -> Any:
@@ -148,10 +150,11 @@ class _ManagedSmoother(ManagedNode):
             return phrase(
                 "feedback must be OPEN_LOOP or CLOSED_LOOP, but it is '{feedback}'", feedback=value("feedback")
             )
-        lengths = {len(value(name)) for name in _LIMITS}
+        lengths = {len(value(name)) for name in _DEFAULT_LIMITS}
         if lengths not in ({len(_PLANAR)}, {len(_AXES)}):
             return phrase(
-                "{names} must all have 3 entries (x, y, yaw), or must all have 6 entries", names=joined(list(_LIMITS))
+                "{names} must all have 3 entries (x, y, yaw), or must all have 6 entries",
+                names=joined(list(_DEFAULT_LIMITS)),
             )
         for name, sign in (("max_velocity", 1), ("min_velocity", -1), ("max_accel", 1), ("max_decel", -1)):
             if any(item * sign < 0.0 for item in value(name)):

@@ -81,7 +81,7 @@ class WaypointNode(StepNode):
         try:
             yield from self.run_remote_goal(self._navigation_client, goal, f"waypoint {self._index} was not reached")
         except StepError as failure:
-            self._missed_waypoints.append(self._missed_waypoint(pose, str(failure)))
+            self._missed_waypoints.append(self._make_missed_waypoint(pose, str(failure)))
             if self.get_parameter("stop_on_failure").value:
                 raise
             self.get_logger().warning(f"{failure}; moving to next")
@@ -90,7 +90,7 @@ class WaypointNode(StepNode):
         while self.now_ns() < deadline_ns:
             yield
 
-    def _missed_waypoint(self, pose: Any, reason: str) -> Any:
+    def _make_missed_waypoint(self, pose: Any, reason: str) -> Any:
         """Return the result's item for the current, missed waypoint.
 
         The item is an index in Humble, and a message since Iron.

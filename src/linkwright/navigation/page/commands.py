@@ -29,7 +29,7 @@ from linkwright.page.protocol.navigation import (
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.context import ViewerContext
 
-_PERIOD_S = 1.0
+_POLL_PERIOD_S = 1.0
 """The period of the requests to the lifecycle managers, in seconds."""
 
 _ACTION = "navigate_to_pose/_action"
@@ -59,7 +59,7 @@ class NavigationFeature(PageFeature):
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
         self._pages: set[Page] = set()
-        self._watch: _Watch | None = None
+        self._watch: _NavigationMonitor | None = None
 
     def receive(self, page: Page, message: WatchNavigation | CommandNavigation) -> None:
         """Start or stop sending nav2's state to a page, or execute a command."""
@@ -69,7 +69,7 @@ class NavigationFeature(PageFeature):
         elif message.open:
             self._pages.add(page)
             if self._watch is None:
-                self._watch = _Watch(self.context, self._publish)
+                self._watch = _NavigationMonitor(self.context, self._publish)
             page.send(self._watch.state)
         else:
             self.remove_page(page)
@@ -91,7 +91,7 @@ class NavigationFeature(PageFeature):
             page.send(state)
 
 
-class _Watch:
+class _NavigationMonitor:
     """Follows nav2's state through its topics and services.
 
     Attributes:
@@ -153,7 +153,7 @@ class _Watch:
     # --- states ------------------------------------------------------------------------------------------------
 
     def _request_states(self) -> None:
-        self._request_timer = asyncio.get_running_loop().call_later(_PERIOD_S, self._request_states)
+        self._request_timer = asyncio.get_running_loop().call_later(_POLL_PERIOD_S, self._request_states)
         for name, client in self._active.items():
             if not client.service_is_ready():
                 self._pending_managers.discard(name)
@@ -170,7 +170,7 @@ class _Watch:
         state: ManagerState = "active" if future.result().success else "inactive"
         self._update_state(**{name: state})
 
-    # --- the goal ----------------------------------------------------------------------------------------------
+    # --- goal ------------------------------------------------------------------------------------------------
 
     def _on_status(self, message: Any) -> None:
         if not message.status_list:
@@ -187,8 +187,8 @@ class _Watch:
         feedback = message.feedback
         distance = float(feedback.distance_remaining)
         self._update_state(
-            eta=_seconds(feedback.estimated_time_remaining),
-            elapsed=_seconds(feedback.navigation_time),
+            eta=_seconds_from_duration(feedback.estimated_time_remaining),
+            elapsed=_seconds_from_duration(feedback.navigation_time),
             distance=round(distance, 2) if math.isfinite(distance) else None,
             recoveries=int(feedback.number_of_recoveries),
         )
@@ -217,7 +217,7 @@ class _Watch:
     async def _call(self, client: Client[Any, Any], **fields: Any) -> Any:
         """Return the response of a service, or None if the server disappears before it responds."""
         future = client.call_async(client.srv_type.Request(**fields))
-        while not await wait_for_future(self._node, future, _PERIOD_S):
+        while not await wait_for_future(self._node, future, _POLL_PERIOD_S):
             if not client.service_is_ready():
                 client.remove_pending_request(future)
                 return None
@@ -240,5 +240,5 @@ class _Watch:
         return None
 
 
-def _seconds(duration: Any) -> float:
+def _seconds_from_duration(duration: Any) -> float:
     return round(float(duration.sec) + float(duration.nanosec) * 1e-9, 1)

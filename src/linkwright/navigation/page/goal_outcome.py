@@ -13,13 +13,13 @@ from linkwright.page.protocol.navigation import NO_GOAL_FAILED, GoalOutcome
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 
 STATUS_TOPIC = "/navigate_to_pose/_action/status"
-_ACTIVE, _ABORTED = (1, 2, 3), 6
+_ACTIVE_STATUSES, _ABORTED_STATUS = (1, 2, 3), 6
 """The status numbers of active and aborted goals in action_msgs/msg/GoalStatus."""
 _STATUS_DEPTH = 10
 """The queue depth. A queue of one would lose the active state of a goal that fails immediately."""
 _ERROR_LEVEL = 40
 """The level of errors in rcl_interfaces/msg/Log."""
-_LOG_DELAY = 0.3
+_LOG_DELAY_S = 0.3
 """The seconds to wait for the logged reason after a goal is aborted, because it arrives on another topic."""
 
 
@@ -75,12 +75,14 @@ class GoalOutcomeFeature(PageFeature):
             self._goal_id, self._is_active = goal_id, False
             self._reasons.clear()
             self._publish(NO_GOAL_FAILED)
-        if latest.status in _ACTIVE:
+        if latest.status in _ACTIVE_STATUSES:
             self._is_active = True
         elif self._is_active:
             self._is_active = False
-            if latest.status == _ABORTED:
-                self._publish_timer = asyncio.get_running_loop().call_later(_LOG_DELAY, self._publish_failure, goal_id)
+            if latest.status == _ABORTED_STATUS:
+                self._publish_timer = asyncio.get_running_loop().call_later(
+                    _LOG_DELAY_S, self._publish_failure, goal_id
+                )
 
     def _on_log_record(self, record: Any) -> None:
         if record.level >= _ERROR_LEVEL:
@@ -105,6 +107,6 @@ class GoalOutcomeFeature(PageFeature):
 
 
 def acceptance_time(status: Any) -> tuple[int, int]:
-    """Return the time at which the goal of a GoalStatus was accepted, as (seconds, nanoseconds)."""
+    """Return the time at which a GoalStatus's goal was accepted, as (seconds, nanoseconds)."""
     stamp = status.goal_info.stamp
     return stamp.sec, stamp.nanosec

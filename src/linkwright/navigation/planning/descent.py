@@ -77,29 +77,29 @@ class _Slope:
             ((top + 1, left), row_share * (1.0 - column_share)),
             ((top + 1, left + 1), row_share * column_share),
         ):
-            gradient = self._gradient(cell)
+            gradient = self._compute_gradient(cell)
             if gradient is not None:
                 row_direction -= weight * gradient[0]
                 column_direction -= weight * gradient[1]
         length = hypot(row_direction, column_direction)
         return None if length < _MIN_SLOPE else (row_direction / length, column_direction / length)
 
-    def _gradient(self, cell: Cell) -> Position | None:
+    def _compute_gradient(self, cell: Cell) -> Position | None:
         if cell in self._gradients:
             return self._gradients[cell]
         row, column = cell
         cost = self.potential_at(row, column)
         gradient: Position | None = None
         if cost < inf:
-            row_slope = _difference(self.potential_at(row - 1, column), cost, self.potential_at(row + 1, column))
-            column_slope = _difference(self.potential_at(row, column - 1), cost, self.potential_at(row, column + 1))
+            row_slope = _differentiate(self.potential_at(row - 1, column), cost, self.potential_at(row + 1, column))
+            column_slope = _differentiate(self.potential_at(row, column - 1), cost, self.potential_at(row, column + 1))
             length = hypot(row_slope, column_slope)
             gradient = (row_slope / length, column_slope / length) if length > _MIN_SLOPE else None
         self._gradients[cell] = gradient
         return gradient
 
 
-def _difference(previous: float, current: float, following: float) -> float:
+def _differentiate(previous: float, current: float, following: float) -> float:
     """Return the derivative of a potential along an axis.
 
     The derivative never leads towards an unreachable neighbor.
@@ -132,7 +132,7 @@ def descend(costs: FloatArray, source: Cell, start: Position) -> Generator[None,
     while cell != source:
         if not len(path) % _STEPS_BETWEEN_YIELDS:
             yield
-        next_position = _step(slope, position, cell) if steps_in_cell < _MAX_STEPS_IN_CELL else None
+        next_position = _step_downhill(slope, position, cell) if steps_in_cell < _MAX_STEPS_IN_CELL else None
         if next_position is None:
             neighbor = slope.steepest_neighbor(cell)
             next_position = (neighbor[0] + 0.5, neighbor[1] + 0.5)
@@ -144,7 +144,7 @@ def descend(costs: FloatArray, source: Cell, start: Position) -> Generator[None,
     return np.array(path)
 
 
-def _step(slope: _Slope, position: Position, cell: Cell) -> Position | None:
+def _step_downhill(slope: _Slope, position: Position, cell: Cell) -> Position | None:
     """Return the position half a cell downhill from a position in a cell.
 
     Returns None if the potential is flat or the step leads to an unreachable cell.

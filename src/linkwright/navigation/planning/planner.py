@@ -20,7 +20,7 @@ from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, MAX_PASSAB
 from linkwright.navigation.costmaps.layered import Pose
 from linkwright.navigation.grids.rays import cells_on_lines
 from linkwright.navigation.planning.descent import descend
-from linkwright.navigation.planning.potential import Cell, FloatArray, compute_potential, crossing_prices
+from linkwright.navigation.planning.potential import Cell, FloatArray, compute_crossing_prices, compute_potential
 
 _ESCAPE_PRICE: Final = 2530.0
 """The price of crossing a cell that is too near to an obstacle, if the robot starts in such a cell."""
@@ -91,14 +91,14 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
     Raises:
         PlanError: there is no path.
     """
-    from_cell = _cell_in_grid(costmap, start, Problem.START_OUTSIDE_MAP, "Start")
-    to_cell = _cell_in_grid(costmap, goal, Problem.GOAL_OUTSIDE_MAP, "Goal")
+    from_cell = _find_cell(costmap, start, Problem.START_OUTSIDE_MAP, "Start")
+    to_cell = _find_cell(costmap, goal, Problem.GOAL_OUTSIDE_MAP, "Goal")
     costs = costmap.grid.cells
     if costs[from_cell] == LETHAL:
-        raise _occupied_error(Problem.START_OCCUPIED, "Start", start)
+        raise _make_occupied_error(Problem.START_OCCUPIED, "Start", start)
     if costs[to_cell] == LETHAL:
-        raise _occupied_error(Problem.GOAL_OCCUPIED, "Goal", goal)
-    prices = crossing_prices(costs, allow_unknown=settings.allow_unknown)
+        raise _make_occupied_error(Problem.GOAL_OCCUPIED, "Goal", goal)
+    prices = compute_crossing_prices(costs, allow_unknown=settings.allow_unknown)
     if costs[from_cell] == INSCRIBED and from_cell != to_cell:
         _open_escape(prices, costmap, from_cell, start)
     end = to_cell
@@ -106,14 +106,14 @@ def plan(costmap: Costmap, start: Pose, goal: Pose, settings: Settings) -> Gener
         costs_to_start = yield from compute_potential(prices, from_cell, to_cell, heuristic=settings.use_astar)
     if not prices[to_cell] < np.inf or not costs_to_start[to_cell] < np.inf:
         costs_to_start = yield from compute_potential(prices, from_cell)
-        end = _nearest_reachable_cell(costs_to_start, costmap, goal, to_cell, settings)
+        end = _find_nearest_reachable_cell(costs_to_start, costmap, goal, to_cell, settings)
     is_reached = end == to_cell
     center = costmap.grid.centers_of(np.array(end))
     end_pose = goal if is_reached else (float(center[0]), float(center[1]), goal[2])
     grid = costmap.grid
     end_position = ((end_pose[1] - grid.y) / grid.resolution, (end_pose[0] - grid.x) / grid.resolution)
     path_cells = yield from descend(costs_to_start, from_cell, end_position)
-    return _poses(_thin_path(path_cells[::-1], prices), costmap, start, end_pose, settings)
+    return _poses_from_cells(_thin_path(path_cells[::-1], prices), costmap, start, end_pose, settings)
 
 
 def run_to_end(steps: Generator[None, None, NDArray[np.float64]]) -> NDArray[np.float64]:
@@ -128,14 +128,14 @@ def run_to_end(steps: Generator[None, None, NDArray[np.float64]]) -> NDArray[np.
     return results[0]
 
 
-def _cell_in_grid(costmap: Costmap, pose: Pose, problem: Problem, subject: str) -> Cell:
+def _find_cell(costmap: Costmap, pose: Pose, problem: Problem, subject: str) -> Cell:
     indices = costmap.grid.cells_of(np.array(pose[:2]))
     if not costmap.grid.contains(indices):
         raise PlanError(problem, f"{subject} Coordinates of({pose[0]:f}, {pose[1]:f}) was outside bounds")
     return int(indices[0]), int(indices[1])
 
 
-def _occupied_error(problem: Problem, subject: str, pose: Pose) -> PlanError:
+def _make_occupied_error(problem: Problem, subject: str, pose: Pose) -> PlanError:
     return PlanError(problem, f"{subject} Coordinates of({pose[0]:f}, {pose[1]:f}) was in lethal cost")
 
 
@@ -153,12 +153,12 @@ def _open_escape(prices: FloatArray, costmap: Costmap, cell: Cell, start: Pose) 
     distances = np.hypot(rows + top - cell[0], columns + left - cell[1])
     is_free = np.isfinite(prices[top : top + nearby_costs.shape[0], left : left + nearby_costs.shape[1]])
     if not is_free.any():
-        raise _occupied_error(Problem.START_OCCUPIED, "Start", start)
+        raise _make_occupied_error(Problem.START_OCCUPIED, "Start", start)
     is_opened = (nearby_costs == INSCRIBED) & (distances <= distances[is_free].min() + 1.0)
     prices[top : top + nearby_costs.shape[0], left : left + nearby_costs.shape[1]][is_opened] = _ESCAPE_PRICE
 
 
-def _nearest_reachable_cell(
+def _find_nearest_reachable_cell(
     costs_to_start: FloatArray, costmap: Costmap, goal: Pose, cell: Cell, settings: Settings
 ) -> Cell:
     """Return the reachable cell nearest to a goal, within the tolerance.
@@ -185,7 +185,7 @@ def _nearest_reachable_cell(
                 row, column = candidates[int(np.argmin(is_hidden))]
                 return int(row), int(column)
     if MAX_PASSABLE < costs[cell] < UNKNOWN:
-        raise _occupied_error(Problem.GOAL_OCCUPIED, "Goal", goal)
+        raise _make_occupied_error(Problem.GOAL_OCCUPIED, "Goal", goal)
     raise PlanError(Problem.NO_VALID_PATH, f"Failed to create plan with tolerance of: {settings.tolerance:f}")
 
 
@@ -199,10 +199,10 @@ def _thin_path(path_cells: NDArray[np.float64], prices: FloatArray) -> NDArray[n
     return np.delete(path_cells, dropped[is_adjacent & np.isfinite(corner_prices)], axis=0)
 
 
-def _poses(
+def _poses_from_cells(
     path_cells: NDArray[np.float64], costmap: Costmap, start: Pose, end_pose: Pose, settings: Settings
 ) -> NDArray[np.float64]:
-    """Convert rows and columns to poses, of shape (n, 3), from the exact start to the exact end."""
+    """Convert rows and columns to poses of shape (n, 3), from the exact start to the exact end."""
     grid = costmap.grid
     points = path_cells[:, ::-1] * grid.resolution + (grid.x, grid.y)
     points[0], points[-1] = start[:2], end_pose[:2]

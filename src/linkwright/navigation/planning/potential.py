@@ -34,7 +34,7 @@ _STEPS_BETWEEN_CHECKS: Final = 4
 _MIN_GAIN: Final = 1e-3 * NEUTRAL_COST
 
 
-def crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> FloatArray:
+def compute_crossing_prices(costs: NDArray[np.uint8], *, allow_unknown: bool = True) -> FloatArray:
     """Return the price of crossing each cell, infinite where the robot does not fit.
 
     Args:
@@ -74,16 +74,16 @@ def compute_potential(
     padded[1:-1, 1:-1] = price
     prices = padded.ravel()
     costs = np.full(prices.size, np.inf)
-    update_bounds = np.where(
-        prices < np.inf, np.inf, -np.inf
-    )  # Like `costs`, except that obstacles can never become cheaper.
+    # Like `costs`, except that obstacles can never become cheaper.
+    update_bounds = np.where(prices < np.inf, np.inf, -np.inf)
     last_index = np.zeros(prices.size, np.intp)
     offsets = np.array([[-1], [1], [-width], [width]])
     start_index = (source[0] + 1) * width + source[1] + 1
     target_index = None if target is None else (target[0] + 1) * width + target[1] + 1
-    remaining_bounds = _min_cost_to_target(price, target) if heuristic and target is not None else None
+    remaining_bounds = _compute_min_cost_to_target(price, target) if heuristic and target is not None else None
     costs[start_index], update_bounds[start_index] = 0.0, -np.inf
-    min_increase = float(prices.min()) / sqrt(2.0)  # The smallest increase, if the path enters from both axes.
+    # The smallest increase of the cost, for a path that enters a cell from both axes.
+    min_increase = float(prices.min()) / sqrt(2.0)
     front: NDArray[Any] = start_index + offsets[:, 0]
     front = front[prices[front] < np.inf]
     min_price = float(prices.min())
@@ -92,7 +92,7 @@ def compute_potential(
     while front.size or held_cells.size:
         yield
         neighbor_costs = costs.take(front + offsets)
-        new_costs = _potential_after_crossing(
+        new_costs = _compute_potential_after_crossing(
             np.minimum(neighbor_costs[0], neighbor_costs[1]),
             np.minimum(neighbor_costs[2], neighbor_costs[3]),
             prices.take(front),
@@ -126,7 +126,9 @@ def compute_potential(
     return result
 
 
-def _potential_after_crossing(row_neighbor: FloatArray, column_neighbor: FloatArray, price: FloatArray) -> FloatArray:
+def _compute_potential_after_crossing(
+    row_neighbor: FloatArray, column_neighbor: FloatArray, price: FloatArray
+) -> FloatArray:
     """Return the potential of cells from their prices and the cheaper neighbor on each axis."""
     low, high = np.minimum(row_neighbor, column_neighbor), np.maximum(row_neighbor, column_neighbor)
     difference = np.minimum(high - low, price)  # A larger difference means that only one axis counts.
@@ -134,7 +136,7 @@ def _potential_after_crossing(row_neighbor: FloatArray, column_neighbor: FloatAr
     return value
 
 
-def _min_cost_to_target(price: FloatArray, target: Cell) -> FloatArray:
+def _compute_min_cost_to_target(price: FloatArray, target: Cell) -> FloatArray:
     """Return a lower bound of the cost from each cell to the target.
 
     The result is flat, and includes a border of one cell.

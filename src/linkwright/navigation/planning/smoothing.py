@@ -55,7 +55,7 @@ def smooth_path(points: Points, smoothing: Smoothing, costmap: Costmap | None = 
     """
     result, all_points_moved = points, True
     pass_count = 1 + (smoothing.refinement_num if smoothing.do_refinement else 0)
-    is_fixed = _fixed_points(points, smoothing)
+    is_fixed = _find_fixed_points(points, smoothing)
     for _ in range(pass_count):
         result, all_moved_in_pass = _smooth_once(result, is_fixed, smoothing, costmap)
         all_points_moved &= all_moved_in_pass
@@ -71,7 +71,7 @@ def directions(points: Points, last_yaw: float) -> NDArray[np.float64]:
     return np.append(np.arctan2(steps[:, 1], steps[:, 0]), last_yaw)
 
 
-def _fixed_points(points: Points, smoothing: Smoothing) -> NDArray[np.bool_]:
+def _find_fixed_points(points: Points, smoothing: Smoothing) -> NDArray[np.bool_]:
     """Return a mask of the fixed points: the ends, and reversals if they are enforced."""
     is_fixed = np.zeros(len(points), np.bool_)
     is_fixed[[0, -1]] = True
@@ -91,13 +91,13 @@ def _smooth_once(
         result = _solve_equilibrium(points, is_kept, smoothing)
         if costmap is None:
             return result, True
-        is_blocked = _blocked_points(result, costmap) & ~is_kept
+        is_blocked = _find_blocked_points(result, costmap) & ~is_kept
         if not is_blocked.any():
             return result, not (is_kept & ~is_fixed).any()
         is_kept |= is_blocked
 
 
-def _blocked_points(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
+def _find_blocked_points(points: Points, costmap: Costmap) -> NDArray[np.bool_]:
     """Return a mask of the points that collide, or have a colliding midpoint to a neighbor."""
     midpoints = (points + np.roll(points, -1, axis=0)) / 2.0
     midpoints[-1] = points[-1]

@@ -12,14 +12,14 @@ import numpy as np
 from linkwright.navigation.slam.poses import FloatArray, relative_pose, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
-_MAX_RAY_ANGLE = 0.03
+_MAX_RAY_ANGLE_RAD = 0.03
 """The maximum angle between a point and its neighboring rays, in radians."""
-_MIN_DEPTH = 0.3
+_MIN_DEPTH_M = 0.3
 """The minimum distance by which a ray must pass a point of the other scan for a contradiction, in meters."""
 _MIN_POINTS = 20
 
 
-def contradiction_share(
+def compute_contradiction_share(
     first: PlanarScan, first_pose: FloatArray, second: PlanarScan, second_pose: FloatArray
 ) -> float:
     """Return the share of a scan's points through which the other scan's rays pass.
@@ -33,12 +33,12 @@ def contradiction_share(
         second_pose: the robot's pose at the second scan, in the same frame.
     """
     return max(
-        _share_passed_through(first, second, relative_pose(first_pose, second_pose)),
-        _share_passed_through(second, first, relative_pose(second_pose, first_pose)),
+        _compute_share_passed_through(first, second, relative_pose(first_pose, second_pose)),
+        _compute_share_passed_through(second, first, relative_pose(second_pose, first_pose)),
     )
 
 
-def _share_passed_through(viewer: PlanarScan, other: PlanarScan, pose: FloatArray) -> float:
+def _compute_share_passed_through(viewer: PlanarScan, other: PlanarScan, pose: FloatArray) -> float:
     """Return the share of another scan's points that the viewer's rays pass through.
 
     `pose` is the pose of the other scan in the viewer's frame.
@@ -55,8 +55,10 @@ def _share_passed_through(viewer: PlanarScan, other: PlanarScan, pose: FloatArra
     point_bearings = np.arctan2(points[:, 1], points[:, 0])
     next_rays = np.clip(np.searchsorted(bearings, point_bearings), 1, len(bearings) - 1)
     # Both neighboring rays must be longer, because next to an edge one of them may be longer without a contradiction.
-    has_neighbors = (bearings[next_rays] - point_bearings < _MAX_RAY_ANGLE) & (
-        point_bearings - bearings[next_rays - 1] < _MAX_RAY_ANGLE
+    has_neighbors = (bearings[next_rays] - point_bearings < _MAX_RAY_ANGLE_RAD) & (
+        point_bearings - bearings[next_rays - 1] < _MAX_RAY_ANGLE_RAD
     )
-    is_passed = np.minimum(ranges[next_rays], ranges[next_rays - 1]) > np.hypot(points[:, 0], points[:, 1]) + _MIN_DEPTH
+    is_passed = (
+        np.minimum(ranges[next_rays], ranges[next_rays - 1]) > np.hypot(points[:, 0], points[:, 1]) + _MIN_DEPTH_M
+    )
     return float((has_neighbors & is_passed).sum() / max(int(has_neighbors.sum()), _MIN_POINTS))

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linkwright.navigation.slam.contradiction import contradiction_share
+from linkwright.navigation.slam.contradiction import compute_contradiction_share
 from linkwright.navigation.slam.matching import Match, match_scan
 from linkwright.navigation.slam.occupancy import OccupancyMap
 from linkwright.navigation.slam.pose_graph import PoseGraph
@@ -151,7 +151,7 @@ class Mapper:
         """Add a scan to the graph and draw the changes to the map, in steps.
 
         Args:
-            scan: the scan.
+            scan: the laser scan in the frame of the robot.
             odometry: the odometry pose of the robot, of shape (3,).
         """
         is_first_of_session = self._last_processed is None and self._map_pose is not None
@@ -161,9 +161,9 @@ class Mapper:
         self._last_processed = odometry, scan.stamp_ns
         if is_first_of_session and self.scans:
             return (yield from self._match_first_scan(scan, guess, odometry))
-        odometric_information = _odometric_information(motion if motion is not None else np.zeros(3))
+        odometric_information = _compute_odometric_information(motion if motion is not None else np.zeros(3))
         best_match = None
-        latest_scans = self._recent_scans_near(guess)
+        latest_scans = self._find_recent_scans_near(guess)
         if motion is not None and latest_scans and self.settings.use_scan_matching:
             best_match = yield from self._match(latest_scans, scan, guess, self.settings.matching)
         pose = guess if best_match is None else best_match.pose
@@ -178,7 +178,7 @@ class Mapper:
             yield from self.graph.solve()
         self._map_pose = self.graph.poses[number].copy()
         yield from self.redraw()
-        return _outcome(self._map_pose, information, best_match, links, loops)
+        return _make_outcome(self._map_pose, information, best_match, links, loops)
 
     def localize(self, scan: PlanarScan, odometry: FloatArray) -> Steps[Outcome]:
         """Localize a scan, in steps, without changing the graph.
@@ -190,12 +190,12 @@ class Mapper:
         motion = np.zeros(3) if self._last_processed is None else relative_pose(self._last_processed[0], odometry)
         self._last_processed = odometry, scan.stamp_ns
         window = self.settings.loop if is_first else self.settings.matching
-        best_match = yield from self._match(self._nearest_scans(guess), scan, guess, window)
+        best_match = yield from self._match(self._find_nearest_scans(guess), scan, guess, window)
         self._map_pose = guess if best_match is None else best_match.pose
-        information = _odometric_information(motion)
+        information = _compute_odometric_information(motion)
         if best_match is not None:
             information = information + best_match.information
-        return _outcome(self._map_pose, information, best_match)
+        return _make_outcome(self._map_pose, information, best_match)
 
     def redraw(self) -> Steps[None]:
         """Draw the scans that are not in the map yet or whose poses changed.
@@ -219,37 +219,37 @@ class Mapper:
 
     def _match_first_scan(self, scan: PlanarScan, guess: FloatArray, odometry: FloatArray) -> Steps[Outcome]:
         """Add the first scan of a session, matched against scans of earlier sessions."""
-        nodes = self._nearest_scans(guess)
+        nodes = self._find_nearest_scans(guess)
         best_match = yield from self._match(nodes, scan, guess, self.settings.loop)
         pose = guess if best_match is None else best_match.pose
         number = self._add(scan, odometry, pose)
-        information = _odometric_information(np.zeros(3))
+        information = _compute_odometric_information(np.zeros(3))
         if best_match is not None:
             information = information + best_match.information
-        nearest = self._nearest_node(nodes, pose) if nodes else number - 1
+        nearest = self._find_nearest_node(nodes, pose) if nodes else number - 1
         self.graph.add_edge(nearest, number, relative_pose(self.graph.poses[nearest], pose), information)
         self._map_pose = pose.copy()
         yield from self.redraw()
-        return _outcome(pose, information, best_match)
+        return _make_outcome(pose, information, best_match)
 
-    def _recent_scans_near(self, pose: FloatArray) -> list[int]:
+    def _find_recent_scans_near(self, pose: FloatArray) -> list[int]:
         """Return the numbers of the latest scans of this session that are near a pose."""
         begin = max(self._session, len(self.scans) - self.settings.scan_buffer_size)
-        is_near = self._distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
+        is_near = self._compute_distances(pose) <= self.settings.scan_buffer_maximum_scan_distance
         return [number for number in range(begin, len(self.scans)) if is_near[number]]
 
-    def _nearest_scans(self, pose: FloatArray) -> list[int]:
+    def _find_nearest_scans(self, pose: FloatArray) -> list[int]:
         """Return the numbers of the scans nearest to a pose, of all sessions, nearest first."""
-        order = np.argsort(self._distances(pose), kind="stable")
+        order = np.argsort(self._compute_distances(pose), kind="stable")
         return [int(index) for index in order[: 2 * self.settings.scan_buffer_size]]
 
-    def _distances(self, pose: FloatArray) -> FloatArray:
+    def _compute_distances(self, pose: FloatArray) -> FloatArray:
         offsets = self.graph.poses[:, :2] - pose[:2]
         result: FloatArray = np.hypot(offsets[:, 0], offsets[:, 1])
         return result
 
-    def _nearest_node(self, nodes: list[int], pose: FloatArray) -> int:
-        return nodes[int(np.argmin(self._distances(pose)[nodes]))]
+    def _find_nearest_node(self, nodes: list[int], pose: FloatArray) -> int:
+        return nodes[int(np.argmin(self._compute_distances(pose)[nodes]))]
 
     def _match(self, nodes: list[int], scan: PlanarScan, guess: FloatArray, search: Search) -> Steps[Match | None]:
         """Match a scan against the scans of some nodes.
@@ -272,20 +272,20 @@ class Mapper:
         """
         settings, links, loops = self.settings, 0, 0
         linked_nodes: set[int] = set()
-        for chain in self._chains(node, settings.link_scan_maximum_distance):
+        for chain in self._find_chains(node, settings.link_scan_maximum_distance):
             min_response = settings.link_match_minimum_response_fine
             best_match = yield from self._connect(node, chain, settings.matching, min_response)
             if best_match is not None:
                 links += 1
                 if (
-                    _worst_variance(best_match) < _MAX_LINK_VARIANCE
+                    _find_worst_variance(best_match) < _MAX_LINK_VARIANCE
                 ):  # Along a corridor, a loop may still be open despite the link.
                     linked_nodes.update(chain)
         if not settings.do_loop_closing:
             return links, 0
         candidates = [
             chain
-            for chain in self._chains(node, settings.loop_search_maximum_distance)
+            for chain in self._find_chains(node, settings.loop_search_maximum_distance)
             if len(chain) >= settings.loop_match_minimum_chain_size and linked_nodes.isdisjoint(chain)
         ]
         for chain in candidates[:_MAX_LOOP_CANDIDATES]:
@@ -293,12 +293,12 @@ class Mapper:
                 loops += 1
         return links, loops
 
-    def _chains(self, node: int, distance: float) -> list[list[int]]:
+    def _find_chains(self, node: int, distance: float) -> list[list[int]]:
         """Return the chains of consecutive nodes within a distance of a node, nearest first.
 
         The latest nodes before this node are left out.
         """
-        distances = self._distances(self.graph.poses[node])
+        distances = self._compute_distances(self.graph.poses[node])
         end = node - self.settings.scan_buffer_size
         chains: list[list[int]] = []
         for index in np.flatnonzero(distances[: max(end, 0)] <= distance).tolist():
@@ -315,7 +315,7 @@ class Mapper:
         best_match = yield from self._match(chain, self.scans[node], guess, settings.loop)
         if best_match is None or best_match.response < settings.loop_match_minimum_response_coarse:
             return False
-        if _worst_variance(best_match) > settings.loop_match_maximum_variance_coarse:
+        if _find_worst_variance(best_match) > settings.loop_match_maximum_variance_coarse:
             return False
         min_response = settings.loop_match_minimum_response_fine
         return (
@@ -331,25 +331,27 @@ class Mapper:
         """
         scan = self.scans[node]
         guess = self.graph.poses[node] if around is None else around
-        nodes = sorted(chain, key=lambda index: float(self._distances(guess)[index]))[: self.settings.scan_buffer_size]
+        nodes = sorted(chain, key=lambda index: float(self._compute_distances(guess)[index]))[
+            : self.settings.scan_buffer_size
+        ]
         best_match = yield from self._match(nodes, scan, guess, search)
         if best_match is None or best_match.response < min_response or best_match.inliers < _MIN_LINK_INLIER_FRACTION:
             return None
-        nearest = self._nearest_node(nodes, best_match.pose)
+        nearest = self._find_nearest_node(nodes, best_match.pose)
         pose = self.graph.poses[nearest]
-        if contradiction_share(self.scans[nearest], pose, scan, best_match.pose) > _MAX_CONTRADICTING_FRACTION:
+        if compute_contradiction_share(self.scans[nearest], pose, scan, best_match.pose) > _MAX_CONTRADICTING_FRACTION:
             return None
         information = best_match.information + _MIN_INFORMATION * np.eye(3)
         self.graph.add_edge(nearest, node, relative_pose(pose, best_match.pose), information, is_doubtful=True)
         return best_match
 
 
-def _worst_variance(best_match: Match) -> float:
+def _find_worst_variance(best_match: Match) -> float:
     """Return the larger of a match's position variances along x and y, in square meters."""
     return float(np.linalg.inv(best_match.information + _MIN_INFORMATION * np.eye(3)).diagonal()[:2].max())
 
 
-def _outcome(
+def _make_outcome(
     pose: FloatArray, information: FloatArray, best_match: Match | None, links: int = 0, loops: int = 0
 ) -> Outcome:
     covariance: FloatArray = np.asarray(np.linalg.inv(information), dtype=np.float64)
@@ -357,7 +359,7 @@ def _outcome(
     return Outcome(pose.copy(), covariance, best_match is not None, response, links, loops)
 
 
-def _odometric_information(motion: FloatArray) -> FloatArray:
+def _compute_odometric_information(motion: FloatArray) -> FloatArray:
     """Return the information matrix, of shape (3, 3), of an odometry motion of shape (3,).
 
     The standard deviations are 3 cm and 0.02 rad at rest, and grow by about 10 % of the motion.

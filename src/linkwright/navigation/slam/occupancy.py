@@ -14,7 +14,7 @@ from linkwright.navigation.grids.grid import FREE, OCCUPIED, UNKNOWN, Grid
 from linkwright.navigation.slam.poses import FloatArray, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
-_MARGIN = 64
+_MARGIN_CELLS = 64
 """The margin in cells around the needed area when the arrays of counts grow."""
 
 Cells = NDArray[np.int64]
@@ -107,7 +107,7 @@ class OccupancyMap:
             return
         if size.all():
             low, high = np.minimum(low, self._corner), np.maximum(high, self._corner + size)
-        low, high = low - _MARGIN, high + _MARGIN
+        low, high = low - _MARGIN_CELLS, high + _MARGIN_CELLS
         offset = self._corner - low
         for name in ("_passes", "_hits"):
             enlarged = np.zeros(tuple(high - low), dtype=np.int32)

@@ -12,8 +12,8 @@ from linkwright.navigation.slam.poses import FloatArray, transform_points
 from linkwright.navigation.slam.scan import PlanarScan
 
 _THINNING_CELL_M = 0.05
-_NEIGHBORS = 6
-_MAX_NEIGHBOR_DISTANCE = 0.5
+_NEIGHBOR_COUNT = 6
+_MAX_NEIGHBOR_DISTANCE_M = 0.5
 """The maximum distance of a point's neighbors for its wall to have a direction, in meters."""
 _MIN_LIKELIHOOD = 0.01
 """Smaller likelihoods count as 0."""
@@ -25,7 +25,7 @@ class Reference:
     Points within 5 cm of each other are replaced by their mean, which is more accurate than one reading.
 
     Args:
-        scans: the scans.
+        scans: the laser scans, each in the frame of the robot.
         poses: the poses of the scans, of shape (n, 3), in the frame of the reference.
     """
 
@@ -58,7 +58,7 @@ class Reference:
     def find_lines(self) -> None:
         """Compute the direction of the wall at each point, as required by `nearest`."""
         self._tree = load_scipy("spatial").cKDTree(self.points)
-        count = min(_NEIGHBORS, len(self.points))
+        count = min(_NEIGHBOR_COUNT, len(self.points))
         distances, indices = self._tree.query(self.points, k=count)
         neighbors = self.points[indices.reshape(-1, count)]
         offsets = neighbors - neighbors.mean(axis=1, keepdims=True)
@@ -71,7 +71,7 @@ class Reference:
         eigenvalue_differences = np.sqrt((xx - yy) ** 2 + 4 * xy**2)
         total = np.maximum(xx + yy, 1e-12)
         flatness = eigenvalue_differences / total  # 1 for a line, 0 for points scattered in all directions.
-        flatness[distances.reshape(-1, count)[:, -1] > _MAX_NEIGHBOR_DISTANCE] = 0.0
+        flatness[distances.reshape(-1, count)[:, -1] > _MAX_NEIGHBOR_DISTANCE_M] = 0.0
         self._normals: FloatArray = normals
         self._flatness: FloatArray = flatness if count >= 3 else np.zeros(len(self.points))
 

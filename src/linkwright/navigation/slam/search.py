@@ -72,7 +72,7 @@ class _Blocks:
     column: NDArray[np.int64]
     bound: FloatArray
 
-    def selected(self, selection: slice | NDArray[np.bool_]) -> _Blocks:
+    def select(self, selection: slice | NDArray[np.bool_]) -> _Blocks:
         return _Blocks(self.angle[selection], self.row[selection], self.column[selection], self.bound[selection])
 
 
@@ -95,7 +95,7 @@ class _Window:
         self._rows = np.floor(y / likelihood.resolution).astype(np.int32)
         self._columns = np.floor(x / likelihood.resolution).astype(np.int32)
 
-    def largest_blocks(self) -> tuple[int, _Blocks]:
+    def create_largest_blocks(self) -> tuple[int, _Blocks]:
         """Return the level of the largest blocks, and these blocks with bounds of 0."""
         side_length = 2 * self.half + 1
         level = max(0, (side_length // _BLOCKS_PER_SIDE).bit_length() - 1)
@@ -115,10 +115,10 @@ class _Window:
             self._columns[blocks.angle] + (blocks.column + offset)[:, None].astype(np.int32), 0, width - 1
         )
         responses = flat.take(rows * np.int32(width) + columns).mean(axis=1, dtype=np.float64)
-        bound: FloatArray = responses * self._penalty(blocks, level)
+        bound: FloatArray = responses * self._compute_penalty(blocks, level)
         blocks.bound = bound
 
-    def _penalty(self, blocks: _Blocks, level: int) -> FloatArray:
+    def _compute_penalty(self, blocks: _Blocks, level: int) -> FloatArray:
         search, block_end = self._search, (1 << level) - 1
 
         def nearest(first: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -133,7 +133,7 @@ class _Window:
         )
         return result
 
-    def children(self, blocks: _Blocks, level: int) -> _Blocks:
+    def divide(self, blocks: _Blocks, level: int) -> _Blocks:
         """Return the quarters of blocks that are within the window, with bounds of 0.
 
         `level` is the level of the quarters.
@@ -146,7 +146,7 @@ class _Window:
         return _Blocks(angle[is_inside], row[is_inside], column[is_inside], np.zeros(int(is_inside.sum())))
 
 
-def best_pose(
+def find_best_pose(
     likelihood: LikelihoodField, points: FloatArray, guess: FloatArray, search: Search
 ) -> Steps[tuple[FloatArray, float]]:
     """Search a window for the pose with the highest response, in steps.
@@ -161,22 +161,22 @@ def best_pose(
         The pose, of shape (3,), and its response, reduced by the penalties.
     """
     window = _Window(likelihood, points, guess, search)
-    level, blocks = window.largest_blocks()
+    level, blocks = window.create_largest_blocks()
     yield from _rate_in_batches(window, blocks, level)
-    best_response, best_block = -1.0, blocks.selected(np.s_[:1])
+    best_response, best_block = -1.0, blocks.select(np.s_[:1])
     while level:
         leaf = _descend(window, blocks, level)
         if leaf.bound[0] > best_response:
             best_response, best_block = float(leaf.bound[0]), leaf
         level -= 1
-        blocks = window.children(blocks.selected(blocks.bound > best_response), level)
+        blocks = window.divide(blocks.select(blocks.bound > best_response), level)
         if not len(blocks.angle):
             break
         yield from _rate_in_batches(window, blocks, level)
     if len(blocks.angle):
         index = int(np.argmax(blocks.bound))
         if blocks.bound[index] > best_response:
-            best_response, best_block = float(blocks.bound[index]), blocks.selected(np.s_[index : index + 1])
+            best_response, best_block = float(blocks.bound[index]), blocks.select(np.s_[index : index + 1])
     shift = np.array((best_block.column[0], best_block.row[0])) * likelihood.resolution
     pose: FloatArray = np.array(
         (guess[0] + shift[0], guess[1] + shift[1], guess[2] + window.angles[best_block.angle[0]])
@@ -187,7 +187,7 @@ def best_pose(
 
 def _rate_in_batches(window: _Window, blocks: _Blocks, level: int) -> Steps[None]:
     for begin in range(0, len(blocks.angle), _BATCH_SIZE):
-        batch = blocks.selected(np.s_[begin : begin + _BATCH_SIZE])
+        batch = blocks.select(np.s_[begin : begin + _BATCH_SIZE])
         window.set_bounds(batch, level)
         blocks.bound[begin : begin + _BATCH_SIZE] = batch.bound
         yield
@@ -199,11 +199,11 @@ def _descend(window: _Window, blocks: _Blocks, level: int) -> _Blocks:
     The pose is a block of one cell.
     """
     index = int(np.argmax(blocks.bound))
-    block = blocks.selected(np.s_[index : index + 1])
+    block = blocks.select(np.s_[index : index + 1])
     while level:
         level -= 1
-        children = window.children(block, level)
+        children = window.divide(block, level)
         window.set_bounds(children, level)
         index = int(np.argmax(children.bound))
-        block = children.selected(np.s_[index : index + 1])
+        block = children.select(np.s_[index : index + 1])
     return block

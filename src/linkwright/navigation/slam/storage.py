@@ -29,7 +29,7 @@ from linkwright.navigation.slam.poses import FloatArray
 from linkwright.navigation.slam.scan import PlanarScan
 
 EXTENSION = ".posegraph"
-_FORMAT = 1
+_FORMAT_VERSION = 1
 _MAX_FILE_BYTES = 1 << 30
 
 
@@ -46,7 +46,7 @@ def save_graph(mapper: Mapper, path: Path) -> None:
     """
     graph, scans = mapper.graph, mapper.scans
     arrays = {
-        "format": np.array(_FORMAT),
+        "format": np.array(_FORMAT_VERSION),
         "poses": graph.poses,
         "edges": np.array([graph.first, graph.second], dtype=np.int64),
         "measured": np.array(graph.measured).reshape(-1, 3),
@@ -94,7 +94,7 @@ def _read(data: bytes) -> tuple[PoseGraph, list[PlanarScan], list[FloatArray]]:
     poses, edges, counts = arrays["poses"].reshape(-1, 3), arrays["edges"].reshape(2, -1), arrays["counts"]
     node_count, edge_count = len(poses), edges.shape[1]
     lengths = [len(arrays[name]) for name in ("odometry", "origins", "stamps", "counts")]
-    if int(arrays["format"]) != _FORMAT or lengths != [node_count] * 4 or counts.sum() != len(arrays["points"]):
+    if int(arrays["format"]) != _FORMAT_VERSION or lengths != [node_count] * 4 or counts.sum() != len(arrays["points"]):
         raise ValueError
     if edges.size and (edges.min() < 0 or edges.max() >= node_count):
         raise ValueError

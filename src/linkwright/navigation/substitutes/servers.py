@@ -16,9 +16,9 @@ from nav2_common.launch import RewrittenYaml  # type: ignore[import-not-found, u
 
 from launch import LaunchContext  # type: ignore[attr-defined, import-not-found, unused-ignore]
 
-_TRUE = ("true", "1", "yes", "on")
-_TF = (("/tf", "tf"), ("/tf_static", "tf_static"))
-_RESPAWN_S = 2.0
+_TRUE_WORDS = ("true", "1", "yes", "on")
+_TF_REMAPPINGS = (("/tf", "tf"), ("/tf_static", "tf_static"))
+_RESPAWN_DELAY_S = 2.0
 
 ARGUMENTS: Mapping[str, tuple[str, str]] = {
     "namespace": ("", "Namespace of all nodes"),
@@ -68,10 +68,10 @@ _MANAGER = Server("nav2_lifecycle_manager", "lifecycle_manager", "nav2_lifecycle
 
 def is_true(context: LaunchContext, name: str) -> bool:
     """Return whether a launch configuration is true, in any of the usual spellings."""
-    return str(context.launch_configurations.get(name, "")).strip().lower() in _TRUE
+    return str(context.launch_configurations.get(name, "")).strip().lower() in _TRUE_WORDS
 
 
-def configured_parameters(context: LaunchContext) -> ParameterFile:
+def configure_parameters(context: LaunchContext) -> ParameterFile:
     """Return the file ``params_file`` with ``use_sim_time``, for nodes in ``namespace``.
 
     All three are launch configurations.
@@ -84,7 +84,7 @@ def configured_parameters(context: LaunchContext) -> ParameterFile:
     return ParameterFile(rewritten, allow_substs=True)
 
 
-def server_actions(
+def make_server_actions(
     context: LaunchContext,
     manager: str,
     servers: Sequence[Server],
@@ -102,7 +102,7 @@ def server_actions(
         parameters: parameters in addition to the parameter file, by node name; None for no more.
     """
     sim_time = {"use_sim_time": is_true(context, "use_sim_time")}
-    file = configured_parameters(context)
+    file = configure_parameters(context)
     managed_names = [server.node_name for server in servers if server.is_available]
     manager_parameters: Mapping[str, Any] = {
         **sim_time,
@@ -116,7 +116,7 @@ def server_actions(
     node_parameters[manager] = [manager_parameters]
     if is_true(context, "use_composition"):
         container = f"{context.launch_configurations['namespace']}/{context.launch_configurations['container_name']}"
-        nodes = [_composable_node(server, node_parameters[server.node_name]) for server in all_servers]
+        nodes = [_make_composable_node(server, node_parameters[server.node_name]) for server in all_servers]
         return [LoadComposableNodes(target_container=container, composable_node_descriptions=nodes)]
     respawn = is_true(context, "use_respawn")
     level = ["--ros-args", "--log-level", context.launch_configurations["log_level"]]
@@ -127,20 +127,20 @@ def server_actions(
             name=server.node_name,
             output="screen",
             parameters=node_parameters[server.node_name],
-            remappings=[*_TF, *server.remappings],
+            remappings=[*_TF_REMAPPINGS, *server.remappings],
             arguments=level,
             respawn=respawn and server.node_name != manager,
-            respawn_delay=_RESPAWN_S,
+            respawn_delay=_RESPAWN_DELAY_S,
         )
         for server in all_servers
     ]
 
 
-def _composable_node(server: Server, parameters: list[Any]) -> ComposableNode:
+def _make_composable_node(server: Server, parameters: list[Any]) -> ComposableNode:
     return ComposableNode(
         package=server.package,
         plugin=server.plugin,
         name=server.node_name,
         parameters=parameters,
-        remappings=[*_TF, *server.remappings],
+        remappings=[*_TF_REMAPPINGS, *server.remappings],
     )

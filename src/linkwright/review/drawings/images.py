@@ -15,7 +15,7 @@ from linkwright.geometry.mesh_content import surface_key
 from linkwright.geometry.shapes import Placement
 from linkwright.images.png import png
 from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, SurfaceLibrary, camera_for, render, robot_scene
-from linkwright.picture.link_frames import exact_placement
+from linkwright.picture.link_frames import placement_from_pose
 from linkwright.review.changes import ViewImages
 from linkwright.review.frames import SharedFrames
 from linkwright.urdf import Mesh, Robot, Visual
@@ -177,5 +177,5 @@ def _find_moved_links(
 
 def _visual_poses(robot: Robot, link: str, frame: Placement) -> Array:
     """Return the rotations and positions of a link's visuals, shape (visuals, 4, 3), in the frame of the images."""
-    places = [exact_placement(visual.origin).inside(frame) for visual in robot.links[link].visuals]
+    places = [placement_from_pose(visual.origin).inside(frame) for visual in robot.links[link].visuals]
     return np.array([[*place.rotation, place.position] for place in places])

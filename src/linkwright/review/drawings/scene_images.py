@@ -17,7 +17,7 @@ from linkwright.geometry.shapes import IDENTITY, Placement
 from linkwright.images.png import png
 from linkwright.picture import OUTLINE_COLOR, VIEWS, Scene, SurfaceLibrary, render
 from linkwright.picture.bodies import Body, Surface
-from linkwright.picture.camera import fitting_camera
+from linkwright.picture.camera import fit_camera
 from linkwright.picture.worlds import world_scene
 from linkwright.review.changes import ViewImages
 from linkwright.review.drawings.images import images_of_scene
@@ -106,7 +106,7 @@ def _render_pair(old: Scene, new: Scene, *, has_outlines: bool = True) -> list[V
     ]
     images = []
     for name, view in VIEWS.items():
-        camera = fitting_camera(view, _SIZE, points)
+        camera = fit_camera(view, _SIZE, points)
         images.append(ViewImages(name, *(png(render(scene, camera=camera)) for scene in scenes)))
     return images
 

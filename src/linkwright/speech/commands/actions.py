@@ -115,7 +115,7 @@ class Publish:
     """A message to publish.
 
     Attributes:
-        topic: the topic.
+        topic: the topic on which the message is published.
         type_name: the message type.
         message: the fields of the message.
     """

@@ -1,4 +1,4 @@
-"""A strict reader of the command file, which reports each error in the YAML text with its position."""
+"""A strict reader of the command file, which reports each error with its position."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, Com
 from linkwright.speech.commands.phrases import Template, TemplateError, parse_templates
 from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
 from linkwright.speech.commands.reading import Keys
-from linkwright.speech.commands.words import Words, words_of
+from linkwright.speech.commands.words import Words, split_into_words
 
 DEFAULT_FILE = Path(__file__).with_name("default.yaml")
 """The commands of a robot that has no command file of its own."""
@@ -101,7 +101,7 @@ class _Reader:
         for language, names in texts.items():
             spoken_names[language] = (*spoken_names.get(language, ()), *(text for text, _ in names))
             for text, text_node in names:
-                words = words_of(text)
+                words = split_into_words(text)
                 other = self._names[slot].setdefault(words, name)
                 if other != name:
                     message = phrase("'{name}' is also a name of '{other_key}'", name=text, other_key=other)
@@ -114,7 +114,7 @@ class _Reader:
             )
         for language, entries in self._read_texts(node).items():
             for text, text_node in entries:
-                if parse_quantity(slot, words_of(text)) is None:
+                if parse_quantity(slot, split_into_words(text)) is None:
                     raise self._document.error(
                         phrase("'{value}' is not a value of {slot}", value=text, slot=slot), text_node
                     )
@@ -194,7 +194,7 @@ class _Reader:
     def _check_phrase_counts(self, command_set: CommandSet) -> None:
         languages = {*LANGUAGES, *command_set.languages}
         for language in sorted(languages):
-            count = command_set.phrase_count(language)
+            count = command_set.count_phrases(language)
             if count > MAX_PHRASES:
                 message = phrase(
                     "{count} phrases are possible in '{language}', but engines accept at most {maximum}",

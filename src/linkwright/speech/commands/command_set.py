@@ -9,7 +9,7 @@ from math import prod
 from linkwright.speech.commands.actions import Action, Stop
 from linkwright.speech.commands.phrases import Names, Template, Value
 from linkwright.speech.commands.quantities import GRAMMAR_VALUES
-from linkwright.speech.commands.words import has_words, words_of
+from linkwright.speech.commands.words import has_words, split_into_words
 
 ANY = "any"
 """The language of phrases that are valid in every language."""
@@ -59,7 +59,7 @@ class Match:
     """A command that was found in a text.
 
     Attributes:
-        command: the command.
+        command: the command that the text expresses.
         values: the spoken values by slot.
         language: the language of the matching phrase; `ANY` for a phrase that is valid in every language.
     """
@@ -93,7 +93,7 @@ class CommandSet:
         If several commands fit, the result is the one with the most literal words and, among these, the first in the
         file.
         """
-        words = words_of(text)
+        words = split_into_words(text)
         best: tuple[int, Match] | None = None
         for command in self.commands:
             for language, templates in command.phrases.items():
@@ -115,11 +115,11 @@ class CommandSet:
 
     def is_stop(self, text: str) -> bool:
         """Return whether a text contains a phrase that stops the robot."""
-        words = words_of(text)
+        words = split_into_words(text)
         return any(
             has_words(words, template.pieces[0])
             for stop in self.stop_commands
-            for template in _all_templates(stop.phrases)
+            for template in _collect_all_templates(stop.phrases)
         )
 
     def is_other_command(self, text: str) -> bool:
@@ -127,32 +127,34 @@ class CommandSet:
         match = self.match_command(text)
         return match is not None and not isinstance(match.command.action, Stop)
 
-    def answer(self, text: str) -> bool | None:
+    def parse_answer(self, text: str) -> bool | None:
         """Return True if a text means yes, False if it means no, and None for any other text."""
-        words = words_of(text)
+        words = split_into_words(text)
         for name, is_yes in (("yes", True), ("no", False)):
-            if any(template.match(words, {}) is not None for template in _all_templates(self.answers[name])):
+            if any(template.match(words, {}) is not None for template in _collect_all_templates(self.answers[name])):
                 return is_yes
         return None
 
     def phrases(self, language: str) -> tuple[str, ...]:
         """Return all phrases in a language, for `EngineOptions`."""
-        values = self._slot_values(language)
-        return tuple(dict.fromkeys(text for template in self._templates(language) for text in template.expand(values)))
+        values = self._collect_slot_values(language)
+        return tuple(
+            dict.fromkeys(text for template in self._collect_templates(language) for text in template.expand(values))
+        )
 
-    def phrase_count(self, language: str) -> int:
+    def count_phrases(self, language: str) -> int:
         """Return the number of phrases in a language without generating them."""
-        values = self._slot_values(language)
-        return sum(prod(len(values[slot]) for slot in template.slots) for template in self._templates(language))
+        values = self._collect_slot_values(language)
+        return sum(prod(len(values[slot]) for slot in template.slots) for template in self._collect_templates(language))
 
-    def _slot_values(self, language: str) -> dict[str, tuple[str, ...]]:
+    def _collect_slot_values(self, language: str) -> dict[str, tuple[str, ...]]:
         """Return the spoken values of each slot in a language."""
         return {
             slot: tuple(text for name in (language, ANY) for text in texts.get(name, ()))
             for slot, texts in {**GRAMMAR_VALUES, **self.slot_values}.items()
         }
 
-    def _templates(self, language: str) -> list[Template]:
+    def _collect_templates(self, language: str) -> list[Template]:
         phrase_sets = [*(command.phrases for command in self.commands), *self.answers.values()]
         return [template for phrases in phrase_sets for name in (language, ANY) for template in phrases.get(name, ())]
 
@@ -169,5 +171,5 @@ def choose_text(texts: ByLanguage, language: str) -> str:
     return next(iter(texts.values()), "")
 
 
-def _all_templates(phrases: Mapping[str, tuple[Template, ...]]) -> list[Template]:
+def _collect_all_templates(phrases: Mapping[str, tuple[Template, ...]]) -> list[Template]:
     return [template for phrase in phrases.values() for template in phrase]

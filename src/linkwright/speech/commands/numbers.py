@@ -1,4 +1,4 @@
-"""Spoken numbers in English and Chinese: ``one and a half``, ``a hundred and six``, ``一点五``."""
+"""Spoken numbers in English and Chinese, such as ``one and a half`` and ``一点五``."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from itertools import product
 
 from linkwright.diagnostics import phrase
 from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
-from linkwright.speech.commands.words import Words, words_of
+from linkwright.speech.commands.words import Words, split_into_words
 
 Value = float | str
 """The value of a slot: a quantity in meters, radians, seconds or meters per second, or a name in the file."""
@@ -22,7 +22,7 @@ Names = Mapping[str, Mapping[Words, str]]
 
 _OPTIONAL_PATTERN = re.compile(r"\[([^\[\]{}]*)\]")
 _SLOT_PATTERN = re.compile(r"\{(\w*)\}")
-_MAX_OPTIONAL = 6
+_MAX_OPTIONAL_PARTS = 6
 
 
 class TemplateError(ValueError):
@@ -96,8 +96,10 @@ def parse_templates(text: str, slots: Sequence[str]) -> list[Template]:
         TemplateError: there are too many brackets, a bracket is not closed, a slot occurs twice or does not exist, or
             there is no literal word.
     """
-    if len(_OPTIONAL_PATTERN.findall(text)) > _MAX_OPTIONAL:
-        raise TemplateError(phrase("it has more than {maximum} optional parts in brackets", maximum=_MAX_OPTIONAL))
+    if len(_OPTIONAL_PATTERN.findall(text)) > _MAX_OPTIONAL_PARTS:
+        raise TemplateError(
+            phrase("it has more than {maximum} optional parts in brackets", maximum=_MAX_OPTIONAL_PARTS)
+        )
     expanded = []
     for variant in _expand_brackets(text):
         if re.search(r"[\[\]{}]", _SLOT_PATTERN.sub("", variant)):
@@ -111,7 +113,7 @@ def parse_templates(text: str, slots: Sequence[str]) -> list[Template]:
                 )
         if len(set(used_slots)) < len(used_slots):
             raise TemplateError(phrase("a slot occurs twice"))
-        pieces = tuple(words_of(piece) for piece in _SLOT_PATTERN.split(variant)[::2])
+        pieces = tuple(split_into_words(piece) for piece in _SLOT_PATTERN.split(variant)[::2])
         if not any(pieces):
             raise TemplateError(phrase("it must have a word outside the slots"))
         expanded.append(Template(" ".join(variant.split()), pieces, used_slots))

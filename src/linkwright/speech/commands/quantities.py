@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from math import pi, tau
 
 from linkwright.speech.commands.numbers import AND_FRACTION, parse_number
-from linkwright.speech.commands.words import Words, words_of
+from linkwright.speech.commands.words import Words, split_into_words
 
 
 def _parse_units(table: Mapping[str, float]) -> dict[Words, float]:
-    return {words_of(name): factor for names, factor in table.items() for name in names.split("|")}
+    return {split_into_words(name): factor for names, factor in table.items() for name in names.split("|")}
 
 
 _DISTANCE_UNITS = {

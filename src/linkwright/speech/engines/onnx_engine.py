@@ -23,12 +23,12 @@ from linkwright.model_files.onnx_sessions import UnloadableNetworkError, load_se
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
 from linkwright.speech.sound.activity import VoiceActivity
 from linkwright.speech.sound.samples import RATE, Samples
-from linkwright.speech.sound.spectra import HOP, MelFrames
+from linkwright.speech.sound.spectra import HOP_LENGTH, MelFrames
 
 MIN_PROBABILITY = 0.6
 """The minimum probability at which a class is reported."""
 
-_LEAD_IN = RATE // 5  # the number of samples before the start of speech that are included
+_LEAD_IN_SAMPLES = RATE // 5  # the number of samples before the start of speech that are included
 _MAX_SAMPLES = 10 * RATE  # the maximum number of samples in an utterance
 _FULL_SCALE = 32_768.0
 """The full scale of 16-bit samples."""
@@ -45,7 +45,7 @@ class OnnxEngine(SpeechEngine):
         if options.model is None:
             hint = phrase("give an ONNX file as the model")
             raise LinkwrightError(Diagnostic("VOICE104", phrase("the engine 'onnx' needs a model"), hint=hint))
-        self._session = _session(options.model)
+        self._session = _load_session(options.model)
         self._input, self._length, self._names = _read_interface(self._session, options.model)
         self._phrases = {_normalize(phrase): phrase for phrase in options.phrases}
         self._frames, self._activity = MelFrames(), VoiceActivity()
@@ -66,7 +66,7 @@ class OnnxEngine(SpeechEngine):
             if was_speaking and not is_speaking:
                 results += self._end_utterance()
             elif not was_speaking and not is_speaking:
-                self._buffer = self._buffer[-_LEAD_IN - len(samples) :]
+                self._buffer = self._buffer[-_LEAD_IN_SAMPLES - len(samples) :]
         return results
 
     def finish(self) -> Sequence[Heard]:
@@ -77,14 +77,14 @@ class OnnxEngine(SpeechEngine):
         return self._end_utterance()
 
     def _end_utterance(self) -> list[Heard]:
-        utterance = self._buffer[: max(1, len(self._buffer) - self._activity.quiet_frames * HOP)]
+        utterance = self._buffer[: max(1, len(self._buffer) - self._activity.quiet_frames * HOP_LENGTH)]
         end = (self._sample_count - len(self._buffer) + len(utterance)) / RATE
         scores = self._session.run(None, {self._input: _fit_length(utterance, self._length)[None]})[0][0]
-        probabilities = _probabilities(np.asarray(scores, np.float64))
+        probabilities = _to_probabilities(np.asarray(scores, np.float64))
         best = int(np.argmax(probabilities))
         name, probability = self._names[best], float(probabilities[best])
         text = self._phrases.get(_normalize(name), "") if probability >= MIN_PROBABILITY else ""
-        self._buffer = self._buffer[-_LEAD_IN:]
+        self._buffer = self._buffer[-_LEAD_IN_SAMPLES:]
         return [Heard(text, probability, True, max(0.0, end - len(utterance) / RATE), end)]
 
 
@@ -106,7 +106,7 @@ def _fit_length(utterance: Samples, length: int) -> NDArray[np.float32]:
     return sound
 
 
-def _probabilities(scores: NDArray[np.float64]) -> NDArray[np.float64]:
+def _to_probabilities(scores: NDArray[np.float64]) -> NDArray[np.float64]:
     """Convert scores to probabilities with softmax, unless they already are probabilities."""
     if scores.min() >= 0.0 and abs(scores.sum() - 1.0) < 1e-3:
         return scores
@@ -114,7 +114,7 @@ def _probabilities(scores: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(exponentials / exponentials.sum())
 
 
-def _session(path: Path) -> Any:
+def _load_session(path: Path) -> Any:
     try:
         return load_session(path, threads=1)
     except ModuleNotFoundError as error:

@@ -58,7 +58,7 @@ class PocketsphinxEngine(SpeechEngine):
             lambda word: self._decoder.lookup_word(word) is not None,
             options.model or "pocketsphinx",
         )
-        self._decoder.add_jsgf_string(_GRAMMAR, _jsgf(self._phrasing))
+        self._decoder.add_jsgf_string(_GRAMMAR, _format_grammar(self._phrasing))
         self._decoder.activate_search(_GRAMMAR)
         self._endpointer = pocketsphinx.Endpointer(sample_rate=RATE)
         self._waiting = b""
@@ -77,7 +77,7 @@ class PocketsphinxEngine(SpeechEngine):
             frame, self._waiting = self._waiting[:size], self._waiting[size:]
             results += self._decode(self._endpointer.process(frame))
         if self._is_speaking:
-            results += self._changed_partial()
+            results += self._make_partial_if_changed()
         return results
 
     def finish(self) -> Sequence[Heard]:
@@ -108,18 +108,18 @@ class PocketsphinxEngine(SpeechEngine):
             return []
         self._is_speaking = False
         self._decoder.end_utt()
-        text, confidence = self._best_phrase()
+        text, confidence = self._find_best_phrase()
         return [Heard(text, confidence, True, self._endpointer.speech_start, self._endpointer.speech_end)]
 
-    def _changed_partial(self) -> list[Heard]:
-        text, confidence = self._best_phrase()
+    def _make_partial_if_changed(self) -> list[Heard]:
+        text, confidence = self._find_best_phrase()
         if text in ("", self._partial):
             return []
         self._partial = text
         end = self._endpointer.speech_start + self._decoder.n_frames() / self._decoder.config["frate"]
         return [Heard(text, confidence, False, self._endpointer.speech_start, end)]
 
-    def _best_phrase(self) -> tuple[str, float]:
+    def _find_best_phrase(self) -> tuple[str, float]:
         """Return the recognized phrase as the user wrote it, and its confidence.
 
         The phrase is empty if no phrase was recognized.
@@ -128,9 +128,9 @@ class PocketsphinxEngine(SpeechEngine):
         if hypothesis is None:
             return "", 0.0
         words = [word for word in hypothesis.hypstr.split() if not word.startswith(_FILLER_PREFIXES)]
-        return self._phrasing.phrases.get(tuple(words), ""), self._confidence()
+        return self._phrasing.phrases.get(tuple(words), ""), self._compute_confidence()
 
-    def _confidence(self) -> float:
+    def _compute_confidence(self) -> float:
         """Return the confidence of the current result, 0 to 1.
 
         It compares the score of the words with the score of the best sequence of any phones.
@@ -145,7 +145,7 @@ class PocketsphinxEngine(SpeechEngine):
         return 1.0 / (1.0 + math.exp(_MIDDLE_FIT - fit))
 
 
-def _jsgf(phrasing: Phrasing) -> str:
+def _format_grammar(phrasing: Phrasing) -> str:
     """Return a grammar of complete phrases (JSpeech Grammar Format, W3C note of June 2000)."""
     alternatives = " | ".join(" ".join(words) for words in phrasing.phrases)
     return f"#JSGF V1.0;\ngrammar {_GRAMMAR};\npublic <said> = {alternatives};\n"

@@ -67,14 +67,14 @@ class VoskEngine(SpeechEngine):
             return []
         self._samples += len(samples)
         if self._recognizer.AcceptWaveform(samples.astype("<i2").tobytes()):
-            return self._final_results(self._recognizer.Result())
-        return self._changed_partial(self._recognizer.PartialResult())
+            return self._make_final_results(self._recognizer.Result())
+        return self._make_partial_if_changed(self._recognizer.PartialResult())
 
     def finish(self) -> Sequence[Heard]:
         """End the utterance, and return its final results."""
-        return self._final_results(self._recognizer.FinalResult())
+        return self._make_final_results(self._recognizer.FinalResult())
 
-    def _final_results(self, result: str) -> list[Heard]:
+    def _make_final_results(self, result: str) -> list[Heard]:
         self._partial = []
         words = json.loads(result).get("result", [])
         if not words:
@@ -96,8 +96,8 @@ class VoskEngine(SpeechEngine):
             for text, first, end in phrases
         ]
 
-    def _changed_partial(self, result: str) -> list[Heard]:
-        """Return the partial results if the words have changed and form phrases, else an empty list."""
+    def _make_partial_if_changed(self, result: str) -> list[Heard]:
+        """Return the partial results if the words have changed and form phrases, else []."""
         words = json.loads(result).get("partial", "").split()
         if words == self._partial:
             return []

@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.speech.commands.numbers import has_number
-from linkwright.speech.commands.words import words_of
+from linkwright.speech.commands.words import split_into_words
 from linkwright.speech.engine import EngineOptions, Heard, SpeechEngine
-from linkwright.speech.enrolled.recognition import ACCEPTED, Guess, Recognizer
-from linkwright.speech.enrolled.words import Words, words_path
-from linkwright.speech.sound.activity import VoiceActivity, unsteady_noise
+from linkwright.speech.enrolled.recognition import ACCEPTED_CONFIDENCE, Guess, Recognizer
+from linkwright.speech.enrolled.words import Words, find_words_path
+from linkwright.speech.sound.activity import VoiceActivity, estimate_unsteady_noise
 from linkwright.speech.sound.samples import RATE, Samples
-from linkwright.speech.sound.spectra import BANDS, HOP, MelFrames, Powers
+from linkwright.speech.sound.spectra import BANDS, HOP_LENGTH, MelFrames, Powers
 
-_LEAD_IN = 20  # the number of frames before the start of speech, because a word starts softly
+_LEAD_IN_FRAMES = 20  # the number of frames before the start of speech, because a word starts softly
 _NOISE_FRAMES = 30  # the number of earlier frames, which are used only to measure the noise
-_MATCH_INTERVAL = 5  # the number of new frames after which an utterance is matched again
+_MATCH_INTERVAL_FRAMES = 5  # the number of new frames after which an utterance is matched again
 _MAX_LENGTH_FACTOR = 2.5  # the maximum length of a word, as a multiple of the longest take
 _MIN_NEAREST_CONFIDENCE = 0.1
 """The minimum confidence of a word that is reported as the nearest.
@@ -38,15 +38,15 @@ class EnrolledEngine(SpeechEngine):
     The file can appear, change and disappear at run time: it is checked with each block of samples.
 
     Args:
-        options: `model` is the file of words; None for `words_path`. Only words that are also phrases are recognized;
-            the other words help to reject sound. Case and surrounding spaces are ignored.
+        options: `model` is the file of words; None for `find_words_path`. Only words that are also phrases are
+            recognized; the other words help to reject sound. Case and surrounding spaces are ignored.
 
     Raises:
         LinkwrightError: the file exists but cannot be read; see `Words.read`.
     """
 
     def __init__(self, options: EngineOptions) -> None:
-        self._path = options.model or words_path()
+        self._path = options.model or find_words_path()
         self._phrases = {_normalize(text): text for text in options.phrases}
         self._file_stamp = _read_stamp(self._path)
         self._problem: Diagnostic | None = None
@@ -82,19 +82,19 @@ class EnrolledEngine(SpeechEngine):
             was_speaking = self._activity.speaking
             is_speaking = self._activity.step(frame)
             self._frame_count += 1
-            self._store(frame, is_speaking or was_speaking)
+            self._store_frame(frame, is_speaking or was_speaking)
             if was_speaking and not is_speaking:
                 results += self._end_utterance()
-        if self._activity.speaking and self._frame_count - self._last_match_frame >= _MATCH_INTERVAL:
-            results += self._partial_result()
+        if self._activity.speaking and self._frame_count - self._last_match_frame >= _MATCH_INTERVAL_FRAMES:
+            results += self._make_partial_result()
         return results
 
     def finish(self) -> Sequence[Heard]:
         """End the utterance, and return its final results."""
         return self._end_utterance() if self._activity.speaking else []
 
-    def _store(self, frame: NDArray[np.float64], is_speech: bool) -> None:
-        max_frames = self._max_frames() if is_speech else _LEAD_IN
+    def _store_frame(self, frame: NDArray[np.float64], is_speech: bool) -> None:
+        max_frames = self._max_frames() if is_speech else _LEAD_IN_FRAMES
         frames = np.concatenate((self._buffer, frame[None]))
         if len(frames) > max_frames:
             self._noise_frames = np.concatenate((self._noise_frames, frames[:-max_frames]))[-_NOISE_FRAMES:]
@@ -102,13 +102,13 @@ class EnrolledEngine(SpeechEngine):
 
     def _max_frames(self) -> int:
         longest = self._recognizer.longest if self._recognizer is not None else 100
-        return int(_MAX_LENGTH_FACTOR * longest) + 2 * _LEAD_IN
+        return int(_MAX_LENGTH_FACTOR * longest) + 2 * _LEAD_IN_FRAMES
 
-    def _partial_result(self) -> list[Heard]:
+    def _make_partial_result(self) -> list[Heard]:
         """Return the partial result of an utterance if it has changed, else an empty list."""
         self._last_match_frame = self._frame_count
         guess = self._recognize()
-        name = self._phrase_of(guess)
+        name = self._find_phrase(guess)
         if guess is None or name is None or name == self._partial:
             return []
         self._partial = name
@@ -118,25 +118,27 @@ class EnrolledEngine(SpeechEngine):
         """End the utterance, and return its final result in a list."""
         guess = self._recognize()
         self._activity.end()
-        name = self._phrase_of(guess)
+        name = self._find_phrase(guess)
         self._partial = None
         result = self._make_result(name or "", guess, final=True)
-        self._buffer, self._noise_frames = self._buffer[-_LEAD_IN:], self._noise_frames[:0]
+        self._buffer, self._noise_frames = self._buffer[-_LEAD_IN_FRAMES:], self._noise_frames[:0]
         return [result]
 
     def _recognize(self) -> Guess | None:
         if self._recognizer is None:
             return None
-        noise = unsteady_noise(np.concatenate((self._noise_frames, self._buffer)), self._activity.floor)
+        noise = estimate_unsteady_noise(np.concatenate((self._noise_frames, self._buffer)), self._activity.floor)
         if noise is None and len(self._buffer) >= self._max_frames():
             return None
         return self._recognizer.guess(self._buffer, self._activity.floor if noise is None else noise)
 
-    def _phrase_of(self, guess: Guess | None) -> str | None:
+    def _find_phrase(self, guess: Guess | None) -> str | None:
         """Return the phrase of a guess, or None if the guess is too uncertain or not a phrase."""
         if guess is None:
             return None
-        if guess.confidence < (_MIN_NUMBER_CONFIDENCE if has_number(words_of(guess.name)) else ACCEPTED):
+        if guess.confidence < (
+            _MIN_NUMBER_CONFIDENCE if has_number(split_into_words(guess.name)) else ACCEPTED_CONFIDENCE
+        ):
             return None
         return self._phrases.get(_normalize(guess.name))
 
@@ -147,7 +149,12 @@ class EnrolledEngine(SpeechEngine):
         is_near = guess is not None and not name and guess.confidence >= _MIN_NEAREST_CONFIDENCE
         nearest = self._phrases.get(_normalize(guess.name), "") if guess is not None and is_near else ""
         return Heard(
-            name, confidence, final, (buffer_start + first) * HOP / RATE, (buffer_start + last) * HOP / RATE, nearest
+            name,
+            confidence,
+            final,
+            (buffer_start + first) * HOP_LENGTH / RATE,
+            (buffer_start + last) * HOP_LENGTH / RATE,
+            nearest,
         )
 
     def _reload_if_changed(self) -> None:

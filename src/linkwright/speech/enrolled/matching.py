@@ -24,9 +24,9 @@ _Array = NDArray[np.float32]
 _Float = TypeVar("_Float", np.float32, np.float64)
 
 _NOISE_FACTOR = 2.0  # the floor of powers, as a multiple of the noise
-_DYNAMIC_RANGE = 40.0  # another floor of powers, in dB below the loudest frames
+_DYNAMIC_RANGE_DB = 40.0  # another floor of powers, in dB below the loudest frames
 _LOUDEST_FRAMES = 12  # the number of frames that determine the loudest level
-_CEPSTRA = 12
+_CEPSTRUM_COUNT = 12
 _LEVEL_WEIGHT = 0.3  # the weight of the zeroth coefficient
 _CHANGE_WEIGHT = 1.5  # the weight of the differences
 _STAY_COST = np.float32(1.0)
@@ -36,7 +36,9 @@ Frames before and after the word are assigned to the background instead, without
 """
 _INFINITE_COST = np.float32(1e9)
 _CONTEXT_FRAMES = 2  # the number of frames on each side from which differences are computed
-_MAX_SINGLE_THREAD = 200_000  # the maximum number of multiplications in one thread; OpenBLAS uses several above 262,144
+_MAX_SINGLE_THREAD_PRODUCTS = (
+    200_000  # the maximum number of multiplications in one thread; OpenBLAS uses several above 262,144
+)
 _SPEECH_SOUND_FRAMES = 8  # the approximate length of a speech sound, in frames
 
 
@@ -76,8 +78,10 @@ class Templates:
         self.lengths = np.array([len(take.powers) for take in takes])
         denoised = [np.maximum(take.powers - take.noise, 0.0) for take in takes]
         padding = ((_CONTEXT_FRAMES, _CONTEXT_FRAMES), (0, 0))
-        self._denoised = np.concatenate([np.pad(powers / loudness(powers), padding, "edge") for powers in denoised])
-        self._is_own_frame = np.concatenate([_own_frame_mask(length) for length in self.lengths])
+        self._denoised = np.concatenate(
+            [np.pad(powers / compute_loudness(powers), padding, "edge") for powers in denoised]
+        )
+        self._is_own_frame = np.concatenate([_make_own_frame_mask(length) for length in self.lengths])
         starts = np.cumsum(self.lengths + 2) - self.lengths
         self._frame_columns = np.concatenate(
             [start + np.arange(length) for start, length in zip(starts, self.lengths, strict=True)]
@@ -91,19 +95,19 @@ class Templates:
             powers: one or more frames, with the word and some background before and after it.
             noise: the power of the background, shape ``(BANDS,)``.
         """
-        loudest_power = loudness(np.maximum(powers - noise, 0.0))
-        mask = np.maximum(_NOISE_FACTOR * noise, loudest_power / BANDS * 10.0 ** (-_DYNAMIC_RANGE / 10.0))
-        sound = _features(powers, mask)
-        background = _features(mask[None], mask)[0]
-        states = _features(loudest_power * self._denoised, mask)[self._is_own_frame]
-        distances = _distances(sound, states)
+        loudest_power = compute_loudness(np.maximum(powers - noise, 0.0))
+        mask = np.maximum(_NOISE_FACTOR * noise, loudest_power / BANDS * 10.0 ** (-_DYNAMIC_RANGE_DB / 10.0))
+        sound = _compute_features(powers, mask)
+        background = _compute_features(mask[None], mask)[0]
+        states = _compute_features(loudest_power * self._denoised, mask)[self._is_own_frame]
+        distances = _compute_distances(sound, states)
         background_distances = np.sqrt(np.sum((sound - background) ** 2, axis=1))
         cost, first, last, steps = self._find_paths(distances, background_distances)
         cumulative = np.concatenate(([0.0], np.cumsum(background_distances)))
         mean_background = (cumulative[last + 1] - cumulative[first]) / (last + 1 - first)
         return Match(cost, first, last, mean_background.astype(np.float32), distances, steps)
 
-    def worst_distance(self, match: Match, take: int) -> float:
+    def compute_worst_distance(self, match: Match, take: int) -> float:
         """Return the mean distance in the worst 80 ms of the best path through a take.
 
         This distance separates words that differ in a single speech sound.
@@ -162,17 +166,17 @@ class Templates:
         return first
 
 
-def _own_frame_mask(length: int) -> NDArray[np.bool_]:
+def _make_own_frame_mask(length: int) -> NDArray[np.bool_]:
     """Return the mask of a take's own frames among its frames with repeated edges."""
     return np.pad(np.ones(length, dtype=np.bool_), _CONTEXT_FRAMES)
 
 
-def loudness(powers: Powers) -> float:
+def compute_loudness(powers: Powers) -> float:
     """Return the mean power of the loudest frames, summed over all bands."""
     return float(np.sort(powers.sum(axis=1))[-_LOUDEST_FRAMES:].mean()) + 1e-6
 
 
-def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
+def _compute_features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
     """Return the cepstra of masked powers and their derivatives.
 
     The shape is ``(frames, 2 * (_CEPSTRA + 1))``.
@@ -184,7 +188,7 @@ def _features(powers: NDArray[np.float64], mask: NDArray[np.float64]) -> _Array:
     return features
 
 
-def _distances(sound: _Array, states: _Array) -> _Array:
+def _compute_distances(sound: _Array, states: _Array) -> _Array:
     """Return Euclidean distances, shape ``(frames of the recording, frames of all takes)``."""
     squares = np.sum(sound**2, axis=1)[:, None] + np.sum(states**2, axis=1)[None] - 2.0 * _multiply(sound, states.T)
     return np.asarray(np.sqrt(np.maximum(squares, 0.0)), dtype=np.float32)
@@ -195,18 +199,18 @@ def _multiply(left: NDArray[_Float], right: NDArray[_Float]) -> NDArray[_Float]:
 
     OpenBLAS uses only one thread for the small blocks. Its waiting threads would keep other cores busy.
     """
-    rows = max(1, _MAX_SINGLE_THREAD // right.size)
+    rows = max(1, _MAX_SINGLE_THREAD_PRODUCTS // right.size)
     return np.concatenate([left[start : start + rows] @ right for start in range(0, len(left), rows)])
 
 
-def _cosines() -> NDArray[np.float64]:
+def _make_cosines() -> NDArray[np.float64]:
     """Return the DCT-II matrix of the bands, with a weighted level.
 
     The shape is ``(BANDS, _CEPSTRA + 1)``.
     """
-    bands, orders = np.arange(BANDS) + 0.5, np.arange(_CEPSTRA + 1)
+    bands, orders = np.arange(BANDS) + 0.5, np.arange(_CEPSTRUM_COUNT + 1)
     weights = np.where(orders == 0, _LEVEL_WEIGHT, 1.0) * np.sqrt(2.0 / BANDS)
     return np.asarray(np.cos(np.pi * np.outer(bands, orders) / BANDS) * weights)
 
 
-_COSINES = _cosines()
+_COSINES = _make_cosines()

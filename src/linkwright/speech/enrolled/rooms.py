@@ -14,9 +14,9 @@ import numpy as np
 
 from linkwright.speech.enrolled.words import Take
 from linkwright.speech.sound.samples import RATE
-from linkwright.speech.sound.spectra import HOP
+from linkwright.speech.sound.spectra import HOP_LENGTH
 
-_MAX_DECAY = 30.0  # the attenuation of the reverberation in dB at which a take ends
+_MAX_DECAY_DB = 30.0  # the attenuation of the reverberation in dB at which a take ends
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,9 +33,9 @@ class Room:
 
     def reverberate(self, take: Take) -> Take:
         """Return the take as it would sound in this room, extended by the decay."""
-        frame_seconds = HOP / RATE
+        frame_seconds = HOP_LENGTH / RATE
         decay = 10.0 ** (-6.0 * frame_seconds / self.reverberation_time)
-        tail_frames = round(_MAX_DECAY / 60.0 * self.reverberation_time / frame_seconds)
+        tail_frames = round(_MAX_DECAY_DB / 60.0 * self.reverberation_time / frame_seconds)
         direct_powers = np.maximum(take.powers - take.noise, 0.0)
         direct_powers = np.concatenate((direct_powers, np.zeros((tail_frames, direct_powers.shape[1]))))
         late_powers = np.zeros_like(direct_powers)

@@ -1,6 +1,6 @@
 """The file of enrolled words: the spectra of their recordings.
 
-The voice cannot be played back from it. The file is JSON, version 1: ``{"format": "linkwright enrolled words",
+The voice cannot be played back from this file. The file is JSON, version 1: ``{"format": "linkwright enrolled words",
 "version": 1, "words": [...]}``, with words of the form ``{"name": "stop", "takes": [{"frames": BASE64, "noise":
 BASE64}, ...]}``. ``frames`` contains the bands of `linkwright.speech.sound.spectra` from the first to the last frame of
 the word, frame after frame, one byte each: the level in steps of 0.5 dB above a power of 1. ``noise`` is the level of
@@ -35,12 +35,12 @@ MAX_TAKES = 10
 MAX_WORDS = 200
 
 _FORMAT, _VERSION = "linkwright enrolled words", 1
-_LEVEL_STEP = 0.5  # the resolution of stored levels, in dB
+_LEVEL_STEP_DB = 0.5  # the resolution of stored levels, in dB
 _MAX_NAME_LENGTH = 100
 _MAX_FRAMES = 400
 
 
-def words_path() -> Path:
+def find_words_path() -> Path:
     """Return the path of the user's file of words.
 
     It is ``XDG_CONFIG_HOME/linkwright/voice/words.json``, or the same path below ``~/.config``.
@@ -133,7 +133,7 @@ class Words:
         write_whole_file(path, json.dumps(document, ensure_ascii=False, indent=1) + "\n")
 
 
-def name_problem(name: str) -> Phrase | None:
+def find_name_problem(name: str) -> Phrase | None:
     """Return the reason why a word cannot have a name, or None if the name is valid."""
     if not name.strip():
         return phrase("it is empty")
@@ -146,20 +146,20 @@ def name_problem(name: str) -> Phrase | None:
 
 def round_powers(powers: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return powers with the precision that they have in a file."""
-    return _from_levels(_levels(powers)).reshape(powers.shape)
+    return _from_levels(_to_levels(powers)).reshape(powers.shape)
 
 
-def _levels(powers: NDArray[np.float64]) -> NDArray[np.uint8]:
+def _to_levels(powers: NDArray[np.float64]) -> NDArray[np.uint8]:
     decibels = 10.0 * np.log10(np.maximum(powers, 1.0))
-    return np.asarray(np.clip(np.rint(decibels / _LEVEL_STEP), 0, 255), dtype=np.uint8)
+    return np.asarray(np.clip(np.rint(decibels / _LEVEL_STEP_DB), 0, 255), dtype=np.uint8)
 
 
 def _from_levels(levels: NDArray[np.uint8]) -> NDArray[np.float64]:
-    return np.asarray(10.0 ** (levels.astype(np.float64) * _LEVEL_STEP / 10.0))
+    return np.asarray(10.0 ** (levels.astype(np.float64) * _LEVEL_STEP_DB / 10.0))
 
 
 def _encode(powers: NDArray[np.float64]) -> str:
-    return base64.b64encode(_levels(powers).tobytes()).decode("ascii")
+    return base64.b64encode(_to_levels(powers).tobytes()).decode("ascii")
 
 
 def _parse_words(document: Any, path_text: str) -> dict[str, tuple[Take, ...]]:
@@ -179,7 +179,7 @@ def _parse_words(document: Any, path_text: str) -> dict[str, tuple[Take, ...]]:
     takes_by_name: dict[str, tuple[Take, ...]] = {}
     for number, word in enumerate(words, 1):
         name = word.get("name") if isinstance(word, dict) else None
-        if not isinstance(name, str) or name_problem(name) is not None or name in takes_by_name:
+        if not isinstance(name, str) or find_name_problem(name) is not None or name in takes_by_name:
             raise _damaged_error(
                 path_text, phrase("word {number} has no valid name, or the name of an earlier word", number=number)
             )

@@ -19,13 +19,13 @@ from linkwright.graph import Graph
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.speech.nodes.audio_topics import NAMESPACE, AudioTopics
 from linkwright.speech.sound.microphone import Microphone
-from linkwright.speech.sound.samples import BLOCK, RATE, Samples
+from linkwright.speech.sound.samples import BLOCK_LENGTH, RATE, Samples
 from linkwright.speech.sound.wav import read_wav
 
 _FORMAT_PARAMETERS = {"channels": 1, "depth": 16, "sample_rate": RATE, "sample_format": "S16LE", "format": "wave"}
 """The parameters of the format, with the only value that is supported for each."""
 
-_MAX_CHUNK = 10 * RATE
+_MAX_CHUNK_SAMPLES = 10 * RATE
 
 
 class AudioCapture(SingleNode):
@@ -65,16 +65,16 @@ class AudioCapture(SingleNode):
         device: str = node.declare_parameter("device", "").value
         file: str = node.declare_parameter("file", "").value
         self._loop: bool = node.declare_parameter("loop", False).value
-        chunk: int = node.declare_parameter("chunk", BLOCK).value
+        chunk: int = node.declare_parameter("chunk", BLOCK_LENGTH).value
         for name, value in {"src": "alsasrc", "dst": "appsink", "bitrate": 192, "diagnostic_tolerance": 0.1}.items():
             node.declare_parameter(name, value)
         self._warn_about_format()
-        if not 0 < chunk <= _MAX_CHUNK:
+        if not 0 < chunk <= _MAX_CHUNK_SAMPLES:
             message = phrase(
                 "parameter '{name}' must be {minimum} to {maximum}, but it is {value}",
                 name="chunk",
                 minimum=1,
-                maximum=_MAX_CHUNK,
+                maximum=_MAX_CHUNK_SAMPLES,
                 value=chunk,
             )
             raise LinkwrightError(Diagnostic("VOICE414", message))

@@ -1,7 +1,7 @@
 """Convert samples to messages of audio_common_msgs, and back from any format.
 
 audio_capture publishes interleaved samples in one of GStreamer's formats (``S16LE``), which it announces on
-``audio_info``. Without an AudioInfo, the format is audio_capture's default: 16 kHz, mono, S16LE.
+``make_audio_info``. Without an AudioInfo, the format is audio_capture's default: 16 kHz, mono, S16LE.
 """
 
 from __future__ import annotations
@@ -19,12 +19,12 @@ from linkwright.messages import get_message
 from linkwright.speech.sound.resampling import MAX_RATE, MIN_RATE, Resampler, to_samples
 from linkwright.speech.sound.samples import RATE, Samples
 
-AUDIO = "audio_common_msgs/msg/AudioData"
-AUDIO_STAMPED = "audio_common_msgs/msg/AudioDataStamped"
-AUDIO_INFO = "audio_common_msgs/msg/AudioInfo"
+AUDIO_TYPE = "audio_common_msgs/msg/AudioData"
+AUDIO_STAMPED_TYPE = "audio_common_msgs/msg/AudioDataStamped"
+AUDIO_INFO_TYPE = "audio_common_msgs/msg/AudioInfo"
 
 AUDIO_QUEUE_DEPTH = 100
-"""The depth of the queues of `AUDIO`: 10 s. With audio_capture's depth of 10, a process that is busy for 1 s loses
+"""The depth of the queues of `AUDIO_TYPE`: 10 s. With audio_capture's depth of 10, a process that is busy for 1 s loses
 sound."""
 
 
@@ -108,24 +108,24 @@ class AudioReader:
             used_bytes = len(available) // 2 * 2
             self._incomplete = available[used_bytes:]
             return np.frombuffer(available[:used_bytes], "<i2").astype(np.int16)
-        values = _values(available, self._audio_format)
+        values = _decode_values(available, self._audio_format)
         frames = len(values) // self._audio_format.channels
-        used_bytes = frames * self._audio_format.channels * _sample_bytes(self._audio_format)
+        used_bytes = frames * self._audio_format.channels * _get_sample_bytes(self._audio_format)
         self._incomplete = available[used_bytes:]
         mono: NDArray[np.float64] = values[: frames * self._audio_format.channels].reshape(frames, -1).mean(axis=1)
         return to_samples(mono) if self._resampler is None else self._resampler.feed(mono)
 
 
-def _sample_bytes(audio_format: AudioFormat) -> int:
+def _get_sample_bytes(audio_format: AudioFormat) -> int:
     return int(re.sub(r"\D", "", audio_format.sample_format)) // 8
 
 
-def _values(data: bytes, audio_format: AudioFormat) -> NDArray[np.float64]:
+def _decode_values(data: bytes, audio_format: AudioFormat) -> NDArray[np.float64]:
     """Return the samples in the data as numbers from -1 to 1, with interleaved channels.
 
     An incomplete last sample is dropped.
     """
-    size, kind = _sample_bytes(audio_format), audio_format.sample_format[0]
+    size, kind = _get_sample_bytes(audio_format), audio_format.sample_format[0]
     order = ">" if audio_format.sample_format.endswith("BE") else "<"
     data = data[: len(data) // size * size]
     if kind == "F":
@@ -142,34 +142,34 @@ def _values(data: bytes, audio_format: AudioFormat) -> NDArray[np.float64]:
     return raw / full_scale if kind == "S" else raw / full_scale - 1.0
 
 
-def audio_info(audio_format: AudioFormat) -> Any:
+def make_audio_info(audio_format: AudioFormat) -> Any:
     """Return the AudioInfo of a format, with the bit rate in kbit/s, as in audio_capture."""
-    info = get_message(AUDIO_INFO)()
+    info = get_message(AUDIO_INFO_TYPE)()
     info.channels, info.sample_rate, info.sample_format = (
         audio_format.channels,
         audio_format.rate,
         audio_format.sample_format,
     )
-    info.bitrate = audio_format.channels * audio_format.rate * 8 * _sample_bytes(audio_format) // 1000
+    info.bitrate = audio_format.channels * audio_format.rate * 8 * _get_sample_bytes(audio_format) // 1000
     info.coding_format = WAVE
     return info
 
 
-def audio_data(data: bytes) -> Any:
+def make_audio_data(data: bytes) -> Any:
     """Return an AudioData with the bytes of samples."""
-    message = get_message(AUDIO)()
+    message = get_message(AUDIO_TYPE)()
     message.data = np.frombuffer(data, np.uint8)
     return message
 
 
-def audio_stamped(data: bytes, stamp: Any) -> Any:
+def make_audio_stamped(data: bytes, stamp: Any) -> Any:
     """Return an AudioDataStamped with the bytes of samples.
 
     Args:
         data: the bytes of the samples.
         stamp: the time of the first sample, a builtin_interfaces/Time.
     """
-    message = get_message(AUDIO_STAMPED)()
+    message = get_message(AUDIO_STAMPED_TYPE)()
     message.header.stamp = stamp
     message.audio.data = np.frombuffer(data, np.uint8)
     return message

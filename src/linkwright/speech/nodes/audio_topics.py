@@ -6,14 +6,14 @@ from typing import Any
 
 from linkwright.graph import LATCHED_QOS, Node, Publisher, Time
 from linkwright.speech.nodes.audio_messages import (
-    AUDIO,
-    AUDIO_INFO,
+    AUDIO_INFO_TYPE,
     AUDIO_QUEUE_DEPTH,
-    AUDIO_STAMPED,
+    AUDIO_STAMPED_TYPE,
+    AUDIO_TYPE,
     AudioFormat,
-    audio_data,
-    audio_info,
-    audio_stamped,
+    make_audio_data,
+    make_audio_info,
+    make_audio_stamped,
 )
 from linkwright.speech.nodes.sound_gaps import SampleStamps
 from linkwright.speech.sound.samples import Samples
@@ -22,7 +22,7 @@ NAMESPACE = "/audio"
 
 
 class AudioTopics:
-    """The publishers of ``audio``, ``audio_stamped`` and ``audio_info``.
+    """The publishers of ``audio``, ``make_audio_stamped`` and ``make_audio_info``.
 
     The format is mono 16-bit PCM at 16 kHz.
 
@@ -33,12 +33,16 @@ class AudioTopics:
 
     def __init__(self, node: Node, namespace: str = NAMESPACE) -> None:
         self._node = node
-        self._data_publisher: Publisher[Any] = node.create_publisher(AUDIO, f"{namespace}/audio", AUDIO_QUEUE_DEPTH)
-        self._stamped_publisher: Publisher[Any] = node.create_publisher(
-            AUDIO_STAMPED, f"{namespace}/audio_stamped", AUDIO_QUEUE_DEPTH
+        self._data_publisher: Publisher[Any] = node.create_publisher(
+            AUDIO_TYPE, f"{namespace}/audio", AUDIO_QUEUE_DEPTH
         )
-        self._info_publisher: Publisher[Any] = node.create_publisher(AUDIO_INFO, f"{namespace}/audio_info", LATCHED_QOS)
-        self._info_publisher.publish(audio_info(AudioFormat()))
+        self._stamped_publisher: Publisher[Any] = node.create_publisher(
+            AUDIO_STAMPED_TYPE, f"{namespace}/audio_stamped", AUDIO_QUEUE_DEPTH
+        )
+        self._info_publisher: Publisher[Any] = node.create_publisher(
+            AUDIO_INFO_TYPE, f"{namespace}/audio_info", LATCHED_QOS
+        )
+        self._info_publisher.publish(make_audio_info(AudioFormat()))
         self._stamps = SampleStamps()
 
     def restart(self) -> None:
@@ -54,9 +58,11 @@ class AudioTopics:
         """
         data = samples.astype("<i2").tobytes()
         now = self._node.get_clock().now()
-        start = Time(nanoseconds=self._stamps.stamp(samples.size, now.nanoseconds, lost), clock_type=now.clock_type)
-        self._stamped_publisher.publish(audio_stamped(data, start.to_msg()))
-        self._data_publisher.publish(audio_data(data))
+        start = Time(
+            nanoseconds=self._stamps.compute_stamp(samples.size, now.nanoseconds, lost), clock_type=now.clock_type
+        )
+        self._stamped_publisher.publish(make_audio_stamped(data, start.to_msg()))
+        self._data_publisher.publish(make_audio_data(data))
 
     def close(self) -> None:
         """Remove the topics."""

@@ -77,7 +77,7 @@ class Conversation:
         Returns:
             Whether the text was understood.
         """
-        answer = self._commands.answer(text) if self._pending is not None else None
+        answer = self._commands.parse_answer(text) if self._pending is not None else None
         if self._pending is not None and answer is not None:
             confirmed, spoken_text = self._pending
             self._drop_question()

@@ -15,7 +15,7 @@ from linkwright.speech.commands.actions import Drive, Values, resolve_amount
 
 _STEP_S = 0.05
 _MAX_STEP_S = 0.2
-_MAX_ODOMETRY_AGE = 0.5
+_MAX_ODOMETRY_AGE_S = 0.5
 """The maximum age of odometry in s. Without fresh odometry, the distance is computed from the commands."""
 _SPEED_GAIN = 3.0
 """The speed divided by the remaining distance, near the end, in 1/s."""
@@ -78,7 +78,9 @@ class Driver:
         limits = [(name, resolve_amount(limit, values)) for name, limit in amounts.items() if limit is not None]
         self._kind, self._remaining = limits[0] if limits else ("", None)
         self._last_step_ns = self._now_ns()
-        self._deadline_ns = self._last_step_ns + round((3.0 + _MAX_DURATION_RATIO * self._expected_seconds()) * 1e9)
+        self._deadline_ns = self._last_step_ns + round(
+            (3.0 + _MAX_DURATION_RATIO * self._compute_expected_seconds()) * 1e9
+        )
         self._odometer.pop(self._kind)
         self._publish(1.0)
         self._timer.reset()
@@ -120,7 +122,7 @@ class Driver:
         if self._remaining is None:
             self._publish(1.0)
             return
-        rate = self._progress_rate()
+        rate = self._compute_progress_rate()
         measured = self._odometer.pop(self._kind) if self._odometer.is_fresh(now_ns) else None
         progress = (
             elapsed if self._kind == "duration" else rate * self._part * elapsed if measured is None else measured
@@ -141,17 +143,19 @@ class Driver:
         self.stop()
         self._on_end(ending)
 
-    def _progress_rate(self) -> float:
+    def _compute_progress_rate(self) -> float:
         """Return the rate at which the distance or angle is covered, in m/s or rad/s."""
         assert self._drive is not None, "it drives"
         if self._kind == "angle":
             return abs(self._drive.turn) * self._turn_speed * self._scale
         return hypot(self._drive.x, self._drive.y) * self._speed * self._scale
 
-    def _expected_seconds(self) -> float:
+    def _compute_expected_seconds(self) -> float:
         """Return the expected duration in s of a drive over a distance or angle, or 0 for others."""
         return (
-            self._remaining / self._progress_rate() if self._remaining is not None and self._kind != "duration" else 0.0
+            self._remaining / self._compute_progress_rate()
+            if self._remaining is not None and self._kind != "duration"
+            else 0.0
         )
 
     def _publish(self, share: float) -> None:
@@ -180,7 +184,7 @@ class _Odometer:
         self._last_ns, self._pose = now_ns, (x, y, yaw)
 
     def is_fresh(self, now_ns: int) -> bool:
-        return self._last_ns is not None and 0 <= now_ns - self._last_ns < _MAX_ODOMETRY_AGE * 1e9
+        return self._last_ns is not None and 0 <= now_ns - self._last_ns < _MAX_ODOMETRY_AGE_S * 1e9
 
     def pop(self, kind: str) -> float:
         amount = self._motion.get(kind, 0.0)

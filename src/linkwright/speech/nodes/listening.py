@@ -13,14 +13,14 @@ from linkwright.graph import Node
 from linkwright.speech.engine import Heard, SpeechEngine
 from linkwright.speech.sound.samples import RATE, Samples
 
-_MAX_PENDING = 100
+_MAX_PENDING_BLOCKS = 100
 """The maximum number of waiting blocks. An engine that is 10 s behind receives no new sound until it has caught up."""
 
 _ThreadResult: TypeAlias = Heard | Diagnostic | LinkwrightError | None
 """A result of the thread. None means that all sound up to the end of an utterance was processed."""
 
 _MAX_GAPS = 100
-_GAP_TOLERANCE = 0.2  # in seconds; engines do not report the exact start of a word
+_GAP_TOLERANCE_S = 0.2  # in seconds; engines do not report the exact start of a word
 
 
 class Listener:
@@ -64,7 +64,7 @@ class Listener:
 
         A block is dropped if the engine lags far behind.
         """
-        if self._blocks.qsize() >= _MAX_PENDING:
+        if self._blocks.qsize() >= _MAX_PENDING_BLOCKS:
             self.record_gap(samples.size / RATE)
             return False
         self._sample_count += samples.size
@@ -84,7 +84,7 @@ class Listener:
         return sum(
             seconds
             for position, seconds in self._gaps
-            if result.start - _GAP_TOLERANCE <= position <= result.end + _GAP_TOLERANCE
+            if result.start - _GAP_TOLERANCE_S <= position <= result.end + _GAP_TOLERANCE_S
         )
 
     def finish(self) -> None:

@@ -9,15 +9,15 @@ from __future__ import annotations
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.speech.sound.samples import RATE
 
-_MAX_BEHIND = 10 * NANOSECONDS_PER_SECOND
+_MAX_BEHIND_NS = 10 * NANOSECONDS_PER_SECOND
 """The maximum delay in ns of a source that publishes a backlog. A source with a larger delay has restarted."""
 
-_MAX_AHEAD = NANOSECONDS_PER_SECOND
+_MAX_AHEAD_NS = NANOSECONDS_PER_SECOND
 _MAX_DRIFT = 0.01  # the share of a block's length by which its stamp can approach the clock
 
-_JITTER = 5 * 10**6
+_JITTER_NS = 5 * 10**6
 _STEADY_BLOCKS = 3  # blocks without a jump, after which the publisher is assumed to count samples
-_MIN_GAP = 50 * 10**6
+_MIN_GAP_NS = 50 * 10**6
 
 
 class SampleStamps:
@@ -30,7 +30,7 @@ class SampleStamps:
         """Start a new stream, whose stamps are independent of the previous stream."""
         self._next_ns = None
 
-    def stamp(self, samples: int, now: int, lost: float = 0.0) -> int:
+    def compute_stamp(self, samples: int, now: int, lost: float = 0.0) -> int:
         """Return the stamp of a block's first sample.
 
         Args:
@@ -41,9 +41,9 @@ class SampleStamps:
         """
         length = samples * NANOSECONDS_PER_SECOND // RATE
         start = max(0, now - length)
-        if self._next_ns is not None and -_MAX_AHEAD < (behind := start - self._next_ns) < _MAX_BEHIND:
+        if self._next_ns is not None and -_MAX_AHEAD_NS < (behind := start - self._next_ns) < _MAX_BEHIND_NS:
             max_correction = round(_MAX_DRIFT * length)
-            jump = min(round(lost * NANOSECONDS_PER_SECOND), max(behind, 0) + _MAX_AHEAD)
+            jump = min(round(lost * NANOSECONDS_PER_SECOND), max(behind, 0) + _MAX_AHEAD_NS)
             start = self._next_ns + min(max(behind, -max_correction), max_correction) + jump
         self._next_ns = start + length
         return start
@@ -72,17 +72,17 @@ class SoundGaps:
         length = samples * NANOSECONDS_PER_SECOND // RATE
         jump = 0 if self._next_stamp is None else stamp - self._next_stamp
         self._next_stamp = stamp + length
-        if jump <= _JITTER:
+        if jump <= _JITTER_NS:
             # Stamps that are early after late ones only occur if a publisher stamps blocks with their arrival times.
             self._steady_blocks, self._small_jumps = (
-                (self._steady_blocks + 1, self._small_jumps) if jump >= -_JITTER else (0, 0)
+                (self._steady_blocks + 1, self._small_jumps) if jump >= -_JITTER_NS else (0, 0)
             )
             return 0.0
         if self._steady_blocks < _STEADY_BLOCKS:
             self._steady_blocks = 0
             return 0.0
         self._small_jumps += jump
-        if self._small_jumps <= _MIN_GAP:
+        if self._small_jumps <= _MIN_GAP_NS:
             return 0.0
         missing, self._small_jumps = self._small_jumps, 0
         return missing / NANOSECONDS_PER_SECOND

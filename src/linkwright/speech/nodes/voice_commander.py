@@ -25,9 +25,9 @@ from linkwright.nodes.velocity_topic import VelocityTopic
 from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_file
 from linkwright.speech.engine import EngineOptions, Heard, make_engine
 from linkwright.speech.nodes.audio_messages import (
-    AUDIO_INFO,
+    AUDIO_INFO_TYPE,
     AUDIO_QUEUE_DEPTH,
-    AUDIO_STAMPED,
+    AUDIO_STAMPED_TYPE,
     AudioFormat,
     AudioReader,
 )
@@ -110,10 +110,10 @@ class VoiceCommander(SingleNode):
         if not 0.0 <= self._min_confidence <= 1.0:
             raise invalid_value_error("confidence", self._min_confidence, node.get_name())
         self._create_interfaces: bool = node.declare_parameter("open_listening", False).value
-        speed, turn_speed = self._positive("speed", 0.2), self._positive("turn_speed", 0.6)
+        speed, turn_speed = self._declare_positive("speed", 0.2), self._declare_positive("turn_speed", 0.6)
         silence_timeout, confirmation_timeout = (
-            self._positive("silence_timeout", 10.0),
-            self._positive("confirmation_timeout", 10.0),
+            self._declare_positive("silence_timeout", 10.0),
+            self._declare_positive("confirmation_timeout", 10.0),
         )
         stamped: bool | None = node.declare_parameter("stamped", ParameterType.BOOL).value
         frame_id: str = node.declare_parameter("frame_id", "").value
@@ -157,7 +157,7 @@ class VoiceCommander(SingleNode):
             engine_options = EngineOptions(phrases, language, Path(model_path) if model_path else None)
             self._start_listening(lambda: make_engine(engine, engine_options), clock)
 
-    def _positive(self, name: str, default: float) -> float:
+    def _declare_positive(self, name: str, default: float) -> float:
         value: float = self._node.declare_parameter(name, default).value
         if not isfinite(value):
             raise invalid_value_error(name, value, self._node.get_name())
@@ -177,9 +177,9 @@ class VoiceCommander(SingleNode):
         )
         self._reader = AudioReader()
         self._gaps = SoundGaps()
-        node.create_subscription(AUDIO_INFO, "audio/audio_info", self._on_info, LATCHED_QOS)
+        node.create_subscription(AUDIO_INFO_TYPE, "audio/audio_info", self._on_info, LATCHED_QOS)
         self._audio_subscription: Subscription[Any] = node.create_subscription(
-            AUDIO_STAMPED, "audio/audio_stamped", self._on_audio, AUDIO_QUEUE_DEPTH
+            AUDIO_STAMPED_TYPE, "audio/audio_stamped", self._on_audio, AUDIO_QUEUE_DEPTH
         )
         self._audio_subscription.watch_lost(lambda _: self._stop_without_sound())
         button: Subscription[Any] = node.create_subscription(
@@ -284,7 +284,7 @@ class VoiceCommander(SingleNode):
 
     @property
     def _is_addressed(self) -> bool:
-        """Whether a result is meant for the robot, even if it arrives after the button was released."""
+        """Whether a result is meant for the robot, even if it arrives after the button's release."""
         return self._is_button_held or not self._create_interfaces
 
     def _stop_early(self, text: str) -> None:

@@ -37,7 +37,7 @@ _PROPOSAL_TOPIC = "/voice/propose_enrolling"
 _LISTEN_TOPIC = "/voice/listen"
 _TEXT_INPUT_TOPIC = "/voice/text_input"
 _QUEUE_DEPTH = 10
-_MAX_TEXT = 500
+_MAX_TEXT_LENGTH = 500
 """The maximum length of a text in characters. Longer texts are truncated."""
 
 
@@ -86,7 +86,7 @@ class VoiceFeature(PageFeature):
         elif not isinstance(message, SayCommand):
             self._word_book.receive(page, message)
         elif self._text_input is not None:
-            self._text_input.publish(self._text_input.msg_type(data=message.text[:_MAX_TEXT]))
+            self._text_input.publish(self._text_input.msg_type(data=message.text[:_MAX_TEXT_LENGTH]))
 
     def remove_page(self, page: Page) -> None:
         """End the microphone mode, the recording and the watching of a page."""
@@ -146,7 +146,7 @@ class VoiceFeature(PageFeature):
         publisher.publish(publisher.msg_type(data=is_held))
 
     def _on_listeners_changed(self, event: QoSPublisherMatchedInfo) -> None:
-        """Publish the button state again for a subscriber that appears after the button was pressed.
+        """Publish the button state again for a subscriber that appears while the button is held.
 
         Other processes match with some delay. The topic is not latched, because other publishers on it do not latch it
         either.
@@ -207,7 +207,7 @@ class VoiceFeature(PageFeature):
     def _send_text(self, part: ConversationPart, message: Any) -> None:
         self._text_count += 1
         for page in self._watchers:
-            page.send(ConversationText(self._text_count, part, message.data[:_MAX_TEXT]))
+            page.send(ConversationText(self._text_count, part, message.data[:_MAX_TEXT_LENGTH]))
 
     def _handle_proposal(self, message: Any) -> None:
         self._is_enrolling_proposed = message.data

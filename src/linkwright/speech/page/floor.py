@@ -7,7 +7,7 @@ from collections.abc import Callable
 from linkwright.page.audience import Page
 from linkwright.page.protocol.voice import TalkMode
 
-_LEAD = 10.0
+_RESERVE_S = 10.0
 """The seconds of sound that may arrive at once, as after a stalled connection."""
 
 _CLOCK_TOLERANCE = 1.05
@@ -61,13 +61,13 @@ class SoundBudget:
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
         self._last_time = clock()
-        self._sound_budget = self._loss_budget = _LEAD
+        self._sound_budget = self._loss_budget = _RESERVE_S
 
     def spend(self, sound: float, lost: float) -> bool:
         """Count seconds of sound and of loss, and return whether they are within the limits."""
         now = self._clock()
         credit = (now - self._last_time) * _CLOCK_TOLERANCE
         self._last_time = now
-        self._sound_budget = min(_LEAD, self._sound_budget + credit) - sound
-        self._loss_budget = min(_LEAD, self._loss_budget + credit) - lost
+        self._sound_budget = min(_RESERVE_S, self._sound_budget + credit) - sound
+        self._loss_budget = min(_RESERVE_S, self._loss_budget + credit) - lost
         return self._sound_budget >= 0.0 and self._loss_budget >= 0.0

@@ -24,7 +24,7 @@ from linkwright.page.protocol.voice_words import (
     WatchWords,
 )
 from linkwright.speech.enrolled.enrollment import enroll
-from linkwright.speech.enrolled.words import RECOMMENDED_TAKES, Words, name_problem, words_path
+from linkwright.speech.enrolled.words import RECOMMENDED_TAKES, Words, find_name_problem, find_words_path
 from linkwright.speech.sound.samples import RATE, Samples
 
 _MAX_SAMPLES = 8 * RATE
@@ -71,7 +71,7 @@ class WordBook:
         match message:
             case WatchWords(watched=True):
                 self._watchers.add(page)
-                self._send(page)
+                self._send_words(page)
             case WatchWords():
                 self._watchers.discard(page)
             case BeginTake(name=name):
@@ -81,7 +81,7 @@ class WordBook:
             case RemoveWord(name=name):
                 self._change_words(page, lambda words: words.remove(name))
             case RenameWord(name=name, new_name=new_name):
-                self._change_words(page, lambda words: _rename(words, name, new_name.strip()))
+                self._change_words(page, lambda words: _rename_word(words, name, new_name.strip()))
             case ImportWords(text=text):
                 self._change_words(page, lambda words: _import_words(words, text))
             case RequestWordsFile():
@@ -127,48 +127,50 @@ class WordBook:
             Whether the file was changed.
         """
         try:
-            words = _read()
+            words = _read_words()
             change(words)
-            words.write(words_path())
+            words.write(find_words_path())
         except LinkwrightError as error:
-            self._send(page, _error_text(error))
+            self._send_words(page, _format_error(error))
             return False
         except OSError as error:
             reason = foreign(error.strerror or error)
-            self._send(page, phrase("cannot write '{path}': {reason}", path=display_path(words_path()), reason=reason))
+            self._send_words(
+                page, phrase("cannot write '{path}': {reason}", path=display_path(find_words_path()), reason=reason)
+            )
             return False
         for watcher in {*self._watchers, page}:
-            self._send(watcher)
+            self._send_words(watcher)
         return True
 
-    def _send(self, page: Page, problem: str | None = None) -> None:
+    def _send_words(self, page: Page, problem: str | None = None) -> None:
         try:
-            words = _read()
+            words = _read_words()
         except LinkwrightError as error:
-            words, problem = Words(), problem or _error_text(error)
+            words, problem = Words(), problem or _format_error(error)
         enrolled = [EnrolledWord(name, len(words.takes(name))) for name in words.names]
-        page.send(VoiceWords(enrolled, RECOMMENDED_TAKES, display_path(words_path()), problem))
+        page.send(VoiceWords(enrolled, RECOMMENDED_TAKES, display_path(find_words_path()), problem))
 
     def _send_file(self, page: Page) -> None:
         try:
-            page.send(VoiceWordsFile(words_path().read_text(encoding="utf-8")))
+            page.send(VoiceWordsFile(find_words_path().read_text(encoding="utf-8")))
         except (OSError, UnicodeDecodeError):
-            self._send(page)  # this sends the error, or that there are no words
+            self._send_words(page)  # this sends the error, or that there are no words
 
 
-def _read() -> Words:
+def _read_words() -> Words:
     """Return the words in the user's file, or no words if there is no file.
 
     Raises:
         LinkwrightError: VOICE202, the file cannot be read; VOICE203, it is damaged.
     """
-    path = words_path()
+    path = find_words_path()
     return Words.read(path) if path.exists() else Words()
 
 
-def _rename(words: Words, name: str, new_name: str) -> None:
+def _rename_word(words: Words, name: str, new_name: str) -> None:
     """Rename a word, keeping its takes."""
-    reason = name_problem(new_name)
+    reason = find_name_problem(new_name)
     if reason is None and new_name in words.names and new_name != name:
         reason = phrase("a word with this name already exists")
     if reason is not None:
@@ -196,6 +198,6 @@ def _import_words(words: Words, text: str) -> None:
             words.add(name, take)
 
 
-def _error_text(error: LinkwrightError) -> str:
+def _format_error(error: LinkwrightError) -> str:
     """Return the message of an error, in the language of the terminal."""
     return str(next(iter(translated(error.diagnostics))).message)

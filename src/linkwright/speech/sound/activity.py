@@ -14,14 +14,16 @@ from numpy.typing import NDArray
 
 from linkwright.speech.sound.spectra import BANDS, Powers
 
-HANGOVER = 40
+HANGOVER_FRAMES = 40
 """The number of frames without speech that end an utterance: 0.4 s, longer than the closure of a plosive."""
 
 _MIN_POWER = 1.0  # the minimum power of the noise floor, which is below the noise of any 16-bit microphone
-_START_LEVEL, _CONTINUE_LEVEL = 3.0, 2.0  # in dB above the floor, as the mean over all bands in the last frames
-_TAKE_LEVEL = 4.0  # the minimum level of speech in a take in dB, because takes must be clear
-_MAX_BAND_LEVEL = 25.0  # the maximum level of a band in dB, because a single loud band, as in a whistle, is not speech
-_MAX_BELOW_LOUDEST = 45.0  # in dB; softer sound does not belong to a take, whatever the noise
+_START_LEVEL_DB, _CONTINUE_LEVEL_DB = 3.0, 2.0  # in dB above the floor, as the mean over all bands in the last frames
+_TAKE_LEVEL_DB = 4.0  # the minimum level of speech in a take in dB, because takes must be clear
+_MAX_BAND_LEVEL_DB = (
+    25.0  # the maximum level of a band in dB, because a single loud band, as in a whistle, is not speech
+)
+_MAX_BELOW_LOUDEST_DB = 45.0  # in dB; softer sound does not belong to a take, whatever the noise
 _SMOOTHING_FRAMES = 3  # the number of frames over which levels are averaged
 _START_FRAMES = 4  # the number of consecutive loud frames that start an utterance
 _MINIMUM_FRAMES = 80  # the number of recent frames whose minimum is a lower bound of the noise floor
@@ -29,11 +31,11 @@ _MEAN_TO_MINIMUM = 1.4  # the ratio of the noise's mean to its minimum, for sums
 _RISE_RATE, _FALL_RATE = 0.05, 0.08  # the fractions by which the floor approaches the level with each frame
 
 _LOUDEST_FRAMES = 12  # the number of frames that determine the loudest level
-_SPEECH_RANGE = 7.0  # in dB below the loudest level; speech at the microphone is louder than other sounds by this
+_SPEECH_RANGE_DB = 7.0  # in dB below the loudest level; speech at the microphone is louder than other sounds by this
 _SOFT_START_FRAMES = 8  # the number of frames by which a word may start before it reaches this level
 _MIN_NOISE_FRAMES = 15  # the minimum number of frames for measuring the noise
-_MIN_UNSTEADY_DEVIATION = 1.2  # the deviation of the level in dB: 1 for steady noise, 2 and more for babble
-_MIN_UNSTEADY_LEVEL = 5.0  # the median level in dB above the floor: up to 4 for steady noise, 8 and more for babble
+_MIN_UNSTEADY_DEVIATION_DB = 1.2  # the deviation of the level in dB: 1 for steady noise, 2 and more for babble
+_MIN_UNSTEADY_LEVEL_DB = 5.0  # the median level in dB above the floor: up to 4 for steady noise, 8 and more for babble
 _NOISE_DEVIATIONS = 1.5  # the number of standard deviations by which unsteady noise exceeds its mean
 
 
@@ -64,13 +66,13 @@ class VoiceActivity:
         if self._frame_count == 1:
             self.floor = smoothed
         # This runs a hundred times a second: minimum and maximum take half the time of clip and mean.
-        band_levels = np.minimum(np.maximum(10.0 * np.log10(smoothed / self.floor), 0.0), _MAX_BAND_LEVEL)
-        is_loud = float(band_levels.sum()) / BANDS > (_CONTINUE_LEVEL if self.speaking else _START_LEVEL)
+        band_levels = np.minimum(np.maximum(10.0 * np.log10(smoothed / self.floor), 0.0), _MAX_BAND_LEVEL_DB)
+        is_loud = float(band_levels.sum()) / BANDS > (_CONTINUE_LEVEL_DB if self.speaking else _START_LEVEL_DB)
         self._loud_frames = self._loud_frames + 1 if is_loud else 0
         self.quiet_frames = 0 if is_loud else self.quiet_frames + 1
         if self._loud_frames >= _START_FRAMES:
             self.speaking = True
-        elif self.quiet_frames >= HANGOVER:
+        elif self.quiet_frames >= HANGOVER_FRAMES:
             self.speaking = False
         self._update_floor(smoothed, is_loud=is_loud)
         return self.speaking
@@ -88,7 +90,7 @@ class VoiceActivity:
             self.floor = np.maximum(self.floor, _MEAN_TO_MINIMUM * np.min(self._smoothed_frames, axis=0))
 
 
-def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.float64] | None:
+def estimate_unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.float64] | None:
     """Return the level of unsteady noise, such as other people's talk around a word.
 
     The floor follows the minimum of such noise, and most of the noise is far above it. The level before the speech, and
@@ -101,7 +103,7 @@ def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.flo
     Returns:
         The power of each band, at least the floor, shape ``(BANDS,)``; None if the noise is steady.
     """
-    lead_in = np.maximum(powers[: _first_loud(powers) - _SOFT_START_FRAMES], _MIN_POWER)
+    lead_in = np.maximum(powers[: _find_first_loud_frame(powers) - _SOFT_START_FRAMES], _MIN_POWER)
     if len(lead_in) < _MIN_NOISE_FRAMES:
         return None
     smoothed = (lead_in[:-2] + lead_in[1:-1] + lead_in[2:]) / 3.0
@@ -110,23 +112,23 @@ def unsteady_noise(powers: Powers, floor: NDArray[np.float64]) -> NDArray[np.flo
     )  # the floor may not have fallen to the noise yet
     level = np.mean(10.0 * np.log10(lead_in / steady_noise), axis=1)
     smoothed_level = np.convolve(level, np.full(_SMOOTHING_FRAMES, 1.0 / _SMOOTHING_FRAMES), "valid")
-    if np.median(level) < _MIN_UNSTEADY_LEVEL or smoothed_level.std() < _MIN_UNSTEADY_DEVIATION:
+    if np.median(level) < _MIN_UNSTEADY_LEVEL_DB or smoothed_level.std() < _MIN_UNSTEADY_DEVIATION_DB:
         return None
     noise: NDArray[np.float64] = np.maximum(floor, lead_in.mean(axis=0) + _NOISE_DEVIATIONS * lead_in.std(axis=0))
     return noise
 
 
-def _first_loud(powers: Powers) -> int:
-    """Return the index of the first frame within `_SPEECH_RANGE` dB of the loudest frames.
+def _find_first_loud_frame(powers: Powers) -> int:
+    """Return the index of the first frame within `_SPEECH_RANGE_DB` dB of the loudest frames.
 
     The result is at least `_SOFT_START_FRAMES`.
     """
     totals = np.convolve(powers.sum(axis=1), np.full(_SMOOTHING_FRAMES, 1.0 / _SMOOTHING_FRAMES), "same")
     loudest = np.sort(totals)[-_LOUDEST_FRAMES:].mean()
-    return max(_SOFT_START_FRAMES, int(np.argmax(totals > 10.0 ** (-_SPEECH_RANGE / 10.0) * loudest)))
+    return max(_SOFT_START_FRAMES, int(np.argmax(totals > 10.0 ** (-_SPEECH_RANGE_DB / 10.0) * loudest)))
 
 
-def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
+def find_speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
     """Return the longest speech segment of a recording, and the noise floor.
 
     Returns:
@@ -138,14 +140,14 @@ def speech_span(powers: Powers) -> tuple[int, int, NDArray[np.float64]]:
     smoothed = np.maximum(powers, _MIN_POWER)
     smoothed[1:-1] = (smoothed[:-2] + smoothed[1:-1] + smoothed[2:]) / 3.0
     floor = np.maximum(_MIN_POWER, _MEAN_TO_MINIMUM * np.quantile(smoothed, 0.1, axis=0))
-    level = np.mean(np.clip(10.0 * np.log10(smoothed / floor), 0.0, _MAX_BAND_LEVEL), axis=1)
+    level = np.mean(np.clip(10.0 * np.log10(smoothed / floor), 0.0, _MAX_BAND_LEVEL_DB), axis=1)
     # A browser's noise suppression reduces the noise only gradually, so at first the noise is far above the floor.
     totals = smoothed.sum(axis=1)
-    is_audible = totals > 10.0 ** (-_MAX_BELOW_LOUDEST / 10.0) * totals.max()
-    loud_frames = np.flatnonzero((level > _TAKE_LEVEL) & is_audible)
+    is_audible = totals > 10.0 ** (-_MAX_BELOW_LOUDEST_DB / 10.0) * totals.max()
+    loud_frames = np.flatnonzero((level > _TAKE_LEVEL_DB) & is_audible)
     if not len(loud_frames):
         return 0, 0, floor
-    cuts = np.flatnonzero(np.diff(loud_frames) > HANGOVER) + 1
+    cuts = np.flatnonzero(np.diff(loud_frames) > HANGOVER_FRAMES) + 1
     longest = max(np.split(loud_frames, cuts), key=len)
     if len(longest) < _START_FRAMES:
         return 0, 0, floor

@@ -21,7 +21,7 @@ _PASS_BAND = 0.92
 _KAISER_BETA = 7.0
 """The shape parameter of the Kaiser window."""
 _ZERO_CROSSINGS = 32  # the number of zero crossings of the sinc on each side
-_BATCH = 8_192  # the number of output samples per multiplication
+_BATCH_SAMPLES = 8_192  # the number of output samples per multiplication
 
 
 class Resampler:
@@ -61,8 +61,8 @@ class Resampler:
         windows = (
             np.lib.stride_tricks.sliding_window_view(self._buffer, tap_count) if output_count else self._buffer[None]
         )
-        for start in range(0, output_count, _BATCH):
-            positions = self._position + self._down * np.arange(start, min(output_count, start + _BATCH))
+        for start in range(0, output_count, _BATCH_SAMPLES):
+            positions = self._position + self._down * np.arange(start, min(output_count, start + _BATCH_SAMPLES))
             output[start : start + len(positions)] = np.einsum(
                 "ij,ij->i", windows[positions // self._up], self._taps[positions % self._up]
             )

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 RATE = 16_000
 """Samples per second. Speech engines are trained at this rate, and the sound of microphones is resampled to it."""
 
-BLOCK = RATE // 10
+BLOCK_LENGTH = RATE // 10
 """The number of samples in a block of a microphone: 100 ms."""
 
 Samples: TypeAlias = NDArray[np.int16]

@@ -14,19 +14,22 @@ from numpy.typing import NDArray
 
 from linkwright.speech.sound.samples import RATE, Samples
 
-HOP = RATE // 100
+HOP_LENGTH = RATE // 100
 """The number of samples from one frame to the next: 10 ms."""
 
-WINDOW = RATE // 40
+WINDOW_LENGTH = RATE // 40
 """The number of samples from which a frame is computed: 25 ms."""
 
 BANDS = 26
 
 Powers: TypeAlias = NDArray[np.float64]
-"""The power of each band, shape ``(frames, BANDS)``, where white noise with an RMS of one 16-bit step has 1."""
+"""The power of each band, shape ``(frames, BANDS)``.
+
+The scale is such that white noise with an RMS of one 16-bit step has the power 1.
+"""
 
 _FFT_SIZE = 512
-_MIN_FREQUENCY, _MAX_FREQUENCY = 80.0, 7600.0  # the range of the bands in Hz
+_MIN_FREQUENCY_HZ, _MAX_FREQUENCY_HZ = 80.0, 7600.0  # the range of the bands in Hz
 _PRE_EMPHASIS = 0.97
 
 
@@ -47,27 +50,29 @@ class MelFrames:
         emphasized[1:] -= _PRE_EMPHASIS * values[:-1]
         self._last_sample = float(values[-1])
         self._buffer = np.concatenate((self._buffer, emphasized))
-        count = (len(self._buffer) - WINDOW) // HOP + 1
+        count = (len(self._buffer) - WINDOW_LENGTH) // HOP_LENGTH + 1
         if count <= 0:
             return np.zeros((0, BANDS))
-        frames = np.lib.stride_tricks.sliding_window_view(self._buffer, WINDOW)[: (count - 1) * HOP + 1 : HOP]
-        spectrum = np.abs(np.fft.rfft(frames * _WINDOW_SHAPE, _FFT_SIZE)) ** 2
-        self._buffer = self._buffer[count * HOP :]
+        frames = np.lib.stride_tricks.sliding_window_view(self._buffer, WINDOW_LENGTH)[
+            : (count - 1) * HOP_LENGTH + 1 : HOP_LENGTH
+        ]
+        spectrum = np.abs(np.fft.rfft(frames * _NORMALIZED_WINDOW, _FFT_SIZE)) ** 2
+        self._buffer = self._buffer[count * HOP_LENGTH :]
         powers: Powers = spectrum @ _FILTERS
         return powers
 
 
-def mel_frames(samples: Samples) -> Powers:
+def extract_mel_frames(samples: Samples) -> Powers:
     """Return the frames of a recording."""
     return MelFrames().feed(samples)
 
 
-def _mel_filters() -> NDArray[np.float64]:
+def _make_mel_filters() -> NDArray[np.float64]:
     """Return the filters of the mel bands, shape ``(_FFT_SIZE // 2 + 1, BANDS)``.
 
     Each filter sums to 1, so that white noise is equal in all bands.
     """
-    min_mel, max_mel = (2595.0 * log10(1.0 + hertz / 700.0) for hertz in (_MIN_FREQUENCY, _MAX_FREQUENCY))
+    min_mel, max_mel = (2595.0 * log10(1.0 + hertz / 700.0) for hertz in (_MIN_FREQUENCY_HZ, _MAX_FREQUENCY_HZ))
     mel = np.linspace(min_mel, max_mel, BANDS + 2)
     edges = 700.0 * (10.0 ** (mel / 2595.0) - 1.0)
     frequencies = np.arange(_FFT_SIZE // 2 + 1) * RATE / _FFT_SIZE
@@ -77,6 +82,6 @@ def _mel_filters() -> NDArray[np.float64]:
     return np.asarray(bands / bands.sum(axis=0))
 
 
-_HAMMING = np.hamming(WINDOW)
-_WINDOW_SHAPE = _HAMMING / np.sqrt(np.sum(_HAMMING**2))
-_FILTERS = _mel_filters()
+_HAMMING = np.hamming(WINDOW_LENGTH)
+_NORMALIZED_WINDOW = _HAMMING / np.sqrt(np.sum(_HAMMING**2))
+_FILTERS = _make_mel_filters()

@@ -18,7 +18,7 @@ from linkwright.files.input_files import read_file
 from linkwright.speech.sound.resampling import MAX_RATE, MIN_RATE, resample
 from linkwright.speech.sound.samples import RATE, Samples
 
-_MAX_FILE_SIZE = 1 << 30  # in bytes
+_MAX_FILE_BYTES = 1 << 30  # in bytes
 _PCM, _FLOAT, _EXTENSIBLE = 1, 3, 0xFFFE
 _OTHER_FORMATS = {2: "ADPCM", 6: "A-law", 7: "mu-law", 0x11: "IMA ADPCM", 0x31: "GSM", 0x55: "MP3"}
 _SUPPORTED_FORMATS = {(_PCM, 8), (_PCM, 16), (_PCM, 24), (_PCM, 32), (_FLOAT, 32), (_FLOAT, 64)}
@@ -46,7 +46,7 @@ def read_wav(path: str | os.PathLike[str]) -> Samples:
     """
     path_text = display_path(Path(path))
     try:
-        data = read_file(path, _MAX_FILE_SIZE)
+        data = read_file(path, _MAX_FILE_BYTES)
     except OSError as error:
         message = phrase("cannot read '{path}': {reason}", path=path_text, reason=foreign(error.strerror))
         raise LinkwrightError(Diagnostic("VOICE401", message, hint=missing_file_hint(Path(path)))) from None
@@ -89,7 +89,7 @@ def parse_wav(data: bytes, name: str) -> Samples:
             ),
         )
     frame_size = wav_format.channels * wav_format.bits // 8
-    values = _values(sample_bytes[: len(sample_bytes) // frame_size * frame_size], wav_format).reshape(
+    values = _decode_values(sample_bytes[: len(sample_bytes) // frame_size * frame_size], wav_format).reshape(
         -1, wav_format.channels
     )
     if not np.isfinite(values).all():
@@ -127,7 +127,7 @@ def _read_chunks(data: bytes, name: str) -> tuple[_WavFormat, bytes]:
     raise _wav_error(name, phrase("it contains no samples"))
 
 
-def _values(sample_bytes: bytes, wav_format: _WavFormat) -> NDArray[np.float64]:
+def _decode_values(sample_bytes: bytes, wav_format: _WavFormat) -> NDArray[np.float64]:
     """Return the samples of all channels, interleaved, full scale at 1."""
     if wav_format.kind == _FLOAT:
         return np.frombuffer(sample_bytes, f"<f{wav_format.bits // 8}").astype(np.float64)

@@ -14,16 +14,16 @@ from linkwright.vision.datasets.options import Options
 from linkwright.vision.datasets.randomized_world import MovableObject, RandomizedWorld
 
 _MAX_TRIES = 20
-_STEPS = 40
-_MIN_DISTANCE, _MAX_DISTANCE = 0.3, 12.0
+_LINE_OF_SIGHT_STEPS = 40
+_MIN_DISTANCE_M, _MAX_DISTANCE_M = 0.3, 12.0
 """The minimum and maximum distance of objects from the camera, in m."""
-_MIN_LENGTH, _MAX_LENGTH = 0.045, 0.5
+_MIN_LENGTH_FRACTION, _MAX_LENGTH_FRACTION = 0.045, 0.5
 """The minimum and maximum length of an object, as fractions of the image width: 30 to 320 of 640 pixels."""
-_FAR_CLIP = 30.0
+_FAR_CLIP_M = 30.0
 """The far clip distance, in m."""
 _OCCLUDED_FRACTION = 0.15
 """The fraction of objects that may be placed behind structures."""
-_CAMERA_CLEARANCE = 0.12
+_CAMERA_CLEARANCE_M = 0.12
 """The minimum distance of the camera from any object or structure, in m."""
 
 
@@ -73,9 +73,9 @@ class _Ground:
 
     def has_line_of_sight(self, start: tuple[float, float], end: tuple[float, float]) -> bool:
         """Return whether no structure blocks the line between two points."""
-        steps = np.linspace(start, end, _STEPS)[:, None] - self._centers
-        beyond = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half_sizes
-        return not (beyond < 0.0).all(axis=2).any()
+        steps = np.linspace(start, end, _LINE_OF_SIGHT_STEPS)[:, None] - self._centers
+        distances_outside = np.abs(np.einsum("gji,sgj->sgi", self._axes, steps)) - self._half_sizes
+        return not (distances_outside < 0.0).all(axis=2).any()
 
     def occupy(self, x: float, y: float, radius: float) -> None:
         """Mark a circle as occupied."""
@@ -94,15 +94,23 @@ def arrange(world: RandomizedWorld, options: Options, generator: np.random.Gener
     ground = _Ground(world, structures)
     field = radians(generator.uniform(45.0, 100.0))
     focal = options.width / (2 * tan(field / 2))
-    optics = Optics(options.width, options.height, focal, focal, options.width / 2, options.height / 2, 0.03, _FAR_CLIP)
+    optics = Optics(
+        options.width, options.height, focal, focal, options.width / 2, options.height / 2, 0.03, _FAR_CLIP_M
+    )
     x, y, heading = _choose_camera_pose(world, ground, generator)
     height = world.floor + (exp(generator.uniform(log(0.08), log(0.8))) if generator.random() < 0.7 else
                             generator.uniform(0.6, 2.5))  # fmt: skip
-    ground.occupy(x, y, _CAMERA_CLEARANCE)
+    ground.occupy(x, y, _CAMERA_CLEARANCE_M)
     placed_objects, target = [], None
     for movable in _choose_objects(world, options, generator):
         position = _find_free_position(
-            world, ground, movable.radius, (x, y, heading), field, generator, _distance_range(movable, focal, options)
+            world,
+            ground,
+            movable.radius,
+            (x, y, heading),
+            field,
+            generator,
+            _find_distance_range(movable, focal, options),
         )
         if position is not None:
             _place_object(world, movable, position, generator)
@@ -112,14 +120,14 @@ def arrange(world: RandomizedWorld, options: Options, generator: np.random.Gener
         if generator.random() < 0.35:
             radius = world.shape_distractor(geom, generator)
             position = _find_free_position(
-                world, ground, radius, (x, y, heading), field, generator, (_MIN_DISTANCE, _MAX_DISTANCE)
+                world, ground, radius, (x, y, heading), field, generator, (_MIN_DISTANCE_M, _MAX_DISTANCE_M)
             )
             if position is not None:
                 height_above_floor = generator.uniform(0.0, 1.5) if generator.random() < 0.2 else 0.0
                 rotation = (
-                    _random_rotation(generator)
+                    _draw_rotation(generator)
                     if generator.random() < 0.5
-                    else _yaw_rotation(generator.uniform(-pi, pi))
+                    else _make_yaw_rotation(generator.uniform(-pi, pi))
                 )
                 world.put_distractor(geom, np.array([*position, world.floor + height_above_floor]), rotation)
     if target is None:
@@ -159,7 +167,7 @@ def _choose_camera_pose(
         clearance = generator.uniform(0.8, 2.5)
         distances = (share * clearance for share in (0.0, 0.25, 0.5, 0.75, 1.0))
         is_free = (
-            ground.is_free(x + distance * cos(heading), y + distance * sin(heading), _CAMERA_CLEARANCE)
+            ground.is_free(x + distance * cos(heading), y + distance * sin(heading), _CAMERA_CLEARANCE_M)
             for distance in distances
         )
         if all(is_free):
@@ -187,12 +195,14 @@ def _choose_objects(world: RandomizedWorld, options: Options, generator: np.rand
     return selected_objects
 
 
-def _distance_range(movable: MovableObject, focal: float, options: Options) -> tuple[float, float]:
+def _find_distance_range(movable: MovableObject, focal: float, options: Options) -> tuple[float, float]:
     """Return the range of distances in m at which an object has a suitable size in an image."""
     spans = np.sort(movable.corners.max(axis=0) - movable.corners.min(axis=0))
-    nearest = max(focal * spans[2] / (_MAX_LENGTH * options.width), _MIN_DISTANCE)
-    farthest = min(spans[2] / (_MIN_LENGTH * options.width), spans[1] / (1.2 * max(options.min_size, 1))) * focal
-    return float(min(nearest, _MAX_DISTANCE / 2)), float(np.clip(farthest, 1.5 * nearest, _MAX_DISTANCE))
+    nearest = max(focal * spans[2] / (_MAX_LENGTH_FRACTION * options.width), _MIN_DISTANCE_M)
+    farthest = (
+        min(spans[2] / (_MIN_LENGTH_FRACTION * options.width), spans[1] / (1.2 * max(options.min_size, 1))) * focal
+    )
+    return float(min(nearest, _MAX_DISTANCE_M / 2)), float(np.clip(farthest, 1.5 * nearest, _MAX_DISTANCE_M))
 
 
 def _find_free_position(
@@ -231,9 +241,9 @@ def _place_object(
     world: RandomizedWorld, movable: MovableObject, position: tuple[float, float], generator: np.random.Generator
 ) -> None:
     """Place an object at a position: usually upright, sometimes lying or above the ground."""
-    rotation = _yaw_rotation(generator.uniform(-pi, pi))
+    rotation = _make_yaw_rotation(generator.uniform(-pi, pi))
     if movable.is_round or generator.random() < 0.08:
-        rotation = _random_rotation(generator)
+        rotation = _draw_rotation(generator)
     elif generator.random() < 0.06:
         rotation = rotation @ np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
     corners = movable.corners @ rotation.T
@@ -253,12 +263,12 @@ def _place_object(
     )
 
 
-def _yaw_rotation(angle: float) -> Array:
+def _make_yaw_rotation(angle: float) -> Array:
     rotation: Array = np.array([[cos(angle), -sin(angle), 0.0], [sin(angle), cos(angle), 0.0], [0.0, 0.0, 1.0]])
     return rotation
 
 
-def _random_rotation(generator: np.random.Generator) -> Array:
+def _draw_rotation(generator: np.random.Generator) -> Array:
     orthogonal, triangle = np.linalg.qr(generator.normal(size=(3, 3)))
     orthogonal = orthogonal * np.sign(np.diag(triangle))
     rotation: Array = orthogonal * np.linalg.det(orthogonal)

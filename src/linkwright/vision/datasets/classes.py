@@ -23,16 +23,16 @@ from linkwright.simulation.sensors.mount import part_of
 from linkwright.simulation.simulation import Simulation
 
 _NUMBER_SUFFIX = re.compile(r"[ _-]*(?:clone)?[ _-]*\(?\d+\)?$")
-_COLORS = frozenset(
+_COLOR_WORDS = frozenset(
     ("red", "green", "blue", "yellow", "orange", "purple", "pink", "white", "black", "grey", "gray", "brown", "cyan")
 )
 _BACKGROUND_WORDS = frozenset(
     ("ground", "plane", "floor", "floors", "wall", "walls", "room", "rooms", "house", "building", "road", "roads")
 )
 """Words in the names of models that are surroundings, not objects."""
-_MAX_OBJECT_WIDTH = 4.0
+_MAX_OBJECT_WIDTH_M = 4.0
 """The width in m above which a static model is part of the surroundings, unless a file of classes names it."""
-_MAX_GAP = 0.02
+_MAX_GAP_M = 0.02
 """The maximum gap in m between visuals that form one object."""
 
 
@@ -63,7 +63,7 @@ class ClassRules:
 
     patterns: Mapping[str, tuple[str, ...]]
 
-    def class_number(self, *names: str) -> int | None:
+    def find_class_number(self, *names: str) -> int | None:
         """Return the number of the first class with a pattern that matches a name, or None."""
         for index, patterns in enumerate(self.patterns.values()):
             if any(fnmatchcase(name, pattern) for name in names for pattern in patterns):
@@ -99,17 +99,17 @@ def _invalid_classes_error(document: YamlDocument, node: yaml.Node | None) -> Li
     return document.error(phrase("a file of classes must map names of classes to patterns of model names"), node, hint)
 
 
-def default_class(name: str) -> str:
+def derive_class(name: str) -> str:
     """Return the class for a model name, such as ``ball`` for ``red_ball_2``.
 
     The class is the name in lower case, without colors and final number.
     """
     words = [word for word in re.split(r"[ _-]+", _NUMBER_SUFFIX.sub("", name.lower())) if word]
-    words_without_colors = [word for word in words if word not in _COLORS]
+    words_without_colors = [word for word in words if word not in _COLOR_WORDS]
     return "_".join(words_without_colors or words) or name
 
 
-def default_rules(simulations: list[Simulation]) -> ClassRules:
+def make_default_rules(simulations: list[Simulation]) -> ClassRules:
     """Return default class rules for worlds, with a class for each model except surroundings.
 
     The classes are sorted by name. For an included model, the name in its own file determines the class.
@@ -118,8 +118,8 @@ def default_rules(simulations: list[Simulation]) -> ClassRules:
     for simulation in simulations:
         for name, model in simulation.scene.models.items():
             if not _is_background(simulation, name, model.model):
-                patterns.setdefault(default_class(original_name(model.model)), set()).update(
-                    (name, original_name(model.model))
+                patterns.setdefault(derive_class(get_original_name(model.model)), set()).update(
+                    (name, get_original_name(model.model))
                 )
     return ClassRules({name: tuple(sorted(names)) for name, names in sorted(patterns.items())})
 
@@ -130,32 +130,32 @@ def find_objects(simulation: Simulation, rules: ClassRules) -> list[SceneObject]
     A model with a class is one object. If the rules name visuals of a model, visuals that touch are one object.
     """
     objects: list[SceneObject] = []
-    visuals = _visuals(simulation)
-    boxes = geom_boxes(simulation.model, simulation.data)
+    visuals = _list_geoms_by_visual(simulation)
+    boxes = compute_geom_boxes(simulation.model, simulation.data)
     for name, scene_model in simulation.scene.models.items():
         geoms = visuals.get(name, {})
-        model_label = rules.class_number(name, original_name(scene_model.model))
+        model_label = rules.find_class_number(name, get_original_name(scene_model.model))
         if model_label is not None:
             geom_names = tuple(geom for part in geoms.values() for geom in part)
             objects += [SceneObject(name, model_label, geom_names)] if geom_names else []
             continue
         visuals_by_label: dict[int, list[str]] = {}
         for visual in geoms:
-            label = rules.class_number(visual)
+            label = rules.find_class_number(visual)
             if label is not None:
                 visuals_by_label.setdefault(label, []).append(visual)
         for label, visuals_of_label in visuals_by_label.items():
-            for group in _touching_groups(visuals_of_label, geoms, simulation.model, boxes):
+            for group in _group_touching_visuals(visuals_of_label, geoms, simulation.model, boxes):
                 objects.append(SceneObject(group[0], label, tuple(geom for part in group for geom in geoms[part])))
     return objects
 
 
-def original_name(model: Model) -> str:
+def get_original_name(model: Model) -> str:
     """Return the name of a model in its own file, even if it is included under another name."""
     return (model.element.attributes.get("name") if model.element is not None else None) or model.name
 
 
-def geom_boxes(model: Any, data: Any) -> Array:
+def compute_geom_boxes(model: Any, data: Any) -> Array:
     """Return the axis-aligned boxes of all geoms in world coordinates.
 
     The corners are in m, and the shape is (geoms, 2, 3).
@@ -167,7 +167,7 @@ def geom_boxes(model: Any, data: Any) -> Array:
     return boxes
 
 
-def _visuals(simulation: Simulation) -> dict[str, dict[str, list[str]]]:
+def _list_geoms_by_visual(simulation: Simulation) -> dict[str, dict[str, list[str]]]:
     """Return the names of the geoms of each visual, by model and visual."""
     visuals: dict[str, dict[str, list[str]]] = {}
     for geom in range(simulation.model.ngeom):
@@ -179,20 +179,24 @@ def _visuals(simulation: Simulation) -> dict[str, dict[str, list[str]]]:
 
 
 def _is_background(simulation: Simulation, name: str, model: Model) -> bool:
-    words = set(re.split(r"[ _-]+", original_name(model).lower()))
+    words = set(re.split(r"[ _-]+", get_original_name(model).lower()))
     if words & _BACKGROUND_WORDS:
         return True
-    geom_ids = [simulation.model.geom(geom).id for part in _visuals(simulation).get(name, {}).values() for geom in part]
+    geom_ids = [
+        simulation.model.geom(geom).id
+        for part in _list_geoms_by_visual(simulation).get(name, {}).values()
+        for geom in part
+    ]
     if not geom_ids:
         return True
     if (simulation.model.geom_type[geom_ids] == load_mujoco().mjtGeom.mjGEOM_PLANE).any():
         return True
-    boxes = geom_boxes(simulation.model, simulation.data)[geom_ids]
+    boxes = compute_geom_boxes(simulation.model, simulation.data)[geom_ids]
     extent = boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)
-    return model.static and bool((extent[:2] > _MAX_OBJECT_WIDTH).any())
+    return model.static and bool((extent[:2] > _MAX_OBJECT_WIDTH_M).any())
 
 
-def _touching_groups(
+def _group_touching_visuals(
     visuals: list[str], geoms: Mapping[str, list[str]], model: Any, boxes: Array
 ) -> Iterator[list[str]]:
     """Yield groups of visuals whose bounding boxes touch each other."""
@@ -207,11 +211,11 @@ def _touching_groups(
         while queue:
             visual = queue.pop(0)
             group.append(visual)
-            neighbors = [other for other in remaining if _boxes_touch(bounds[visual], bounds[other])]
+            neighbors = [other for other in remaining if _do_boxes_touch(bounds[visual], bounds[other])]
             queue += neighbors
             remaining = [other for other in remaining if other not in neighbors]
         yield group
 
 
-def _boxes_touch(first: Array, second: Array) -> bool:
-    return bool((first[0] <= second[1] + _MAX_GAP).all() and (second[0] <= first[1] + _MAX_GAP).all())
+def _do_boxes_touch(first: Array, second: Array) -> bool:
+    return bool((first[0] <= second[1] + _MAX_GAP_M).all() and (second[0] <= first[1] + _MAX_GAP_M).all())

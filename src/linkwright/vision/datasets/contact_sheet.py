@@ -7,15 +7,15 @@ from io import BytesIO
 
 from linkwright.vision.datasets.rendering import LabeledImage
 
-_COLUMNS, _WIDTH = 5, 320
+_COLUMNS, _THUMBNAIL_WIDTH = 5, 320
 MAX_SHEET_IMAGES = 30
 """The maximum number of images on a sheet."""
 _COLORS = ("#ffdc00", "#00d5ff", "#ff5ec4", "#7dff5c", "#ff8a3c", "#b09bff", "#ffffff", "#4affc0")
 _IGNORED_COLOR = "#808080"
 
 
-def contact_sheet(images: Sequence[LabeledImage], classes: Sequence[str]) -> bytes:
-    """Return a JPEG of the first `MAX_SHEET_IMAGES` images, with the class and visible box of each object.
+def make_contact_sheet(images: Sequence[LabeledImage], classes: Sequence[str]) -> bytes:
+    """Return a JPEG of the first `MAX_SHEET_IMAGES` images, with each object's class and box.
 
     Objects that are ignored, because they are too small or too hidden, have gray boxes.
     """
@@ -25,8 +25,8 @@ def contact_sheet(images: Sequence[LabeledImage], classes: Sequence[str]) -> byt
     thumbnails = []
     for sample in samples:
         image = Image.open(BytesIO(sample.data)).convert("RGB")
-        scale = _WIDTH / image.width
-        image = image.resize((_WIDTH, max(round(image.height * scale), 1)))
+        scale = _THUMBNAIL_WIDTH / image.width
+        image = image.resize((_THUMBNAIL_WIDTH, max(round(image.height * scale), 1)))
         draw = ImageDraw.Draw(image)
         for label in sample.labels:
             left, top, right, bottom = (scale * edge for edge in label.box)
@@ -42,9 +42,9 @@ def contact_sheet(images: Sequence[LabeledImage], classes: Sequence[str]) -> byt
         thumbnails.append(image)
     height = max((image.height for image in thumbnails), default=1)
     columns = max(min(_COLUMNS, len(thumbnails)), 1)
-    sheet = Image.new("RGB", (columns * _WIDTH, max(-(-len(thumbnails) // columns), 1) * height))
+    sheet = Image.new("RGB", (columns * _THUMBNAIL_WIDTH, max(-(-len(thumbnails) // columns), 1) * height))
     for index, image in enumerate(thumbnails):
-        sheet.paste(image, (index % columns * _WIDTH, index // columns * height))
+        sheet.paste(image, (index % columns * _THUMBNAIL_WIDTH, index // columns * height))
     file = BytesIO()
     sheet.save(file, "JPEG", quality=88)
     return file.getvalue()

@@ -12,8 +12,8 @@ from typing import Any
 from linkwright._version import __version__
 from linkwright.files.whole_files import write_whole_file
 from linkwright.process.processors import usable_processors
-from linkwright.vision.datasets.contact_sheet import MAX_SHEET_IMAGES, contact_sheet
-from linkwright.vision.datasets.folder import SHEET, DatasetFolder, write_error
+from linkwright.vision.datasets.contact_sheet import MAX_SHEET_IMAGES, make_contact_sheet
+from linkwright.vision.datasets.folder import SHEET_FILE, DatasetFolder, write_error
 from linkwright.vision.datasets.options import FORMATS, Options
 from linkwright.vision.datasets.rendering import IMAGES_PER_PATTERN_SET, DatasetInput, DatasetRenderer, LabeledImage
 from linkwright.vision.datasets.workers import make_in_processes
@@ -82,7 +82,7 @@ def make_dataset(
             path, renderer.classes, (options.width, options.height), tuple(formats), options.image_format
         )
         folder.open(force=force, append=append)
-        card = _run_card(source, renderer)
+        card = _make_run_card(source, renderer)
         numbers = range(folder.first_number, folder.first_number + images)
         in_this_process = workers == 1 or images <= IMAGES_PER_PATTERN_SET
         samples = (
@@ -106,7 +106,7 @@ def make_dataset(
     if image_error is not None:
         raise image_error
     try:
-        write_whole_file(path / SHEET, contact_sheet(sheet_samples, renderer.classes))
+        write_whole_file(path / SHEET_FILE, make_contact_sheet(sheet_samples, renderer.classes))
     except OSError as error:
         raise write_error(path, error) from None
     return DatasetResult(folder, added, was_interrupted)
@@ -122,7 +122,7 @@ def _yield_and_close(samples: Iterator[LabeledImage]) -> Iterator[LabeledImage]:
             close()
 
 
-def _run_card(source: DatasetInput, renderer: DatasetRenderer) -> dict[str, Any]:
+def _make_run_card(source: DatasetInput, renderer: DatasetRenderer) -> dict[str, Any]:
     worlds = [
         {"name": name, "file": path.name, "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
         for name, path in zip(source.worlds, renderer.worlds, strict=True)

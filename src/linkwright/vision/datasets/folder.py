@@ -19,12 +19,12 @@ from linkwright.vision.datasets.options import SPLITS
 from linkwright.vision.datasets.rendering import LabeledImage
 from linkwright.vision.datasets.statistics import ClassStatistics, compute_statistics
 
-CARD = "dataset.json"
-SHEET = "contact_sheet.jpg"
+CARD_FILE = "dataset.json"
+SHEET_FILE = "contact_sheet.jpg"
 _FORMAT_VERSION = 2
 """The version of the card's format."""
 _FOLDERS = ("images", "labels", "annotations")
-_FILES = (CARD, "data.yaml", SHEET)
+_FILES = (CARD_FILE, "data.yaml", SHEET_FILE)
 
 
 class DatasetFolder:
@@ -85,10 +85,10 @@ class DatasetFolder:
             is_occupied = self.path.exists() and (not self.path.is_dir() or any(self.path.iterdir()))
             if is_occupied and append:
                 self._read_existing()
-            elif is_occupied and not (force and (self.path / CARD).is_file()):
-                raise _occupied_folder_error(self.path, is_dataset=(self.path / CARD).is_file())
+            elif is_occupied and not (force and (self.path / CARD_FILE).is_file()):
+                raise _occupied_folder_error(self.path, is_dataset=(self.path / CARD_FILE).is_file())
             elif is_occupied:
-                self._remove()
+                self._remove_dataset()
             for subfolder in ("images", *(["labels"] if "yolo" in self._formats else [])):
                 for split in SPLITS:
                     (self.path / subfolder / split).mkdir(parents=True, exist_ok=True)
@@ -108,14 +108,14 @@ class DatasetFolder:
         try:
             image.write_bytes(sample.data)
             if "yolo" in self._formats:
-                text.write_text(_yolo_lines(sample, width, height), encoding="utf-8")
+                text.write_text(_format_yolo_labels(sample, width, height), encoding="utf-8")
         except BaseException:
-            _remove([image, text])
+            _remove_files([image, text])
             raise
         self._images[sample.split].append(
             {"id": sample.index, "file_name": image.name, "width": width, "height": height}
         )
-        self._annotations[sample.split] += _coco(sample, width, height)
+        self._annotations[sample.split] += _make_coco_annotations(sample, width, height)
 
     def finish(self, card: Mapping[str, Any]) -> None:
         """Write the COCO annotations of all images, and the card.
@@ -130,10 +130,10 @@ class DatasetFolder:
         """
         error = self._try_to_write(card)
         while error is not None and self.count:
-            self._drop(-(-self.count // 4))
+            self._drop_last_images(-(-self.count // 4))
             error = self._try_to_write(card)
         if error is not None:
-            self._remove()
+            self._remove_dataset()
             raise write_error(self.path, error)
 
     def _try_to_write(self, card: Mapping[str, Any]) -> OSError | None:
@@ -144,7 +144,11 @@ class DatasetFolder:
         return None
 
     def _write(self, card: Mapping[str, Any]) -> None:
-        this_run = {**card, "first": self.first_number, "images": self.count - sum(run["images"] for run in self._runs)}
+        current_run = {
+            **card,
+            "first": self.first_number,
+            "images": self.count - sum(run["images"] for run in self._runs),
+        }
         splits = {split: len(images) for split, images in self._images.items()}
         content = {
             "form": _FORMAT_VERSION,
@@ -154,24 +158,24 @@ class DatasetFolder:
             "images": self.count,
             "splits": splits,
             "formats": list(self._formats),
-            "made": [*self._runs, this_run],
+            "made": [*self._runs, current_run],
             "statistics": {name: asdict(class_statistics) for name, class_statistics in self.statistics().items()},
         }
         if "coco" in self._formats:
             (self.path / "annotations").mkdir(exist_ok=True)
             for split in SPLITS:
-                self._write_json(Path("annotations") / f"instances_{split}.json", self._coco(split, card))
+                self._write_json(Path("annotations") / f"instances_{split}.json", self._make_coco_document(split, card))
         if "yolo" in self._formats:
-            write_whole_file(self.path / "data.yaml", self._data_yaml(splits))
-        self._write_json(Path(CARD), content)
+            write_whole_file(self.path / "data.yaml", self._format_data_yaml(splits))
+        self._write_json(Path(CARD_FILE), content)
 
     def _write_json(self, name: Path, content: Any) -> None:
-        indent = 1 if name.name == CARD else None
+        indent = 1 if name.name == CARD_FILE else None
         separators = None if indent else (",", ":")
         text = json.dumps(content, indent=indent, separators=separators, ensure_ascii=False)
         write_whole_file(self.path / name, text + "\n")
 
-    def _coco(self, split: str, card: Mapping[str, Any]) -> dict[str, Any]:
+    def _make_coco_document(self, split: str, card: Mapping[str, Any]) -> dict[str, Any]:
         annotations = sorted(self._annotations[split], key=lambda entry: int(entry["image_id"]))
         return {
             "info": {"description": "made by linkwright dataset", "version": card["version"]},
@@ -184,7 +188,7 @@ class DatasetFolder:
             ],
         }
 
-    def _data_yaml(self, splits: Mapping[str, int]) -> str:
+    def _format_data_yaml(self, splits: Mapping[str, int]) -> str:
         lines = ["# Made by linkwright dataset. Paths are relative to the folder of this file."]
         lines += [f"{split}: images/{split}" for split in SPLITS if splits[split]]
         lines += ["names:", *(f"  {index}: {json.dumps(name)}" for index, name in enumerate(self._classes))]
@@ -194,7 +198,7 @@ class DatasetFolder:
         """Load the card and the labels of an existing dataset."""
         folder = display_path(self.path)
         try:
-            card = json.loads((self.path / CARD).read_text(encoding="utf-8"))
+            card = json.loads((self.path / CARD_FILE).read_text(encoding="utf-8"))
             lists = {
                 split: json.loads((self.path / "annotations" / f"instances_{split}.json").read_text(encoding="utf-8"))
                 for split in SPLITS
@@ -223,7 +227,7 @@ class DatasetFolder:
         numbers = [image["id"] for images in self._images.values() for image in images]
         self.first_number = max(numbers, default=-1) + 1
 
-    def _drop(self, count: int) -> None:
+    def _drop_last_images(self, count: int) -> None:
         """Remove the last images and their labels."""
         last_ids = sorted(image["id"] for images in self._images.values() for image in images)[-count:]
         dropped_ids = set(last_ids)
@@ -231,20 +235,20 @@ class DatasetFolder:
             files = [entry["file_name"] for entry in self._images[split] if entry["id"] in dropped_ids]
             for name in files:
                 text = self.path / "labels" / split / f"{Path(name).stem}.txt"
-                _remove([self.path / "images" / split / name, text])
+                _remove_files([self.path / "images" / split / name, text])
             self._images[split] = [entry for entry in self._images[split] if entry["id"] not in dropped_ids]
             self._annotations[split] = [
                 entry for entry in self._annotations[split] if entry["image_id"] not in dropped_ids
             ]
 
-    def _remove(self) -> None:
+    def _remove_dataset(self) -> None:
         """Remove the files of the dataset, and keep all other files."""
         for subfolder in _FOLDERS:
             shutil.rmtree(self.path / subfolder, ignore_errors=True)
-        _remove([self.path / name for name in _FILES])
+        _remove_files([self.path / name for name in _FILES])
 
 
-def _yolo_lines(sample: LabeledImage, width: int, height: int) -> str:
+def _format_yolo_labels(sample: LabeledImage, width: int, height: int) -> str:
     lines = []
     for label in sample.labels:
         if not label.is_ignored:
@@ -255,7 +259,7 @@ def _yolo_lines(sample: LabeledImage, width: int, height: int) -> str:
     return "".join(lines)
 
 
-def _coco(sample: LabeledImage, width: int, height: int) -> list[dict[str, Any]]:
+def _make_coco_annotations(sample: LabeledImage, width: int, height: int) -> list[dict[str, Any]]:
     annotations = []
     for label in sample.labels:
         left, top, right, bottom = label.box
@@ -276,7 +280,7 @@ def _coco(sample: LabeledImage, width: int, height: int) -> list[dict[str, Any]]
     return annotations
 
 
-def _remove(files: Sequence[Path]) -> None:
+def _remove_files(files: Sequence[Path]) -> None:
     for path in files:
         with suppress(OSError):
             path.unlink(missing_ok=True)

@@ -18,7 +18,7 @@ from linkwright.vision.datasets.randomized_world import MovableObject, Randomize
 Box = tuple[int, int, int, int]
 """Left, top, right and bottom in pixels, where right and bottom are the first column and row outside."""
 
-_MARGIN = 1.0
+_MARGIN_IMAGE_WIDTHS = 1.0
 """The margin around an image within which an object's full box is measured, in image widths."""
 
 
@@ -67,7 +67,7 @@ def label_image(
     objects = numbers[geoms]
     labels = []
     for number, movable in enumerate(arrangement.placed_objects, start=1):
-        box = box_of(objects == number)
+        box = find_bounding_box(objects == number)
         if box is None:
             continue
         left, top, right, bottom = box
@@ -76,20 +76,29 @@ def label_image(
         full_box, full_count, main_count = _measure_unoccluded(world, arrangement, movable, box)
         full_count = max(full_count, area)
         main_mask = geoms[top:bottom, left:right] == movable.main_geom
-        is_small = min(right - left, bottom - top) < min_size or _shorter_side(main_mask) < min_size / 2
+        is_small = min(right - left, bottom - top) < min_size or _measure_shorter_side(main_mask) < min_size / 2
         is_truncated = (
             full_box[0] < 0 or full_box[1] < 0 or full_box[2] > geoms.shape[1] or full_box[3] > geoms.shape[0]
         )
         is_hidden = area < min_visible * full_count or int(np.count_nonzero(main_mask)) < min_visible * main_count
         is_ignored = is_small or is_hidden
         labels.append(
-            Label(movable.label, box, full_box, area, area / full_count, is_truncated, is_ignored, run_lengths_of(mask))
+            Label(
+                movable.label,
+                box,
+                full_box,
+                area,
+                area / full_count,
+                is_truncated,
+                is_ignored,
+                encode_run_lengths(mask),
+            )
         )
     return labels
 
 
-def box_of(mask: Any) -> Box | None:
-    """Return the bounding box (left, top, right, bottom) of a mask, in pixels; None for an empty mask.
+def find_bounding_box(mask: Any) -> Box | None:
+    """Return the bounding box of a mask in pixels: left, top, right, bottom; None if it is empty.
 
     The mask has the shape (height, width). `right` and `bottom` are exclusive.
     """
@@ -101,14 +110,14 @@ def box_of(mask: Any) -> Box | None:
     return int(columns[0]), top, int(columns[-1]) + 1, bottom
 
 
-def _shorter_side(mask: Any) -> int:
+def _measure_shorter_side(mask: Any) -> int:
     """Return the shorter side of a mask's bounding box."""
-    box = box_of(mask)
+    box = find_bounding_box(mask)
     return min(box[2] - box[0], box[3] - box[1]) if box else 0
 
 
-def run_lengths_of(mask: Any) -> tuple[int, ...]:
-    """Return a mask as COCO's uncompressed run lengths, by columns, beginning with false pixels."""
+def encode_run_lengths(mask: Any) -> tuple[int, ...]:
+    """Return a mask as COCO's uncompressed run lengths by columns, beginning with false pixels."""
     flat = mask.ravel(order="F")
     changes = np.flatnonzero(flat[1:] != flat[:-1]) + 1
     ends = [0, *changes.tolist(), len(flat)]
@@ -124,7 +133,7 @@ def _measure_unoccluded(
     The measurement ignores occlusion and truncation. An object larger than the image is rendered smaller, so its box is
     accurate only to a few pixels.
     """
-    left, top, right, bottom = _projected_bounds(world, arrangement, movable, visible)
+    left, top, right, bottom = _project_bounds(world, arrangement, movable, visible)
     optics = arrangement.optics
     scale = min(1.0, optics.width / (right - left), optics.height / (bottom - top))
     width, height = max(int((right - left) * scale), 1), max(int((bottom - top) * scale), 1)
@@ -134,7 +143,7 @@ def _measure_unoccluded(
         world, movable, lambda: world.renderer.render(optics_of_part, arrangement.pose, Channels.GEOMS).geoms
     )
     mask = np.isin(geoms, movable.geoms)
-    box = box_of(mask)
+    box = find_bounding_box(mask)
     if box is None:
         return visible, 0, 0
     full_box = (
@@ -147,7 +156,7 @@ def _measure_unoccluded(
     return full_box, round(np.count_nonzero(mask) / scale**2), round(main_pixels / scale**2)
 
 
-def _projected_bounds(world: RandomizedWorld, arrangement: Arrangement, movable: MovableObject, visible: Box) -> Box:
+def _project_bounds(world: RandomizedWorld, arrangement: Arrangement, movable: MovableObject, visible: Box) -> Box:
     """Return the rectangle of the image plane that contains an object, in pixels.
 
     The rectangle reaches at most one image width and height beyond the image. It has this maximum size if part of the
@@ -159,7 +168,7 @@ def _projected_bounds(world: RandomizedWorld, arrangement: Arrangement, movable:
     rotations = data.geom_xmat[movable.geoms].reshape(-1, 3, 3)
     world_corners = np.einsum("gij,gcj->gci", rotations, local) + data.geom_xpos[movable.geoms, None, :]
     camera_corners = (world_corners.reshape(-1, 3) - np.array(arrangement.pose[:3])) @ axes_of(arrangement.pose)
-    margin_x, margin_y = int(_MARGIN * optics.width), int(_MARGIN * optics.height)
+    margin_x, margin_y = int(_MARGIN_IMAGE_WIDTHS * optics.width), int(_MARGIN_IMAGE_WIDTHS * optics.height)
     minimum, maximum = np.array([-margin_x, -margin_y]), np.array([optics.width + margin_x, optics.height + margin_y])
     if (camera_corners[:, 2] > optics.near).all():
         pixels = optics.project(camera_corners)

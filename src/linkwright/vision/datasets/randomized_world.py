@@ -15,8 +15,8 @@ from linkwright.simulation.rendering.choice import make_renderer
 from linkwright.simulation.rendering.renderer import Renderer
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
-from linkwright.vision.datasets.classes import SceneObject, geom_boxes
-from linkwright.vision.datasets.textures import random_pattern
+from linkwright.vision.datasets.classes import SceneObject, compute_geom_boxes
+from linkwright.vision.datasets.textures import make_random_pattern
 
 _PATTERNS_PER_KIND = 12
 """The number of patterns of each kind: objects, walls and ground."""
@@ -82,7 +82,7 @@ class RandomizedWorld:
         self._mujoco = load_mujoco()
         bases = {scene_object.name: _measure_object(simulation, scene_object) for scene_object in objects}
         object_geoms = [geom for scene_object in objects for geom in scene_object.geoms]
-        copies_with_originals = self._copy(objects, copies)
+        copies_with_originals = self._copy_objects(objects, copies)
         self._add_distractors(distractors)
         self._add_materials()
         simulation.mark_changed()
@@ -105,7 +105,7 @@ class RandomizedWorld:
             for geom in range(model.ngeom)
             if model.geom_group[geom] == VISUAL_GROUP and geom not in labeled and geom not in first
         ]
-        self.boxes = geom_boxes(model, data)
+        self.boxes = compute_geom_boxes(model, data)
         plane = self._mujoco.mjtGeom.mjGEOM_PLANE
         flat_geoms = [
             geom
@@ -117,7 +117,7 @@ class RandomizedWorld:
         for geom in properties_used_by_plugins:
             if geom not in flat_geoms:
                 self.structures.setdefault(model.geom(geom).name.partition("::")[0], []).append(geom)
-        self.area = self._area(labeled)
+        self.area = self._find_area(labeled)
         self._colors: Any = model.geom_rgba.copy()
         self._materials: Any = model.geom_matid.copy()
         self._initial_poses: tuple[Any, Any] = data.geom_xpos.copy(), data.geom_xmat.copy()
@@ -181,7 +181,7 @@ class RandomizedWorld:
         data.geom_xpos[geom] = position + np.array([0.0, 0.0, half_size[2]])
         data.geom_xmat[geom] = rotation.reshape(9)
 
-    def original_color(self, geom: int) -> Any:
+    def get_original_color(self, geom: int) -> Any:
         """Return the initial color of a geom: red, green, blue and opacity, from 0 to 1."""
         return self._colors[geom]
 
@@ -193,7 +193,7 @@ class RandomizedWorld:
         """Set the color and the pattern of a geom.
 
         Args:
-            geom: the geom.
+            geom: the index of the geom in MuJoCo's model.
             color: red, green and blue.
             kind: the kind of pattern: ``object``, ``wall`` or ``ground``; empty for none.
             pattern_index: selects one of the patterns.
@@ -203,7 +203,7 @@ class RandomizedWorld:
         if kind:
             model.geom_matid[geom] = self._patterns[kind][pattern_index % _PATTERNS_PER_KIND]
 
-    def light(self, lights: Sequence[Light], ambient: Array, background: Array) -> None:
+    def set_lights(self, lights: Sequence[Light], ambient: Array, background: Array) -> None:
         """Replace the lights, the ambient light and the background of the world.
 
         Args:
@@ -211,7 +211,7 @@ class RandomizedWorld:
             ambient: the red, green and blue of the ambient light.
             background: the red, green and blue of the background.
         """
-        scene = replace(self._original_world.scene, ambient=_opaque(ambient), background=_opaque(background))
+        scene = replace(self._original_world.scene, ambient=_make_opaque(ambient), background=_make_opaque(background))
         self.simulation.world = replace(self._original_world, lights=tuple(lights), models=(), scene=scene)
 
     def set_patterns(self, generator: np.random.Generator) -> None:
@@ -223,7 +223,7 @@ class RandomizedWorld:
         for kind, size in _PATTERN_SIZES.items():
             for index in range(_PATTERNS_PER_KIND):
                 texture = model.texture(f"{kind} {index}").id
-                pixels = random_pattern(generator, size, soft=kind == "object" or index % 2 == 0)
+                pixels = make_random_pattern(generator, size, soft=kind == "object" or index % 2 == 0)
                 start, faces = int(model.tex_adr[texture]), model.tex_height[texture] // size
                 model.tex_data[start : start + faces * pixels.size] = np.tile(pixels.ravel(), faces)
         self._patterns = {
@@ -239,7 +239,7 @@ class RandomizedWorld:
         """Release the renderer."""
         self.renderer.close()
 
-    def _area(self, labeled: set[int]) -> Array:
+    def _find_area(self, labeled: set[int]) -> Array:
         model, geom_types = self.simulation.model, self._mujoco.mjtGeom
         unbounded_types = (geom_types.mjGEOM_PLANE, geom_types.mjGEOM_HFIELD)
         bounded_geoms = [geom for geom in labeled if geom < len(self.boxes)]
@@ -253,7 +253,7 @@ class RandomizedWorld:
         half_size = np.clip((maximum - minimum) / 2, 3.0, 12.0)
         return np.stack([center - half_size, center + half_size])
 
-    def _copy(self, objects: Sequence[SceneObject], copies: int) -> list[tuple[SceneObject, str]]:
+    def _copy_objects(self, objects: Sequence[SceneObject], copies: int) -> list[tuple[SceneObject, str]]:
         """Add copies of objects as static bodies, and return each copy with its original's name."""
         model, spec = self.simulation.model, self.simulation.scene.spec
         counts: dict[int, int] = {}
@@ -334,7 +334,7 @@ def _measure_object(simulation: Simulation, scene_object: SceneObject) -> _Initi
     local = model.geom_aabb[geoms, None, :3] + signs * model.geom_aabb[geoms, None, 3:]
     corners = np.einsum("gij,gcj->gci", rotations, local) + data.geom_xpos[geoms, None, :]
     corners = corners.reshape(-1, 3)
-    boxes = geom_boxes(model, data)[geoms]
+    boxes = compute_geom_boxes(model, data)[geoms]
     minimum, maximum = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
     base = np.array([*(minimum + maximum)[:2] / 2, minimum[2]])
     extent = maximum - minimum
@@ -357,6 +357,6 @@ def _create_movable(model: Any, scene_object: SceneObject, geometry: _InitialGeo
     return MovableObject(scene_object.name, scene_object.label, geoms, main, *poses, radius, geometry.is_round)
 
 
-def _opaque(color: Array) -> tuple[float, float, float, float]:
+def _make_opaque(color: Array) -> tuple[float, float, float, float]:
     red, green, blue = (float(channel) for channel in color)
     return red, green, blue, 1.0

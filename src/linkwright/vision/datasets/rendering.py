@@ -18,7 +18,13 @@ from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation
 from linkwright.vision.datasets.appearance import LensEffects, fill_backdrop, paint_surfaces, set_lights
 from linkwright.vision.datasets.arrangement import arrange
-from linkwright.vision.datasets.classes import ClassRules, default_rules, find_objects, original_name, read_classes
+from linkwright.vision.datasets.classes import (
+    ClassRules,
+    find_objects,
+    get_original_name,
+    make_default_rules,
+    read_classes,
+)
 from linkwright.vision.datasets.labels import Label, label_image
 from linkwright.vision.datasets.options import SPLITS, Options
 from linkwright.vision.datasets.randomized_world import RandomizedWorld
@@ -92,9 +98,9 @@ class DatasetRenderer:
         simulations = [Simulation(world.world, world.finder) for world in worlds]
         for simulation in simulations:
             for model in added_models:
-                simulation.spawn(model, _free_name(model.name, simulation))
+                simulation.spawn(model, _find_free_name(model.name, simulation))
             simulation.refresh()
-        rules = default_rules(simulations) if source.classes is None else read_classes(Path(source.classes))
+        rules = make_default_rules(simulations) if source.classes is None else read_classes(Path(source.classes))
         self.classes = tuple(rules.patterns)
         _add_models_of_other_worlds(simulations, rules)
         objects = [find_objects(simulation, rules) for simulation in simulations]
@@ -134,7 +140,7 @@ class DatasetRenderer:
             fill_backdrop(color, image.geoms, generator)
         if "lens" not in options.fixed_properties:
             color = self._lens.apply(color, generator)
-        return LabeledImage(index, split_of(index, options), self._encode(color, generator), tuple(labels))
+        return LabeledImage(index, choose_split(index, options), self._encode(color, generator), tuple(labels))
 
     def close(self) -> None:
         """Release the renderers."""
@@ -152,7 +158,7 @@ class DatasetRenderer:
         return file.getvalue()
 
 
-def split_of(index: int, options: Options) -> str:
+def choose_split(index: int, options: Options) -> str:
     """Return the split of an image.
 
     The fractions of the splits hold for each block of twenty consecutive images.
@@ -184,29 +190,29 @@ def _add_models_of_other_worlds(simulations: Sequence[Simulation], rules: ClassR
     """Add the labeled models of each world to all other worlds."""
     models_by_world = [dict(simulation.scene.models) for simulation in simulations]
     for simulation in simulations:
-        model_names = {original_name(scene_model.model) for scene_model in simulation.scene.models.values()}
+        model_names = {get_original_name(scene_model.model) for scene_model in simulation.scene.models.values()}
         for models in models_by_world:
-            for name, held in models.items():
-                model_name = original_name(held.model)
+            for name, scene_model in models.items():
+                model_name = get_original_name(scene_model.model)
                 if (
                     model_name not in model_names
                     and name not in simulation.scene.models
-                    and _is_labeled(name, held.model, rules)
+                    and _is_labeled(name, scene_model.model, rules)
                 ):
-                    simulation.spawn(held.model, name, held.pose)
+                    simulation.spawn(scene_model.model, name, scene_model.pose)
                     model_names.add(model_name)
         simulation.refresh()
 
 
 def _is_labeled(name: str, model: Model, rules: ClassRules) -> bool:
     """Return whether a model, or each of its visuals, has a class in the rules."""
-    if rules.class_number(name, original_name(model)) is not None:
+    if rules.find_class_number(name, get_original_name(model)) is not None:
         return True
     parts = [f"{name}::{link.name}::{visual.name}" for link in model.links for visual in link.visuals]
-    return bool(parts) and all(rules.class_number(part) is not None for part in parts)
+    return bool(parts) and all(rules.find_class_number(part) is not None for part in parts)
 
 
-def _free_name(name: str, simulation: Simulation) -> str:
+def _find_free_name(name: str, simulation: Simulation) -> str:
     number, candidate = 2, name
     while candidate in simulation.scene.models:
         candidate, number = f"{name}_{number}", number + 1

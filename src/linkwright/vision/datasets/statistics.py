@@ -71,7 +71,7 @@ def compute_statistics(
     return statistics
 
 
-def as_table(statistics: Mapping[str, ClassStatistics]) -> str:
+def format_table(statistics: Mapping[str, ClassStatistics]) -> str:
     """Format statistics as a table with one line for each class."""
     titles = ("class", "objects", "images", "small", "medium", "large", "hidden", "truncated", "ignored")
     rows: list[tuple[str, ...]] = [titles]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 Pixels = np.ndarray[Any, np.dtype[np.uint8]]
 
 
-def random_pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
+def make_random_pattern(generator: np.random.Generator, size: int, *, soft: bool) -> Pixels:
     """Return a random square pattern.
 
     Args:
@@ -23,15 +23,15 @@ def random_pattern(generator: np.random.Generator, size: int, *, soft: bool) -> 
     """
     kind = generator.integers(5)
     if kind == 0:
-        shade = _noise(generator, size)
+        shade = _make_noise(generator, size)
     elif kind == 1:
-        shade = _checks(generator, size)
+        shade = _make_checks(generator, size)
     elif kind == 2:
-        shade = _stripes(generator, size)
+        shade = _make_stripes(generator, size)
     elif kind == 3:
-        shade = _dots(generator, size)
+        shade = _make_dots(generator, size)
     else:
-        shade = _gradient(generator, size)
+        shade = _make_gradient(generator, size)
     shade = np.clip(shade + generator.normal(0.0, 0.03, shade.shape), 0.0, 1.0)[..., None]
     first_color: NDArray[np.float64]
     second_color: NDArray[np.float64]
@@ -43,7 +43,7 @@ def random_pattern(generator: np.random.Generator, size: int, *, soft: bool) -> 
     return pixels
 
 
-def smooth_noise(generator: np.random.Generator, cells: int, height: int, width: int) -> Any:
+def make_smooth_noise(generator: np.random.Generator, cells: int, height: int, width: int) -> Any:
     """Return random values from 0 to 1, interpolated from a coarse grid, shape (height, width)."""
     grid = generator.random((cells + 1, cells + 1))
     row_positions, column_positions = (
@@ -60,36 +60,36 @@ def _interpolate(values: Any, positions: Any) -> Any:
     return values[first] * (1 - share) + values[first + 1] * share
 
 
-def _noise(generator: np.random.Generator, size: int) -> Any:
+def _make_noise(generator: np.random.Generator, size: int) -> Any:
     shade, weight, cells = np.zeros((size, size)), 0.0, int(generator.integers(2, 6))
     for octave in range(4):
         amplitude = 0.5**octave
         shade, weight = (
-            shade + amplitude * smooth_noise(generator, min(cells << octave, size), size, size),
+            shade + amplitude * make_smooth_noise(generator, min(cells << octave, size), size, size),
             weight + amplitude,
         )
     return shade / weight
 
 
-def _checks(generator: np.random.Generator, size: int) -> Any:
+def _make_checks(generator: np.random.Generator, size: int) -> Any:
     squares = int(generator.integers(1, 9)) * 2
     indices = np.arange(size) * squares // size
     return ((indices[:, None] + indices) % 2).astype(np.float64)
 
 
-def _stripes(generator: np.random.Generator, size: int) -> Any:
+def _make_stripes(generator: np.random.Generator, size: int) -> Any:
     waves = 2 * np.pi * generator.integers(1, 9) * np.arange(size) / size
     shade = np.broadcast_to(0.5 + 0.5 * np.sin(waves), (size, size))
     shade = shade if generator.random() < 0.5 else shade.T
     return np.round(shade) if generator.random() < 0.5 else shade
 
 
-def _dots(generator: np.random.Generator, size: int) -> Any:
+def _make_dots(generator: np.random.Generator, size: int) -> Any:
     count, radius = int(generator.integers(2, 9)), generator.uniform(0.15, 0.45)
     offset = (np.arange(size) * count / size) % 1.0 - 0.5
     return (offset[:, None] ** 2 + offset**2 < radius**2).astype(np.float64)
 
 
-def _gradient(generator: np.random.Generator, size: int) -> Any:
+def _make_gradient(generator: np.random.Generator, size: int) -> Any:
     ramp = np.broadcast_to(np.linspace(0.0, 1.0, size), (size, size))
     return ramp if generator.random() < 0.5 else ramp.T

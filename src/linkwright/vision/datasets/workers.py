@@ -43,7 +43,7 @@ def make_in_processes(source: DatasetInput, numbers: range, workers: int) -> Ite
         while busy_workers:
             for connection in wait(list(busy_workers)):
                 worker = busy_workers[connection]  # type: ignore[index]  # connections only were waited for
-                sample = worker.result()
+                sample = worker.receive_image()
                 if isinstance(sample, LabeledImage):
                     yield sample
                     worker.remaining_count -= 1
@@ -82,10 +82,10 @@ class _Worker:
     def assign(self, numbers: range) -> None:
         """Send the process the numbers of the images to make next."""
         self.remaining_count = len(numbers)
-        with suppress(OSError):  # the process has died, which `result` reports
+        with suppress(OSError):  # the process has died, which `receive_image` reports
             self.connection.send(numbers)
 
-    def result(self) -> LabeledImage:
+    def receive_image(self) -> LabeledImage:
         """Return the next image that the process finishes.
 
         Raises:

@@ -12,7 +12,7 @@ import yaml
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
 from linkwright.files.input_files import read_text
 
-_MAX_METADATA = 1_000_000
+_MAX_METADATA_LENGTH = 1_000_000
 """The maximum length of metadata in characters. Longer text is not parsed."""
 _FORMAT_HINT = phrase("write one name per line, or YAML with a list of names or a mapping from 0, 1, 2, ... to names")
 
@@ -23,10 +23,10 @@ def parse_metadata_names(text: str) -> tuple[str, ...] | None:
     Args:
         text: a Python literal of a dictionary or a list, as Ultralytics' exporters write it. It is never executed.
     """
-    if len(text) > _MAX_METADATA:
+    if len(text) > _MAX_METADATA_LENGTH:
         return None
     try:
-        return _ordered_names(ast.literal_eval(text))
+        return _order_names(ast.literal_eval(text))
     except (ValueError, SyntaxError, MemoryError, RecursionError):
         return None
 
@@ -48,16 +48,16 @@ def read_labels(path: Path) -> tuple[str, ...]:
         else:
             document = [line.strip() for line in text.splitlines() if line.strip()]
     except (OSError, UnicodeDecodeError, yaml.YAMLError) as error:
-        message = phrase("cannot read the labels in '{path}': {reason}", path=path, reason=_read_error_reason(error))
+        message = phrase("cannot read the labels in '{path}': {reason}", path=path, reason=_describe_read_error(error))
         raise LinkwrightError(Diagnostic("VISION108", message, hint=_FORMAT_HINT)) from None
-    names = _ordered_names(document.get("names", document) if isinstance(document, Mapping) else document)
+    names = _order_names(document.get("names", document) if isinstance(document, Mapping) else document)
     if names is None:
         message = phrase("there are no labels in '{path}'", path=path)
         raise LinkwrightError(Diagnostic("VISION108", message, hint=_FORMAT_HINT))
     return names
 
 
-def _read_error_reason(error: OSError | UnicodeDecodeError | yaml.YAMLError) -> Phrase:
+def _describe_read_error(error: OSError | UnicodeDecodeError | yaml.YAMLError) -> Phrase:
     if isinstance(error, OSError):
         return foreign(error.strerror or error)
     if isinstance(error, yaml.MarkedYAMLError) and error.problem_mark is not None:
@@ -71,7 +71,7 @@ def _read_error_reason(error: OSError | UnicodeDecodeError | yaml.YAMLError) -> 
     return phrase("it is not text in UTF-8") if isinstance(error, UnicodeDecodeError) else foreign(error)
 
 
-def _ordered_names(names_or_mapping: Any) -> tuple[str, ...] | None:
+def _order_names(names_or_mapping: Any) -> tuple[str, ...] | None:
     if isinstance(names_or_mapping, Mapping):
         try:
             names_by_number = {int(key): value for key, value in names_or_mapping.items()}

@@ -70,7 +70,7 @@ class ColorDetector(Detector):
         classes: list[int] = []
         hsv = cv2.cvtColor(image, cv2.COLOR_RGB2HSV) if image.size else image
         for index, bounds in enumerate(self._ranges.values() if image.size else ()):
-            mask = color_mask(hsv, bounds)
+            mask = make_color_mask(hsv, bounds)
             x, y, columns, rows = cv2.boundingRect(mask)  # most colors are absent or in a small part of the image
             if columns * rows < self._min_area:
                 continue
@@ -84,7 +84,7 @@ class ColorDetector(Detector):
         return select_detections(boxes, scores, classes, self.names, limits)
 
 
-def color_mask(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
+def make_color_mask(hsv: NDArray[np.uint8], bounds: tuple[int, ...]) -> NDArray[np.uint8]:
     """Return the mask of a color: 255 where the image has it, else 0.
 
     Spots narrower than three pixels are removed from the mask.

@@ -18,7 +18,7 @@ _MIN_TEXT_HEIGHT = 9
 """The minimum height of capitals in pixels."""
 
 
-def class_color(name: str) -> tuple[int, int, int]:
+def choose_class_color(name: str) -> tuple[int, int, int]:
     """Return the color for a class name: red, green and blue, from 0 to 255.
 
     A name that contains a color word gets that color. For any other name, the color is computed from the name.
@@ -57,7 +57,7 @@ def draw_detections(image: NDArray[np.uint8], detections: Detections) -> NDArray
     )
     for index in reversed(range(len(detections))):  # draw the most certain detection last, so that it is not covered
         name = detections.name(index)
-        color = class_color(name)
+        color = choose_class_color(name)
         left, top, right, bottom = (int(edge) for edge in np.rint(detections.boxes[index]))
         if detections.corners is not None:
             cv2.polylines(canvas, [np.rint(detections.corners[index]).astype(np.int32)], True, color, line_width)

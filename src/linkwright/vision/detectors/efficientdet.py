@@ -20,7 +20,7 @@ from linkwright.vision.detectors.selection import select_detections
 
 _FINAL_OPERATION = "TFLite_Detection_PostProcess"
 """The operation that outputs final boxes. Its four outputs are boxes, classes, scores and the number of boxes."""
-_MAX_LABELS_SIZE = 1_000_000
+_MAX_LABELS_BYTES = 1_000_000
 _MAX_THREADS = 4
 
 
@@ -110,7 +110,7 @@ def _read_embedded_names(file: Path) -> tuple[str, ...]:
         with ZipFile(file) as archive:
             label_file = next(member for member in archive.infolist() if member.filename.endswith(".txt"))
             with archive.open(label_file) as stream:
-                lines = stream.read(_MAX_LABELS_SIZE).decode().splitlines()
+                lines = stream.read(_MAX_LABELS_BYTES).decode().splitlines()
         return tuple(line.strip() for line in lines)
     except (BadZipFile, StopIteration, UnicodeDecodeError, OSError):
         message = phrase("there are no labels in '{path}'", path=file)

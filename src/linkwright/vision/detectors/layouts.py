@@ -27,7 +27,7 @@ _STRIDE_SETS = ((8, 16, 32), (8, 16, 32, 64), (8, 16, 32, 64, 128), (4, 8, 16, 3
 """The strides of a network's grids in pixels, for each supported combination of grids."""
 _BOXES_PER_CELL = 3
 """The number of boxes that the classic YOLOv5 has for each grid cell."""
-_IGNORED_OUTPUTS = {"": "", "detect": "", "segment": "masks", "pose": "key points"}
+_IGNORED_OUTPUTS = {"": "", "detect": "", "segment": "masks", "pose": "keypoints"}
 """The additional outputs of each task that finds upright boxes. They are ignored."""
 _CORNERS_OF_CENTERS = np.array([[1, 0, -0.5, 0], [0, 1, 0, -0.5], [1, 0, 0.5, 0], [0, 1, 0, 0.5]], np.float32)
 
@@ -62,7 +62,7 @@ class Layout:
     Attributes:
         arrangement: the arrangement of the numbers.
         classes: the number of classes; 0 if the outputs do not determine it, as for final boxes.
-        ignored_outputs: the kind of additional outputs for each box, which are ignored: ``masks``, ``key points`` or
+        ignored_outputs: the kind of additional outputs for each box, which are ignored: ``masks``, ``keypoints`` or
             empty.
     """
 
@@ -128,11 +128,11 @@ def find_layout(
             "the network in '{file}' is for '{task}', so it outputs no boxes", file=file.name, task=metadata.task
         )
         raise LinkwrightError(Diagnostic("VISION106", message, hint=phrase("use a network for 'detect'")))
-    extra_values, task = _extra_values(shapes, metadata)
+    extra_values, task = _count_extra_values(shapes, metadata)
     name_count = labels if labels is not None or metadata.names is None else len(metadata.names)
     first_shape = shapes[0] if shapes else ()
     forms = (
-        _possible_forms(first_shape, size, extra_values, is_suppressed=metadata.is_suppressed)
+        _find_possible_forms(first_shape, size, extra_values, is_suppressed=metadata.is_suppressed)
         if len(first_shape) == 3
         else []
     )
@@ -183,20 +183,20 @@ def class_count_error(file: Path, classes: int, name_count: int, labels: Path | 
     )
 
 
-def _extra_values(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[int, str]:
+def _count_extra_values(shapes: Sequence[Sequence[int]], metadata: Metadata) -> tuple[int, str]:
     """Return the number of values after the scores of a box, and the task that they belong to."""
     if metadata.task == "pose":
-        return metadata.key_numbers, "pose"
+        return metadata.keypoint_value_count, "pose"
     masks = next((shape[1] for shape in shapes[1:] if len(shape) == 4), 0)
     if metadata.task in ("", "segment") and masks:
         return masks, "segment"
     return 0, metadata.task
 
 
-def _possible_forms(
+def _find_possible_forms(
     shape: Sequence[int], size: tuple[int, int], extra_values: int, *, is_suppressed: bool
 ) -> list[tuple[BoxArrangement, int]]:
-    """Return the forms that an output's shape allows, with their class counts, the most likely first."""
+    """Return the forms that an output's shape allows, most likely first, with their class counts."""
     batch, first, second = shape
     if batch != 1:
         return []

@@ -35,7 +35,7 @@ class Letterbox:
     left: int
     top: int
 
-    def boxes_in_image(self, boxes: NDArray[np.float32]) -> NDArray[np.float32]:
+    def to_image_boxes(self, boxes: NDArray[np.float32]) -> NDArray[np.float32]:
         """Convert boxes from input to image pixels, shape ``(n, 4)``, clipped to the image."""
         offset = np.array([self.left, self.top, self.left, self.top], np.float32)
         in_image = (boxes - offset) / np.array(self.scale * 2, np.float32)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
-from linkwright.vision.detectors.colors import color_mask
+from linkwright.vision.detectors.colors import make_color_mask
 from linkwright.vision.detectors.devices import refuse_network_options
 from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.detectors.options import DetectorOptions
@@ -62,7 +62,7 @@ class LineDetector(Detector):
         if not image.size or rows < 1:
             return Detections.empty(_NAMES)
         searched_region = np.ascontiguousarray(image[height - rows :])
-        mask = color_mask(cv2.cvtColor(searched_region, cv2.COLOR_RGB2HSV), self._color)
+        mask = make_color_mask(cv2.cvtColor(searched_region, cv2.COLOR_RGB2HSV), self._color)
         count, labels, statistics, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
         if count < 2:
             return Detections.empty(_NAMES)

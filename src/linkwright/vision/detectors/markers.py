@@ -60,12 +60,12 @@ class MarkerDetector(Detector):
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Detect the markers of the dictionary."""
-        if min(image.shape[:2]) < _MIN_IMAGE_SIDE:
+        if min(image.shape[:2]) < _MIN_IMAGE_SIDE_PIXELS:
             return Detections.empty(self._names)
-        corners, ids, _ = self._detector.detectMarkers(_gray(image))
+        corners, ids, _ = self._detector.detectMarkers(_to_gray(image))
         classes = [] if ids is None else [int(number) for number in np.ravel(ids)]
         marker_corners = [np.asarray(corner, np.float32).reshape(4, 2) + 0.5 for corner in corners]
-        boxes = [_bounding_box(points) for points in marker_corners]
+        boxes = [_find_bounding_box(points) for points in marker_corners]
         return select_detections(boxes, [1.0] * len(classes), classes, self._names, limits, marker_corners)
 
 
@@ -102,9 +102,9 @@ class QrDetector(Detector):
 
     def detect(self, image: NDArray[np.uint8], limits: Limits) -> Detections:
         """Detect and read QR codes."""
-        if min(image.shape[:2]) < _MIN_IMAGE_SIDE:
+        if min(image.shape[:2]) < _MIN_IMAGE_SIDE_PIXELS:
             return Detections.empty(())
-        gray = _gray(image)
+        gray = _to_gray(image)
         has_codes, texts, corners, _ = self._detector.detectAndDecodeMulti(gray)
         codes = [np.asarray(corner, np.float32).reshape(4, 2) for corner in corners] if has_codes else []
         decoded = [text or self._read(gray, code) for text, code in zip(texts, codes, strict=False)]
@@ -113,7 +113,7 @@ class QrDetector(Detector):
         code_corners = [codes[index] + 0.5 for index in readable]
         classes = [names.index(decoded[index]) for index in readable]
         return select_detections(
-            [_bounding_box(points) for points in code_corners],
+            [_find_bounding_box(points) for points in code_corners],
             [1.0] * len(readable),
             classes,
             names,
@@ -124,25 +124,25 @@ class QrDetector(Detector):
     def _read(self, gray: NDArray[np.uint8], corners: NDArray[np.float32]) -> str:
         """Rectify and enlarge a code, and return its text, or an empty string if it cannot be read."""
         cv2 = load_opencv()
-        start, end = _QUIET_ZONE, _QUIET_ZONE + _ENLARGED_SIDE
+        start, end = _QUIET_ZONE_PIXELS, _QUIET_ZONE_PIXELS + _ENLARGED_SIDE_PIXELS
         square = np.array([(start, start), (end, start), (end, end), (start, end)], np.float32)
         size = (start + end, start + end)
         rectified = cv2.warpPerspective(gray, cv2.getPerspectiveTransform(corners, square), size, flags=cv2.INTER_CUBIC)
         return str(self._detector.detectAndDecode(rectified)[0])
 
 
-_ENLARGED_SIDE, _QUIET_ZONE = 340, 40
+_ENLARGED_SIDE_PIXELS, _QUIET_ZONE_PIXELS = 340, 40
 """The side of an enlarged code, and the width of the empty border around it, in pixels."""
-_MIN_IMAGE_SIDE = 8
+_MIN_IMAGE_SIDE_PIXELS = 8
 """The minimum side of an image in pixels: OpenCV fails on smaller images."""
 
 
-def _gray(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _to_gray(image: NDArray[np.uint8]) -> NDArray[np.uint8]:
     cv2 = load_opencv()
     gray: NDArray[np.uint8] = cv2.cvtColor(image, cv2.COLOR_RGB2GRAY)
     return gray
 
 
-def _bounding_box(corners: NDArray[np.floating[Any]]) -> list[float]:
+def _find_bounding_box(corners: NDArray[np.floating[Any]]) -> list[float]:
     """Return the bounding box of four points: left, top, right, bottom."""
     return [*map(float, corners.min(axis=0)), *map(float, corners.max(axis=0))]

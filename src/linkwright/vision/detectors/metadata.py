@@ -26,7 +26,7 @@ class Metadata:
         stride: the number of pixels that must divide the height and width of the input.
         size: the height and width of its input in training, in pixels; None if the file has none.
         is_suppressed: whether its boxes are final, with one box for each object.
-        key_numbers: the number of keypoint values for each box.
+        keypoint_value_count: the number of keypoint values for each box.
     """
 
     names: tuple[str, ...] | None = None
@@ -34,7 +34,7 @@ class Metadata:
     stride: int = _DEFAULT_STRIDE
     size: tuple[int, int] | None = None
     is_suppressed: bool = False
-    key_numbers: int = 0
+    keypoint_value_count: int = 0
 
     @classmethod
     def of(cls, entries: Mapping[str, str]) -> Metadata:

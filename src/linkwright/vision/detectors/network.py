@@ -46,7 +46,7 @@ class NetworkDetector(Detector):
             raise setting_error("imgsz", max(options.size), phrase("give at most {maximum} pixels", maximum=MAX_SIZE))
         self._session, self._notes = create_session(file, options.device)
         metadata = Metadata.of(self._session.get_modelmeta().custom_metadata_map)
-        self._input, self._kind, fixed_size = _image_input(file, self._session.get_inputs())
+        self._input, self._kind, fixed_size = _find_image_input(file, self._session.get_inputs())
         self._stride = None if fixed_size else metadata.stride
         self._size = fixed_size or _round_up(options.size or metadata.size or _DEFAULT_SIZE, metadata.stride)
         if fixed_size and options.size not in (None, fixed_size):
@@ -84,7 +84,7 @@ class NetworkDetector(Detector):
         if not image.size:
             return Detections.empty(self._names)
         pixels, letterbox = letterbox_image(image, self._size, self._stride)
-        candidates = self._candidates(
+        candidates = self._find_candidates(
             np.asarray(self._run(to_tensor(pixels, self._kind))[0], np.float32), limits.threshold
         )
         boxes, scores, classes = candidates.boxes, candidates.scores, candidates.classes
@@ -100,10 +100,10 @@ class NetworkDetector(Detector):
         else:
             kept_indices = non_maximum_suppression(boxes, scores, classes, limits.iou, limits.max_detections)
         return Detections(
-            letterbox.boxes_in_image(boxes[kept_indices]), scores[kept_indices], classes[kept_indices], self._names
+            letterbox.to_image_boxes(boxes[kept_indices]), scores[kept_indices], classes[kept_indices], self._names
         )
 
-    def _candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
+    def _find_candidates(self, output: NDArray[np.float32], threshold: float) -> Candidates:
         with np.errstate(invalid="ignore"):
             candidates = self._layout.find_candidates(output, threshold)
         if np.isnan(output).any() or not (np.isfinite(candidates.boxes).all() and np.isfinite(candidates.scores).all()):
@@ -151,7 +151,7 @@ class NetworkDetector(Detector):
         return tuple(map(str, range(classes or 1000)))
 
 
-def _image_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floating], tuple[int, int] | None]:
+def _find_image_input(file: Path, inputs: Sequence[Any]) -> tuple[str, type[np.floating], tuple[int, int] | None]:
     """Return the name, element type and size of the input.
 
     The size is height and width, or None if it is not fixed.

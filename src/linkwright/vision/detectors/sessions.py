@@ -23,16 +23,16 @@ def create_session(file: Path, device: str) -> tuple[Any, list[Phrase]]:
     """
     gpu = parse_gpu(device)
     try:
-        with_cuda = gpu is not None and has_cuda()
-        session = load_session(file, gpu if with_cuda else None)
+        uses_cuda = gpu is not None and has_cuda()
+        session = load_session(file, gpu if uses_cuda else None)
     except ModuleNotFoundError as error:
         raise missing_extra("VISION101", error) from None
     except UnloadableNetworkError as error:
         message = phrase("cannot load the network in '{file}': {reason}", file=file, reason=error.reason)
         raise LinkwrightError(Diagnostic("VISION103", message, hint=error.hint)) from None
-    if gpu is None or (with_cuda and CUDA in session.get_providers()):
+    if gpu is None or (uses_cuda and CUDA in session.get_providers()):
         return session, []
-    if with_cuda:
+    if uses_cuda:
         note = phrase("CUDA does not work with '{device}' on this machine; the network runs on the CPU", device=device)
     else:
         note = phrase(

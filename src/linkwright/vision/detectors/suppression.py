@@ -30,13 +30,12 @@ def non_maximum_suppression(
     while remaining.size and len(kept_indices) < max_boxes:
         best, remaining = remaining[0], remaining[1:]
         kept_indices.append(int(best))
-        others = boxes[remaining]
-        width = np.minimum(boxes[best, 2], others[:, 2]) - np.maximum(boxes[best, 0], others[:, 0])
-        height = np.minimum(boxes[best, 3], others[:, 3]) - np.maximum(boxes[best, 1], others[:, 1])
+        remaining_boxes = boxes[remaining]
+        width = np.minimum(boxes[best, 2], remaining_boxes[:, 2]) - np.maximum(boxes[best, 0], remaining_boxes[:, 0])
+        height = np.minimum(boxes[best, 3], remaining_boxes[:, 3]) - np.maximum(boxes[best, 1], remaining_boxes[:, 1])
         intersection = np.maximum(width, 0) * np.maximum(height, 0)
         union = areas[best] + areas[remaining] - intersection
-        is_same_object = (union > 0) & (
-            intersection > iou * union
-        )  # an untrained network also outputs boxes without area
+        # An untrained network also outputs boxes without area.
+        is_same_object = (union > 0) & (intersection > iou * union)
         remaining = remaining[~(is_same_object & (classes[remaining] == classes[best]))]
     return np.asarray(kept_indices, np.intp)

@@ -22,8 +22,8 @@ from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import check_positive, log_unknown_parameters
 from linkwright.perception.nodes.depthimage_to_laserscan import read_depths
-from linkwright.vision.detectors.drawing import class_color
-from linkwright.vision.nodes.detection_reading import VISION_FORMAT, YOLO_FORMAT, DetectionFormat
+from linkwright.vision.detectors.drawing import choose_class_color
+from linkwright.vision.nodes.detection_formats import VISION_FORMAT, YOLO_FORMAT, DetectionFormat
 from linkwright.vision.places.camera import CameraModel, make_camera_model
 from linkwright.vision.places.positions import ObjectPosition, position_from_depth, position_on_ground
 
@@ -32,7 +32,7 @@ _MAX_DEPTH_IMAGES = 10
 """The number of depth images that are kept until their detections arrive."""
 _MAX_STAMP_DIFFERENCE_NS = 500_000_000
 _RELIABLE = 1
-_MILLIMETERS = 1000
+_MILLIMETERS_PER_METER = 1000
 _WARNING_PERIOD_S = 5.0
 _MARKER_LIFETIME_S = 1
 _LABEL_HEIGHT_M = 0.12
@@ -57,7 +57,7 @@ class Detect3DNode(SingleNode):
     """
 
     DEFAULT_NAME = "detect_3d_node"
-    FORM: ClassVar[DetectionFormat] = VISION_FORMAT
+    DETECTION_FORMAT: ClassVar[DetectionFormat] = VISION_FORMAT
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
@@ -78,11 +78,11 @@ class Detect3DNode(SingleNode):
                 for name in ("depth_image_reliability", "depth_info_reliability")
             )
             log_unknown_parameters(node)
-        self._meters_per_unit = _MILLIMETERS / divisor
+        self._meters_per_unit = _MILLIMETERS_PER_METER / divisor
         self._poses = FramePoses(node, "the positions of detections are unknown:")
         self._depth_images: deque[Any] = deque(maxlen=_MAX_DEPTH_IMAGES)
         self._cameras: dict[str, CameraModel] = {}
-        self._array = get_message(self.FORM.position_type)
+        self._array = get_message(self.DETECTION_FORMAT.position_type)
         self._publisher = node.create_publisher(self._array, "detections_3d", _QUEUE_DEPTH)
         self._markers = node.create_publisher(
             get_message("visualization_msgs/msg/MarkerArray"), "markers", _QUEUE_DEPTH
@@ -97,7 +97,9 @@ class Detect3DNode(SingleNode):
         node.create_subscription(
             info, "camera_info", lambda message: self._receive_camera_info("color", message), SENSOR_DATA_QOS
         )
-        node.create_subscription(get_message(self.FORM.image_type), "detections", self._receive, _QUEUE_DEPTH)
+        node.create_subscription(
+            get_message(self.DETECTION_FORMAT.image_type), "detections", self._receive, _QUEUE_DEPTH
+        )
 
     def _receive_camera_info(self, kind: str, message: Any) -> None:
         try:
@@ -120,7 +122,7 @@ class Detect3DNode(SingleNode):
                     positions.append(position)
         self._publisher.publish(result)
         if self._markers.get_subscription_count():
-            self._markers.publish(_make_markers(self.FORM, result, positions))
+            self._markers.publish(_make_markers(self.DETECTION_FORMAT, result, positions))
 
     def _find_positions(self, message: Any) -> list[ObjectPosition | None]:
         """Return each detection's position in the optical frame of its image, or None if unknown."""
@@ -128,9 +130,9 @@ class Detect3DNode(SingleNode):
         if camera is None:
             self._warn("no camera_info has arrived")
             return [None] * len(message.detections)
-        depths, ground = self._matching_depths(message), self._ground_plane(message)
+        depths, ground = self._find_matching_depths(message), self._find_ground_plane(message)
         positions: list[ObjectPosition | None] = []
-        for box in map(self.FORM.box, message.detections):
+        for box in map(self.DETECTION_FORMAT.get_box, message.detections):
             position = None
             if depths is not None:
                 position = position_from_depth(
@@ -141,7 +143,7 @@ class Detect3DNode(SingleNode):
             positions.append(position)
         return positions
 
-    def _matching_depths(self, message: Any) -> NDArray[np.float64] | None:
+    def _find_matching_depths(self, message: Any) -> NDArray[np.float64] | None:
         """Return the depth image of the detections in meters, or None if there is none."""
         time_ns = message.header.stamp.nanoseconds
         image = min(self._depth_images, key=lambda depth: abs(depth.header.stamp.nanoseconds - time_ns), default=None)
@@ -162,7 +164,7 @@ class Detect3DNode(SingleNode):
             return None
         return depths if image.encoding == "32FC1" else depths * self._meters_per_unit
 
-    def _ground_plane(self, message: Any) -> tuple[NDArray[np.float64], float] | None:
+    def _find_ground_plane(self, message: Any) -> tuple[NDArray[np.float64], float] | None:
         """Return the upward direction and the camera's height in m, or None if unknown.
 
         The direction is in the optical frame.
@@ -182,7 +184,9 @@ class Detect3DNode(SingleNode):
         The x axis of the box points along the view, and its z axis up.
         """
         box_pose = compose(pose, (*position.center, *_FORWARD_IN_OPTICAL))
-        return self.FORM.with_position(detection, header, box_pose, (position.depth, position.width, position.height))
+        return self.DETECTION_FORMAT.with_position(
+            detection, header, box_pose, (position.depth, position.width, position.height)
+        )
 
     def _warn(self, reason: str) -> None:
         self._node.get_logger().warning(
@@ -193,17 +197,17 @@ class Detect3DNode(SingleNode):
 class YoloDetect3DNode(Detect3DNode):
     """The node detect_3d_node of yolo_ros, which adds ``bbox3d`` to detections."""
 
-    FORM = YOLO_FORMAT
+    DETECTION_FORMAT = YOLO_FORMAT
 
 
-def _make_markers(form: DetectionFormat, detection_array: Any, positions: list[ObjectPosition]) -> Any:
+def _make_markers(detection_format: DetectionFormat, detection_array: Any, positions: list[ObjectPosition]) -> Any:
     """Return a visualization_msgs/msg/MarkerArray with a box and a label for each detection."""
     marker_class = get_message("visualization_msgs/msg/Marker")
     marker_array = get_message("visualization_msgs/msg/MarkerArray")()
     marker_array.markers.append(marker_class(header=detection_array.header, action=marker_class.DELETEALL))
     for index, (detection, position) in enumerate(zip(detection_array.detections, positions, strict=True)):
-        name, _ = form.best_hypothesis(detection)
-        box_3d = form.box_3d(detection)
+        name, _ = detection_format.find_best_hypothesis(detection)
+        box_3d = detection_format.get_box_3d(detection)
         box, label = (
             marker_class(header=detection_array.header, ns=ns, id=index, type=shape, action=marker_class.ADD)
             for ns, shape in (("boxes", marker_class.CUBE), ("labels", marker_class.TEXT_VIEW_FACING))
@@ -221,7 +225,7 @@ def _make_markers(form: DetectionFormat, detection_array: Any, positions: list[O
         label.text = " ".join(filter(None, (name, detection.id, f"{distance:.1f} m")))
         for marker, alpha in ((box, 0.45), (label, 1.0)):
             color = marker.color
-            color.r, color.g, color.b = (channel / 255 for channel in class_color(name))
+            color.r, color.g, color.b = (channel / 255 for channel in choose_class_color(name))
             color.a = alpha
         marker_array.markers += [box, label]
     return marker_array

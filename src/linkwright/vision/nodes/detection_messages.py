@@ -14,13 +14,13 @@ from linkwright.vision.nodes.dialects import VISION, YOLO
 
 
 def vision_message(header: Any, detections: Detections) -> Any:
-    """Convert detections to a Detection2DArray of vision_msgs, with class names as ``class_id``."""
+    """Convert detections to vision_msgs/msg/Detection2DArray, with class names as ``class_id``."""
     detection_class, hypothesis_class = (
         get_message("vision_msgs/msg/Detection2D"),
         get_message("vision_msgs/msg/ObjectHypothesisWithPose"),
     )
     detection_messages = []
-    for index, (x, y, width, height) in enumerate(_centers_and_sizes(detections)):
+    for index, (x, y, width, height) in enumerate(_compute_centers_and_sizes(detections)):
         result = hypothesis_class()
         result.hypothesis.class_id = detections.name(index)
         result.hypothesis.score = float(detections.scores[index])
@@ -35,7 +35,7 @@ def yolo_message(header: Any, detections: Detections) -> Any:
     """Convert detections to yolo_msgs/msg/DetectionArray."""
     detection_class = get_message("yolo_msgs/msg/Detection")
     detection_messages = []
-    for index, (x, y, width, height) in enumerate(_centers_and_sizes(detections)):
+    for index, (x, y, width, height) in enumerate(_compute_centers_and_sizes(detections)):
         detection = detection_class(class_id=int(detections.classes[index]), class_name=detections.name(index))
         detection.score = float(detections.scores[index])
         detection.bbox.center.position.x, detection.bbox.center.position.y = x, y
@@ -57,7 +57,7 @@ def image_message(header: Any, image: NDArray[np.uint8]) -> Any:
     return message
 
 
-def _centers_and_sizes(detections: Detections) -> list[list[float]]:
+def _compute_centers_and_sizes(detections: Detections) -> list[list[float]]:
     """Return the center x and y, the width and the height of each box, in pixels."""
     corners = detections.boxes.astype(np.float64)
     centers, sizes = (corners[:, :2] + corners[:, 2:]) / 2, corners[:, 2:] - corners[:, :2]

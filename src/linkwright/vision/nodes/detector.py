@@ -109,10 +109,10 @@ class DetectorNode(SingleNode):
         node, dialect = self._node, self.DIALECT
         with handle_start_errors(node):
             self._declare(dialect)
-            settings = self._detector_options(dialect)
+            settings = self._read_detector_options(dialect)
             self._limits = self._make_limits({}, None)
-            self._source = self._image_source(dialect)
-            self._qos = self._image_qos()
+            self._source = self._read_image_source(dialect)
+            self._qos = self._read_image_qos()
             log_unknown_parameters(node)
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         self.loaded: Future[None] = Future()
@@ -131,11 +131,11 @@ class DetectorNode(SingleNode):
         node.create_service(get_service("std_srvs/srv/SetBool"), "enable", self._on_enable)
         set_classes, callback_group = get_service("yolo_msgs/srv/SetClasses"), MutuallyExclusiveCallbackGroup()
         node.create_service(set_classes, "set_classes", self._on_set_classes, callback_group=callback_group)
-        node.add_on_set_parameters_callback(self._check)
+        node.add_on_set_parameters_callback(self._check_parameters)
         node.add_post_set_parameters_callback(lambda _: self._update_limits())
         self._result_condition = node.create_guard_condition(self._run_results)
         self._subscriptions: LazySubscriptions | None = None
-        load = partial(self._load, self._value(dialect.model), settings)
+        load = partial(self._load, self._get_parameter_value(dialect.model), settings)
         self._worker = LatestWorker(load, f"{node.get_name()} detector")
 
     def close(self) -> None:
@@ -168,39 +168,43 @@ class DetectorNode(SingleNode):
             if name in _DETECTOR_SETTINGS or name.startswith(f"{_COLORS_PARAMETER}."):
                 node.declare_parameter(name, None, ParameterDescriptor(read_only=True, dynamic_typing=True))
 
-    def _value(self, name: str) -> Any:
+    def _get_parameter_value(self, name: str) -> Any:
         return self._node.get_parameter(name).value
 
-    def _detector_options(self, dialect: Dialect) -> DetectorOptions:
+    def _read_detector_options(self, dialect: Dialect) -> DetectorOptions:
         names = self._node.parameter_names()
-        settings: dict[str, object] = {name: self._value(name) for name in _DETECTOR_SETTINGS if name in names}
+        settings: dict[str, object] = {
+            name: self._get_parameter_value(name) for name in _DETECTOR_SETTINGS if name in names
+        }
         colors = {
-            name.partition(".")[2]: self._value(name) for name in names if name.startswith(f"{_COLORS_PARAMETER}.")
+            name.partition(".")[2]: self._get_parameter_value(name)
+            for name in names
+            if name.startswith(f"{_COLORS_PARAMETER}.")
         }
         if colors:
             settings[_COLORS_PARAMETER] = colors
-        size = self._value("imgsz_height"), self._value("imgsz_width")
+        size = self._get_parameter_value("imgsz_height"), self._get_parameter_value("imgsz_width")
         if 0 in size and any(size):
             missing = "imgsz_width" if size[0] else "imgsz_height"
             raise setting_error(missing, 0, phrase("give both the height and the width of the input, or neither"))
-        labels = self._value(dialect.labels)
+        labels = self._get_parameter_value(dialect.labels)
         return DetectorOptions(
             labels=Path(labels).expanduser() if labels else None,
-            device=self._value("device"),
+            device=self._get_parameter_value("device"),
             size=size if all(size) else None,
             settings=settings,
         )
 
-    def _image_source(self, dialect: Dialect) -> ImageSource:
-        topic = self._value(dialect.image_topic) if dialect.image_topic else dialect.default_image_topic
-        transport = self._value("image_transport")
+    def _read_image_source(self, dialect: Dialect) -> ImageSource:
+        topic = self._get_parameter_value(dialect.image_topic) if dialect.image_topic else dialect.default_image_topic
+        transport = self._get_parameter_value("image_transport")
         source = ImageSource.of(self._node.resolve_topic_name(topic), transport)
         if not source.is_supported:
             raise invalid_value_error("image_transport", transport, self._node.get_name(), ("raw", "compressed"))
         return source
 
-    def _image_qos(self) -> QoSProfile:
-        reliability = self._value("image_reliability")
+    def _read_image_qos(self) -> QoSProfile:
+        reliability = self._get_parameter_value("image_reliability")
         policies = {policy.value: policy for policy in ReliabilityPolicy}
         if reliability not in policies:
             raise invalid_value_error("image_reliability", reliability, self._node.get_name(), ("1", "2"))
@@ -218,7 +222,7 @@ class DetectorNode(SingleNode):
         """
         dialect = self.DIALECT
         threshold, iou, max_detections, classes = (
-            new_values.get(name, self._value(name))
+            new_values.get(name, self._get_parameter_value(name))
             for name in (dialect.threshold, dialect.iou, dialect.max_detections_parameter, _CLASSES_PARAMETER)
         )
         if max_detections < 1:
@@ -227,10 +231,10 @@ class DetectorNode(SingleNode):
             threshold,
             iou,
             max_detections,
-            None if detector_classes is None else self._requested_classes(classes, detector_classes),
+            None if detector_classes is None else self._parse_requested_classes(classes, detector_classes),
         )
 
-    def _requested_classes(self, classes: Any, detector_classes: Sequence[str]) -> frozenset[str] | None:
+    def _parse_requested_classes(self, classes: Any, detector_classes: Sequence[str]) -> frozenset[str] | None:
         entries = classes if isinstance(classes, Sequence) and not isinstance(classes, str) else [classes]
         requested = []
         for class_name in entries:
@@ -247,7 +251,7 @@ class DetectorNode(SingleNode):
             requested.append(name)
         return frozenset(requested) if requested else None
 
-    def _check(self, parameters: Sequence[Parameter]) -> SetParametersResult:
+    def _check_parameters(self, parameters: Sequence[Parameter]) -> SetParametersResult:
         new_values = {parameter.name: parameter.value for parameter in parameters}
         if self._names is None and _CLASSES_PARAMETER in new_values:
             return SetParametersResult(False, str(phrase("the classes cannot be set until the detector is loaded")))
@@ -280,13 +284,13 @@ class DetectorNode(SingleNode):
 
     def _receive(self, message: Any) -> None:
         self._watch.record_image()
-        if not self._value("enable") or self._is_too_early():
+        if not self._get_parameter_value("enable") or self._is_too_early():
             return
         draws_boxes = any(publisher.get_subscription_count() for publisher in self._image_publishers)
         self._worker.offer(_Task(message, self._limits, draws_boxes))
 
     def _is_too_early(self) -> bool:
-        rate, now_ns = self._value("max_rate"), self._node.get_clock().now().nanoseconds
+        rate, now_ns = self._get_parameter_value("max_rate"), self._node.get_clock().now().nanoseconds
         if (
             rate > 0
             and self._last_image_ns is not None
@@ -306,7 +310,7 @@ class DetectorNode(SingleNode):
             self._queue_result(partial(self._fail, error))
             return None
         except Exception as error:  # noqa: BLE001 - a detector of another package may raise anything
-            self._queue_result(partial(self._fail, _detector_failure(error)))
+            self._queue_result(partial(self._fail, _make_detector_error(error)))
             return None
         self._queue_result(partial(self._begin, detector))
         return partial(self._detect, detector)
@@ -321,7 +325,7 @@ class DetectorNode(SingleNode):
         except (BadImageError, LinkwrightError) as error:
             self._queue_result(partial(self._log_error, str(error)))
         except Exception as error:  # noqa: BLE001 - a detector of another package may raise anything
-            self._queue_result(partial(self._log_error, str(_detector_failure(error))))
+            self._queue_result(partial(self._log_error, str(_make_detector_error(error))))
         else:
             self._queue_result(partial(self._publish, task.message.header, detections, image_with_boxes))
 
@@ -375,7 +379,7 @@ class DetectorNode(SingleNode):
                 publisher.publish(message)
 
 
-def _detector_failure(error: Exception) -> LinkwrightError:
+def _make_detector_error(error: Exception) -> LinkwrightError:
     message = phrase("the detector failed: {problem}", problem=foreign(f"{type(error).__name__}: {error}"))
     return LinkwrightError(Diagnostic("VISION112", message))
 

@@ -9,9 +9,9 @@ from linkwright.diagnostics.translation import localized
 from linkwright.graph import Clock, ClockType, Node, QoSProfile, ReliabilityPolicy
 from linkwright.images import ImageSource
 
-_PERIOD_S = 5.0
+_CHECK_PERIOD_S = 5.0
 _IMAGE_TYPES = ("sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage")
-_MAX_TOPICS = 5
+_MAX_SUGGESTED_TOPICS = 5
 
 
 class ImageWatch:
@@ -24,7 +24,7 @@ class ImageWatch:
         node: the node that logs.
         source: the source of the images.
         qos: the QoS of the node's subscription.
-        is_waiting: returns whether the node subscribes to images at the moment.
+        is_waiting: returns whether the node currently subscribes to images.
         topic_parameter: the parameter that sets the topic; empty if the topic can only be remapped.
     """
 
@@ -34,10 +34,11 @@ class ImageWatch:
         self._node, self._source, self._qos = node, source, qos
         self._is_waiting, self._topic_parameter = is_waiting, topic_parameter
         self._has_new_image = self._has_warned = False
-        self._quiet, self._allowed_periods = 0, 1  # both in timer periods
+        # Numbers of timer periods: without an image, and until the warning.
+        self._silent_periods, self._allowed_periods = 0, 1
         # Use the steady clock: simulated time may be paused, which would delay the warning.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        node.create_timer(_PERIOD_S, self._check_images, clock=clock)
+        node.create_timer(_CHECK_PERIOD_S, self._check_images, clock=clock)
 
     def record_image(self) -> None:
         """Record that an image has arrived."""
@@ -46,14 +47,14 @@ class ImageWatch:
     def _check_images(self) -> None:
         has_new_image, self._has_new_image = self._has_new_image, False
         if has_new_image or not self._is_waiting():
-            self._quiet = 0
+            self._silent_periods = 0
             if has_new_image and self._has_warned:
                 self._has_warned = False
                 self._allowed_periods *= 2
                 self._node.get_logger().info(localized(phrase("images are arriving")))
             return
-        self._quiet += 1
-        if self._has_warned or self._quiet < self._allowed_periods:
+        self._silent_periods += 1
+        if self._has_warned or self._silent_periods < self._allowed_periods:
             return
         self._has_warned = True
         reason, hint = self._diagnose()
@@ -86,7 +87,7 @@ class ImageWatch:
                 "requests reliable",
                 topic=topic,
             ), phrase("set '{parameter}' to {value}", parameter="image_reliability", value=2)
-        seconds = round(_PERIOD_S * self._quiet)
+        seconds = round(_CHECK_PERIOD_S * self._silent_periods)
         return phrase("no image has arrived on '{topic}' for {seconds} s", topic=topic, seconds=seconds), None
 
     def _suggest_topics(self) -> Phrase | None:
@@ -99,7 +100,7 @@ class ImageWatch:
         ]
         if not topics:
             return None
-        names = quoted_names(topics[:_MAX_TOPICS])
+        names = quoted_names(topics[:_MAX_SUGGESTED_TOPICS])
         if self._topic_parameter:
             return phrase(
                 "images are published on {topics}: set the topic with the parameter '{parameter}'",

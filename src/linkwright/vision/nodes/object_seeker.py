@@ -30,15 +30,15 @@ from linkwright.vision.places.object_requests import (
     Answer,
     ObjectRequest,
     Sighting,
-    answer_phrase,
     describe_sightings,
+    make_answer_phrase,
     parse_request,
 )
 from linkwright.vision.places.seeking import Observation, Phase, Seeker, SeekSettings
 
 _QUEUE_DEPTH = 10
 _STEP_S = 0.05
-_MAX_SAME_OBJECT_DISTANCE = 0.6
+_MAX_SAME_OBJECT_DISTANCE_M = 0.6
 """The maximum distance in m at which a detection with a new ID is still the same object."""
 _MAX_DETECTION_AGE_S = 1.0
 _MAX_SCAN_AGE_S = 1.0
@@ -97,15 +97,15 @@ class ObjectSeeker(SingleNode):
         defaults = SeekSettings()
         self._seeker = Seeker(
             SeekSettings(
-                distance=self._positive("distance", defaults.distance),
-                speed=self._positive("max_linear_velocity", defaults.speed),
-                turn_speed=self._positive("max_angular_velocity", defaults.turn_speed),
-                lost_timeout=self._positive("lost_time", defaults.lost_timeout),
-                obstacle_distance=self._positive("obstacle_distance", defaults.obstacle_distance),
-                blocked_timeout=self._positive("blocked_time", defaults.blocked_timeout),
+                distance=self._declare_positive("distance", defaults.distance),
+                speed=self._declare_positive("max_linear_velocity", defaults.speed),
+                turn_speed=self._declare_positive("max_angular_velocity", defaults.turn_speed),
+                lost_timeout=self._declare_positive("lost_time", defaults.lost_timeout),
+                obstacle_distance=self._declare_positive("obstacle_distance", defaults.obstacle_distance),
+                blocked_timeout=self._declare_positive("blocked_time", defaults.blocked_timeout),
             )
         )
-        self._robot_radius = self._positive("robot_radius", 0.22)
+        self._robot_radius = self._declare_positive("robot_radius", 0.22)
         self._base: str = self._node.declare_parameter("base_frame", "base_link").value
         self._fixed: str = self._node.declare_parameter("fixed_frame", "odom").value
         self._uses_nav2: bool = self._node.declare_parameter("use_nav2", False).value
@@ -113,7 +113,7 @@ class ObjectSeeker(SingleNode):
         if self._language not in LANGUAGES:
             raise invalid_value_error("language", self._language, self._node.get_name(), LANGUAGES)
 
-    def _positive(self, name: str, default: float) -> float:
+    def _declare_positive(self, name: str, default: float) -> float:
         return check_positive(self._node, name, self._node.declare_parameter(name, default).value)
 
     def _now_ns(self) -> int:
@@ -162,7 +162,7 @@ class ObjectSeeker(SingleNode):
             objects = []
         else:
             objects = [
-                Sighting(seen_object.name, seen_object.color, *_in_robot_frame(pose, seen_object))
+                Sighting(seen_object.name, seen_object.color, *_to_robot_frame(pose, seen_object))
                 for seen_object in self._seen_objects.objects
             ]
         response.success, response.message = True, describe_sightings(objects, language)
@@ -172,7 +172,7 @@ class ObjectSeeker(SingleNode):
     def _step(self) -> None:
         if self._seeker.phase is Phase.IDLE or (self._trip is not None and self._trip.is_under_way):
             return
-        command = self._seeker.step(self._make_view())
+        command = self._seeker.step(self._make_observation())
         if command.event is not None:
             self._answer(command.event)
         if command.event is Answer.FOUND and self._begin_trip():
@@ -181,7 +181,7 @@ class ObjectSeeker(SingleNode):
         self._velocity.publish((command.linear, 0.0, 0.0), (0.0, 0.0, command.angular))
 
     def _begin_trip(self) -> bool:
-        """Send nav2 to the found object, or return False if nav2 is not configured or not available."""
+        """Send nav2 to the found object, or return False if nav2 is not configured or available."""
         trip, target = self._trip, self._target
         pose = self._poses.pose(self._fixed, self._base, 0)
         if trip is None or target is None or pose is None or self._seeker.follows_object or not trip.is_served:
@@ -198,26 +198,28 @@ class ObjectSeeker(SingleNode):
         if self._trip is not None:
             self._trip.cancel()
 
-    def _make_view(self) -> Observation:
+    def _make_observation(self) -> Observation:
         now_ns = self._now_ns()
         last_ns = max(self._seen_objects.last_detections_ns or 0, self._start_ns)
-        silence = (now_ns - last_ns) / 1e9
+        time_since_detections = (now_ns - last_ns) / 1e9
         pose = self._poses.pose(self._fixed, self._base, 0)
         if pose is None:
             return Observation(now_ns / 1e9, 0.0, time_since_detections=inf)
         heading = rpy_from_quaternion(pose[3:])[2]
         self._target = self._choose_object(pose) or self._target
-        free_distance = self._free_distance(now_ns)
+        free_distance = self._find_free_distance(now_ns)
         if self._target is None:
-            return Observation(now_ns / 1e9, heading, time_since_detections=silence, free_distance=free_distance)
-        ahead, left = _in_robot_frame(pose, self._target)
+            return Observation(
+                now_ns / 1e9, heading, time_since_detections=time_since_detections, free_distance=free_distance
+            )
+        ahead, left = _to_robot_frame(pose, self._target)
         return Observation(
             now_ns / 1e9,
             heading,
             bearing=atan2(left, ahead),
             surface_distance=hypot(ahead, left) - self._target.radius,
             age=(now_ns - self._target.seen_ns) / 1e9,
-            time_since_detections=silence,
+            time_since_detections=time_since_detections,
             free_distance=free_distance,
         )
 
@@ -238,13 +240,13 @@ class ObjectSeeker(SingleNode):
             nearby = [
                 candidate
                 for candidate in candidates
-                if hypot(candidate.x - previous.x, candidate.y - previous.y) < _MAX_SAME_OBJECT_DISTANCE
+                if hypot(candidate.x - previous.x, candidate.y - previous.y) < _MAX_SAME_OBJECT_DISTANCE_M
             ]
             if same_id or nearby or self._seeker.phase is Phase.APPROACHING:
                 candidates = same_id or nearby
-        return min(candidates, key=lambda candidate: hypot(*_in_robot_frame(pose, candidate)), default=None)
+        return min(candidates, key=lambda candidate: hypot(*_to_robot_frame(pose, candidate)), default=None)
 
-    def _free_distance(self, now_ns: int) -> float:
+    def _find_free_distance(self, now_ns: int) -> float:
         """Return the distance in m to the nearest point ahead, or 0 if scans have stopped.
 
         The distance is measured from the robot's center. It is infinite before the first scan, or if the pose is
@@ -267,14 +269,14 @@ class ObjectSeeker(SingleNode):
 
     def _answer(self, event: Answer) -> None:
         if self._request is not None:
-            self._speak(answer_phrase(event, self._request, self._answer_language))
+            self._speak(make_answer_phrase(event, self._request, self._answer_language))
 
     def _speak(self, text: str) -> None:
         self._node.get_logger().info(text)
         self._response.publish(get_message("std_msgs/msg/String")(data=text))
 
 
-def _in_robot_frame(pose: Transform, seen_object: SeenObject) -> tuple[float, float]:
+def _to_robot_frame(pose: Transform, seen_object: SeenObject) -> tuple[float, float]:
     """Return how far an object is ahead of the robot and to its left, in meters."""
     x, y, _, *rotation = invert(pose)
     ahead, left, _ = rotate((rotation[0], rotation[1], rotation[2], rotation[3]), (seen_object.x, seen_object.y, 0.0))

@@ -11,8 +11,8 @@ from linkwright.graph import SENSOR_DATA_QOS, Node
 from linkwright.images import BadImageError, RangeFinder, decode_image
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
-from linkwright.vision.nodes.detection_reading import VISION_FORMAT
-from linkwright.vision.places.object_colors import object_color
+from linkwright.vision.nodes.detection_formats import VISION_FORMAT
+from linkwright.vision.places.object_colors import find_object_color
 
 _QUEUE_DEPTH = 10
 _MAX_IMAGES = 10
@@ -91,7 +91,7 @@ class SeenObjects:
         if pixels.ndim != 3:
             return
         for detection in message.detections:
-            color = object_color(pixels[:, :, :3], VISION_FORMAT.box(detection)) if detection.id else None
+            color = find_object_color(pixels[:, :, :3], VISION_FORMAT.get_box(detection)) if detection.id else None
             if color is not None:
                 votes = self._votes.setdefault(detection.id, Counter())
                 votes[color] += 1
@@ -113,7 +113,7 @@ class SeenObjects:
             x, y, *_ = compose(pose, (center.x, center.y, center.z, 0.0, 0.0, 0.0, 1.0))
             color_votes = self._votes.get(detection.id)
             color = color_votes.most_common(1)[0][0] if color_votes else None
-            name, score = VISION_FORMAT.best_hypothesis(detection)
+            name, score = VISION_FORMAT.find_best_hypothesis(detection)
             size = detection.bbox.size
             aspect_ratio = size.y / size.z if size.z > 0 else 1.0
             self.objects.append(SeenObject(name, detection.id, color, x, y, size.y / 2, aspect_ratio, score, time_ns))

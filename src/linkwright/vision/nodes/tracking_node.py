@@ -13,7 +13,7 @@ from linkwright.graph import Graph, ParameterDescriptor
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import check_positive, invalid_value_error, log_unknown_parameters
-from linkwright.vision.nodes.detection_reading import VISION_FORMAT, YOLO_FORMAT, DetectionFormat
+from linkwright.vision.nodes.detection_formats import VISION_FORMAT, YOLO_FORMAT, DetectionFormat
 from linkwright.vision.places.tracker import Tracker, TrackerSettings
 
 _ANY_TYPE = ParameterDescriptor(dynamic_typing=True)
@@ -37,7 +37,7 @@ class TrackingNode(SingleNode):
     """
 
     DEFAULT_NAME = "tracking_node"
-    FORM: ClassVar[DetectionFormat] = VISION_FORMAT
+    DETECTION_FORMAT: ClassVar[DetectionFormat] = VISION_FORMAT
     IGNORED: ClassVar[tuple[str, ...]] = ("tracker",)  # a parameter of yolo_ros; here there is only one tracker
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
@@ -46,13 +46,13 @@ class TrackingNode(SingleNode):
         with handle_start_errors(node):
             for name in self.IGNORED:
                 node.declare_parameter(name, None, _ANY_TYPE)
-            self._tracker = Tracker(self._settings())
+            self._tracker = Tracker(self._read_settings())
             log_unknown_parameters(node)
-        self._array = get_message(self.FORM.image_type)
+        self._array = get_message(self.DETECTION_FORMAT.image_type)
         self._publisher = node.create_publisher(self._array, "tracking", _QUEUE_DEPTH)
         node.create_subscription(self._array, "detections", self._receive, _QUEUE_DEPTH)
 
-    def _settings(self) -> TrackerSettings:
+    def _read_settings(self) -> TrackerSettings:
         defaults = TrackerSettings()
         return TrackerSettings(
             high_threshold=self._declare_share("track_high_thresh", defaults.high_threshold),
@@ -74,10 +74,10 @@ class TrackingNode(SingleNode):
         return check_positive(self._node, name, self._node.declare_parameter(name, default).value)
 
     def _receive(self, message: Any) -> None:
-        ids = self._tracker.update(self.FORM.read(message), message.header.stamp.nanoseconds / 1e9)
+        ids = self._tracker.update(self.DETECTION_FORMAT.read(message), message.header.stamp.nanoseconds / 1e9)
         tracked = self._array(header=message.header)
         tracked.detections = [
-            self.FORM.with_track_id(detection, track_id)
+            self.DETECTION_FORMAT.with_track_id(detection, track_id)
             for detection, track_id in zip(message.detections, ids, strict=True)
             if track_id
         ]
@@ -87,5 +87,5 @@ class TrackingNode(SingleNode):
 class YoloTrackingNode(TrackingNode):
     """The node tracking_node of yolo_ros, with yolo_msgs/msg/DetectionArray on both topics."""
 
-    FORM = YOLO_FORMAT
+    DETECTION_FORMAT = YOLO_FORMAT
     IGNORED = (*TrackingNode.IGNORED, "image_reliability")  # this tracker needs no images

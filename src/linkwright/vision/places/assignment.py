@@ -42,17 +42,17 @@ def _assign_columns(costs: Floats) -> list[int]:
     row_prices, column_prices = np.zeros(rows), np.zeros(columns)
     row_of_column = [-1] * columns
     for row in range(rows):
-        shortest = np.full(columns, np.inf)
+        shortest_costs = np.full(columns, np.inf)
         previous_column = np.full(columns, -1)
         is_visited = np.zeros(columns, dtype=bool)
         current_row, column, path_cost = row, -1, 0.0
         while True:
             costs_through = path_cost + costs[current_row] - row_prices[current_row] - column_prices
-            is_shorter = ~is_visited & (costs_through < shortest)
-            shortest[is_shorter] = costs_through[is_shorter]
+            is_shorter = ~is_visited & (costs_through < shortest_costs)
+            shortest_costs[is_shorter] = costs_through[is_shorter]
             previous_column[is_shorter] = column
-            column = int(np.argmin(np.where(is_visited, np.inf, shortest)))
-            path_cost = float(shortest[column])
+            column = int(np.argmin(np.where(is_visited, np.inf, shortest_costs)))
+            path_cost = float(shortest_costs[column])
             is_visited[column] = True
             if row_of_column[column] < 0:
                 break
@@ -61,8 +61,8 @@ def _assign_columns(costs: Floats) -> list[int]:
         row_prices[row] += path_cost
         for visited_column in visited:
             if row_of_column[visited_column] >= 0:
-                row_prices[row_of_column[visited_column]] += path_cost - shortest[visited_column]
-            column_prices[visited_column] -= path_cost - shortest[visited_column]
+                row_prices[row_of_column[visited_column]] += path_cost - shortest_costs[visited_column]
+            column_prices[visited_column] -= path_cost - shortest_costs[visited_column]
         while column >= 0:
             previous = int(previous_column[column])
             row_of_column[column] = row if previous < 0 else row_of_column[previous]

@@ -41,7 +41,7 @@ class CameraModel:
     cy: float
     distortion: tuple[float, ...] = ()
 
-    def rays(self, pixels: Floats) -> Floats:
+    def rays_from_pixels(self, pixels: Floats) -> Floats:
         """Return the viewing rays through points of the image.
 
         Args:
@@ -56,22 +56,22 @@ class CameraModel:
             x, y = self._undistort(x, y)
         return np.stack([x, y, np.ones_like(x)], axis=-1)
 
-    def pixels(self, points: Floats) -> Floats:
+    def pixels_from_points(self, points: Floats) -> Floats:
         """Project points ``(n, 3)`` in the optical frame, z not 0, to pixels ``(n, 2)``."""
         x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
         if any(self.distortion):
-            radial, shift_x, shift_y = self._distortion_at(x, y)
+            radial, shift_x, shift_y = self._compute_distortion(x, y)
             x, y = x * radial + shift_x, y * radial + shift_y
         return np.stack([x * self.fx + self.cx, y * self.fy + self.cy], axis=-1)
 
     def _undistort(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
         undistorted_x, undistorted_y = x, y
         for _ in range(_UNDISTORT_ITERATIONS):
-            radial, shift_x, shift_y = self._distortion_at(undistorted_x, undistorted_y)
+            radial, shift_x, shift_y = self._compute_distortion(undistorted_x, undistorted_y)
             undistorted_x, undistorted_y = (x - shift_x) / radial, (y - shift_y) / radial
         return undistorted_x, undistorted_y
 
-    def _distortion_at(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
+    def _compute_distortion(self, x: Floats, y: Floats) -> tuple[Floats, Floats, Floats]:
         k1, k2, p1, p2, k3, k4, k5, k6 = (*self.distortion, *[0.0] * (_MAX_COEFFICIENTS - len(self.distortion)))
         radius_squared = x * x + y * y
         numerator = 1 + radius_squared * (k1 + radius_squared * (k2 + radius_squared * k3))

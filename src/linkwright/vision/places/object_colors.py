@@ -33,7 +33,7 @@ _MAX_SAMPLES = 24
 """The maximum number of pixels used along a side. Larger boxes are subsampled."""
 
 
-def object_color(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:
+def find_object_color(image: NDArray[np.uint8], box: NDArray[np.floating]) -> str | None:
     """Return the color of the object in a box, one of `COLORS`.
 
     The color is the most frequent one among the pixels of an ellipse in the middle of the box. Bright colors take
@@ -88,7 +88,7 @@ def classify_colors(pixels: NDArray[np.uint8]) -> NDArray[np.intp]:
 
 def _classify_hues(values: Floats, maxima: Floats, chroma: Floats, saturation: Floats) -> NDArray[np.intp]:
     """Return the indices in `COLORS` for pixels that are not gray, white or black."""
-    hue = _hue_degrees(values, maxima, chroma)
+    hue = _compute_hues_degrees(values, maxima, chroma)
     indices = np.full(len(hue), COLORS.index("red"), np.intp)
     for limit, name in reversed(_HUE_LIMITS):
         indices[hue < limit] = COLORS.index(name)
@@ -100,7 +100,7 @@ def _classify_hues(values: Floats, maxima: Floats, chroma: Floats, saturation: F
     return indices
 
 
-def _hue_degrees(values: Floats, maxima: Floats, chroma: Floats) -> Floats:
+def _compute_hues_degrees(values: Floats, maxima: Floats, chroma: Floats) -> Floats:
     """Return the hues in degrees, where red and gray have 0."""
     red, green, blue = values
     divisor = np.maximum(chroma, 1e-9)

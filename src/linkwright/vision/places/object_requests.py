@@ -10,7 +10,7 @@ from math import atan2, degrees, hypot
 
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.diagnostics.translation import CHINESE, ENGLISH, localized
-from linkwright.images.color_words import COLOR_WORD_SPELLINGS, find_color_word, words_of
+from linkwright.images.color_words import COLOR_WORD_SPELLINGS, find_color_word, split_into_words
 
 _CHINESE_COLORS = {
     "红": "red", "橙": "orange", "橘": "orange", "黄": "yellow", "绿": "green", "青": "cyan", "蓝": "blue",
@@ -40,7 +40,7 @@ _SYNONYMS = (
 _COMMON_NAMES = {name: group[0] for group in _SYNONYMS for name in group}
 _CHINESE_NAMES = {group[0]: next(name for name in group if not name.isascii()) for group in _SYNONYMS}
 _PLURALS = {"people": "person", "children": "child", "boxes": "box", "persons": "person"}
-_FILLERS = {"the", "a", "an", "that", "this", "please", "to", "some", "any"}
+_FILLER_WORDS = {"the", "a", "an", "that", "this", "please", "to", "some", "any"}
 _VERBS = re.compile(
     r"(?:please )?"
     r"(?:(?:go|drive|move|walk|run|come|get|turn)(?: over)? to|find|search for|look for|approach|follow)(?: me)? "
@@ -49,7 +49,7 @@ _CHINESE_VERBS = re.compile(
     r"^(?:请|帮我|去|走到|开到|到|前往|寻找|找到|找|跟着|跟随|跟上|靠近)+|(?:那里|那边|旁边|面前|前面)$"
 )
 _CHINESE_FILLERS = re.compile(r"那个|这个|一个|那只|这只|色的|色|的|请")
-_NUMBERS = {
+_NUMBER_WORDS = {
     ENGLISH: ("no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"),
     CHINESE: ("零", "一", "两", "三", "四", "五", "六", "七", "八", "九", "十"),
 }
@@ -91,7 +91,7 @@ class ObjectRequest:
     """An object that a user asks for.
 
     Attributes:
-        noun: the name of the object, as `object_name` returns it; empty for any object of the color.
+        noun: the name of the object, as `normalize_object_name` returns it; empty for any object of the color.
         color: one of `COLORS`; None for any color.
         text: the words of the request, without filler words.
     """
@@ -118,7 +118,7 @@ class ObjectRequest:
             aspect_ratio: the width divided by the height.
             score: the score of the detection; for a patch of a color, the fraction of its box that it fills.
         """
-        words = words_of(name)
+        words = split_into_words(name)
         class_color = find_color_word(name)
         class_noun = " ".join(word for word in words if word not in COLOR_WORD_SPELLINGS)
         if self.color is not None and self.color != (class_color or color):
@@ -130,7 +130,7 @@ class ObjectRequest:
                 return self.color is not None
             is_round = self.color is not None or _ROUND_FILL_FRACTIONS[0] < score < _ROUND_FILL_FRACTIONS[1]
             return is_round and _ROUND_ASPECT_RATIOS[0] < aspect_ratio < _ROUND_ASPECT_RATIOS[1]
-        return self.noun in (object_name(class_noun), object_name(class_noun.split()[-1]))
+        return self.noun in (normalize_object_name(class_noun), normalize_object_name(class_noun.split()[-1]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,7 +143,7 @@ class Sighting:
     left: float
 
 
-def object_name(name: str) -> str:
+def normalize_object_name(name: str) -> str:
     """Return the common name of an object in lower case and singular.
 
     It is ``ball`` for ``football`` and ``球``, for example.
@@ -167,16 +167,18 @@ def parse_request(text: str) -> ObjectRequest | None:
         normalized = (
             _VERBS.sub("", f"{' '.join(normalized.split())} ", count=1) if _VERBS.match(normalized) else normalized
         )
-        words = [word for word in words_of(normalized) if word not in _FILLERS]
+        words = [word for word in split_into_words(normalized) if word not in _FILLER_WORDS]
         color = next((COLOR_WORD_SPELLINGS[word] for word in words if word in COLOR_WORD_SPELLINGS), None)
         noun = " ".join(word for word in words if word not in COLOR_WORD_SPELLINGS and word not in ("thing", "one"))
-        return ObjectRequest(object_name(noun), color, " ".join(words)) if color or noun else None
+        return ObjectRequest(normalize_object_name(noun), color, " ".join(words)) if color or noun else None
     normalized = _CHINESE_VERBS.sub("", normalized)
     color = next((_CHINESE_COLORS[character] for character in normalized if character in _CHINESE_COLORS), None)
     noun = _CHINESE_FILLERS.sub("", normalized)
     noun = "".join(sign for sign in noun if sign not in _CHINESE_COLORS).replace("东西", "").strip()
     return (
-        ObjectRequest(object_name(noun), color, re.sub(r"那个|这个|一个|请", "", normalized)) if color or noun else None
+        ObjectRequest(normalize_object_name(noun), color, re.sub(r"那个|这个|一个|请", "", normalized))
+        if color or noun
+        else None
     )
 
 
@@ -184,53 +186,53 @@ def describe_sightings(sightings: Iterable[Sighting], language: str) -> str:
     """Describe visible objects, nearest first: *I see a red ball 1.2 m ahead and two crates*."""
     groups: dict[str, list[Sighting]] = {}
     for sighting in sorted(sightings, key=lambda sighting: hypot(sighting.ahead, sighting.left)):
-        groups.setdefault(name_with_color(sighting.name, sighting.color, language), []).append(sighting)
+        groups.setdefault(add_color_to_name(sighting.name, sighting.color, language), []).append(sighting)
     if not groups:
         return localized(phrase("I see no objects."), language)
     if language == CHINESE:
-        return f"我看到{_join([_describe_in_chinese(group) for group in groups.values()], '，', '和')}。"
-    return f"I see {_join([_describe_in_english(group) for group in groups.values()], ', ', ' and ')}."
+        return f"我看到{_join_phrases([_describe_in_chinese(group) for group in groups.values()], '，', '和')}。"
+    return f"I see {_join_phrases([_describe_in_english(group) for group in groups.values()], ', ', ' and ')}."
 
 
-def name_with_color(name: str, color: str | None, language: str) -> str:
+def add_color_to_name(name: str, color: str | None, language: str) -> str:
     """Return the name of an object with its color: *red ball*, 红色的球."""
-    words = [word for word in words_of(name) if word not in COLOR_WORD_SPELLINGS]
+    words = [word for word in split_into_words(name) if word not in COLOR_WORD_SPELLINGS]
     color_word = find_color_word(name) or color
     noun = " ".join(words)
     if language != CHINESE:
         return " ".join(filter(None, (color_word, noun or "thing")))
-    chinese = _CHINESE_NAMES.get(object_name(noun), noun) if noun else "东西"
+    chinese = _CHINESE_NAMES.get(normalize_object_name(noun), noun) if noun else "东西"
     color_characters = {english: sign for sign, english in reversed(_CHINESE_COLORS.items())}
     return f"{color_characters[color_word]}色的{chinese}" if color_word else chinese
 
 
-def answer_phrase(event: Answer, request: ObjectRequest, language: str) -> str:
+def make_answer_phrase(event: Answer, request: ObjectRequest, language: str) -> str:
     """Return the answer to a request.
 
     The object has its name from the request, or the translation of that name.
     """
-    name = request.text if request.language == language else name_with_color(request.noun, request.color, language)
+    name = request.text if request.language == language else add_color_to_name(request.noun, request.color, language)
     return localized(_ANSWERS[event](name), language)
 
 
 def _describe_in_english(group: Sequence[Sighting]) -> str:
     sighting = group[0]
-    name = name_with_color(sighting.name, sighting.color, ENGLISH)
+    name = add_color_to_name(sighting.name, sighting.color, ENGLISH)
     if len(group) > 1:
-        return f"{_number_word(len(group), ENGLISH)} {_plural(name)}"
+        return f"{_spell_number(len(group), ENGLISH)} {_pluralize(name)}"
     article = "an" if name[0] in "aeiou" else "a"
-    return f"{article} {name} {hypot(sighting.ahead, sighting.left):.1f} m {_direction(sighting, ENGLISH)}"
+    return f"{article} {name} {hypot(sighting.ahead, sighting.left):.1f} m {_describe_direction(sighting, ENGLISH)}"
 
 
 def _describe_in_chinese(group: Sequence[Sighting]) -> str:
     sighting = group[0]
-    name = name_with_color(sighting.name, sighting.color, CHINESE)
+    name = add_color_to_name(sighting.name, sighting.color, CHINESE)
     if len(group) > 1:
-        return f"{_number_word(len(group), CHINESE)}个{name}"
-    return f"{_direction(sighting, CHINESE)}{hypot(sighting.ahead, sighting.left):.1f}米处有一个{name}"
+        return f"{_spell_number(len(group), CHINESE)}个{name}"
+    return f"{_describe_direction(sighting, CHINESE)}{hypot(sighting.ahead, sighting.left):.1f}米处有一个{name}"
 
 
-def _direction(sighting: Sighting, language: str) -> str:
+def _describe_direction(sighting: Sighting, language: str) -> str:
     angle = degrees(atan2(sighting.left, sighting.ahead))
     if abs(angle) <= _MAX_AHEAD_DEGREES:
         return localized(phrase("ahead"), language)
@@ -239,17 +241,17 @@ def _direction(sighting: Sighting, language: str) -> str:
     return localized(phrase("to the left") if angle > 0 else phrase("to the right"), language)
 
 
-def _number_word(count: int, language: str) -> str:
-    words = _NUMBERS[language]
+def _spell_number(count: int, language: str) -> str:
+    words = _NUMBER_WORDS[language]
     return words[count] if count < len(words) else str(count)
 
 
-def _plural(name: str) -> str:
+def _pluralize(name: str) -> str:
     for singular, plural in (("person", "people"), ("child", "children")):
         if name.endswith(singular):
             return name[: -len(singular)] + plural
     return name + ("es" if name.endswith(("x", "s", "ch", "sh")) else "s")
 
 
-def _join(phrases: Sequence[str], comma: str, conjunction: str) -> str:
+def _join_phrases(phrases: Sequence[str], comma: str, conjunction: str) -> str:
     return phrases[0] if len(phrases) == 1 else comma.join(phrases[:-1]) + conjunction + phrases[-1]

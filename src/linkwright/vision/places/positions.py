@@ -1,4 +1,4 @@
-"""Positions of detected objects in meters, from a depth image or from the ground below them."""
+"""Positions of detected objects in meters, from a depth image or the ground below them."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _INNER_FRACTION = 0.6
 """The central fraction of a box's width and height that shows mostly the object, not the background."""
 _MIN_SURFACE_FRACTION = 0.25
 """The minimum fraction of the depths in the middle of a box that belong to the object's surface."""
-_MIN_DEPTHS = 4
-_GAP_METERS, _GAP_SHARE = 0.1, 0.05
+_MIN_DEPTH_COUNT = 4
+_MIN_GAP_M, _MIN_GAP_SHARE = 0.1, 0.05
 """Neighboring depths belong to different surfaces if they differ by more than this distance and this fraction."""
 _MAX_FLAT_FRACTION = 0.1
 """The maximum depth of a flat surface, as a fraction of its width."""
@@ -70,24 +70,24 @@ def position_from_depth(
     rows, columns = depths.shape
     scale = np.array([columns / camera.width, rows / camera.height] * 2)
     scaled = np.asarray(box, np.float64) * scale
-    inner_depths = _depths_in(depths, _shrink_box(scaled, _INNER_FRACTION))
+    inner_depths = _crop_depths(depths, _shrink_box(scaled, _INNER_FRACTION))
     valid_depths = inner_depths[np.isfinite(inner_depths) & (inner_depths > 0) & (inner_depths <= max_depth)]
-    if len(valid_depths) < max(_MIN_DEPTHS, _MIN_SURFACE_FRACTION * _MIN_SURFACE_FRACTION * inner_depths.size):
+    if len(valid_depths) < max(_MIN_DEPTH_COUNT, _MIN_SURFACE_FRACTION * _MIN_SURFACE_FRACTION * inner_depths.size):
         return None
-    surface_start, surface_end = _nearest_surface(np.sort(valid_depths))
-    depths_in_box = _depths_in(depths, scaled)
+    surface_start, surface_end = _find_nearest_surface(np.sort(valid_depths))
+    depths_in_box = _crop_depths(depths, scaled)
     surface_depth = float(np.median(valid_depths[(valid_depths >= surface_start) & (valid_depths <= surface_end)]))
     surface = depths_in_box[
-        (depths_in_box >= max(surface_start - _min_gap(surface_start), surface_depth - max_depth_difference))
-        & (depths_in_box <= min(surface_end + _min_gap(surface_end), surface_depth + max_depth_difference))
+        (depths_in_box >= max(surface_start - _compute_min_gap(surface_start), surface_depth - max_depth_difference))
+        & (depths_in_box <= min(surface_end + _compute_min_gap(surface_end), surface_depth + max_depth_difference))
     ]
     front = float(np.percentile(surface, 5))
-    width, height = _size_in_meters(box, camera, front)
+    width, height = _compute_size(box, camera, front)
     thickness = float(np.percentile(surface, 95)) - front
     depth = width if thickness > _MAX_FLAT_FRACTION * width else thickness
     surface_depth = front + depth / 2
-    width, height = _size_in_meters(box, camera, surface_depth)
-    ray = camera.rays(np.array([[(box[0] + box[2]) / 2, (box[1] + box[3]) / 2]], np.float64))[0]
+    width, height = _compute_size(box, camera, surface_depth)
+    ray = camera.rays_from_pixels(np.array([[(box[0] + box[2]) / 2, (box[1] + box[3]) / 2]], np.float64))[0]
     return ObjectPosition(
         (float(ray[0]) * surface_depth, float(ray[1]) * surface_depth, surface_depth), width, height, depth
     )
@@ -114,21 +114,21 @@ def position_on_ground(
     left, _, right, bottom = (float(edge) for edge in box)
     if bottom >= camera.height - _EDGE_PIXELS:
         return None
-    ray = camera.rays(np.array([[(left + right) / 2, bottom]]))[0]
+    ray = camera.rays_from_pixels(np.array([[(left + right) / 2, bottom]]))[0]
     descent = -float(ray @ normal)
     if descent < _MIN_DESCENT or height <= 0 or height / descent > max_distance:
         return None
     position = ray * (height / descent)
-    width, object_height = _size_in_meters(box, camera, float(position[2]))
+    width, object_height = _compute_size(box, camera, float(position[2]))
     if not _ROUND_ASPECT_RATIOS[0] <= width / object_height <= _ROUND_ASPECT_RATIOS[1]:
         horizontal = ray + descent * normal
         position = position + horizontal * (width / 2 / max(float(np.linalg.norm(horizontal)), 1e-9))
-        width, object_height = _size_in_meters(box, camera, float(position[2]))
+        width, object_height = _compute_size(box, camera, float(position[2]))
     center = position + normal * (object_height / 2)
     return ObjectPosition((float(center[0]), float(center[1]), float(center[2])), width, object_height, width)
 
 
-def _size_in_meters(box: NDArray[np.floating], camera: CameraModel, depth: float) -> tuple[float, float]:
+def _compute_size(box: NDArray[np.floating], camera: CameraModel, depth: float) -> tuple[float, float]:
     return float(box[2] - box[0]) / camera.fx * depth, float(box[3] - box[1]) / camera.fy * depth
 
 
@@ -137,20 +137,20 @@ def _shrink_box(box: Floats, share: float) -> Floats:
     return np.concatenate([center - half_size * share, center + half_size * share])
 
 
-def _depths_in(depths: Floats, box: Floats) -> Floats:
+def _crop_depths(depths: Floats, box: Floats) -> Floats:
     rows, columns = depths.shape
     left, top = max(0, floor(box[0])), max(0, floor(box[1]))
     right, bottom = min(columns, ceil(box[2])), min(rows, ceil(box[3]))
     return depths[top : max(top, bottom), left : max(left, right)]
 
 
-def _min_gap(depth: float) -> float:
-    return max(_GAP_METERS, _GAP_SHARE * depth)
+def _compute_min_gap(depth: float) -> float:
+    return max(_MIN_GAP_M, _MIN_GAP_SHARE * depth)
 
 
-def _nearest_surface(depths: Floats) -> tuple[float, float]:
+def _find_nearest_surface(depths: Floats) -> tuple[float, float]:
     """Return the depth range of the nearest sufficiently large surface, from sorted depths."""
-    gaps = np.diff(depths) > np.maximum(_GAP_METERS, _GAP_SHARE * depths[:-1])
+    gaps = np.diff(depths) > np.maximum(_MIN_GAP_M, _MIN_GAP_SHARE * depths[:-1])
     surfaces = np.split(depths, np.flatnonzero(gaps) + 1)
     for surface in surfaces:
         if len(surface) >= _MIN_SURFACE_FRACTION * len(depths):

@@ -10,16 +10,16 @@ from linkwright.vision.places.object_requests import Answer
 
 _MAX_AGE_S = 0.5
 """The maximum age of a detection of an object that counts as visible now, seconds."""
-_SEARCH_ANGLE = 2 * pi + 0.3
+_SEARCH_ANGLE_RAD = 2 * pi + 0.3
 """The angle in rad through which the robot turns to search: a full turn and 0.3 rad of overlap."""
-_MAX_DRIVING_BEARING = 0.6
+_MAX_DRIVING_BEARING_RAD = 0.6
 """The bearing in rad beyond which the robot turns to the object before it drives."""
 _TURN_GAIN, _SPEED_GAIN = 1.8, 0.8
 """The angular speed per bearing, and the speed per remaining distance, in 1/s."""
 _MIN_SPEED_MPS = 0.06
 """The minimum speed while the robot approaches the object."""
 _DISTANCE_TOLERANCE_M, _BEARING_TOLERANCE_RAD = 0.03, 0.15
-_OBJECT_MARGIN = 0.2
+_OBJECT_MARGIN_M = 0.2
 """The distance in m in front of the object's surface within which an obstacle counts as the object."""
 
 
@@ -150,7 +150,7 @@ class Seeker:
         if self._heading is not None:
             self._turned_angle += abs((observation.heading - self._heading + pi) % (2 * pi) - pi)
         self._heading = observation.heading
-        if self._turned_angle > _SEARCH_ANGLE:
+        if self._turned_angle > _SEARCH_ANGLE_RAD:
             return self._finish(Answer.LOST if self._was_found else Answer.NOT_FOUND)
         direction = -1.0 if observation.age < inf and observation.bearing < 0 else 1.0
         self._turn_direction = self._turn_direction or direction
@@ -164,12 +164,12 @@ class Seeker:
             if abs(observation.bearing) > _BEARING_TOLERANCE_RAD:
                 return Command(0.0, angular)
             return Command(0.0, angular) if self.follows_object else self._finish(Answer.ARRIVED)
-        if abs(observation.bearing) > _MAX_DRIVING_BEARING:
+        if abs(observation.bearing) > _MAX_DRIVING_BEARING_RAD:
             return Command(0.0, angular)
         speed = max(_MIN_SPEED_MPS, min(settings.speed, _SPEED_GAIN * remaining)) * (
-            1.0 - abs(observation.bearing) / _MAX_DRIVING_BEARING / 2
+            1.0 - abs(observation.bearing) / _MAX_DRIVING_BEARING_RAD / 2
         )
-        if observation.free_distance < observation.surface_distance - _OBJECT_MARGIN:
+        if observation.free_distance < observation.surface_distance - _OBJECT_MARGIN_M:
             free_distance = observation.free_distance - settings.obstacle_distance
             if free_distance <= 0:
                 self._blocked_since = observation.time if self._blocked_since is None else self._blocked_since

@@ -66,7 +66,7 @@ class _Track:
 
     def predict(self, seconds: float) -> None:
         """Move the state to a later time, and increase the variances."""
-        noise = (_ACCELERATION_NOISE * self._box_scale()) ** 2
+        noise = (_ACCELERATION_NOISE * self._get_box_scale()) ** 2
         self.state = self.state + self.velocity * seconds
         self.state[2:] = np.maximum(self.state[2:], 1.0)
         self.variance = (
@@ -77,7 +77,7 @@ class _Track:
 
     def correct(self, measurement: Floats) -> None:
         """Correct the state by a measured box, and decrease the variances."""
-        noise = (_MEASUREMENT_NOISE * self._box_scale()) ** 2
+        noise = (_MEASUREMENT_NOISE * self._get_box_scale()) ** 2
         total_variance = self.variance + noise
         gain, velocity_gain = self.variance / total_variance, self.covariance / total_variance
         residual = measurement - self.state
@@ -87,7 +87,7 @@ class _Track:
         self.covariance = (1 - gain) * self.covariance
         self.variance = (1 - gain) * self.variance
 
-    def _box_scale(self) -> Floats:
+    def _get_box_scale(self) -> Floats:
         width, height = self.state[2], self.state[3]
         return np.array([width, height, width, height])
 

@@ -40,14 +40,14 @@ def make_card(name: str, facts: Mapping[str, str], reports: Sequence[EvaluationR
     lines += [f"| {key} | {_escape_cell(value)} |" for key, value in facts.items()]
     for report in reports:
         origin_lines = [report.origin, ""] if report.origin else []
-        lines += ["", f"## {report.title}", "", *origin_lines, *_result_lines(report.evaluation)]
+        lines += ["", f"## {report.title}", "", *origin_lines, *_format_results(report.evaluation)]
     lines += ["", "## Where it fails", ""]
-    failures = [line for report in reports for line in _failures(report)]
+    failures = [line for report in reports for line in _list_failures(report)]
     lines += failures or ["Nothing stands out in these images."]
     return "\n".join(lines) + "\n"
 
 
-def dataset_facts(folder: Path) -> dict[str, str]:
+def collect_dataset_facts(folder: Path) -> dict[str, str]:
     """Return the card's entries on how a dataset was made, or an empty dict if unknown."""
     record = _read_record(folder)
     if record is None:
@@ -105,16 +105,16 @@ def _read_record(folder: Path) -> _DatasetRecord | None:
     return _DatasetRecord(frozenset(worlds), "; ".join(dict.fromkeys(options)), frozenset(added))
 
 
-def results_table(evaluation: Evaluation) -> list[str]:
+def format_results_table(evaluation: Evaluation) -> list[str]:
     """Return the results of all classes as lines of a Markdown table."""
     lines = ["| class | objects | mAP50 | mAP50-95 | precision | recall |", f"| --- |{' ---: |' * 5}"]
-    lines += [_table_row(class_results) for class_results in evaluation.classes]
+    lines += [_format_table_row(class_results) for class_results in evaluation.classes]
     objects = sum(row.objects for row in evaluation.classes)
     lines.append(f"| all | {objects} | {evaluation.map50:.3f} | {evaluation.map:.3f} | | |")
     return lines
 
 
-def confusion_table(evaluation: Evaluation) -> list[str]:
+def format_confusion_table(evaluation: Evaluation) -> list[str]:
     """Return the confusion matrix as a Markdown table, with rows of labels.
 
     The columns are the detected classes.
@@ -126,14 +126,14 @@ def confusion_table(evaluation: Evaluation) -> list[str]:
     return lines
 
 
-def _result_lines(evaluation: Evaluation) -> list[str]:
+def _format_results(evaluation: Evaluation) -> list[str]:
     sizes = [
         f"| {name} | {objects} | {recall:.2f} |" for name, objects, recall in evaluation.recall_by_size if objects
     ]  # fmt: skip
     return [
         f"{evaluation.images} images. Precision and recall at a score of 0.5.",
         "",
-        *results_table(evaluation),
+        *format_results_table(evaluation),
         "",
         "| longer side | objects | recall |",
         "| --- | ---: | ---: |",
@@ -141,7 +141,7 @@ def _result_lines(evaluation: Evaluation) -> list[str]:
     ]
 
 
-def _table_row(results: ClassResults) -> str:
+def _format_table_row(results: ClassResults) -> str:
     values = (results.ap50, results.ap, results.precision, results.recall)
     return f"| {results.name} | {results.objects} | {' | '.join(map(_format_number, values))} |"
 
@@ -150,7 +150,7 @@ def _format_number(value: float | None) -> str:
     return "" if value is None else f"{value:.3f}"
 
 
-def _failures(report: EvaluationReport) -> list[str]:
+def _list_failures(report: EvaluationReport) -> list[str]:
     """Return Markdown list items about sizes and classes that are often missed or confused."""
     lines = []
     for name, objects, recall in report.evaluation.recall_by_size:

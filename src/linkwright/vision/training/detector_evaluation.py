@@ -24,7 +24,7 @@ def evaluate_detector(model: str | Path, names: Sequence[str], images: Sequence[
     Args:
         model: an ONNX file, or the name of a detector.
         names: the names of the classes in the labels.
-        images: the images.
+        images: the labeled images.
 
     Raises:
         LinkwrightError: the detector cannot be created; VISION305, an image is broken.

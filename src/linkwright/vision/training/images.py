@@ -16,7 +16,7 @@ from linkwright.vision.detectors.library import load_opencv
 from linkwright.vision.training.options import CropSettings
 from linkwright.vision.training.yolo_dataset import LabeledFile
 
-_MIN_SIDE = 3.0  # an object narrower than this after augmentation is ignored
+_MIN_SIDE_PIXELS = 3.0  # an object narrower than this after augmentation is ignored
 _MIN_VISIBLE_FRACTION = 0.3  # an object with a smaller share of its box left in the image is ignored
 
 
@@ -76,7 +76,7 @@ def read_labeled_images(labeled: Sequence[LabeledFile], width: int, height: int)
     return LabeledImages(images, tuple(objects))
 
 
-def repeat_factors(labeled_images: LabeledImages, classes: int) -> NDArray[np.float64]:
+def compute_repeat_factors(labeled_images: LabeledImages, classes: int) -> NDArray[np.float64]:
     """Return how often an epoch uses each image: once, or more often if it shows a rare class.
 
     A class is rare if the fraction f of images that show it is below the median m of these fractions. Its images are
@@ -95,7 +95,7 @@ def repeat_factors(labeled_images: LabeledImages, classes: int) -> NDArray[np.fl
     return repeat_counts
 
 
-def repeated_indices(factors: NDArray[np.float64], generator: np.random.Generator) -> NDArray[np.int64]:
+def draw_repeated_indices(factors: NDArray[np.float64], generator: np.random.Generator) -> NDArray[np.int64]:
     """Return image indices, each repeated by its factor, where fractions are rounded randomly."""
     counts: NDArray[np.int64] = np.floor(factors + generator.random(len(factors))).astype(np.int64)
     return np.repeat(np.arange(len(factors)), counts)
@@ -178,7 +178,7 @@ def _transform_objects(
     visible_boxes[:, 0::2] = np.clip(visible_boxes[:, 0::2], 0, width)
     visible_boxes[:, 1::2] = np.clip(visible_boxes[:, 1::2], 0, height)
     visible_sizes, full_sizes = visible_boxes[:, 2:] - visible_boxes[:, :2], full_boxes[:, 2:] - full_boxes[:, :2]
-    is_labeled = (visible_sizes.min(1, initial=np.inf) >= _MIN_SIDE) & (
+    is_labeled = (visible_sizes.min(1, initial=np.inf) >= _MIN_SIDE_PIXELS) & (
         visible_sizes.prod(1) >= _MIN_VISIBLE_FRACTION * np.maximum(full_sizes.prod(1), 1e-6)
     )
     signed_classes = np.where(is_labeled | (objects[:, 0] < 0), objects[:, 0], -2 - objects[:, 0])

@@ -67,7 +67,7 @@ class Options:
     held_out: tuple[Path, ...] = ()
     command: str = ""
 
-    def view(self, epoch: int) -> CropSettings:
+    def choose_crop(self, epoch: int) -> CropSettings:
         """Return the crops for an epoch, counted from 0: small at first, full images at the end.
 
         Features depend little on the size of an image, so small crops teach nearly as much as full images in a quarter

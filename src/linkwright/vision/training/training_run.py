@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.vision.evaluation import Evaluation
-from linkwright.vision.training.card import EvaluationReport, dataset_facts, describe_origin, make_card
+from linkwright.vision.training.card import EvaluationReport, collect_dataset_facts, describe_origin, make_card
 from linkwright.vision.training.detector_evaluation import evaluate_detector
 from linkwright.vision.training.library import require_pytorch
 from linkwright.vision.training.options import Options
@@ -59,7 +59,9 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
 
     dataset = open_dataset(options.dataset)
     training_images, validation_images = dataset.read("train"), dataset.read("val")
-    held_out_splits = [(open_dataset(folder), _evaluation_split(open_dataset(folder))) for folder in options.held_out]
+    held_out_splits = [
+        (open_dataset(folder), _choose_evaluation_split(open_dataset(folder))) for folder in options.held_out
+    ]
     held_out = [(held_out_dataset, split, held_out_dataset.read(split)) for held_out_dataset, split in held_out_splits]
     try:
         options.output.mkdir(parents=True, exist_ok=True)
@@ -85,7 +87,7 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
         was_interrupted = True
     except OSError as error:
         raise _write_error(options.output, error) from None
-    facts = _training_facts(
+    facts = _collect_training_facts(
         options, dataset, training_images, training_loop.epoch, training_loop.best_epoch, training_loop.network
     )
     facts["time"] = (
@@ -94,8 +96,8 @@ def train_network(options: Options, on_epoch: Callable[[Epoch], None]) -> Traini
     network = options.output / f"{options.name}.onnx"
     metadata = {"description": f"{options.name}, trained by linkwright vision train", "seed": str(options.seed)}
     metadata["dataset"] = facts["images' sha256"]
-    best = training_loop.best_network()
-    threshold = training_loop.best_threshold(best)
+    best = training_loop.load_best_network()
+    threshold = training_loop.find_best_threshold(best)
     facts["scores"] = f"{threshold:.2f} of the network is 0.5 in the file, where F1 on the split val is greatest"
     content = export_to_onnx(best, dataset.names, *size, metadata, threshold)
     facts["file"] = f"{network.name}, {len(content) / 1e6:.2f} MB, sha256 {hashlib.sha256(content).hexdigest()}"
@@ -126,14 +128,14 @@ def evaluate_on_dataset(model: str, folder: Path, split: str | None) -> Evaluati
         LinkwrightError: the detector cannot be created; VISION302 to VISION305 see `open_dataset` and `Dataset.read`.
     """
     dataset = open_dataset(folder)
-    return evaluate_detector(model, dataset.names, dataset.read(split or _evaluation_split(dataset)))
+    return evaluate_detector(model, dataset.names, dataset.read(split or _choose_evaluation_split(dataset)))
 
 
-def _evaluation_split(dataset: Dataset) -> str:
+def _choose_evaluation_split(dataset: Dataset) -> str:
     return next((split for split in ("test", "val") if split in dataset.splits), "val")
 
 
-def _training_facts(
+def _collect_training_facts(
     options: Options, dataset: Dataset, images: Sequence[LabeledFile], epochs: int, best_epoch: int, network: Network
 ) -> dict[str, str]:
     """Return the facts about the training for the card."""
@@ -143,9 +145,9 @@ def _training_facts(
         "command": f"`{options.command}`",
         "classes": ", ".join(dataset.names),
         "trained on": f"{len(images)} images with {object_count} objects of the dataset {dataset.folder.name}",
-        **dataset_facts(dataset.folder),
-        "images' sha256": dataset_digest(images),
-        **_initial_weights_facts(options.weights),
+        **collect_dataset_facts(dataset.folder),
+        "images' sha256": compute_dataset_digest(images),
+        **_collect_initial_weights_facts(options.weights),
         "input": f"{options.width} x {options.height}, red, green, blue, 0 to 1",
         "output": "YOLOv8's: [1, 4 + classes, cells], middle, width, height in pixels, scores",
         "weights": f"{parameters}",
@@ -154,7 +156,7 @@ def _training_facts(
     }
 
 
-def _initial_weights_facts(weights: Path | None) -> dict[str, str]:
+def _collect_initial_weights_facts(weights: Path | None) -> dict[str, str]:
     if weights is None:
         return {}
     try:
@@ -163,7 +165,7 @@ def _initial_weights_facts(weights: Path | None) -> dict[str, str]:
         return {"started from": weights.name}
 
 
-def dataset_digest(images: Sequence[LabeledFile]) -> str:
+def compute_dataset_digest(images: Sequence[LabeledFile]) -> str:
     """Return the SHA-256 of images and labels in order, to identify a dataset."""
     digest = hashlib.sha256()
     for labeled in images:

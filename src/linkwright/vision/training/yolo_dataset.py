@@ -101,7 +101,7 @@ def open_dataset(folder: Path) -> Dataset:
     Raises:
         LinkwrightError: VISION302, the folder is not a dataset.
     """
-    file = folder if folder.suffix in {".yaml", ".yml"} else _description_file(folder)
+    file = folder if folder.suffix in {".yaml", ".yml"} else _find_description_file(folder)
     try:
         content = yaml.safe_load(file.read_text(encoding="utf-8"))
     except FileNotFoundError:
@@ -110,7 +110,7 @@ def open_dataset(folder: Path) -> Dataset:
         raise _dataset_error(file, foreign(error)) from None
     if not isinstance(content, dict):
         raise _dataset_error(file, phrase("it is not a mapping of names to values"))
-    names = _class_names(file, content.get("names"))
+    names = _parse_class_names(file, content.get("names"))
     base = file.parent
     if isinstance(content.get("path"), str):
         base = next((candidate for candidate in (file.parent / content["path"],) if candidate.is_dir()), file.parent)
@@ -128,7 +128,7 @@ def open_dataset(folder: Path) -> Dataset:
     return Dataset(file.parent, names, splits)
 
 
-def _description_file(folder: Path) -> Path:
+def _find_description_file(folder: Path) -> Path:
     """Return the path of a dataset's YAML file, preferably ``data.yaml`` or ``dataset.yaml``."""
     if not folder.is_dir():
         raise _dataset_error(folder, phrase("it does not exist"), missing_file_hint(folder))
@@ -140,7 +140,7 @@ def _description_file(folder: Path) -> Path:
     return (preferred or files)[0]
 
 
-def _class_names(file: Path, names: Any) -> tuple[str, ...]:
+def _parse_class_names(file: Path, names: Any) -> tuple[str, ...]:
     if isinstance(names, dict) and sorted(names) == list(range(len(names))):
         names = [names[index] for index in range(len(names))]
     if isinstance(names, list) and names and all(isinstance(name, (str, int)) for name in names):
@@ -192,7 +192,7 @@ def _read_labeled(path: Path, classes: int, hidden: Sequence[list[float]]) -> La
     Raises:
         LinkwrightError: VISION304, the label file has an invalid label.
     """
-    label_file = label_path(path)
+    label_file = find_label_path(path)
     try:
         lines = label_file.read_text(encoding="utf-8").splitlines()
     except FileNotFoundError:
@@ -210,7 +210,7 @@ def _read_labeled(path: Path, classes: int, hidden: Sequence[list[float]]) -> La
     return LabeledFile(path, class_indices, np.concatenate((boxes, ignored_rows[:, 1:])), ignored)
 
 
-def label_path(image: Path) -> Path:
+def find_label_path(image: Path) -> Path:
     """Return the path of an image's label file.
 
     The last folder ``images`` of the path becomes ``labels``, and the suffix becomes ``.txt``.

@@ -1,4 +1,4 @@
-"""Install Linkwright from this folder into the user's folder, offline and without administrator rights.
+"""Install Linkwright from this folder, offline and without administrator rights.
 
 Usage: python install.py [FOLDER]
 
@@ -25,7 +25,10 @@ _IS_WINDOWS = os.name == "nt"
 
 
 class InstallationError(Exception):
-    """Raised if the installation is not possible. The arguments are the reason in English and in Chinese."""
+    """Raised if the installation is not possible.
+
+    The arguments are the reason in English and in Chinese.
+    """
 
 
 def install(target_folder: Path) -> None:
@@ -35,7 +38,7 @@ def install(target_folder: Path) -> None:
         InstallationError: the installation is not possible.
     """
     settings = json.loads((PACK / "pack.json").read_text(encoding="utf-8"))
-    target = _target(settings)
+    target = _find_target(settings)
     _print_in_both_languages(f"Linkwright {settings['version']}: {target} -> {target_folder}")
     python = _make_environment(target_folder)
     _print_in_both_languages(
@@ -55,8 +58,8 @@ def install(target_folder: Path) -> None:
     _print_next_steps(target_folder, settings["missing"].get(target, {}))
 
 
-def _target(settings: dict[str, Any]) -> str:
-    """Return the name of the target for this system and this Python, after checking that the folder has it."""
+def _find_target(settings: dict[str, Any]) -> str:
+    """Return the name of the target for this system and Python, if the folder has it."""
     version = f"{sys.version_info[0]}.{sys.version_info[1]}"
     machine = _MACHINES.get(platform.machine().lower(), platform.machine().lower())
     system = _SYSTEMS.get(platform.system(), platform.system()).format(machine=machine)

@@ -12,7 +12,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import Node, Parameter, ParameterType
 from linkwright.navigation.estimation.estimator import Timing
 from linkwright.navigation.estimation.kalman import Control, Settings
-from linkwright.navigation.estimation.motion_model import SIZE, Matrix
+from linkwright.navigation.estimation.motion_model import STATE_SIZE, Matrix
 from linkwright.navigation.estimation.readings import GRAVITY, UsedFlags
 from linkwright.nodes.settings import check_positive, invalid_value_error
 
@@ -119,20 +119,20 @@ def read_configuration(node: Node) -> Configuration:
         publishes_tf=declare("publish_tf", True).value,
         publishes_acceleration=declare("publish_acceleration", False).value,
         publishes_corrections=declare("permit_corrected_publication", False).value,
-        transform_offset_ns=_nanoseconds(declare("transform_time_offset", 0.0).value),
+        transform_offset_ns=_nanoseconds_from_seconds(declare("transform_time_offset", 0.0).value),
         reset_on_time_jump=declare("reset_on_time_jump", False).value,
         gravity=declare("gravitational_acceleration", GRAVITY).value,
         publishes_diagnostics=declare("print_diagnostics", False).value,
         is_initially_enabled=not declare("disabled_at_startup", False).value,
         timing=Timing(
-            sensor_timeout_ns=_nanoseconds(timeout),
+            sensor_timeout_ns=_nanoseconds_from_seconds(timeout),
             predict_to_now=declare("predict_to_current_time", False).value,
-            history_ns=_nanoseconds(abs(history_seconds)) if smooths_lagged_data else None,
+            history_ns=_nanoseconds_from_seconds(abs(history_seconds)) if smooths_lagged_data else None,
         ),
         filter=Settings(
             noise=_read_covariance(node, "process_noise_covariance", Settings().noise),
             initial_covariance=_read_covariance(node, "initial_estimate_covariance", Settings().initial_covariance),
-            initial_state=np.array(_read_numbers(node, "initial_state", (SIZE,)) or [0.0] * SIZE),
+            initial_state=np.array(_read_numbers(node, "initial_state", (STATE_SIZE,)) or [0.0] * STATE_SIZE),
             uses_dynamic_noise=declare("dynamic_process_noise_covariance", False).value,
             control=_read_control(node, sensors),
         ),
@@ -186,7 +186,7 @@ def _read_sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings
         value: bool | float = node.declare_parameter(f"{name}_{suffix}", default).value
         return value
 
-    used = _read_flags(node, f"{name}_config", SIZE) or (False,) * SIZE
+    used = _read_flags(node, f"{name}_config", STATE_SIZE) or (False,) * STATE_SIZE
     provided_flags = (*[pose] * 6, *[twist] * 6, *[acceleration] * 3)
     if kind == "imu":
         provided_flags = (*[False] * 3, *[True] * 3, *[False] * 3, *[True] * 6)
@@ -197,7 +197,7 @@ def _read_sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings
             f"Both {name}_differential and {name}_relative were set to true. Using differential mode."
         )
         relative = False
-    names = ("rejection_threshold",) * 2 if kind in ("pose", "twist") else _THRESHOLDS
+    names = ("rejection_threshold",) * 2 if kind in ("pose", "twist") else _THRESHOLD_PARAMETERS
     sensor = SensorSettings(
         name=name,
         kind=kind,
@@ -221,7 +221,7 @@ def _read_sensor(node: Node, kind: str, name: str, topic: str) -> SensorSettings
 
 _CONTROL_TIMEOUT_S = 0.2
 """The documented default in seconds. The code of robot_localization has 0, which ignores every command."""
-_THRESHOLDS = ("pose_rejection_threshold", "twist_rejection_threshold")
+_THRESHOLD_PARAMETERS = ("pose_rejection_threshold", "twist_rejection_threshold")
 
 
 def _read_control(node: Node, sensors: Sequence[SensorSettings]) -> Control | None:
@@ -252,7 +252,7 @@ def _read_control(node: Node, sensors: Sequence[SensorSettings]) -> Control | No
         return None
     return Control(
         used,
-        _nanoseconds(timeout),
+        _nanoseconds_from_seconds(timeout),
         tuple(acceleration_limits),
         tuple(acceleration_gains),
         tuple(deceleration_limits),
@@ -265,10 +265,10 @@ def _read_covariance(node: Node, name: str, default: Matrix) -> Matrix:
 
     The parameter has all 225 numbers or the 15 numbers of the diagonal.
     """
-    numbers = _read_numbers(node, name, (SIZE * SIZE, SIZE))
+    numbers = _read_numbers(node, name, (STATE_SIZE * STATE_SIZE, STATE_SIZE))
     if numbers is None:
         return default
-    return np.diag(numbers) if len(numbers) == SIZE else np.array(numbers).reshape(SIZE, SIZE)
+    return np.diag(numbers) if len(numbers) == STATE_SIZE else np.array(numbers).reshape(STATE_SIZE, STATE_SIZE)
 
 
 def _read_numbers(node: Node, name: str, lengths: tuple[int, ...]) -> list[float] | None:
@@ -306,5 +306,5 @@ def check_length(name: str, length: int, lengths: tuple[int, ...]) -> None:
         raise LinkwrightError(Diagnostic("NODE441", message))
 
 
-def _nanoseconds(seconds: float) -> int:
+def _nanoseconds_from_seconds(seconds: float) -> int:
     return round(seconds * 1e9)

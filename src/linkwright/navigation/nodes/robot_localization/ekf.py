@@ -22,7 +22,7 @@ from linkwright.graph import TF_QOS, Duration, Graph, JumpThreshold, TransformEx
 from linkwright.messages import TFMessage, Time, TransformBatch, get_message, get_service
 from linkwright.navigation.estimation.estimator import Estimator
 from linkwright.navigation.estimation.kalman import ExtendedKalmanFilter, KalmanFilter, UnscentedKalmanFilter
-from linkwright.navigation.estimation.motion_model import ACCELERATION, ANGLES, POSE, POSITION, SIZE, TWIST
+from linkwright.navigation.estimation.motion_model import ACCELERATION, ANGLES, POSE, POSITION, STATE_SIZE, TWIST
 from linkwright.navigation.estimation.readings import PoseReader
 from linkwright.navigation.nodes.robot_localization.configuration import read_configuration
 from linkwright.navigation.nodes.robot_localization.sources import Source, SourceContext
@@ -70,7 +70,7 @@ class EkfNode(SingleNode):
             acceleration_class = get_message("geometry_msgs/msg/AccelWithCovarianceStamped")
             self._acceleration_publisher = node.create_publisher(acceleration_class, "accel/filtered", 10)
         if self._configuration.publishes_diagnostics:
-            DiagnosticUpdater(node, "Filter diagnostic updater", self._health)
+            DiagnosticUpdater(node, "Filter diagnostic updater", self._check_health)
         if self._configuration.filter.control is not None:
             is_stamped: bool = node.get_parameter("stamped_control").value
             command_class = get_message(f"geometry_msgs/msg/Twist{'Stamped' if is_stamped else ''}")
@@ -148,9 +148,9 @@ class EkfNode(SingleNode):
         pose: Transform = (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))
         if configuration.publishes_tf:
             self._publish_transform(pose)
-        self._publisher.publish(self._odometry_message(pose))
+        self._publisher.publish(self._make_odometry_message(pose))
         if configuration.publishes_acceleration:
-            self._acceleration_publisher.publish(self._acceleration_message())
+            self._acceleration_publisher.publish(self._make_acceleration_message())
 
     def _publish_transform(self, base_in_world: Transform) -> None:
         frames = self._configuration.frames
@@ -168,7 +168,7 @@ class EkfNode(SingleNode):
         batch = TransformBatch((parent,), (child,), stamp_ns, np.array([pose]))
         self._tf_publisher.publish(TFMessage(batch=batch))
 
-    def _odometry_message(self, pose: Transform) -> Any:
+    def _make_odometry_message(self, pose: Transform) -> Any:
         kalman, frames = self._filter, self._configuration.frames
         message = get_message("nav_msgs/msg/Odometry")()
         message.header.stamp = Time.from_nanoseconds(kalman.time_ns)
@@ -181,7 +181,7 @@ class EkfNode(SingleNode):
         message.twist.covariance = kalman.covariance[TWIST, TWIST].reshape(36)
         return message
 
-    def _acceleration_message(self) -> Any:
+    def _make_acceleration_message(self) -> Any:
         kalman = self._filter
         message = get_message("geometry_msgs/msg/AccelWithCovarianceStamped")()
         message.header.stamp = Time.from_nanoseconds(kalman.time_ns)
@@ -193,7 +193,7 @@ class EkfNode(SingleNode):
         message.accel.covariance = covariance.reshape(36)
         return message
 
-    def _health(self) -> Health:
+    def _check_health(self) -> Health:
         if not self._filter.is_initialized:
             return Health(Level.WARN, "No measurement has been received yet.")
         return Health(Level.OK, "The robot_localization state estimation node appears to be functioning properly.")
@@ -231,7 +231,7 @@ class EkfNode(SingleNode):
         if not all(isfinite(number) for number in pose):
             self._node.get_logger().error("set_pose: the pose has values that are not finite, so it is ignored")
             return
-        reader = PoseReader((True,) * SIZE, two_d=self._configuration.two_d)
+        reader = PoseReader((True,) * STATE_SIZE, two_d=self._configuration.two_d)
         covariance = np.asarray(message.pose.covariance, dtype=np.float64).reshape(6, 6)
         reading = reader.read(pose, covariance, sensor, stamp_ns)
         assert reading is not None, "only a differential sensor has no first reading"
@@ -240,7 +240,7 @@ class EkfNode(SingleNode):
             source.reset(accept_older=False)
         self._context.ignored_until_ns = stamp_ns
         self._filter.state = reading.values
-        self._filter.covariance = np.eye(SIZE) * _INITIAL_VARIANCE
+        self._filter.covariance = np.eye(STATE_SIZE) * _INITIAL_VARIANCE
         self._filter.covariance[POSE, POSE] = reading.covariance[POSE, POSE]
         self._filter.time_ns = self._clock.now_ns()
 

@@ -133,7 +133,7 @@ class NavsatTransformNode(SingleNode):
         self._base_frame = message.child_frame_id or self._base_frame
         self._odometry, self._has_new_odometry = message, True
         if self._grid_in_map is None and not self._has_datum:
-            self._first_pose = _pose(message)
+            self._first_pose = _pose_from_odometry(message)
             if self._uses_odometry_yaw:
                 self._heading = self._first_pose[3:]
 
@@ -157,7 +157,9 @@ class NavsatTransformNode(SingleNode):
             self._base_frame, message.header.frame_id or self._base_frame, message.header.stamp.nanoseconds
         )
         if mounting is not None:
-            self._heading = quaternion_multiply(_orientation(message.orientation), quaternion_inverse(mounting[3:]))
+            self._heading = quaternion_multiply(
+                _orientation_from_message(message.orientation), quaternion_inverse(mounting[3:])
+            )
 
     # --- georeferencing ----------------------------------------------------------------------------------------------
 
@@ -184,7 +186,9 @@ class NavsatTransformNode(SingleNode):
         x, y, z = self._grid_from_geodetic(self._first_fix)
         roll, pitch, yaw = rpy_from_quaternion(self._heading)
         if not self._has_datum:
-            ox, oy, oz = rotate(quaternion_from_rpy((roll, pitch, yaw + yaw_correction)), self._receiver_position())
+            ox, oy, oz = rotate(
+                quaternion_from_rpy((roll, pitch, yaw + yaw_correction)), self._find_receiver_position()
+            )
             x, y, z = x - ox, y - oy, z - oz
         base_in_grid: Transform = (x, y, z, *quaternion_from_rpy((0.0, 0.0, yaw + yaw_correction)))
         self._grid_in_map = compose(self._first_pose, invert(base_in_grid))
@@ -205,7 +209,7 @@ class NavsatTransformNode(SingleNode):
         batch = TransformBatch((parent,), (child,), self._node.get_clock().now_ns(), row)
         self._tf_publisher.publish(TFMessage(batch=batch))
 
-    def _receiver_position(self) -> Vector3:
+    def _find_receiver_position(self) -> Vector3:
         """Return the position of the receiver in the body frame, or the origin if it is unknown."""
         frame = self._fix.header.frame_id if self._fix is not None else ""
         if not frame:
@@ -244,35 +248,37 @@ class NavsatTransformNode(SingleNode):
             self._locate_map()
             return
         if self._has_new_fix and self._has_new_odometry:
-            self._publisher.publish(self._fix_as_odometry(self._grid_in_map))
+            self._publisher.publish(self._odometry_from_fix(self._grid_in_map))
         if self._publishes_fixes and self._has_new_odometry:
-            self._fix_publisher.publish(self._odometry_as_fix(self._grid_in_map))
+            self._fix_publisher.publish(self._fix_from_odometry(self._grid_in_map))
             self._has_new_odometry = False
         self._has_new_fix = False
 
-    def _fix_as_odometry(self, grid_in_map: Transform) -> Any:
+    def _odometry_from_fix(self, grid_in_map: Transform) -> Any:
         fix = self._fix
         x, y, z = self._map_from_geodetic((fix.latitude, fix.longitude, fix.altitude))
-        ox, oy, oz = rotate(_pose(self._odometry)[3:], self._receiver_position())
+        ox, oy, oz = rotate(_pose_from_odometry(self._odometry)[3:], self._find_receiver_position())
         message = get_message("nav_msgs/msg/Odometry")()
         message.header.stamp, message.header.frame_id = fix.header.stamp, self._world_frame
         position = message.pose.pose.position
         position.x, position.y, position.z = x - ox, y - oy, 0.0 if self._zero_altitude else z - oz
         message.pose.pose.orientation.w = 1.0
         covariance = np.zeros((6, 6))
-        covariance[:3, :3] = _rotated_covariance(
+        covariance[:3, :3] = _rotate_covariance(
             grid_in_map, np.asarray(fix.position_covariance, dtype=np.float64).reshape(3, 3)
         )
         message.pose.covariance = covariance.reshape(36)
         return message
 
-    def _odometry_as_fix(self, grid_in_map: Transform) -> Any:
+    def _fix_from_odometry(self, grid_in_map: Transform) -> Any:
         odometry = self._odometry
         message = get_message("sensor_msgs/msg/NavSatFix")()
         message.header.stamp, message.header.frame_id = odometry.header.stamp, self._base_frame
-        message.latitude, message.longitude, message.altitude = self._geodetic_from_map(_pose(odometry)[:3])
+        message.latitude, message.longitude, message.altitude = self._geodetic_from_map(
+            _pose_from_odometry(odometry)[:3]
+        )
         covariance = np.asarray(odometry.pose.covariance, dtype=np.float64).reshape(6, 6)[:3, :3]
-        message.position_covariance = _rotated_covariance(invert(grid_in_map), covariance).reshape(9)
+        message.position_covariance = _rotate_covariance(invert(grid_in_map), covariance).reshape(9)
         message.position_covariance_type = _KNOWN_COVARIANCE
         message.status.status = _GBAS_FIX
         return message
@@ -282,19 +288,19 @@ class NavsatTransformNode(SingleNode):
     def _on_datum(self, request: Any, response: Any) -> Any:
         position = request.geo_pose.position
         self._zone = None
-        heading = _orientation(request.geo_pose.orientation)
+        heading = _orientation_from_message(request.geo_pose.orientation)
         self._set_datum(position.latitude, position.longitude, position.altitude, heading)
         return response
 
     def _on_from_ll(self, request: Any, response: Any) -> Any:
-        response.map_point = self._point_message(request.ll_point)
+        response.map_point = self._point_message_from_geodetic(request.ll_point)
         return response
 
     def _on_from_ll_array(self, request: Any, response: Any) -> Any:
-        response.map_points = [self._point_message(ll_point) for ll_point in request.ll_points]
+        response.map_points = [self._point_message_from_geodetic(ll_point) for ll_point in request.ll_points]
         return response
 
-    def _point_message(self, geodetic: Any) -> Any:
+    def _point_message_from_geodetic(self, geodetic: Any) -> Any:
         point = get_message("geometry_msgs/msg/Point")()
         if self._check_transform():
             point.x, point.y, point.z = self._map_from_geodetic(
@@ -335,16 +341,16 @@ def _parse_zone(text: str) -> UtmZone | None:
     return UtmZone(int(number), letter >= "N")
 
 
-def _pose(odometry: Any) -> Transform:
+def _pose_from_odometry(odometry: Any) -> Transform:
     position = odometry.pose.pose.position
-    return (position.x, position.y, position.z, *_orientation(odometry.pose.pose.orientation))
+    return (position.x, position.y, position.z, *_orientation_from_message(odometry.pose.pose.orientation))
 
 
-def _orientation(message: Any) -> Quaternion:
+def _orientation_from_message(message: Any) -> Quaternion:
     return normalized(message.x, message.y, message.z, message.w)
 
 
-def _rotated_covariance(pose: Transform, covariance: NDArray[np.float64]) -> NDArray[np.float64]:
+def _rotate_covariance(pose: Transform, covariance: NDArray[np.float64]) -> NDArray[np.float64]:
     rotation = rotation_matrix(pose[3:])
     rotated: NDArray[np.float64] = rotation @ covariance @ rotation.T
     return rotated

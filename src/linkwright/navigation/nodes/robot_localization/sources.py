@@ -30,7 +30,7 @@ from linkwright.navigation.estimation.readings import (
 from linkwright.navigation.nodes.robot_localization.configuration import Configuration, SensorSettings
 from linkwright.nodes.frame_poses import FramePoses
 
-_TYPES = {
+_MESSAGE_TYPES = {
     "odom": "nav_msgs/msg/Odometry",
     "pose": "geometry_msgs/msg/PoseWithCovarianceStamped",
     "twist": "geometry_msgs/msg/TwistWithCovarianceStamped",
@@ -95,7 +95,7 @@ class Source:
                 "imu": self._read_imu,
             }
             context.node.create_subscription(
-                get_message(_TYPES[settings.kind]),
+                get_message(_MESSAGE_TYPES[settings.kind]),
                 settings.topic,
                 lambda message: self._receive(message, readers[settings.kind]),
                 QoSProfile(settings.queue_size, ReliabilityPolicy.BEST_EFFORT),
@@ -144,14 +144,20 @@ class Source:
         if sensor is None:
             return
         position = message.pose.position
-        pose: Transform = (position.x, position.y, position.z, *_orientation(message.pose.orientation))
-        reading = self._pose.read(pose, _matrix(message.covariance, 6), sensor, stamp_ns)
+        pose: Transform = (position.x, position.y, position.z, *_orientation_from_message(message.pose.orientation))
+        reading = self._pose.read(pose, _matrix_from_numbers(message.covariance, 6), sensor, stamp_ns)
         self._add(reading, "pose", stamp_ns, self._settings.pose_threshold)
 
     def _read_twist(self, message: Any, frame: str, stamp_ns: int) -> None:
         if any(self._settings.used[TWIST]):
             linear, angular = message.twist.linear, message.twist.angular
-            self._add_twist(_vector(linear), _vector(angular), _matrix(message.covariance, 6), frame, stamp_ns)
+            self._add_twist(
+                _array_from_vector(linear),
+                _array_from_vector(angular),
+                _matrix_from_numbers(message.covariance, 6),
+                frame,
+                stamp_ns,
+            )
 
     def _add_twist(
         self,
@@ -161,7 +167,7 @@ class Source:
         frame: str,
         stamp_ns: int,
     ) -> None:
-        mounting = self._mounting(frame, stamp_ns)
+        mounting = self._find_mounting(frame, stamp_ns)
         if mounting is not None:
             rates, used = self._context.filter.state[RATES], self._settings.used
             reading = read_twist(linear, angular, covariance, mounting, rates, used, two_d=self._two_d)
@@ -170,40 +176,40 @@ class Source:
     def _read_imu(self, message: Any, stamp_ns: int) -> None:
         used, frame = self._settings.used, message.header.frame_id
         if any(used[ANGLES]) and _is_measured(message.orientation_covariance):
-            mounting = self._mounting(frame, stamp_ns)
+            mounting = self._find_mounting(frame, stamp_ns)
             if mounting is not None:
                 covariance = np.zeros((6, 6))
-                covariance[3:, 3:] = _matrix(message.orientation_covariance, 3)
-                orientation = _orientation(message.orientation)
+                covariance[3:, 3:] = _matrix_from_numbers(message.orientation_covariance, 3)
+                orientation = _orientation_from_message(message.orientation)
                 reading = self._pose.read_orientation(orientation, covariance, mounting, stamp_ns)
                 self._add(reading, "pose", stamp_ns, self._settings.pose_threshold)
         if any(used[RATES]) and _is_measured(message.angular_velocity_covariance):
             covariance = np.zeros((6, 6))
-            covariance[3:, 3:] = _matrix(message.angular_velocity_covariance, 3)
-            self._add_twist(np.zeros(3), _vector(message.angular_velocity), covariance, frame, stamp_ns)
+            covariance[3:, 3:] = _matrix_from_numbers(message.angular_velocity_covariance, 3)
+            self._add_twist(np.zeros(3), _array_from_vector(message.angular_velocity), covariance, frame, stamp_ns)
         if any(used[12:]) and _is_measured(message.linear_acceleration_covariance):
             self._read_acceleration(message, stamp_ns)
 
     def _read_acceleration(self, message: Any, stamp_ns: int) -> None:
-        mounting = self._mounting(message.header.frame_id, stamp_ns)
+        mounting = self._find_mounting(message.header.frame_id, stamp_ns)
         if mounting is None:
             return
-        acceleration = _vector(message.linear_acceleration)
+        acceleration = _array_from_vector(message.linear_acceleration)
         if self._settings.remove_gravity:
-            attitude = self._attitude(message, mounting)
+            attitude = self._find_attitude(message, mounting)
             acceleration = subtract_gravity(acceleration, attitude, self._context.configuration.gravity)
-        covariance = _matrix(message.linear_acceleration_covariance, 3)
+        covariance = _matrix_from_numbers(message.linear_acceleration_covariance, 3)
         reading = read_acceleration(acceleration, covariance, mounting, self._settings.used, two_d=self._two_d)
         self._add(reading, "acceleration", stamp_ns, self._settings.acceleration_threshold)
 
-    def _attitude(self, message: Any, mounting: Transform) -> Quaternion:
+    def _find_attitude(self, message: Any, mounting: Transform) -> Quaternion:
         """Return the orientation from an IMU's message, or the estimate if the IMU measures none."""
         if _is_measured(message.orientation_covariance):
-            return _orientation(message.orientation)
+            return _orientation_from_message(message.orientation)
         roll, pitch, yaw = (float(angle) for angle in self._context.filter.state[ANGLES])
         return quaternion_multiply(quaternion_from_rpy((roll, pitch, yaw)), mounting[3:])
 
-    def _mounting(self, frame: str, stamp_ns: int) -> Transform | None:
+    def _find_mounting(self, frame: str, stamp_ns: int) -> Transform | None:
         base = self._frames.base
         return self._context.poses.pose(base, frame or base, stamp_ns)
 
@@ -228,13 +234,13 @@ def _is_measured(covariance: Any) -> bool:
     return abs(float(covariance[0]) - _NOT_MEASURED) >= 1e-9
 
 
-def _orientation(message: Any) -> Quaternion:
+def _orientation_from_message(message: Any) -> Quaternion:
     return normalized(message.x, message.y, message.z, message.w)
 
 
-def _vector(message: Any) -> NDArray[np.float64]:
+def _array_from_vector(message: Any) -> NDArray[np.float64]:
     return np.array((message.x, message.y, message.z))
 
 
-def _matrix(numbers: Any, size: int) -> NDArray[np.float64]:
+def _matrix_from_numbers(numbers: Any, size: int) -> NDArray[np.float64]:
     return np.asarray(numbers, dtype=np.float64).reshape(size, size)

@@ -15,7 +15,7 @@ from linkwright.navigation.slam.search import Search
 from linkwright.navigation.slam.settings import MapperSettings
 from linkwright.nodes.settings import check_positive
 
-_WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
+_PARAMETERS_WITHOUT_EFFECT: dict[str, bool | int | float | str] = {
     "mode": "mapping",
     "debug_logging": False,
     "scan_queue_size": 1,
@@ -88,30 +88,30 @@ class _ParameterReader:
     def __init__(self, node: Node) -> None:
         self._node = node
 
-    def _value(self, name: str, default: object) -> Any:
+    def _read_value(self, name: str, default: object) -> Any:
         return get_or_declare(self._node, name, default)
 
-    def flag(self, name: str, default: bool) -> bool:
-        return bool(self._value(name, default))
+    def read_flag(self, name: str, default: bool) -> bool:
+        return bool(self._read_value(name, default))
 
-    def integer(self, name: str, default: int) -> int:
-        return int(self._value(name, default))
+    def read_integer(self, name: str, default: int) -> int:
+        return int(self._read_value(name, default))
 
-    def number(self, name: str, default: float) -> float:
-        return float(self._value(name, default))
+    def read_number(self, name: str, default: float) -> float:
+        return float(self._read_value(name, default))
 
-    def positive_number(self, name: str, default: float) -> float:
-        return check_positive(self._node, name, self.number(name, default))
+    def read_positive_number(self, name: str, default: float) -> float:
+        return check_positive(self._node, name, self.read_number(name, default))
 
-    def text(self, name: str, default: str) -> str:
-        return str(self._value(name, default))
+    def read_text(self, name: str, default: str) -> str:
+        return str(self._read_value(name, default))
 
-    def frame(self, name: str, default: str) -> str:
-        return self.text(name, default).removeprefix("/")
+    def read_frame(self, name: str, default: str) -> str:
+        return self.read_text(name, default).removeprefix("/")
 
     def declare_without_effect(self) -> None:
-        for name, default in _WITHOUT_EFFECT.items():
-            self._value(name, default)
+        for name, default in _PARAMETERS_WITHOUT_EFFECT.items():
+            self._read_value(name, default)
 
 
 def read_settings(node: Node) -> Settings:
@@ -122,41 +122,41 @@ def read_settings(node: Node) -> Settings:
     """
     reader = _ParameterReader(node)
     reader.declare_without_effect()
-    reader.flag("paused_new_measurements", False)
+    reader.read_flag("paused_new_measurements", False)
     _log_unsupported(node)
-    resolution = reader.number("resolution", 0.05)
+    resolution = reader.read_number("resolution", 0.05)
     if resolution <= 0.0:
         node.get_logger().warning(
             "You've set resolution of map to be zero or negative, this isn't allowed so it will be set to default "
             "value 0.05."
         )
         resolution = 0.05
-    throttle = reader.integer("throttle_scans", 1)
+    throttle = reader.read_integer("throttle_scans", 1)
     if throttle <= 0:
         node.get_logger().warning(
             "You've set throttle_scans to be zero, this isn't allowed so it will be set to default value 1."
         )
         throttle = 1
     return Settings(
-        odom_frame=reader.frame("odom_frame", "odom"),
-        map_frame=reader.frame("map_frame", "map"),
-        base_frame=reader.frame("base_frame", "base_footprint"),
-        scan_topic=reader.text("scan_topic", "/scan"),
-        map_name=reader.text("map_name", "/map"),
+        odom_frame=reader.read_frame("odom_frame", "odom"),
+        map_frame=reader.read_frame("map_frame", "map"),
+        base_frame=reader.read_frame("base_frame", "base_footprint"),
+        scan_topic=reader.read_text("scan_topic", "/scan"),
+        map_name=reader.read_text("map_name", "/map"),
         resolution=resolution,
-        ranges=(reader.number("min_laser_range", 0.0), reader.positive_number("max_laser_range", 25.0)),
+        ranges=(reader.read_number("min_laser_range", 0.0), reader.read_positive_number("max_laser_range", 25.0)),
         throttle_scans=throttle,
-        transform_timeout_ns=round(reader.number("transform_timeout", 0.5) * 1e9),
-        transform_period=reader.number("transform_publish_period", 0.05),
-        map_update_interval=reader.positive_number("map_update_interval", 10.0),
-        tf_buffer_ns=round(reader.number("tf_buffer_duration", 30.0) * 1e9),
-        position_covariance_scale=reader.number("position_covariance_scale", 1.0),
-        yaw_covariance_scale=reader.number("yaw_covariance_scale", 1.0),
-        min_pass_through=reader.integer("min_pass_through", 2),
-        occupancy_threshold=reader.number("occupancy_threshold", 0.1),
-        map_file_name=reader.text("map_file_name", ""),
-        start=_start_pose(node),
-        mapper=_mapper_settings(reader),
+        transform_timeout_ns=round(reader.read_number("transform_timeout", 0.5) * 1e9),
+        transform_period=reader.read_number("transform_publish_period", 0.05),
+        map_update_interval=reader.read_positive_number("map_update_interval", 10.0),
+        tf_buffer_ns=round(reader.read_number("tf_buffer_duration", 30.0) * 1e9),
+        position_covariance_scale=reader.read_number("position_covariance_scale", 1.0),
+        yaw_covariance_scale=reader.read_number("yaw_covariance_scale", 1.0),
+        min_pass_through=reader.read_integer("min_pass_through", 2),
+        occupancy_threshold=reader.read_number("occupancy_threshold", 0.1),
+        map_file_name=reader.read_text("map_file_name", ""),
+        start=_read_start_pose(node),
+        mapper=_read_mapper_settings(reader),
     )
 
 
@@ -167,7 +167,7 @@ def _log_unsupported(node: Node) -> None:
         node.get_logger().info("enable_interactive_mode is not supported: scans cannot be moved by hand")
 
 
-def _start_pose(node: Node) -> FloatArray | None:
+def _read_start_pose(node: Node) -> FloatArray | None:
     """Return the initial pose in a saved map, or None for the pose of its first scan.
 
     A wrong number of values is logged, as in slam_toolbox.
@@ -187,44 +187,44 @@ def _start_pose(node: Node) -> FloatArray | None:
     return np.array(pose, dtype=np.float64)
 
 
-def _mapper_settings(reader: _ParameterReader) -> MapperSettings:
-    number, positive_number = reader.number, reader.positive_number
-    angle_offset = number("coarse_search_angle_offset", 0.349)
-    angle_resolution = positive_number("coarse_angle_resolution", 0.0349)
+def _read_mapper_settings(reader: _ParameterReader) -> MapperSettings:
+    read_number, read_positive_number = reader.read_number, reader.read_positive_number
+    angle_offset = read_number("coarse_search_angle_offset", 0.349)
+    angle_resolution = read_positive_number("coarse_angle_resolution", 0.0349)
     return MapperSettings(
-        use_scan_matching=reader.flag("use_scan_matching", True),
-        minimum_time_interval=number("minimum_time_interval", 0.5),
-        minimum_travel_distance=number("minimum_travel_distance", 0.5),
-        minimum_travel_heading=number("minimum_travel_heading", 0.5),
-        scan_buffer_size=max(1, reader.integer("scan_buffer_size", 10)),
-        scan_buffer_maximum_scan_distance=number("scan_buffer_maximum_scan_distance", 10.0),
-        link_match_minimum_response_fine=number("link_match_minimum_response_fine", 0.1),
-        link_scan_maximum_distance=number("link_scan_maximum_distance", 1.5),
-        do_loop_closing=reader.flag("do_loop_closing", True),
-        loop_search_maximum_distance=number("loop_search_maximum_distance", 3.0),
-        loop_match_minimum_chain_size=reader.integer("loop_match_minimum_chain_size", 10),
-        loop_match_maximum_variance_coarse=number("loop_match_maximum_variance_coarse", 3.0),
-        loop_match_minimum_response_coarse=number("loop_match_minimum_response_coarse", 0.35),
-        loop_match_minimum_response_fine=number("loop_match_minimum_response_fine", 0.45),
+        use_scan_matching=reader.read_flag("use_scan_matching", True),
+        minimum_time_interval=read_number("minimum_time_interval", 0.5),
+        minimum_travel_distance=read_number("minimum_travel_distance", 0.5),
+        minimum_travel_heading=read_number("minimum_travel_heading", 0.5),
+        scan_buffer_size=max(1, reader.read_integer("scan_buffer_size", 10)),
+        scan_buffer_maximum_scan_distance=read_number("scan_buffer_maximum_scan_distance", 10.0),
+        link_match_minimum_response_fine=read_number("link_match_minimum_response_fine", 0.1),
+        link_scan_maximum_distance=read_number("link_scan_maximum_distance", 1.5),
+        do_loop_closing=reader.read_flag("do_loop_closing", True),
+        loop_search_maximum_distance=read_number("loop_search_maximum_distance", 3.0),
+        loop_match_minimum_chain_size=reader.read_integer("loop_match_minimum_chain_size", 10),
+        loop_match_maximum_variance_coarse=read_number("loop_match_maximum_variance_coarse", 3.0),
+        loop_match_minimum_response_coarse=read_number("loop_match_minimum_response_coarse", 0.35),
+        loop_match_minimum_response_fine=read_number("loop_match_minimum_response_fine", 0.45),
         matching=Search(
-            dimension=positive_number("correlation_search_space_dimension", 0.5),
-            resolution=positive_number("correlation_search_space_resolution", 0.01),
-            smear_deviation=positive_number("correlation_search_space_smear_deviation", 0.1),
+            dimension=read_positive_number("correlation_search_space_dimension", 0.5),
+            resolution=read_positive_number("correlation_search_space_resolution", 0.01),
+            smear_deviation=read_positive_number("correlation_search_space_smear_deviation", 0.1),
             angle_offset=angle_offset,
             angle_resolution=angle_resolution,
-            distance_variance_penalty=positive_number("distance_variance_penalty", 0.5),
-            angle_variance_penalty=positive_number("angle_variance_penalty", 1.0),
-            minimum_distance_penalty=number("minimum_distance_penalty", 0.5),
-            minimum_angle_penalty=number("minimum_angle_penalty", 0.9),
+            distance_variance_penalty=read_positive_number("distance_variance_penalty", 0.5),
+            angle_variance_penalty=read_positive_number("angle_variance_penalty", 1.0),
+            minimum_distance_penalty=read_number("minimum_distance_penalty", 0.5),
+            minimum_angle_penalty=read_number("minimum_angle_penalty", 0.9),
         ),
         loop=Search(
-            dimension=positive_number("loop_search_space_dimension", 8.0),
-            resolution=positive_number("loop_search_space_resolution", 0.05),
-            smear_deviation=positive_number("loop_search_space_smear_deviation", 0.03),
+            dimension=read_positive_number("loop_search_space_dimension", 8.0),
+            resolution=read_positive_number("loop_search_space_resolution", 0.05),
+            smear_deviation=read_positive_number("loop_search_space_smear_deviation", 0.03),
             angle_offset=angle_offset,
             angle_resolution=angle_resolution,
             distance_variance_penalty=inf,
             angle_variance_penalty=inf,
         ),
-        use_response_expansion=reader.flag("use_response_expansion", True),
+        use_response_expansion=reader.read_flag("use_response_expansion", True),
     )

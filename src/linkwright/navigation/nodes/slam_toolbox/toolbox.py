@@ -48,13 +48,13 @@ class Toolbox:
     """The mapping or localization of a node while it is configured.
 
     Args:
-        node: the node.
+        node: the ROS node that has the topics and timers.
         settings: the parameters.
         keeps_all_scans: whether scans that arrive during a computation are queued instead of dropped.
         localizes: whether the robot is only localized, without changing the map.
 
     Attributes:
-        node: the node.
+        node: the ROS node that has the topics and timers.
         settings: the parameters.
         mapper: the map and the robot's pose in it.
         localizes: whether the robot is only localized.
@@ -68,7 +68,7 @@ class Toolbox:
         for subpackage in ("ndimage", "sparse", "sparse.linalg", "spatial"):
             load_scipy(subpackage)  # If SciPy is missing, NAV101 is raised here and not at the first scan.
         self.node, self.settings, self.localizes = node, settings, localizes
-        self.mapper = self._new_mapper()
+        self.mapper = self._create_mapper()
         self.queue: deque[tuple[PlanarScan, FloatArray]] = deque()
         self._keeps_all_scans = keeps_all_scans
         self._pending_scan: tuple[Any, int] | None = None
@@ -141,7 +141,7 @@ class Toolbox:
         for endpoint in endpoints:
             endpoint.destroy()
 
-    def _new_mapper(self) -> Mapper:
+    def _create_mapper(self) -> Mapper:
         settings = self.settings
         occupancy = OccupancyMap(settings.resolution, settings.min_pass_through, settings.occupancy_threshold)
         return Mapper(settings.mapper, occupancy)
@@ -156,7 +156,7 @@ class Toolbox:
         if self.localizes:
             self.mapper.begin_session(self.settings.start)
         else:
-            self.mapper = self._new_mapper()
+            self.mapper = self._create_mapper()
         self._map_to_odom = np.zeros(3)
         self._has_published = False
 
@@ -170,7 +170,7 @@ class Toolbox:
         Raises:
             LinkwrightError: NAV501, the graph cannot be read.
         """
-        mapper = self._new_mapper()
+        mapper = self._create_mapper()
         load_graph(mapper, graph_path(name))
         mapper.begin_session(start)
         self._drop_work()
@@ -230,7 +230,7 @@ class Toolbox:
                 )
             return
         self._pending_scan = None
-        self._queue_scan(message, _planar_pose(base), laser)
+        self._queue_scan(message, _planar_pose_from_transform(base), laser)
 
     def _queue_scan(self, message: Any, odometry: FloatArray, laser: Transform) -> None:
         if self._processed_odometry is not None and self.node.get_parameter("paused_new_measurements").value:
@@ -241,7 +241,7 @@ class Toolbox:
         last_queued = (self.queue[-1][1], self.queue[-1][0].stamp_ns) if self.queue else None
         if not self.mapper.should_process(odometry, message.header.stamp.nanoseconds, last_queued):
             return
-        self.queue.append((self._planar_scan(message, laser), odometry))
+        self.queue.append((self._planar_scan_from_message(message, laser), odometry))
         if len(self.queue) > _MAX_QUIET_QUEUE:
             self.node.get_logger().warning(
                 f"Queue size has grown to: {len(self.queue)}. Recommend stopping until message is gone if online "
@@ -251,7 +251,7 @@ class Toolbox:
         if not is_busy:
             self._process_next_scan()
 
-    def _planar_scan(self, message: Any, laser: Transform) -> PlanarScan:
+    def _planar_scan_from_message(self, message: Any, laser: Transform) -> PlanarScan:
         ranges = np.array(message.ranges, dtype=np.float64)
         angles = message.angle_min + np.arange(len(ranges)) * message.angle_increment
         mounting = np.array(rotation_matrix(laser[3:])), np.array(laser[:3])
@@ -365,6 +365,6 @@ class Toolbox:
         self.node.set_parameters([Parameter("paused_new_measurements", value=is_paused)])
 
 
-def _planar_pose(pose: Transform) -> FloatArray:
+def _planar_pose_from_transform(pose: Transform) -> FloatArray:
     """Return the x, y and yaw of a 3D pose."""
     return np.array((pose[0], pose[1], rpy_from_quaternion(pose[3:])[2]))

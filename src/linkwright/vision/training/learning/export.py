@@ -17,7 +17,7 @@ from torch import Tensor, nn
 from linkwright.vision.training.learning.network import STRIDES, Network
 
 _OPSET = 17
-_MIN_HALVED_SIZE = 64  # weights with fewer numbers than this are not halved
+_MIN_HALVED_WEIGHT_COUNT = 64  # weights with fewer numbers than this are not halved
 
 
 class _YoloOutput(nn.Module):
@@ -98,7 +98,7 @@ def _halve_precision(model: Any) -> None:
     casts = []
     for weights in model.graph.initializer:
         array = numpy_helper.to_array(weights)
-        if array.dtype != np.float32 or array.size < _MIN_HALVED_SIZE:
+        if array.dtype != np.float32 or array.size < _MIN_HALVED_WEIGHT_COUNT:
             continue
         name = weights.name
         weights.CopyFrom(numpy_helper.from_array(array.astype(np.float16), f"{name}_16"))

@@ -36,8 +36,8 @@ def load_weights(network: Network, names: Sequence[str], path: Path, images: Ite
     Raises:
         LinkwrightError: VISION308, the file cannot be read, or contains a different network.
     """
-    file_names, weights = _read(path)
-    convolutions = _execution_order(network.eval())
+    file_names, weights = _read_onnx_file(path)
+    convolutions = _find_execution_order(network.eval())
     channels, expected = len(weights[0][0]), network.shape.channels
     if len(weights) == len(convolutions) and channels != expected:
         reason = phrase(
@@ -68,7 +68,7 @@ def load_weights(network: Network, names: Sequence[str], path: Path, images: Ite
         _restore_normalization(network, list(blocks.values()), images)
 
 
-def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
+def _read_onnx_file(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
     """Return the class names, and the kernel and bias of each convolution in execution order."""
     try:
         model = onnx.load(path, load_external_data=False)
@@ -94,7 +94,7 @@ def _read(path: Path) -> tuple[tuple[str, ...], list[tuple[Tensor, Tensor]]]:
     return names, weights
 
 
-def _execution_order(network: Network) -> list[nn.Conv2d]:
+def _find_execution_order(network: Network) -> list[nn.Conv2d]:
     """Return the convolutions of a network in execution order."""
     ordered: list[nn.Conv2d] = []
     layers = [module for module in network.modules() if isinstance(module, nn.Conv2d)]

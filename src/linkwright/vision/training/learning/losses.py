@@ -14,7 +14,7 @@ from torch.nn import functional
 
 _SCORE_POWER, _OVERLAP_POWER = 1.0, 4.0
 _CELLS_PER_OBJECT = 10
-_MIN_HALF_SIZE = 8.0  # for small objects: cells within this many pixels of the center may be assigned
+_MIN_HALF_SIZE_PIXELS = 8.0  # for small objects: cells within this many pixels of the center may be assigned
 _BOX_WEIGHT, _SCORE_WEIGHT = 4.0, 1.0
 _EPSILON = 1e-7
 """Avoids divisions by zero."""
@@ -63,7 +63,7 @@ def pairwise_iou(first: Tensor, second: Tensor) -> tuple[Tensor, Tensor]:
 
 
 @torch.no_grad()
-def assign(boxes: Tensor, logits: Tensor, centers: Tensor, objects: Tensor) -> Assignment:
+def assign_cells(boxes: Tensor, logits: Tensor, centers: Tensor, objects: Tensor) -> Assignment:
     """Assign cells to each object, and return the targets of all cells.
 
     Args:
@@ -80,7 +80,7 @@ def assign(boxes: Tensor, logits: Tensor, centers: Tensor, objects: Tensor) -> A
     iou, _ = pairwise_iou(object_boxes[:, :, None], boxes[:, None])
     scores = logits.sigmoid().transpose(1, 2).gather(1, class_indices[..., None].expand(-1, -1, cells))
     alignment = scores**_SCORE_POWER * iou**_OVERLAP_POWER
-    half_sizes = ((object_boxes[..., 2:] - object_boxes[..., :2]) / 2).clamp(_MIN_HALF_SIZE)
+    half_sizes = ((object_boxes[..., 2:] - object_boxes[..., :2]) / 2).clamp(_MIN_HALF_SIZE_PIXELS)
     object_centers = (object_boxes[..., :2] + object_boxes[..., 2:]) / 2
     is_near = ((centers - object_centers[:, :, None]).abs() <= half_sizes[:, :, None]).all(3) & is_object[..., None]
     alignment = (alignment + _EPSILON * iou) * is_near
@@ -105,13 +105,13 @@ def assign(boxes: Tensor, logits: Tensor, centers: Tensor, objects: Tensor) -> A
     )
 
 
-def loss(boxes: Tensor, logits: Tensor, centers: Tensor, objects: Tensor) -> tuple[Tensor, Tensor]:
-    """Return the loss of a batch, given the arguments of `assign`.
+def compute_loss(boxes: Tensor, logits: Tensor, centers: Tensor, objects: Tensor) -> tuple[Tensor, Tensor]:
+    """Return the loss of a batch, given the arguments of `assign_cells`.
 
     Returns:
         The total loss; and the box loss and the score loss, shape (2,), without gradients.
     """
-    targets = assign(boxes, logits, centers, objects)
+    targets = assign_cells(boxes, logits, centers, objects)
     normalizer = targets.scores.sum().clamp(1.0)
     score_loss = functional.binary_cross_entropy_with_logits(logits, targets.scores, reduction="none")
     # Empty cells with high scores weigh most. Empty cells with low scores are already correct and weigh almost nothing.

@@ -55,7 +55,7 @@ class Convolution(nn.Module):
 
 
 class HalfStage(nn.Module):
-    """Residual blocks that process one half of the channels, while the other half bypasses them."""
+    """Residual blocks that process one half of the channels; the other half bypasses them."""
 
     def __init__(self, inputs: int, outputs: int, blocks: int, *, residual: bool = True) -> None:
         super().__init__()
@@ -157,7 +157,7 @@ class Network(nn.Module):
         coarse = self.up_coarse(torch.cat((self.halve_middle(middle), coarse), 1))
         levels = [head(level) for head, level in zip(self.heads, (fine, middle, coarse), strict=True)]
         outputs = torch.cat(levels, 2).transpose(1, 2)
-        centers, strides = cells(images.shape[3], images.shape[2], images.device)
+        centers, strides = make_cells(images.shape[3], images.shape[2], images.device)
         distances = outputs[..., :4].clamp(max=_MAX_LOG_DISTANCE).exp() * strides
         boxes = torch.cat((centers - distances[..., :2], centers + distances[..., 2:]), 2)
         return boxes, outputs[..., 4:]
@@ -168,7 +168,7 @@ def _upsample(features: Tensor) -> Tensor:
 
 
 @cache
-def cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
+def make_cells(width: int, height: int, device: torch.device = _CPU) -> tuple[Tensor, Tensor]:
     """Return the centers and strides of the cells of all scales, for an image size in pixels.
 
     Returns:

@@ -20,12 +20,12 @@ from torch import Tensor, nn
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, phrase
 from linkwright.vision.detections import Detections
 from linkwright.vision.detectors.suppression import non_maximum_suppression
-from linkwright.vision.evaluation import Evaluation, GroundTruth, best_f1_threshold, evaluate
+from linkwright.vision.evaluation import Evaluation, GroundTruth, evaluate, find_best_f1_threshold
 from linkwright.vision.training.detector_evaluation import EVALUATION_LIMITS
-from linkwright.vision.training.images import LabeledImages, augment, repeat_factors, repeated_indices
+from linkwright.vision.training.images import LabeledImages, augment, compute_repeat_factors, draw_repeated_indices
 from linkwright.vision.training.learning.initial_weights import load_weights
-from linkwright.vision.training.learning.losses import loss
-from linkwright.vision.training.learning.network import Network, Shape, cells
+from linkwright.vision.training.learning.losses import compute_loss
+from linkwright.vision.training.learning.network import Network, Shape, make_cells
 from linkwright.vision.training.learning.optimizer import Optimizer
 from linkwright.vision.training.options import Options
 
@@ -62,7 +62,7 @@ class TrainingLoop:
 
     Attributes:
         names: the names of the classes.
-        options: the options.
+        options: the options of the training.
         shape: the shape of the network.
         network: the network that is trained.
         averaged: the network with the moving average of the weights, which is evaluated.
@@ -81,7 +81,7 @@ class TrainingLoop:
         self.names = tuple(names)
         self.options = options
         self._training, self._validation = training, validation
-        self._repeats = repeat_factors(training, len(names))
+        self._repeats = compute_repeat_factors(training, len(names))
         self.shape = Shape(len(names), options.channels)
         self._device = torch.device("cuda" if options.device == "auto" and torch.cuda.is_available() else "cpu")
         self.network = Network(self.shape).to(self._device, memory_format=torch.channels_last)
@@ -123,7 +123,7 @@ class TrainingLoop:
         """The training device: the name of the GPU, or the processor's architecture."""
         return torch.cuda.get_device_name(self._device) if self._device.type == "cuda" else platform.machine()
 
-    def best_network(self) -> Network:
+    def load_best_network(self) -> Network:
         """Return the network with the best results on the validation split, in evaluation mode."""
         network = deepcopy(self.averaged)
         network.load_state_dict(self.best)
@@ -137,43 +137,43 @@ class TrainingLoop:
     def _train_epoch(self, epoch: int) -> tuple[float, float]:
         self.network.train()
         sums = torch.zeros(2)
-        batches = list(self._batches(epoch))
+        batches = list(self._iterate_batches(epoch))
         for indices, seed in batches:
-            images, objects = self._batch(indices, seed)
+            images, objects = self._load_batch(indices, seed)
             with torch.autocast(self._device.type, torch.bfloat16, enabled=self.options.precision == "bfloat16"):
                 boxes, logits = self.network(images)
-            centers, _ = cells(images.shape[3], images.shape[2], images.device)
-            total, losses = loss(boxes, logits, centers, objects)
+            centers, _ = make_cells(images.shape[3], images.shape[2], images.device)
+            total, losses = compute_loss(boxes, logits, centers, objects)
             self._optimizer.reset_gradients()
             total.backward()
             nn.utils.clip_grad_norm_(self.network.parameters(), _MAX_GRADIENT_NORM)
-            self._optimizer.step(self._learning_rate(len(batches)))
+            self._optimizer.step(self._compute_learning_rate(len(batches)))
             self._step += 1
             self._update_average()
             sums += losses.cpu()
         mean = sums / len(batches)
         return float(mean[0]), float(mean[1])
 
-    def _batches(self, epoch: int) -> Iterator[tuple[NDArray[np.int64], int]]:
+    def _iterate_batches(self, epoch: int) -> Iterator[tuple[NDArray[np.int64], int]]:
         """Yield the batches of an epoch, in an order that depends only on the seed and the epoch."""
         generator = np.random.default_rng((self.options.seed, epoch))
-        order = generator.permutation(repeated_indices(self._repeats, generator))
+        order = generator.permutation(draw_repeated_indices(self._repeats, generator))
         size = min(self.options.batch, len(order))
         for start in range(0, len(order) - size + 1, size):
             yield order[start : start + size], start
 
-    def _batch(self, indices: NDArray[np.int64], start: int) -> tuple[Tensor, Tensor]:
+    def _load_batch(self, indices: NDArray[np.int64], start: int) -> tuple[Tensor, Tensor]:
         generator = np.random.default_rng((self.options.seed, self.epoch, start))
-        view = self.options.view(self.epoch)
-        samples = [augment(self._training, int(index), view, generator) for index in indices]
+        crop = self.options.choose_crop(self.epoch)
+        samples = [augment(self._training, int(index), crop, generator) for index in indices]
         max_objects = max([1, *(len(objects) for _, objects in samples)])
         table: NDArray[np.float32] = np.full((len(samples), max_objects, 5), -1, np.float32)
         for row, (_, objects) in zip(table, samples, strict=True):
             row[: len(objects)] = objects
         images = np.stack([image for image, _ in samples])
-        return _tensor(images, self._device), torch.from_numpy(table).to(self._device)
+        return _to_tensor(images, self._device), torch.from_numpy(table).to(self._device)
 
-    def _learning_rate(self, steps: int) -> float:
+    def _compute_learning_rate(self, steps: int) -> float:
         """Return the learning rate: a short warm-up, then half a cosine down to nearly zero."""
         total_steps = self.options.epochs * steps
         progress = min(1.0, self._step / max(1, total_steps))
@@ -195,9 +195,9 @@ class TrainingLoop:
         """Evaluate the network with averaged weights on the validation split."""
         return evaluate(self.names, *self._detect_validation(self.averaged))
 
-    def best_threshold(self, network: Network) -> float:
+    def find_best_threshold(self, network: Network) -> float:
         """Return the score threshold at which F1 on the validation split is highest."""
-        return best_f1_threshold(self.names, *self._detect_validation(network))
+        return find_best_f1_threshold(self.names, *self._detect_validation(network))
 
     @torch.no_grad()
     def _detect_validation(self, network: Network) -> tuple[list[GroundTruth], list[Detections]]:
@@ -205,14 +205,14 @@ class TrainingLoop:
         detections: list[Detections] = []
         device = next(network.parameters()).device
         for start in range(0, len(self._validation.objects), self.options.batch):
-            images = _tensor(self._validation.images[start : start + self.options.batch], device)
+            images = _to_tensor(self._validation.images[start : start + self.options.batch], device)
             boxes, logits = network(images)
             scores = logits.sigmoid()
             pairs = zip(boxes.cpu().numpy(), scores.cpu().numpy(), strict=True)
-            detections += [self._detections_in(prediction, score) for prediction, score in pairs]
+            detections += [self._select_detections(prediction, score) for prediction, score in pairs]
         return [_to_ground_truth(objects) for objects in self._validation.objects], detections
 
-    def _detections_in(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
+    def _select_detections(self, boxes: NDArray[np.float32], scores: NDArray[np.float32]) -> Detections:
         """Return the detections in one image from boxes (cells, 4) and scores (cells, classes)."""
         cell_indices, class_indices = np.nonzero(scores >= EVALUATION_LIMITS.threshold)
         confidences: NDArray[np.float32] = scores[cell_indices, class_indices]
@@ -247,7 +247,7 @@ class TrainingLoop:
     def load_initial_weights(self, path: Path) -> None:
         """Start from the weights of an ONNX file. See `load_weights`."""
         images, size = self._training.images[:_STATISTICS_IMAGES], self.options.batch
-        batches = (_tensor(images[start : start + size], self._device) for start in range(0, len(images), size))
+        batches = (_to_tensor(images[start : start + size], self._device) for start in range(0, len(images), size))
         load_weights(self.network, self.names, path, batches)
         self.averaged.load_state_dict(self.network.state_dict())
 
@@ -277,7 +277,7 @@ class TrainingLoop:
         self.epoch, self._step, self.seconds = state["epoch"], state["step"], state["seconds"]
 
 
-def _tensor(images: NDArray[np.uint8], device: torch.device) -> Tensor:
+def _to_tensor(images: NDArray[np.uint8], device: torch.device) -> Tensor:
     """Convert images of shape (batch, height, width, 3) to an input tensor of the network."""
     return torch.from_numpy(images).to(device).permute(0, 3, 1, 2).float().div_(255)
 

@@ -10,7 +10,7 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from launch_ros.actions import Node, PushRosNamespace
 
 from launch import LaunchDescription
-from linkwright.navigation.substitutes.servers import ARGUMENTS, configured_parameters, is_true
+from linkwright.navigation.substitutes.servers import ARGUMENTS, configure_parameters, is_true
 
 HERE = get_package_share_path("nav2_bringup")
 DECLARED = {
@@ -43,7 +43,7 @@ def start(context):
         package="rclcpp_components",
         executable="component_container_isolated",
         name=context.launch_configurations["container_name"],
-        parameters=[configured_parameters(context), {"autostart": is_true(context, "autostart")}],
+        parameters=[configure_parameters(context), {"autostart": is_true(context, "autostart")}],
         arguments=["--ros-args", "--log-level", level],
         remappings=[("/tf", "tf"), ("/tf_static", "tf_static")],
         output="screen",

@@ -8,7 +8,7 @@ from ament_index_python.packages import get_package_share_path
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironmentVariable
 
 from launch import LaunchDescription
-from linkwright.navigation.substitutes.servers import ARGUMENTS, Server, server_actions
+from linkwright.navigation.substitutes.servers import ARGUMENTS, Server, make_server_actions
 
 SERVERS = (
     Server("nav2_map_server", "map_server", "nav2_map_server::MapServer"),
@@ -22,7 +22,7 @@ def start(context):
     If the argument ``map`` is not empty, it overrides the map of the parameters.
     """
     file = context.launch_configurations["map"]
-    return server_actions(
+    return make_server_actions(
         context, "lifecycle_manager_localization", SERVERS, {"map_server": {"yaml_filename": file}} if file else {}
     )
 

@@ -9,7 +9,7 @@ from launch.actions import DeclareLaunchArgument, OpaqueFunction, SetEnvironment
 from nav2_common.launch import HasNodeParams
 
 from launch import LaunchDescription
-from linkwright.navigation.substitutes.servers import ARGUMENTS, Server, server_actions
+from linkwright.navigation.substitutes.servers import ARGUMENTS, Server, make_server_actions
 
 COMMANDED = ("cmd_vel", "cmd_vel_nav")
 MONITOR = Server("nav2_collision_monitor", "collision_monitor", "nav2_collision_monitor::CollisionMonitor")
@@ -45,7 +45,7 @@ def start(context):
     """
     has_parameters = HasNodeParams(context.launch_configurations["params_file"], "collision_monitor")
     is_monitored = MONITOR.is_available and has_parameters.perform(context) == "True"
-    return server_actions(context, "lifecycle_manager_navigation", servers(is_monitored=is_monitored))
+    return make_server_actions(context, "lifecycle_manager_navigation", servers(is_monitored=is_monitored))
 
 
 def generate_launch_description():

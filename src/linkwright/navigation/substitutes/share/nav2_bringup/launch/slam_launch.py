@@ -10,7 +10,7 @@ from launch.launch_description_sources import PythonLaunchDescriptionSource
 from nav2_common.launch import HasNodeParams
 
 from launch import LaunchDescription
-from linkwright.navigation.substitutes.servers import Server, server_actions
+from linkwright.navigation.substitutes.servers import Server, make_server_actions
 
 SERVERS = (Server("nav2_map_server", "map_saver_server", "nav2_map_server::MapSaver", "map_saver"),)
 ARGUMENTS = {
@@ -34,7 +34,7 @@ def start(context):
     path = get_package_share_path("slam_toolbox") / "launch" / "online_sync_launch.py"
     mapping = IncludeLaunchDescription(PythonLaunchDescriptionSource(str(path)), launch_arguments=arguments.items())
     configurations["use_composition"] = "False"
-    return [*server_actions(context, "lifecycle_manager_slam", SERVERS), mapping]
+    return [*make_server_actions(context, "lifecycle_manager_slam", SERVERS), mapping]
 
 
 def generate_launch_description():

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from linkwright.diagnostics import foreign, phrase
-from linkwright.learning.errors import file_error, unreadable
+from linkwright.learning.errors import file_error, unreadable_file_error
 from linkwright.learning.local_text import LocalText
 
 if TYPE_CHECKING:
@@ -95,7 +95,7 @@ def load_module(path: Path) -> ModuleType:
     try:
         source = path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise unreadable(path, error) from None
+        raise unreadable_file_error(path, error) from None
     spec = importlib.util.spec_from_loader(f"linkwright_lesson_{path.stem}", None, origin=str(path))
     assert spec is not None, "a specification needs no loader"
     module = importlib.util.module_from_spec(spec)

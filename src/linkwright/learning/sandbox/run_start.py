@@ -16,8 +16,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
-from linkwright.learning.sandbox.limits_of_process import apply_limits, count_threads_of_user, lower_priority
 from linkwright.learning.sandbox.plan import Plan
+from linkwright.learning.sandbox.process_limits import apply_limits, count_threads_of_user, lower_priority
 
 _TEMPORARY_SHARE = 8
 """/tmp and /dev/shm may each contain this part of the memory limit."""
@@ -40,7 +40,7 @@ class Confinement:
         """Return the confinement as a message to the supervisor."""
         return {**vars(self), "namespaces": sorted(self.namespaces)}
 
-    def take(self, message: dict[str, Any]) -> None:
+    def update(self, message: dict[str, Any]) -> None:
         """Update the confinement from a message of `to_message`."""
         self.namespaces = set(message["namespaces"])
         self.landlock = message["landlock"]
@@ -61,7 +61,10 @@ class Messages:
         os.write(self.writer, json.dumps(message).encode() + b"\n")
 
     def close_writer(self) -> None:
-        """Close this process's end for writing, so that `receive` ends when all other processes have closed theirs."""
+        """Close this process's end for writing.
+
+        `receive` ends when all processes have closed their ends.
+        """
         os.close(self.writer)
 
     def receive(self) -> dict[str, Any] | None:
@@ -163,7 +166,10 @@ class Start:
             self._give_up()
 
     def _run_first_process(self, confinement: Confinement) -> NoReturn:
-        """Run as process 1 of the run's process namespace. The end of the program ends all its processes."""
+        """Run as process 1 of the run's process namespace.
+
+        The end of the program ends all its processes.
+        """
         from linkwright.learning.sandbox.linux import die_with_parent
 
         die_with_parent(signal.SIGKILL, 0)  # the parent is outside this namespace, which shows it as 0
@@ -185,7 +191,7 @@ class Start:
         others = 0 if self._is_counted_alone(confinement) else count_threads_of_user()
         if sys.platform == "linux":
             self._restrict(confinement, parent)
-        apply_limits(plan.limits, others=others)
+        apply_limits(plan.limits, other_threads=others)
         self.messages.send(applied=confinement.to_message())
         _restore_signals()
         os.closerange(3, self.messages.writer)
@@ -197,8 +203,8 @@ class Start:
         os._exit(127)
 
     def _is_counted_alone(self, confinement: Confinement) -> bool:
-        """Return whether the kernel counts the run's processes separately from other processes of its user."""
-        return self.user is not None or ("user" in confinement.namespaces and _counts_in_namespaces())
+        """Return whether the kernel counts the run's processes separately from the user's others."""
+        return self.user is not None or ("user" in confinement.namespaces and _does_kernel_count_in_namespaces())
 
     def _restrict(self, confinement: Confinement, parent: int) -> None:
         from linkwright.learning.sandbox import landlock
@@ -235,7 +241,7 @@ def _fork(run: Callable[[], NoReturn]) -> int:
     return child
 
 
-def _counts_in_namespaces() -> bool:
+def _does_kernel_count_in_namespaces() -> bool:
     """Return whether the kernel counts processes per user namespace (Linux 5.14 and later)."""
     major, minor, *_ = os.uname().release.split(".")
     return (int(major), int(minor.partition("-")[0])) >= (5, 14)

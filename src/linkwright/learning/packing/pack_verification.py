@@ -1,4 +1,4 @@
-"""Verify a pack: check the checksums of its files, and whether each target can be installed from it.
+"""Verify a pack: the checksums of its files, and whether each target can be installed.
 
 The check reads the requirements in the wheels themselves and evaluates their markers for each target. It does not use
 the table from which the pack was built.
@@ -17,12 +17,12 @@ from packaging.utils import NormalizedName, canonicalize_name, parse_wheel_filen
 from packaging.version import Version
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
-from linkwright.learning.packing.locked_files import wheel_rank
-from linkwright.learning.packing.pack_folder import PackFolder, PackSettings, sha256_of
+from linkwright.learning.packing.locked_files import rank_wheel
+from linkwright.learning.packing.pack_folder import PackFolder, PackSettings, compute_sha256
 from linkwright.learning.packing.targets import Target
 from linkwright.learning.packing.wheel_metadata import read_metadata
 
-_PINNED = re.compile(r"([A-Za-z0-9._-]+)(?:\[[^\]]*\])?==(\S+) --hash=sha256:([0-9a-f]{64})")
+_PINNED_REQUIREMENT = re.compile(r"([A-Za-z0-9._-]+)(?:\[[^\]]*\])?==(\S+) --hash=sha256:([0-9a-f]{64})")
 
 
 @dataclass(frozen=True)
@@ -75,64 +75,64 @@ def check_pack(folder: PackFolder, progress: Callable[[int, int], None]) -> list
         LinkwrightError: LEARN307 if the folder is not a pack, or LEARN305 if the pack is not complete.
     """
     settings, sums = folder.read_settings(), folder.read_sums()
-    problems = list(_file_problems(folder, sums, progress))
+    problems = list(_find_file_problems(folder, sums, progress))
     if not problems:
         by_digest = {digest: Path(file).name for file, digest in sums.items() if file.startswith("wheels/")}
         wheels = _PackedWheels(folder.wheels, by_digest)
         for target in settings.targets:
-            problems += _target_problems(folder, settings, target, wheels)
+            problems += _find_target_problems(folder, settings, target, wheels)
     return problems
 
 
-def _file_problems(
+def _find_file_problems(
     folder: PackFolder, sums: Mapping[str, str], progress: Callable[[int, int], None]
 ) -> Iterator[Diagnostic]:
-    sizes = {file: _size(folder.path / file) for file in sums}
+    sizes = {file: _get_size(folder.path / file) for file in sums}
     total, done = sum(sizes.values()), 0
     for file, digest in sums.items():
         try:
-            actual = sha256_of(folder.path / file)
+            actual = compute_sha256(folder.path / file)
         except OSError as error:
             reason = error.strerror or str(error)
-            yield _damaged(phrase("'{file}' cannot be read: {reason}", file=file, reason=reason))
+            yield _damaged_pack_problem(phrase("'{file}' cannot be read: {reason}", file=file, reason=reason))
             continue
         if actual != digest:
-            yield _damaged(phrase("'{file}' is damaged or was changed", file=file))
+            yield _damaged_pack_problem(phrase("'{file}' is damaged or was changed", file=file))
         done += sizes[file]
         progress(done, total)
 
 
-def _size(path: Path) -> int:
+def _get_size(path: Path) -> int:
     try:
         return path.stat().st_size
     except OSError:
         return 0
 
 
-def _damaged(message: Phrase) -> Diagnostic:
+def _damaged_pack_problem(message: Phrase) -> Diagnostic:
     return Diagnostic(
         "LEARN305", message, hint=phrase("repeat `linkwright learn pack FOLDER`, which replaces the file")
     )
 
 
-def _target_problems(
+def _find_target_problems(
     folder: PackFolder, settings: PackSettings, target: Target, wheels: _PackedWheels
 ) -> Iterator[Diagnostic]:
     """Yield the problems that prevent an installation on a target."""
     try:
         text = folder.requirements(target).read_text(encoding="utf-8")
     except OSError:
-        yield _unsuitable_wheel(phrase("{target}: its list of packages is missing", target=target.label))
+        yield _unsuitable_wheel_problem(phrase("{target}: its list of packages is missing", target=target.label))
         return
     pinned: dict[NormalizedName, _Wheel] = {}
-    for name, version, digest in _PINNED.findall(text):
+    for name, version, digest in _PINNED_REQUIREMENT.findall(text):
         try:
             wheel = wheels.find(digest)
         except LinkwrightError as error:
             yield from error.diagnostics
             continue
         if wheel is None or (wheel.name, str(wheel.version)) != (canonicalize_name(name), version):
-            yield _unsuitable_wheel(
+            yield _unsuitable_wheel_problem(
                 phrase(
                     "{target}: the pack has no wheel of {name} {version}",
                     target=target.label,
@@ -140,8 +140,8 @@ def _target_problems(
                     version=version,
                 )
             )
-        elif wheel_rank(wheel.file, target) is None or not wheel.pythons.contains(f"{target.python}.99"):
-            yield _unsuitable_wheel(
+        elif rank_wheel(wheel.file, target) is None or not wheel.pythons.contains(f"{target.python}.99"):
+            yield _unsuitable_wheel_problem(
                 phrase(
                     "{target}: the wheel '{file}' is not compatible with this Python or platform",
                     target=target.label,
@@ -150,10 +150,10 @@ def _target_problems(
             )
         else:
             pinned[wheel.name] = wheel
-    yield from _missing_requirements(settings, target, pinned)
+    yield from _find_missing_requirements(settings, target, pinned)
 
 
-def _missing_requirements(
+def _find_missing_requirements(
     settings: PackSettings, target: Target, pinned: Mapping[NormalizedName, _Wheel]
 ) -> Iterator[Diagnostic]:
     """Yield the direct and indirect requirements of Linkwright that no wheel satisfies."""
@@ -161,28 +161,31 @@ def _missing_requirements(
     queue: list[tuple[Requirement, str]] = [(root, "pack.json")]
     seen: set[tuple[str, str]] = set()
     while queue:
-        requirement, asker = queue.pop()
+        requirement, dependent = queue.pop()
         name = canonicalize_name(requirement.name)
         wheel = pinned.get(name)
         if wheel is None or not requirement.specifier.contains(wheel.version, prereleases=True):
-            yield _unsuitable_wheel(
+            yield _unsuitable_wheel_problem(
                 phrase(
                     "{target}: no wheel for '{requirement}', which {dependent} needs",
                     target=target.label,
                     requirement=str(requirement),
-                    dependent=asker,
+                    dependent=dependent,
                 )
             )
             continue
         for unknown in set(map(canonicalize_name, requirement.extras)) - wheel.extras:
-            yield _unsuitable_wheel(phrase("'{file}' has no extra '{extra}'", file=wheel.file, extra=unknown))
+            yield _unsuitable_wheel_problem(phrase("'{file}' has no extra '{extra}'", file=wheel.file, extra=unknown))
         for extra in {"", *requirement.extras} - {extra for key, extra in seen if key == name}:
             seen.add((name, extra))
-            queue += [(needed, wheel.file) for needed in wheel.requirements if _applies(needed, extra, target)]
+            queue += [(needed, wheel.file) for needed in wheel.requirements if _does_apply(needed, extra, target)]
 
 
-def _applies(requirement: Requirement, extra: str, target: Target) -> bool:
-    """Return whether a requirement applies on a target, with an extra or, if it is empty, without extras."""
+def _does_apply(requirement: Requirement, extra: str, target: Target) -> bool:
+    """Return whether a requirement applies on a target.
+
+    `extra` is the requested extra; empty for none.
+    """
     if requirement.marker is None:
         return not extra
     if not extra:
@@ -190,5 +193,5 @@ def _applies(requirement: Requirement, extra: str, target: Target) -> bool:
     return requirement.marker.evaluate({**target.markers, "extra": extra})
 
 
-def _unsuitable_wheel(message: Phrase) -> Diagnostic:
+def _unsuitable_wheel_problem(message: Phrase) -> Diagnostic:
     return Diagnostic("LEARN306", message)

@@ -27,10 +27,10 @@ class DetectionFormat(ABC):
 
     def read(self, message: Any) -> Detections:
         """Return the detections of a message in the same order, each with its best hypothesis."""
-        best = [self.best_hypothesis(detection) for detection in message.detections]
+        best = [self.find_best_hypothesis(detection) for detection in message.detections]
         names = tuple(dict.fromkeys(name for name, _ in best))
         return Detections(
-            np.array([self.box(detection) for detection in message.detections], np.float32).reshape(-1, 4),
+            np.array([self.get_box(detection) for detection in message.detections], np.float32).reshape(-1, 4),
             np.array([score for _, score in best], np.float32),
             np.array([names.index(name) for name, _ in best], np.int32),
             names,
@@ -43,14 +43,14 @@ class DetectionFormat(ABC):
         return tracked
 
     @abstractmethod
-    def best_hypothesis(self, detection: Any) -> tuple[str, float]:
+    def find_best_hypothesis(self, detection: Any) -> tuple[str, float]:
         """Return the class and score of a detection's best hypothesis.
 
         The class is empty if there is no hypothesis.
         """
 
     @abstractmethod
-    def box(self, detection: Any) -> NDArray[np.float64]:
+    def get_box(self, detection: Any) -> NDArray[np.float64]:
         """Return the left, top, right and bottom of a detection in pixels, shape ``(4,)``."""
 
     @abstractmethod
@@ -58,14 +58,14 @@ class DetectionFormat(ABC):
         """Return a detection with a box in meters, whose pose is in the frame of the header."""
 
     @abstractmethod
-    def box_3d(self, detection: Any) -> Any:
+    def get_box_3d(self, detection: Any) -> Any:
         """Return the box in meters of a detection: a message with ``center`` and ``size``."""
 
 
-class _Vision(DetectionFormat):
+class _VisionFormat(DetectionFormat):
     """The format of vision_msgs: a detection has hypotheses with classes as strings."""
 
-    def best_hypothesis(self, detection: Any) -> tuple[str, float]:
+    def find_best_hypothesis(self, detection: Any) -> tuple[str, float]:
         if not detection.results:
             return "", 0.0
         best_hypothesis = max(
@@ -73,8 +73,8 @@ class _Vision(DetectionFormat):
         )
         return best_hypothesis.class_id, float(best_hypothesis.score)
 
-    def box(self, detection: Any) -> NDArray[np.float64]:
-        return _box_corners(detection.bbox.center.position, detection.bbox.size_x, detection.bbox.size_y)
+    def get_box(self, detection: Any) -> NDArray[np.float64]:
+        return _compute_box_corners(detection.bbox.center.position, detection.bbox.size_x, detection.bbox.size_y)
 
     def with_position(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
         positioned = get_message("vision_msgs/msg/Detection3D")(header=header, id=detection.id)
@@ -85,18 +85,18 @@ class _Vision(DetectionFormat):
             positioned.results.append(result)
         return positioned
 
-    def box_3d(self, detection: Any) -> Any:
+    def get_box_3d(self, detection: Any) -> Any:
         return detection.bbox
 
 
-class _Yolo(DetectionFormat):
+class _YoloFormat(DetectionFormat):
     """The format of yolo_msgs: a detection has one class, and both a 2D box and a 3D box."""
 
-    def best_hypothesis(self, detection: Any) -> tuple[str, float]:
+    def find_best_hypothesis(self, detection: Any) -> tuple[str, float]:
         return detection.class_name, float(detection.score)
 
-    def box(self, detection: Any) -> NDArray[np.float64]:
-        return _box_corners(detection.bbox.center.position, detection.bbox.size.x, detection.bbox.size.y)
+    def get_box(self, detection: Any) -> NDArray[np.float64]:
+        return _compute_box_corners(detection.bbox.center.position, detection.bbox.size.x, detection.bbox.size.y)
 
     def with_position(self, detection: Any, header: Any, pose: Transform, size: tuple[float, float, float]) -> Any:
         positioned = copy(detection)
@@ -104,15 +104,15 @@ class _Yolo(DetectionFormat):
         _set_box(positioned.bbox3d, pose, size)
         return positioned
 
-    def box_3d(self, detection: Any) -> Any:
+    def get_box_3d(self, detection: Any) -> Any:
         return detection.bbox3d
 
 
-VISION_FORMAT: DetectionFormat = _Vision("vision_msgs/msg/Detection2DArray", "vision_msgs/msg/Detection3DArray")
-YOLO_FORMAT: DetectionFormat = _Yolo("yolo_msgs/msg/DetectionArray", "yolo_msgs/msg/DetectionArray")
+VISION_FORMAT: DetectionFormat = _VisionFormat("vision_msgs/msg/Detection2DArray", "vision_msgs/msg/Detection3DArray")
+YOLO_FORMAT: DetectionFormat = _YoloFormat("yolo_msgs/msg/DetectionArray", "yolo_msgs/msg/DetectionArray")
 
 
-def _box_corners(center: Any, width: float, height: float) -> NDArray[np.float64]:
+def _compute_box_corners(center: Any, width: float, height: float) -> NDArray[np.float64]:
     half_size = width / 2, height / 2
     return np.array(
         [center.x - half_size[0], center.y - half_size[1], center.x + half_size[0], center.y + half_size[1]], np.float64

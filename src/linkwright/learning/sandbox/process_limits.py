@@ -12,39 +12,39 @@ from linkwright.learning.sandbox.outcome import Limits
 if sys.platform != "win32":
     import resource
 
-_OPEN_FILES = 1024
+_MAX_OPEN_FILES = 1024
 _NICENESS = 10
 _SPARE_PROCESSES = 16
 """The number of processes that the kernel allows beyond the limit, so that the watchdog can detect an excess."""
-_GROWTH_OF_OTHERS = 100
+_OTHER_THREADS_GROWTH = 100
 """The number of threads that the user's other programs may start meanwhile without affecting the run."""
 _OOM_SCORE = 1000
 
 
-def apply_limits(limits: Limits, *, others: int) -> None:
+def apply_limits(limits: Limits, *, other_threads: int) -> None:
     """Apply the resource limits to this process and its descendants.
 
     Args:
         limits: the limits of the run. Here, memory and processor time are limited for each process; the watchdog
             limits them for all processes together.
-        others: the number of threads outside the run that the kernel counts for the same user.
+        other_threads: the number of threads outside the run that the kernel counts for the same user.
     """
     seconds = max(1, round(limits.cpu_seconds + 0.5))
     _limit("RLIMIT_CPU", seconds, seconds + 1)
     _limit("RLIMIT_FSIZE", limits.file_bytes)
-    _limit("RLIMIT_NOFILE", _OPEN_FILES)
+    _limit("RLIMIT_NOFILE", _MAX_OPEN_FILES)
     _limit("RLIMIT_CORE", 0)
     _limit("RLIMIT_MSGQUEUE", 0)
     if sys.platform == "linux":
         _limit("RLIMIT_DATA", limits.memory)
-    spare = _SPARE_PROCESSES if others == 0 else _GROWTH_OF_OTHERS
-    _limit("RLIMIT_NPROC", others + limits.processes + spare)
+    spare = _SPARE_PROCESSES if other_threads == 0 else _OTHER_THREADS_GROWTH
+    _limit("RLIMIT_NPROC", other_threads + limits.processes + spare)
 
 
 def count_threads_of_user() -> int:
     """Return the number of threads of this process's user."""
     if sys.platform != "linux":
-        return _GROWTH_OF_OTHERS
+        return _OTHER_THREADS_GROWTH
     count = 0
     for entry in os.scandir("/proc"):
         with contextlib.suppress(OSError):
@@ -54,7 +54,10 @@ def count_threads_of_user() -> int:
 
 
 def lower_priority(processors: Collection[int]) -> None:
-    """Run this process at low priority on some processors, and let the kernel kill it first if memory runs out."""
+    """Run this process at low priority on some processors.
+
+    If memory runs out, the kernel kills the process first.
+    """
     with contextlib.suppress(OSError):
         os.nice(_NICENESS)
     if sys.platform == "linux":

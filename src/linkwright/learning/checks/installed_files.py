@@ -17,9 +17,9 @@ from linkwright.learning.checks.not_yet import NotYet
 from linkwright.process.patience import PatientClock
 
 _TIMEOUT_S = 10.0
-_PERIOD_S = 0.2
-_LINE = re.compile(r'File ".*setup\.py", line (\d+)')
-_RUNNER = """
+_POLL_PERIOD_S = 0.2
+_SETUP_FRAME = re.compile(r'File ".*setup\.py", line (\d+)')
+_RUNNER_CODE = """
 import json, runpy, sys, types
 files = []
 fake = types.ModuleType("setuptools")
@@ -61,7 +61,7 @@ def expect_valid_setup(folder: Path) -> None:
         raise NotYet(add_hint(described, lookalike_hint(text))) from None
 
 
-def files_of_setup(folder: Path) -> dict[PurePosixPath, Path]:
+def list_setup_files(folder: Path) -> dict[PurePosixPath, Path]:
     """Return the data files that a ``setup.py`` installs, by their installed paths.
 
     The file runs in a process of its own, with a stand-in for setuptools.
@@ -110,7 +110,7 @@ def _run_setup(folder: Path) -> str:
         subprocess.TimeoutExpired: the file takes too long; the load of the machine does not count.
     """
     clock = PatientClock()
-    command = [sys.executable, "-c", _RUNNER]
+    command = [sys.executable, "-c", _RUNNER_CODE]
     with subprocess.Popen(  # noqa: S603 - the learner's own file
         command,
         cwd=folder,
@@ -131,16 +131,16 @@ def _run_setup(folder: Path) -> str:
 
 
 def _read_outputs(process: subprocess.Popen[str]) -> tuple[str, str] | None:
-    """Return standard output and standard error of a process if it ends within `_PERIOD_S`, or None."""
+    """Return a process's standard output and error if it ends within `_POLL_PERIOD_S`, or None."""
     try:
-        return process.communicate(timeout=_PERIOD_S)
+        return process.communicate(timeout=_POLL_PERIOD_S)
     except subprocess.TimeoutExpired:
         return None
 
 
 def _describe_failure(lines: Sequence[str]) -> Phrase:
     """Return the last line of a traceback with the last line of ``setup.py`` that it names."""
-    numbers = [match[1] for line in lines if (match := _LINE.search(line))]
+    numbers = [match[1] for line in lines if (match := _SETUP_FRAME.search(line))]
     error = foreign(lines[-1])
     hint = lookalike_hint(lines[-1]) if "invalid character" in lines[-1] else None
     if "can't multiply sequence" in lines[-1]:

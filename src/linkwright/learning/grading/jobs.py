@@ -12,17 +12,17 @@ from pathlib import Path
 from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
+from linkwright.learning.checks.check_process import DOMAIN_VARIABLE, make_check_command
 from linkwright.learning.checks.results import StepResult
-from linkwright.learning.checks.running import DOMAIN_VARIABLE, check_command
 from linkwright.learning.course import Step
 from linkwright.learning.grading.marks import Mark
 from linkwright.learning.local_text import LocalText
 from linkwright.learning.sandbox import Exceeded, Limits, Outcome, describe_exceeded, run_in_sandbox
 
-_SLOW_S = 2.0
+_SLOW_RUN_S = 2.0
 """A failed run of more seconds may have waited in vain, and is repeated without other runs."""
 
-_MAX_BYTES = 4 << 20
+_MAX_RESULT_BYTES = 4 << 20
 """The size up to which a result is read. The student's program can have written it."""
 
 
@@ -32,7 +32,7 @@ class Job:
 
     Attributes:
         student: the index of the student.
-        step: the step.
+        step: the step to check.
         copy: a copy of the student's folder, which the run copies again.
         answer: the student's answer.
         limits: the limits of the run.
@@ -61,20 +61,20 @@ def run_job(job: Job) -> Mark:
         LinkwrightError: LEARN901, LEARN902: the sandbox cannot be used.
     """
     try:
-        return _run(job)
+        return _run_checks(job)
     except OSError as error:  # such as a full disk
         message = phrase("the program cannot run in the sandbox: {reason}", reason=foreign(error.strerror or error))
         raise LinkwrightError(Diagnostic("LEARN901", message)) from None
 
 
-def _run(job: Job) -> Mark:
+def _run_checks(job: Job) -> Mark:
     with tempfile.TemporaryDirectory(prefix="run-", dir=job.copy.parent, ignore_cleanup_errors=True) as name:
         folder = Path(name)
         workspace = folder / "workspace"
         shutil.copytree(job.copy, workspace)
         output = folder / f"result-{secrets.token_hex(16)}.json"
         outcome = run_in_sandbox(
-            check_command(job.step, workspace, output, answer=job.answer),
+            make_check_command(job.step, workspace, output, answer=job.answer),
             folder=folder,
             limits=job.limits,
             readable=[job.course],
@@ -104,7 +104,7 @@ def _run(job: Job) -> Mark:
         protections=protections,
         is_repeated=job.is_repeated,
         is_graded=not result.has_machine_fault,
-        may_differ=result.has_machine_fault or (not result.passed and outcome.seconds > _SLOW_S),
+        may_differ=result.has_machine_fault or (not result.passed and outcome.seconds > _SLOW_RUN_S),
     )
 
 
@@ -117,14 +117,17 @@ def _describe_end(outcome: Outcome, limits: Limits) -> Phrase:
 
 
 def _read_result(output: Path, step: Step) -> StepResult | None:
-    """Return the result from a file, without trusting it, because the student's program can write to it."""
+    """Return the result from a file whose content is not trusted.
+
+    The student's program can write to the file.
+    """
     try:
         descriptor = os.open(output, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
     except OSError:
         return None
     with os.fdopen(descriptor, "rb") as file:
-        content = file.read(_MAX_BYTES + 1)
-    if len(content) > _MAX_BYTES:
+        content = file.read(_MAX_RESULT_BYTES + 1)
+    if len(content) > _MAX_RESULT_BYTES:
         return None
     try:
         result = StepResult.from_data(json.loads(content))

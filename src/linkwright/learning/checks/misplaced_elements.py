@@ -11,12 +11,12 @@ from linkwright.packages import PackageFinder
 from linkwright.xacro import expand
 from linkwright.xmltree import Element, parse_file
 
-_UNREAD_ELEMENT = "LW105"
+_UNREAD_ELEMENT_CODE = "LW105"
 XML_SUFFIXES = {".xacro", ".urdf", ".xml"}
 
 
 def explain_missing(path: Path, finder: PackageFinder, kind: str, name: str) -> Phrase | None:
-    """Return the reason why a robot lacks a link or joint that its files seem to contain, or None.
+    """Return the reason why a robot lacks a link or joint that its files contain, or None.
 
     Args:
         path: the file of the robot.
@@ -31,11 +31,11 @@ def explain_missing(path: Path, finder: PackageFinder, kind: str, name: str) -> 
         macros = {element.attributes.get("name") for element in elements if element.tag == "xacro:macro"}
         tags = {element.tag for element in elements}
         for source, root in roots.items():
-            for parent, element in _with_parents(root):
+            for parent, element in _iterate_with_parents(root):
                 if element.tag in macros and parent.tag == "robot":
-                    return _without_prefix(element, source)
+                    return _explain_missing_prefix(element, source)
                 if element.tag == kind and element.attributes.get("name") == name and parent is not root:
-                    return _misplaced(element, parent, source)
+                    return _explain_misplacement(element, parent, source)
         for macro in sorted(macro for macro in macros if macro):
             if f"xacro:{macro}" not in tags:
                 return phrase("the macro '{macro}' is never called; write <xacro:{macro} .../>", macro=macro)
@@ -44,13 +44,13 @@ def explain_missing(path: Path, finder: PackageFinder, kind: str, name: str) -> 
         return None
 
 
-def _with_parents(element: Element) -> Iterator[tuple[Element, Element]]:
+def _iterate_with_parents(element: Element) -> Iterator[tuple[Element, Element]]:
     for child in element.elements():
         yield element, child
-        yield from _with_parents(child)
+        yield from _iterate_with_parents(child)
 
 
-def _misplaced(element: Element, parent: Element, path: Path) -> Phrase | None:
+def _explain_misplacement(element: Element, parent: Element, path: Path) -> Phrase | None:
     line = element.source.position(element.offset)[0] if element.source else 1
     if parent.tag == "xacro:macro":
         return phrase(
@@ -69,7 +69,7 @@ def _misplaced(element: Element, parent: Element, path: Path) -> Phrase | None:
     )
 
 
-def _without_prefix(element: Element, path: Path) -> Phrase:
+def _explain_missing_prefix(element: Element, path: Path) -> Phrase:
     line = element.source.position(element.offset)[0] if element.source else 1
     return phrase(
         "{file}, line {line}: <{tag}> does not call the macro; write <xacro:{tag} .../>",
@@ -85,4 +85,4 @@ def describe_unread(path: Path) -> Phrase | None:
     from linkwright.lint.targets import find_targets
 
     findings, _ = Checker().check(find_targets([path]), [path])
-    return next((describe_finding(finding) for finding in findings if finding.code == _UNREAD_ELEMENT), None)
+    return next((describe_finding(finding) for finding in findings if finding.code == _UNREAD_ELEMENT_CODE), None)

@@ -1,4 +1,4 @@
-"""Simulate a robot after adding missing masses, collisions and a drive, as ``linkwright drive`` does."""
+"""Simulate a robot with added masses, collisions and a drive, as ``linkwright drive`` does."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from linkwright.packages import PackageFinder
 if TYPE_CHECKING:
     from linkwright.testing import SteppedSimulation
 
-_NOT_DRIVEN = {"DRIVE201", "DRIVE203", "DRIVE204"}
+_UNDRIVABLE_CODES = {"DRIVE201", "DRIVE203", "DRIVE204"}
 """Findings of the inference that say why a robot cannot be driven."""
 
 
 @contextmanager
 def simulate_completed(path: Path, finder: PackageFinder) -> Iterator[SteppedSimulation]:
-    """Return a simulation of a robot in an empty world, completed with the elements that it lacks.
+    """Return a simulation of a robot in an empty world, with missing elements added.
 
     Args:
         path: the URDF or xacro file of the robot, which has no errors.
@@ -40,7 +40,7 @@ def simulate_completed(path: Path, finder: PackageFinder) -> Iterator[SteppedSim
     description = examine(path, packages=finder)
     assert description.robot is not None, "the file was read before"
     inference = infer(description.robot, MeshLibrary(finder, path.parent))
-    problem = next((finding for finding in inference.diagnostics if finding.code in _NOT_DRIVEN), None)
+    problem = next((finding for finding in inference.diagnostics if finding.code in _UNDRIVABLE_CODES), None)
     if problem is not None:
         raise NotYet(describe_finding(problem))
     with ScratchFolder("driven") as folder:

@@ -16,7 +16,7 @@ from linkwright.testing import BudgetExceededError, Program, SteppedSimulation
 from linkwright.wire.switch import switched_off
 
 _STEP_S = 0.2
-_AFTER_END_S = 2.0
+_TIME_AFTER_END_S = 2.0
 """The simulated time for which a run continues after its program has ended, until the robot has stopped."""
 
 _ALL_POINTS = 100.0
@@ -29,7 +29,7 @@ class RunResult:
     """The result of a run.
 
     Attributes:
-        seed: the seed.
+        seed: the seed of the run.
         score: the points, from 0 to 100.
         data: the state of the judge at the end, as in ``/judge/status``.
         error: the traceback of the exception that ended the program, or None.
@@ -55,9 +55,9 @@ def judge_program(
     communicate with other processes.
 
     Args:
-        exercise: the exercise.
+        exercise: the exercise with its world and judge.
         program: the file of the program.
-        seeds: the seeds.
+        seeds: the seed of each run.
         rival: the program of the other robot; None for that of the exercise. It is ignored if there is no other robot.
         budget: the longest time for which a program may compute without waiting, in seconds, not counting the time in
             which it waits for a processor.
@@ -68,11 +68,11 @@ def judge_program(
     """
     for seed in seeds:
         with switched_off(), ScratchFolder("judge") as folder:
-            result = _run(exercise, program, rival, seed, Path(folder), budget)
+            result = _run_in_world(exercise, program, rival, seed, Path(folder), budget)
         yield result
 
 
-def _run(
+def _run_in_world(
     exercise: Exercise, program: Path, rival_program: Path | None, seed: int, folder: Path, budget: float
 ) -> RunResult:
     arrangement = write_world(exercise, seed, folder, publishes=False)
@@ -95,7 +95,7 @@ def _run(
             rival = test.start_program(rival_program or exercise.rival.program, words, budget=budget, seed=seed)
         error = _advance_to_end(test, judge, started, rival)
         data, score = status(judge), judge.score
-    lines = None if error is None else "".join(_user_traceback(error, program))
+    lines = None if error is None else "".join(_format_user_traceback(error, program))
     return RunResult(seed, score, data, lines)
 
 
@@ -112,7 +112,7 @@ def _advance_to_end(
                 en="the program published on a topic of the other robot", zh="程序在另一个机器人的话题上发布了消息"
             )
         if not program.is_running:
-            end_s = min(end_s, test.now + _AFTER_END_S)
+            end_s = min(end_s, test.now + _TIME_AFTER_END_S)
     error = program.error or next((error for error in test.errors if not _is_fault_of(error, rival)), None)
     if error is not None:
         judge.note(en=f"the program ended with an error: {error}", zh=f"程序因错误而结束：{error}")
@@ -146,7 +146,7 @@ def _find_judge(test: SteppedSimulation) -> Judge:
     return plugin.judge
 
 
-def _user_traceback(error: BaseException, program: Path) -> list[str]:
+def _format_user_traceback(error: BaseException, program: Path) -> list[str]:
     """Return the lines of a traceback from the program's file on."""
     frames = traceback.extract_tb(error.__traceback__)
     first = next((i for i, frame in enumerate(frames) if frame.filename == str(program.resolve())), len(frames))

@@ -15,11 +15,11 @@ from linkwright._version import __version__
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, display_path, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.learning.packing.installers import write_installers
-from linkwright.learning.packing.locked_files import LockedFile, check_extras, locked_packages, needed_files
-from linkwright.learning.packing.optional_parts import missing_texts
+from linkwright.learning.packing.locked_files import LockedFile, check_extras, find_needed_files, load_locked_packages
+from linkwright.learning.packing.optional_parts import describe_missing_parts
 from linkwright.learning.packing.own_wheels import add_own_wheels
-from linkwright.learning.packing.pack_folder import PackFolder, PackSettings, sha256_of
-from linkwright.learning.packing.pip_runs import build, download, is_for_all_systems
+from linkwright.learning.packing.pack_folder import PackFolder, PackSettings, compute_sha256
+from linkwright.learning.packing.pip_runs import build_wheel, download_wheels, is_for_all_systems
 from linkwright.learning.packing.targets import Target
 from linkwright.learning.packing.wheel_metadata import read_metadata
 from linkwright.model_files import ModelEntry, install, is_installed, models_folder, verify
@@ -34,10 +34,10 @@ class PackContents:
 
     Attributes:
         own_wheels: the wheels of Linkwright; if empty, they are built.
-        models: the models.
+        models: the models to include.
         models_source: the source of models that are not downloaded yet: a folder, the address of a mirror, or None
             for the publishers' addresses.
-        worlds: the folders with models of worlds, by their names in the pack (see `world_folders`).
+        worlds: the folders with models of worlds, by their names in the pack (see `find_world_folders`).
         docs: the folder with the documentation, or None.
     """
 
@@ -49,7 +49,7 @@ class PackContents:
 
 
 @dataclass
-class _Maker:
+class _PackBuilder:
     """A builder of one pack."""
 
     folder: PackFolder
@@ -59,12 +59,12 @@ class _Maker:
 
     def add_locked(self, targets: Sequence[Target], extras: Sequence[str]) -> dict[Target, dict[str, Path]]:
         """Add the wheels from a package index, and return them by target and ``NAME==VERSION``."""
-        packages = locked_packages()
+        packages = load_locked_packages()
         wheels_by_target: dict[Target, dict[str, Path]] = {}
         for target in targets:
-            files = list(needed_files(target, extras, packages))
+            files = list(find_needed_files(target, extras, packages))
             wheels = [file for file in files if file.is_wheel]
-            absent = [file for file in wheels if not self._has(file)]
+            absent = [file for file in wheels if not self._has_file(file)]
             self.report(
                 phrase(
                     "{target}: {count} of {total} wheels to download, {megabytes} MB",
@@ -75,40 +75,40 @@ class _Maker:
                 )
             )
             if absent:
-                download(absent, target, self.folder.wheels)
+                download_wheels(absent, target, self.folder.wheels)
             for file in absent:
                 self._verify(file)
             wheels_by_target[target] = {
                 f"{file.package}=={file.version}": self.folder.wheels / file.name
                 if file.is_wheel
-                else self._built(file)
+                else self._build_wheel(file)
                 for file in files
             }
         return wheels_by_target
 
-    def _has(self, file: LockedFile) -> bool:
+    def _has_file(self, file: LockedFile) -> bool:
         path = self.folder.wheels / file.name
         if path in self.sums:
             return True
-        if path.is_file() and path.stat().st_size == file.size and sha256_of(path) == file.sha256:
+        if path.is_file() and path.stat().st_size == file.size and compute_sha256(path) == file.sha256:
             self.sums[path] = file.sha256
             return True
         return False
 
     def _verify(self, file: LockedFile) -> None:
         """Verify the checksum of a written file, because memory sticks fail."""
-        if not self._has(file):
+        if not self._has_file(file):
             message = phrase("'{file}' was not written correctly", file=display_path(self.folder.wheels / file.name))
             raise LinkwrightError(Diagnostic("LEARN304", message, hint=phrase("use another disk or memory stick")))
 
-    def _built(self, file: LockedFile) -> Path:
+    def _build_wheel(self, file: LockedFile) -> Path:
         """Return the wheel of a package that is published only as source."""
         for path in self.folder.wheels.glob("*.whl"):
             name, version, _, _ = parse_wheel_filename(path.name)
             if (name, str(version)) == (file.package, file.version) and is_for_all_systems(path.name):
                 return path
         self.report(phrase("building the wheel of {name} {version}", name=file.package, version=file.version))
-        return build(file, self.folder.wheels)
+        return build_wheel(file, self.folder.wheels)
 
     def write_requirements(
         self, target: Target, wheels: Mapping[str, Path], own_wheels: Iterable[Path], extras: str
@@ -117,16 +117,17 @@ class _Maker:
         lines = []
         for path in own_wheels:
             name, version, _, _ = parse_wheel_filename(path.name)
-            lines.append(f"{name}{extras if name == 'linkwright' else ''}=={version} --hash=sha256:{self._sum(path)}\n")
-        lines += [f"{name} --hash=sha256:{self._sum(path)}\n" for name, path in sorted(wheels.items())]
+            requested_extras = extras if name == "linkwright" else ""
+            lines.append(f"{name}{requested_extras}=={version} --hash=sha256:{self._compute_checksum(path)}\n")
+        lines += [f"{name} --hash=sha256:{self._compute_checksum(path)}\n" for name, path in sorted(wheels.items())]
         write_whole_file(self.folder.requirements(target), "".join(lines))
 
-    def _sum(self, path: Path) -> str:
+    def _compute_checksum(self, path: Path) -> str:
         if path not in self.sums:
-            self.sums[path] = sha256_of(path)
+            self.sums[path] = compute_sha256(path)
         return self.sums[path]
 
-    def remove_others(self, needed_wheels: set[Path], targets: Sequence[Target]) -> None:
+    def remove_unneeded_files(self, needed_wheels: set[Path], targets: Sequence[Target]) -> None:
         """Remove wheels and package lists of an earlier pack that this pack does not need."""
         lists = {self.folder.requirements(target) for target in targets}
         for path in (*self.folder.wheels.glob("*.whl"), *lists.copy().pop().parent.glob("*.txt")):
@@ -134,8 +135,8 @@ class _Maker:
                 path.unlink()
 
 
-def world_folders() -> list[tuple[str, Path]]:
-    """Return the folders with models that gz and Gazebo classic have downloaded, by their names in a pack."""
+def find_world_folders() -> list[tuple[str, Path]]:
+    """Return the folders of models downloaded by gz and Gazebo classic, by name in a pack."""
     folders = [("fuel", folder) for folder in fuel_caches(os.environ)]
     return [(name, path) for name, path in (*folders, ("gazebo", Path.home() / ".gazebo" / "models")) if path.is_dir()]
 
@@ -164,36 +165,36 @@ def make_pack(
             packages cannot be downloaded, LEARN304 if a file cannot be written, or LEARN307 if the folder has other
             files.
     """
-    check_extras(settings.extras, locked_packages())
+    check_extras(settings.extras, load_locked_packages())
     targets = settings.targets
     try:
         folder.open()
-        missing = missing_texts(targets, settings.extras, locked_packages())
+        missing = describe_missing_parts(targets, settings.extras, load_locked_packages())
         settings = replace(settings, version=__version__, missing=missing)
         folder.write_settings(settings)
-        maker = _Maker(folder, report)
+        builder = _PackBuilder(folder, report)
         report(phrase("the wheels of Linkwright"))
         own_wheels = add_own_wheels(contents.own_wheels, folder.wheels)
-        wheels_by_target = maker.add_locked(targets, settings.extras)
-        maker.remove_others(
+        wheels_by_target = builder.add_locked(targets, settings.extras)
+        builder.remove_unneeded_files(
             {*own_wheels, *(path for wheels in wheels_by_target.values() for path in wheels.values())}, targets
         )
         extras = f"[{','.join(settings.extras)}]" if settings.extras else ""
         for target, wheels in wheels_by_target.items():
-            maker.write_requirements(target, wheels, own_wheels, extras)
+            builder.write_requirements(target, wheels, own_wheels, extras)
         problems, models = _add_models(folder, contents, report, progress)
         _add_folders(folder, contents, report)
         version = str(read_metadata(own_wheels[-1])["Version"])
         settings = replace(settings, version=version, models=models)
         folder.write_settings(settings)
         write_installers(folder, settings)
-        folder.write_sums(maker.sums)
+        folder.write_sums(builder.sums)
     except OSError as error:
-        raise _not_written(folder, error) from None
+        raise _write_error(folder, error) from None
     return problems
 
 
-def _not_written(folder: PackFolder, error: OSError) -> LinkwrightError:
+def _write_error(folder: PackFolder, error: OSError) -> LinkwrightError:
     message = phrase(
         "cannot write '{path}': {reason}",
         path=error.filename or display_path(folder.path),
@@ -246,19 +247,22 @@ def _add_folders(folder: PackFolder, contents: PackContents, report: Callable[[P
 
 
 def _copy_tree(source: Path, target: Path) -> None:
-    """Copy the files that differ in size or time. Permissions are omitted, because memory sticks lack them."""
+    """Copy the files that differ in size or time.
+
+    Permissions are omitted, because memory sticks lack them.
+    """
     for path in sorted(source.rglob("*")):
         copy = target / path.relative_to(source)
         if not path.is_file():
             continue
-        source_stat, copy_stat = path.stat(), _stat(copy)
+        source_stat, copy_stat = path.stat(), _get_status(copy)
         if copy_stat is None or (copy_stat.st_size, copy_stat.st_mtime) != (source_stat.st_size, source_stat.st_mtime):
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, copy)
             os.utime(copy, (source_stat.st_mtime, source_stat.st_mtime))
 
 
-def _stat(path: Path) -> os.stat_result | None:
+def _get_status(path: Path) -> os.stat_result | None:
     try:
         status = path.stat()
     except OSError:

@@ -18,8 +18,8 @@ from typing import Any
 
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.files.scratch_folders import ScratchFolder
-from linkwright.learning.checks.declaring import Check, load_checks
-from linkwright.learning.checks.domains import hold_domain
+from linkwright.learning.checks.declarations import Check, load_checks
+from linkwright.learning.checks.domains import reserve_domain
 from linkwright.learning.checks.findings import describe_finding
 from linkwright.learning.checks.machine_faults import is_machine_fault
 from linkwright.learning.checks.not_yet import NotYet
@@ -32,13 +32,13 @@ from linkwright.process.forked import ForkServer, Program, start_new_process
 from linkwright.process.patience import PatientClock
 from linkwright.process.processors import usable_processors
 
-TIME_LIMIT = 120.0
+TIME_LIMIT_S = 120.0
 """The seconds after which the process of a step's checks is ended, without the time in which it waits for a processor.
 
 Checks with simulated worlds take the longest.
 """
 
-_PERIOD_S = 0.25
+_POLL_PERIOD_S = 0.25
 
 PYTHON = [sys.executable]
 """The command that runs Python for checks. Tests measure the coverage of its processes."""
@@ -52,7 +52,7 @@ MODULE = "linkwright.learning.checks"
 
 _STOP_OPTION = "--stop-at-failure"
 
-_IMPORTED = (
+_PRELOADED_MODULES = (
     "linkwright.learning.checks.*",
     "linkwright.control.*",
     "linkwright.graph.*",
@@ -76,10 +76,10 @@ _IMPORTED = (
 )
 """The modules that most checks import."""
 
-_ERROR_BYTES = 1 << 16
+_MAX_ERROR_BYTES = 1 << 16
 """The number of bytes that are kept of the standard error of a process: the last ones."""
 
-_CLOSING_S = 5.0
+_CLOSE_TIMEOUT_S = 5.0
 """The seconds to wait for the end of the standard error. A program that has left the session can keep it open."""
 
 
@@ -94,7 +94,7 @@ def check_step(
     """Run the checks of a step in this process.
 
     Args:
-        step: the step.
+        step: the step whose checks run.
         workspace: the learner's workspace.
         answer: the learner's answer, a number as text.
         stop_at_failure: whether the first failed check is the last one to run.
@@ -109,13 +109,13 @@ def check_step(
     begin_checks()
     results: list[CheckResult] = []
     for check in checks:
-        results.append(_run(check, work))
+        results.append(_run_check(check, work))
         if stop_at_failure and not results[-1].passed:
             break
-    return StepResult(step.address, _without_repetition(results), time.monotonic() - begin)
+    return StepResult(step.address, _drop_repeated_messages(results), time.monotonic() - begin)
 
 
-def _run(check: Check, work: Work) -> CheckResult:
+def _run_check(check: Check, work: Work) -> CheckResult:
     try:
         check.function(work)
     except NotYet as reason:
@@ -129,8 +129,11 @@ def _run(check: Check, work: Work) -> CheckResult:
     return CheckResult(check.title, passed=True)
 
 
-def _without_repetition(results: Sequence[CheckResult]) -> list[CheckResult]:
-    """Return the results without repeated messages, because one missing file fails all checks of a step."""
+def _drop_repeated_messages(results: Sequence[CheckResult]) -> list[CheckResult]:
+    """Return the results without repeated messages.
+
+    One missing file may fail all checks of a step with the same message.
+    """
     seen: set[LocalText] = set()
     unique: list[CheckResult] = []
     for result in results:
@@ -142,12 +145,12 @@ def _without_repetition(results: Sequence[CheckResult]) -> list[CheckResult]:
     return unique
 
 
-def check_command(step: Step, workspace: Path, output: Path, *, answer: str | None = None) -> list[str]:
+def make_check_command(step: Step, workspace: Path, output: Path, *, answer: str | None = None) -> list[str]:
     """Return the command that runs a step's checks and writes the results to a file as JSON."""
-    return [*PYTHON, "-m", MODULE, *_check_arguments(step, workspace, output, answer)]
+    return [*PYTHON, "-m", MODULE, *_make_check_arguments(step, workspace, output, answer)]
 
 
-def _check_arguments(
+def _make_check_arguments(
     step: Step, workspace: Path, output: Path, answer: str | None, *, stop_at_failure: bool = False
 ) -> list[str]:
     options = [_STOP_OPTION] if stop_at_failure else []
@@ -156,8 +159,11 @@ def _check_arguments(
 
 
 def create_check_server() -> ForkServer:
-    """Return a server that starts check processes without repeated imports. The caller must close it."""
-    return ForkServer(_IMPORTED, PYTHON)
+    """Return a server that starts check processes without repeated imports.
+
+    The caller must close it.
+    """
+    return ForkServer(_PRELOADED_MODULES, PYTHON)
 
 
 def check_in_process(
@@ -166,7 +172,7 @@ def check_in_process(
     *,
     answer: str | None = None,
     stop_at_failure: bool = False,
-    time_limit: float = TIME_LIMIT,
+    time_limit: float = TIME_LIMIT_S,
     server: ForkServer | None = None,
 ) -> StepResult:
     """Run the checks of a step in a separate process. See `CheckProcess`."""
@@ -184,7 +190,7 @@ class CheckProcess:
     `PatientClock`, and to the processor time of all processes divided by the number of processors.
 
     Args:
-        step: the step.
+        step: the step whose checks run.
         workspace: the learner's workspace.
         answer: the learner's answer, a number as text.
         stop_at_failure: whether the first failed check is the last one to run.
@@ -201,7 +207,7 @@ class CheckProcess:
         *,
         answer: str | None = None,
         stop_at_failure: bool = False,
-        time_limit: float = TIME_LIMIT,
+        time_limit: float = TIME_LIMIT_S,
         server: ForkServer | None = None,
         niceness: int = 0,
     ) -> None:
@@ -220,11 +226,11 @@ class CheckProcess:
         begin = time.monotonic()
         with ScratchFolder("check") as scratch:
             output = Path(scratch) / "result.json"
-            arguments = _check_arguments(
+            arguments = _make_check_arguments(
                 self._step, self._workspace, output, self._answer, stop_at_failure=self._stop_at_failure
             )
             reason = self._run_program(arguments)
-            data = _read(output)
+            data = _read_output(output)
         if data is not None and reason is None:
             return StepResult.from_data(data)
         message = reason or phrase("the checks of this step ended without a result")
@@ -236,23 +242,23 @@ class CheckProcess:
         self._is_canceled = True
         process = self._process
         if process is not None:
-            _end_group(process)
+            _kill_session(process)
 
     def _run_program(self, arguments: Sequence[str]) -> Phrase | None:
         """Run the program of the checks, and return the reason why it ended early, or None."""
-        with Path(os.devnull).open("r+b") as null_device, _last_bytes() as (errors, descriptor):
+        with Path(os.devnull).open("r+b") as null_device, _capture_last_bytes() as (errors, descriptor):
             streams = null_device.fileno(), null_device.fileno(), descriptor
             environment = {**os.environ, _NICENESS_VARIABLE: str(self._niceness)}
             process = self._start(MODULE, arguments, cwd=self._workspace, env=environment, streams=streams)
             self._process = process
             if self._is_canceled:
-                _end_group(process)
+                _kill_session(process)
             try:
                 if not self._ends_in_time(process):
                     return phrase("the check took longer than {seconds:g} s and was ended", seconds=self._time_limit)
             finally:
                 self._process = None
-                _end_group(process)
+                _kill_session(process)
                 process.wait()
         if process.returncode:
             last = (errors.decode(errors="replace").strip().splitlines() or [""])[-1]
@@ -265,33 +271,36 @@ class CheckProcess:
         processors = usable_processors()
         while max(clock.read(), clock.cpu_seconds / processors) < self._time_limit:
             with suppress(subprocess.TimeoutExpired):
-                process.wait(min(_PERIOD_S, self._time_limit))
+                process.wait(min(_POLL_PERIOD_S, self._time_limit))
                 return True
         return False
 
 
 @contextmanager
-def _last_bytes() -> Iterator[tuple[bytearray, int]]:
-    """Yield a buffer and a file descriptor for writing. At the end, the buffer has the last written bytes."""
+def _capture_last_bytes() -> Iterator[tuple[bytearray, int]]:
+    """Yield a buffer and a file descriptor for writing.
+
+    At the end, the buffer has the last written bytes.
+    """
     reader, writer = os.pipe()
-    last = bytearray()
+    last_bytes = bytearray()
 
     def read() -> None:
         with os.fdopen(reader, "rb", buffering=0) as stream:
-            while part := stream.read(_ERROR_BYTES):
-                last.extend(part)
-                del last[:-_ERROR_BYTES]
+            while chunk := stream.read(_MAX_ERROR_BYTES):
+                last_bytes.extend(chunk)
+                del last_bytes[:-_MAX_ERROR_BYTES]
 
     thread = threading.Thread(target=read, daemon=True)
     thread.start()
     try:
-        yield last, writer
+        yield last_bytes, writer
     finally:
         os.close(writer)
-        thread.join(_CLOSING_S)
+        thread.join(_CLOSE_TIMEOUT_S)
 
 
-def _end_group(process: Program) -> None:
+def _kill_session(process: Program) -> None:
     """Kill the process and all processes of its session."""
     if sys.platform == "win32":
         if process.poll() is None:  # Windows finds the children of a running process only
@@ -303,7 +312,7 @@ def _end_group(process: Program) -> None:
         os.killpg(process.pid, signal.SIGKILL)
 
 
-def _read(output: Path) -> Any:
+def _read_output(output: Path) -> Any:
     try:
         return json.loads(output.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -311,14 +320,14 @@ def _read(output: Path) -> Any:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run the checks of a step, as `check_command` requests it.
+    """Run the checks of a step, as `make_check_command` requests it.
 
     The output file is created, empty, when the first check begins.
     """
     if sys.platform != "win32":
         os.nice(int(os.environ.get(_NICENESS_VARIABLE, "0")))
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-    os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(hold_domain())
+    os.environ["ROS_DOMAIN_ID"] = os.environ.get(DOMAIN_VARIABLE) or str(reserve_domain())
     stop_at_failure = arguments[0] == _STOP_OPTION
     lesson_folder, step_id, workspace, output, *answers = arguments[1:] if stop_at_failure else arguments
     lesson = load_lesson(Path(lesson_folder))

@@ -42,13 +42,13 @@ _WAIT_S = 15.0
 _QUIET_S = 1.2
 """The seconds without a new node or topic after which nothing more is expected of the nodes of this process."""
 
-_QUIET_SECONDS_OF_PROCESSES = 6.0
+_QUIET_WITH_PROCESSES_S = 6.0
 """The same, if the launch has started the learner's programs, each in a process of its own."""
 
-_PERIOD_S = 0.02
-_NODE = "lesson_check"
+_POLL_PERIOD_S = 0.02
+_NODE_NAME = "lesson_check"
 _PROCESS_LINE = re.compile(r"^\[([^\]\s]+-\d+)\] (.*)$")
-_DEATH = re.compile(r"^\[ERROR\] \[([^\]\s]+)-\d+\]: process has died")
+_DEATH_LINE = re.compile(r"^\[ERROR\] \[([^\]\s]+)-\d+\]: process has died")
 _LOG_PREFIX = re.compile(r"^\[[^\]]+\] \[\w+\] \[[\d.]+\] \[([^\]]+)\]: ")
 
 
@@ -111,7 +111,7 @@ class LaunchCheck:
             context.launch_configurations.update(self._arguments)
             options = SessionOptions("127.0.0.1", None, False, self._file, history=0)
             self._session = LaunchSession(self._finder, options, CheckedLog(self._output, self._findings), context)
-            self._node = self._session.host.graph.create_node(_NODE)
+            self._node = self._session.host.graph.create_node(_NODE_NAME)
             self._session.host.join_network_soon()
             launch_locals = {"current_launch_file_path": str(path), "current_launch_file_directory": str(path.parent)}
             return await self._session.run(description, launch_locals)
@@ -142,12 +142,12 @@ class LaunchCheck:
         """
         self.expect_node("/rviz2")
         self._wait_until(
-            lambda: bool(self._viewer_arguments()),
+            lambda: bool(self._list_viewer_arguments()),
             phrase("the node '/rviz2' is another program than RViz; start 'rviz2' of the package 'rviz2'"),
         )
-        require_rviz_configuration(self._viewer_arguments()[0], path)
+        require_rviz_configuration(self._list_viewer_arguments()[0], path)
 
-    def _viewer_arguments(self) -> list[list[str]]:
+    def _list_viewer_arguments(self) -> list[list[str]]:
         return [] if self._session is None else self._session.host.viewer_arguments
 
     def expect_distinct_nodes(self) -> None:
@@ -169,21 +169,21 @@ class LaunchCheck:
         Raises:
             NotYet: the node did not start in time.
         """
-        self._wait_until(lambda: name in self.nodes(), lambda: self._missing_node(name))
+        self._wait_until(lambda: name in self.nodes(), lambda: self._explain_missing_node(name))
 
     def nodes(self) -> list[str]:
         """Return the full names of the running nodes."""
         return [
             f"{namespace.rstrip('/')}/{name}"
-            for name, namespace in self._call(self._checker.get_node_names_and_namespaces)
-            if name != _NODE
+            for name, namespace in self._call(self._checking_node.get_node_names_and_namespaces)
+            if name != _NODE_NAME
         ]
 
     def subscribers(self, topic: str) -> list[str]:
         """Return the full names of the nodes that currently subscribe to a topic."""
-        infos = self._call(lambda: self._checker.get_subscriptions_info_by_topic(topic))
+        infos = self._call(lambda: self._checking_node.get_subscriptions_info_by_topic(topic))
         nodes = {(info.node_namespace.rstrip("/"), info.node_name) for info in infos}
-        return sorted(f"{namespace}/{name}" for namespace, name in nodes if name != _NODE)
+        return sorted(f"{namespace}/{name}" for namespace, name in nodes if name != _NODE_NAME)
 
     def wait_for_parameter(self, node: str, name: str) -> Any:
         """Return the value of a node's parameter as soon as the node runs and has declared it.
@@ -199,7 +199,7 @@ class LaunchCheck:
         from linkwright.graph.parameters.parameter import parameter_value_to_python
 
         self.expect_node(node)
-        client = self._call(lambda: AsyncParameterClient(self._checker, node))
+        client = self._call(lambda: AsyncParameterClient(self._checking_node, node))
         pending: list[Any] = []
         messages: list[Any] = []
 
@@ -229,13 +229,13 @@ class LaunchCheck:
         """
         from linkwright.messages import get_message
 
-        node = self._checker
+        node = self._checking_node
         self._wait_until(lambda: node.count_publishers(topic) > 0, lambda: self._explain_missing_topic(topic))
         received: list[Any] = []
 
         def subscribe() -> None:
             types = dict(node.get_topic_names_and_types())[topic]
-            node.create_subscription(get_message(types[0]), topic, received.append, _offered_profile(node, topic))
+            node.create_subscription(get_message(types[0]), topic, received.append, _choose_profile(node, topic))
 
         self._call(subscribe)
         matching: list[Any] = []
@@ -265,7 +265,7 @@ class LaunchCheck:
         found: list[Sequence[float]] = []
 
         def has_transform() -> bool:
-            found[:] = self._call(lambda: self._lookup(frame, child))
+            found[:] = self._call(lambda: self._find_translations(frame, child))
             return bool(found) and (position is None or math.dist(found[0], position) <= tolerance)
 
         def problem() -> Phrase:
@@ -282,11 +282,11 @@ class LaunchCheck:
         self._wait_until(has_transform, problem)
 
     @property
-    def _checker(self) -> Node:
+    def _checking_node(self) -> Node:
         assert self._node is not None, "the launch has started"
         return self._node
 
-    def _lookup(self, frame: str, child: str) -> list[Sequence[float]]:
+    def _find_translations(self, frame: str, child: str) -> list[Sequence[float]]:
         from linkwright.graph import Time
         from linkwright.graph.transforms.errors import TransformException
         from linkwright.graph.transforms.listener import TransformListener
@@ -294,15 +294,15 @@ class LaunchCheck:
 
         if self._buffer is None:
             self._buffer = Buffer()
-            TransformListener(self._buffer, self._checker)
+            TransformListener(self._buffer, self._checking_node)
         try:
             translation = self._buffer.lookup_transform(frame, child, Time()).transform.translation
         except TransformException:
             return []
         return [(translation.x, translation.y, translation.z)]
 
-    def _topics(self) -> list[str]:
-        return [name for name, _ in self._call(self._checker.get_topic_names_and_types)]
+    def _list_topics(self) -> list[str]:
+        return [name for name, _ in self._call(self._checking_node.get_topic_names_and_types)]
 
     def _call(self, function: Callable[[], T]) -> T:
         """Call a function on the event loop of the launch.
@@ -315,9 +315,9 @@ class LaunchCheck:
             return function()
 
         future = asyncio.run_coroutine_threadsafe(call(), self._loop)
-        if not wait([future], _PERIOD_S).done:
+        if not wait([future], _POLL_PERIOD_S).done:
             clock = PatientClock()
-            while not wait([future], _PERIOD_S).done:
+            while not wait([future], _POLL_PERIOD_S).done:
                 if clock.read() > _WAIT_S:
                     raise TimeoutError
         return future.result()
@@ -329,14 +329,14 @@ class LaunchCheck:
             NotYet: the launch failed, or the condition did not become true in time.
         """
         clock = PatientClock()
-        last_change, last_graph = 0.0, self._graph()
+        last_change, last_graph = 0.0, self._list_nodes_and_topics()
         while not self._is_true(condition):
-            graph = self._graph()
+            graph = self._list_nodes_and_topics()
             if graph != last_graph:
                 last_change, last_graph = clock.read(), graph
             if clock.read() > min(_WAIT_S, last_change + self._quiet_seconds):
                 raise NotYet(problem() if callable(problem) else problem)
-            time.sleep(_PERIOD_S)
+            time.sleep(_POLL_PERIOD_S)
 
     def _is_true(self, condition: Callable[[], bool]) -> bool:
         """Return whether a condition of the graph is true.
@@ -349,25 +349,25 @@ class LaunchCheck:
         except InvalidHandleError:
             is_true = False
         if not is_true and self._run.done():
-            raise NotYet(self._failure())
+            raise NotYet(self._explain_end())
         return is_true
 
-    def _graph(self) -> tuple[Sequence[str], Sequence[str]]:
+    def _list_nodes_and_topics(self) -> tuple[Sequence[str], Sequence[str]]:
         """Return the nodes and topics of the graph; both are empty before the launch starts."""
-        return ([], []) if self._node is None or self._run.done() else (self.nodes(), self._topics())
+        return ([], []) if self._node is None or self._run.done() else (self.nodes(), self._list_topics())
 
     @property
     def _quiet_seconds(self) -> float:
-        if self._session is None or not self._graph()[0]:
+        if self._session is None or not self._list_nodes_and_topics()[0]:
             return _WAIT_S
-        return _QUIET_SECONDS_OF_PROCESSES if self._session.processes.names else _QUIET_S
+        return _QUIET_WITH_PROCESSES_S if self._session.processes.names else _QUIET_S
 
-    def _failure(self) -> Phrase:
+    def _explain_end(self) -> Phrase:
         """Return the reason why the launch ended before the check."""
         try:
             self._run.result()
         except LinkwrightError as error:
-            return self._located(error.diagnostics[0])
+            return self._describe_located(error.diagnostics[0])
         if problem := self._find_first_problem():
             return problem
         return phrase(
@@ -376,18 +376,18 @@ class LaunchCheck:
             file=self._file,
         )
 
-    def _located(self, finding: Diagnostic) -> Phrase:
+    def _describe_located(self, finding: Diagnostic) -> Phrase:
         """Return a finding with the name of the launch file, unless it names another file."""
         described = describe_finding(finding)
         return described if finding.span else phrase("{file}: {message}", file=self._file, message=described)
 
     def problems(self) -> list[LocalText]:
-        """Return the problems that the launch has reported: its findings, then the errors of its nodes."""
+        """Return the problems of the launch: its findings, then the errors of its nodes."""
         return [LocalText.from_phrase(problem) for problem in self._list_problems()]
 
     def _list_problems(self) -> list[Phrase]:
-        errors = [phrase("{file}: {message}", file=self._file, message=error) for error in self._errors()]
-        return [*map(self._located, self._findings), *errors]
+        errors = [phrase("{file}: {message}", file=self._file, message=error) for error in self._list_error_lines()]
+        return [*map(self._describe_located, self._findings), *errors]
 
     def _find_first_problem(self) -> Phrase | None:
         """Return the first problem that the launch has reported, or None."""
@@ -395,10 +395,10 @@ class LaunchCheck:
 
     def _explain_missing_topic(self, topic: str) -> Phrase:
         """Return the message for a topic without publishers, with the first error of the launch."""
-        topics = self._topics()
+        topics = self._list_topics()
         if problem := self._find_first_problem():
             return phrase("no node publishes '{topic}'; the launch says: {message}", topic=topic, message=problem)
-        published = [name for name in topics if self._call(partial(self._checker.count_publishers, name))]
+        published = [name for name in topics if self._call(partial(self._checking_node.count_publishers, name))]
         name = topic.rpartition("/")[2]
         similar = [other for other in published if other.rpartition("/")[2] == name]
         if not similar and topic not in topics:
@@ -411,8 +411,11 @@ class LaunchCheck:
             nodes=quoted_names(sorted(self.nodes())) or "-",
         )
 
-    def _missing_node(self, name: str) -> Phrase:
-        """Return the message for a missing node, with a similar name, the launch's problem, or the running nodes."""
+    def _explain_missing_node(self, name: str) -> Phrase:
+        """Return the message for a missing node.
+
+        It names a similar node, the launch's problem, or the running nodes.
+        """
         nodes = self.nodes()
         if similar := nearest(name, nodes, 1):
             return phrase("there is no node '{name}'; there is '{similar}'", name=name, similar=similar[0])
@@ -421,7 +424,7 @@ class LaunchCheck:
         others = quoted_names(sorted(nodes)) or "-"
         return phrase("there is no node '{name}'; the running nodes are {nodes}", name=name, nodes=others)
 
-    def _errors(self) -> list[str]:
+    def _list_error_lines(self) -> list[str]:
         """Return the lines of the launch's output that report errors.
 
         Of the traceback of a process that has died, only the last line is returned.
@@ -433,7 +436,7 @@ class LaunchCheck:
                 if not match[2].strip() or match[2].startswith(" "):
                     continue
                 last_lines[match[1].rpartition("-")[0]] = match[2]
-            death = _DEATH.match(line)
+            death = _DEATH_LINE.match(line)
             if death and death[1] in last_lines:
                 errors.append(f"{death[1]}: {last_lines[death[1]]}")
             elif any(name in line.casefold() for name in ("error", "fatal")):
@@ -441,8 +444,8 @@ class LaunchCheck:
         return errors
 
 
-def _offered_profile(node: Node, topic: str) -> QoSProfile:
-    """Return a profile with which a subscription receives a topic's messages, latched ones included."""
+def _choose_profile(node: Node, topic: str) -> QoSProfile:
+    """Return a profile with which a subscription receives a topic's latched messages, too."""
     from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
     offered = [info.qos_profile for info in node.get_publishers_info_by_topic(topic)]
