@@ -6,7 +6,7 @@ from math import atan, pi
 
 import pytest
 
-from linkwright.control.odometry import yaw_of
+from linkwright.control.odometry import get_yaw
 from linkwright.messages import get_message
 from linkwright.simulation.plugins.limits import SpeedLimits
 from linkwright.testing import Recording
@@ -67,10 +67,10 @@ async def test_car_drives_commanded_circle_with_correct_odometry():
     async with running_server(GROUND, car(steering())) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, yaw_rate=0.3, seconds=2.0)
-        begin = yaw_of(server.simulation.model_pose("car"))
+        begin = get_yaw(server.simulation.model_pose("car"))
         await drive(server, graph, 0.5, yaw_rate=0.3, seconds=1.0)
         pose = server.simulation.model_pose("car")
-        assert yaw_of(pose) - begin == pytest.approx(0.3, rel=0.05)
+        assert get_yaw(pose) - begin == pytest.approx(0.3, rel=0.05)
         message = odometry.last
         assert (message.header.frame_id, message.child_frame_id) == ("car/odom", "car/base")
         assert (message.pose.pose.position.x, message.pose.pose.position.y) == pytest.approx(pose[:2], abs=0.05)
@@ -131,7 +131,7 @@ async def test_mecanum_drive_moves_in_any_direction_with_correct_odometry(comman
         await drive(server, graph, *command, seconds=1.0)
         end, last = server.simulation.model_pose("robot"), odometry.last
         assert end[2] == pytest.approx(0.2, abs=2e-3)
-        assert (end[0] - begin[0], end[1] - begin[1], yaw_of(end) - yaw_of(begin)) == pytest.approx(
+        assert (end[0] - begin[0], end[1] - begin[1], get_yaw(end) - get_yaw(begin)) == pytest.approx(
             displacement, abs=0.01
         )
         position = last.pose.pose.position
@@ -174,7 +174,7 @@ async def test_velocity_control_sets_velocity_in_model_frame():
         server.advance(SECOND)
         x, y, z, *_ = server.simulation.model_pose("drone")
         assert (x, y, z) == pytest.approx((-0.015, 0.3, 5.5), abs=0.02)
-        assert yaw_of(server.simulation.model_pose("drone")) == pytest.approx(pi / 2 + 0.1, abs=1e-3)
+        assert get_yaw(server.simulation.model_pose("drone")) == pytest.approx(pi / 2 + 0.1, abs=1e-3)
         assert not log
 
 

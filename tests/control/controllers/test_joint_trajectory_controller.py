@@ -480,9 +480,11 @@ async def test_state_is_published_each_update_or_at_set_rate(stand):
 
 
 async def test_errors_of_held_joints_are_computed_only_for_subscribers(stand, monkeypatch):
-    compare, comparisons = JointTrajectoryController._compare, []
+    compare, comparisons = JointTrajectoryController._compute_error, []
     monkeypatch.setattr(
-        JointTrajectoryController, "_compare", lambda self, target: comparisons.append(target) or compare(self, target)
+        JointTrajectoryController,
+        "_compute_error",
+        lambda self, target: comparisons.append(target) or compare(self, target),
     )
     arm = Arm(stand)
     await arm.run(0.1)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import copysign, dist, hypot, tan
 from typing import Any
 
-from linkwright.control.odometry import OdometryTopics, planar_variances, planar_velocity, transforms_topic
+from linkwright.control.odometry import OdometryTopics, create_transform_output, planar_variances, to_planar_velocity
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import ackermann_angles
 from linkwright.messages import get_message
@@ -78,7 +78,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._motors = [simulation.add_velocity_motor(joint, _MOTOR_GAIN, torque) for joint in rear]
         self._servos = [simulation.add_servo(joint) for joint in steering]
         odometry = node.publisher("nav_msgs/msg/Odometry", "odom", 1) if parameters.publish_odom else None
-        transforms = transforms_topic(node) if parameters.publish_odom_tf else None
+        transforms = create_transform_output(node) if parameters.publish_odom_tf else None
         variances = planar_variances(parameters.covariance_x, parameters.covariance_y, parameters.covariance_yaw)
         self._topics = OdometryTopics(
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
@@ -163,7 +163,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._drive(seconds)
         old_pose, self._pose = self._pose, self.simulation.model_pose(self.context.path)
         self._distance += hypot(self._pose[0] - old_pose[0], self._pose[1] - old_pose[1])
-        velocity = planar_velocity(self._pose, *self.simulation.link_velocity(self.first_link))
+        velocity = to_planar_velocity(self._pose, *self.simulation.link_velocity(self.first_link))
         self._topics.publish(self.stamp(), self._pose, *velocity)
         if self._distance_topic is not None:
             self._distance_topic.publish(get_message("std_msgs/msg/Float32")(data=self._distance))

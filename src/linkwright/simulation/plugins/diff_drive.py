@@ -14,10 +14,10 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 from linkwright.control.odometry import (
     OdometryTopics,
+    create_transform_output,
     planar_variances,
-    planar_velocity,
+    to_planar_velocity,
     transform_message,
-    transforms_topic,
 )
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import compose, invert
@@ -205,7 +205,7 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         odometry = (
             node.publisher("nav_msgs/msg/Odometry", parameters.odometry_topic, 1) if parameters.publish_odom else None
         )
-        transforms = transforms_topic(node) if parameters.publish_odom_tf else None
+        transforms = create_transform_output(node) if parameters.publish_odom_tf else None
         variances = planar_variances(parameters.covariance_x, parameters.covariance_y, parameters.covariance_yaw)
         self._topics = OdometryTopics(
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
@@ -222,7 +222,9 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         )
         self.every(parameters.update_rate, self._update)
         if parameters.publish_wheel_tf:
-            self.every(parameters.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))
+            self.every(
+                parameters.update_rate, partial(self._publish_wheels, transforms or create_transform_output(node))
+            )
 
     def _publish_wheels(self, output: Output) -> None:
         """Publish the transform of each wheel in the frame of its parent link."""
@@ -247,7 +249,9 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         stamp = self.stamp()
         if self._uses_true_pose:
             pose = self.simulation.model_pose(self.context.path)
-            self._topics.publish(stamp, pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link)))
+            self._topics.publish(
+                stamp, pose, *to_planar_velocity(pose, *self.simulation.link_velocity(self.first_link))
+            )
         else:
             forward, angular = self._measured_velocity()
             published_forward = abs(forward) if self.gazebo_mistakes else forward

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.control.odometry import TRANSFORMS, TRANSFORMS_DEPTH, planar_velocity, transform_message
+from linkwright.control.odometry import TRANSFORMS_DEPTH, TRANSFORMS_TYPE, to_planar_velocity, transform_message
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import (
     Transform,
@@ -124,7 +124,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         self._odometry = node.publisher("nav_msgs/msg/Odometry", topic, conventional_topic="/odom")
         self._covariance_odometry = node.publisher("nav_msgs/msg/Odometry", covariance_topic)
         self._transforms = node.publisher(
-            TRANSFORMS, parameters.tf_topic or f"/model/{model}/pose", TRANSFORMS_DEPTH, conventional_topic="/tf"
+            TRANSFORMS_TYPE, parameters.tf_topic or f"/model/{model}/pose", TRANSFORMS_DEPTH, conventional_topic="/tf"
         )
         self.every(parameters.odom_publish_frequency, self._publish)
 
@@ -141,7 +141,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         if parameters.dimensions == 3:
             linear, angular = _in_frame_axes(pose, linear), _in_frame_axes(pose, angular)
         else:
-            forward, sideways, yaw_rate = planar_velocity(pose, linear, angular)
+            forward, sideways, yaw_rate = to_planar_velocity(pose, linear, angular)
             linear, angular = np.array((forward, sideways, 0.0)), np.array((0.0, 0.0, yaw_rate))
             pose = (pose[0], pose[1], 0.0, *pose[3:])
         linear, angular = _add_noise(self._random, parameters.gaussian_noise, linear, angular)

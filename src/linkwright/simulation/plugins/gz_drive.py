@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.control.odometry import TRANSFORMS, TRANSFORMS_DEPTH, OdometryTopics
+from linkwright.control.odometry import TRANSFORMS_DEPTH, TRANSFORMS_TYPE, OdometryTopics
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.limits import SpeedLimits
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
@@ -100,7 +100,7 @@ def connect_drive(
         "nav_msgs/msg/Odometry", parameters.odom_topic or f"/model/{model}/odometry", conventional_topic="/odom"
     )
     transforms = node.publisher(
-        TRANSFORMS, parameters.tf_topic or f"/model/{model}/tf", TRANSFORMS_DEPTH, conventional_topic="/tf"
+        TRANSFORMS_TYPE, parameters.tf_topic or f"/model/{model}/tf", TRANSFORMS_DEPTH, conventional_topic="/tf"
     )
     topic = parameters.topic or f"/model/{model}/cmd_vel"
     commander = node.commander(commands.stop)

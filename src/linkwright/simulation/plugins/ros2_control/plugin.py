@@ -156,7 +156,7 @@ class SimulatedManager(SimulatedPlugin[P], Generic[P]):
             message.data,
             DescriptionLibrary(),
             self._create_system,
-            read=self._read_hardware,
+            read_hardware=self._read_hardware,
             enforces_limits=self.ENFORCES_LIMITS,
         )
         if not self._is_loaded:
