@@ -7,9 +7,9 @@ from typing import Any
 from linkwright.control.hardware.description import HardwareDescription, hardware_from_robot
 from linkwright.control.hardware.resources import Resources, create_installed_hardware
 from linkwright.control.manager.exchange import DirectExchange
+from linkwright.control.manager.hardware_loading import load_hardware
 from linkwright.control.manager.manager import ControllerManager
 from linkwright.control.manager.nodes import ProcessArguments
-from linkwright.control.manager.starting import load_hardware
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph
 from linkwright.graph.parameters.parameter import ParameterRules

@@ -56,10 +56,10 @@ def mecanum(extra: str = "", name: str = "robot") -> str:
 
 
 def test_speed_limits_apply_to_velocity_acceleration_and_jerk():
-    limiter = SpeedLimits(max_velocity=1.0, max_linear_acceleration=2.0, min_acceleration=-4.0).limiter("linear")
+    limiter = SpeedLimits(max_velocity=1.0, max_linear_acceleration=2.0, min_acceleration=-4.0).create_limiter("linear")
     assert [limiter.approach(5.0, 0.1) for _ in range(7)] == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.0])
     assert [limiter.approach(0.0, 0.1) for _ in range(3)] == pytest.approx([0.6, 0.2, 0.0])
-    slow = SpeedLimits(max_jerk=10.0, max_linear_velocity=0.1).limiter("angular")
+    slow = SpeedLimits(max_jerk=10.0, max_linear_velocity=0.1).create_limiter("angular")
     assert [slow.approach(5.0, 0.1) for _ in range(3)] == pytest.approx([0.1, 0.3, 0.6])
 
 

@@ -13,10 +13,10 @@ from linkwright.control.hardware.component import Hardware
 from linkwright.control.hardware.description import HardwareDescription
 from linkwright.control.hardware.resources import Resources, create_installed_hardware
 from linkwright.control.manager.exchange import DirectExchange
+from linkwright.control.manager.hardware_loading import load_hardware
 from linkwright.control.manager.manager import ControllerManager
 from linkwright.control.manager.nodes import ProcessArguments
 from linkwright.control.manager.services import ManagerServices
-from linkwright.control.manager.starting import load_hardware
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.graph.command_line.ros_arguments import parse

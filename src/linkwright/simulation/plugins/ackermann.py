@@ -20,7 +20,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 _MOTOR_GAIN = 20.0
 """The gain of a wheel motor, in N m of torque per rad/s of velocity error."""
-_GRAVITY = 9.81
+_GRAVITY_M_S2 = 9.81
 """The acceleration of gravity in m/s2."""
 
 
@@ -71,10 +71,10 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         steering = [self.joint(name) for name in (parameters.left_steering_joint, parameters.right_steering_joint)]
         for joint in (*front, *rear):
             simulation.enable_rolling(joint)
-        self._radius = self._measure_radius(rear[1])
+        self._radius = self._get_wheel_radius(rear[1])
         self._measure_geometry(front, rear)
         simulation.keep_awake(self.first_link)
-        torque = simulation.mass_of(self.context.path) * _GRAVITY * self._radius / 2.0
+        torque = simulation.mass_of(self.context.path) * _GRAVITY_M_S2 * self._radius / 2.0
         self._motors = [simulation.add_velocity_motor(joint, _MOTOR_GAIN, torque) for joint in rear]
         self._servos = [simulation.add_servo(joint) for joint in steering]
         odometry = node.publisher("nav_msgs/msg/Odometry", "odom", 1) if parameters.publish_odom else None
@@ -110,7 +110,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
             servo.restart()
         self._drive(0.0)
 
-    def _measure_radius(self, joint: str) -> float:
+    def _get_wheel_radius(self, joint: str) -> float:
         radius = self.simulation.wheel_radius(self.simulation.scene.joints[joint].child)
         if radius is None:
             raise self.parameter_error(

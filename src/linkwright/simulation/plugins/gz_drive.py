@@ -13,9 +13,9 @@ from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.limits import SpeedLimits
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-GZ_RATE = 100.0
+GZ_RATE_HZ = 100.0
 """The rate in Hz at which drives of gz process commands. In gz, they are processed before each step."""
-GZ_TORQUE = 5.0
+GZ_MAX_TORQUE = 5.0
 """The maximum torque of a wheel in N m if a gz plugin specifies none. In gz, velocities are set without a limit."""
 MOTOR_GAIN = 20.0
 """The gain of a wheel motor, in N m of torque per rad/s of velocity error."""
@@ -46,7 +46,7 @@ class DriveCommands:
     """
 
     def __init__(self, limits: SpeedLimits) -> None:
-        self._limiters = tuple(limits.limiter(kind) for kind in ("linear", "linear", "angular"))
+        self._limiters = tuple(limits.create_limiter(kind) for kind in ("linear", "linear", "angular"))
         self.is_enabled = True
         self.restart()
 
@@ -82,10 +82,10 @@ class DriveCommands:
     def next_velocity(self) -> tuple[float, float, float]:
         """Advance the limited velocity towards the command, and return the new velocity.
 
-        Call this `GZ_RATE` times per simulated second.
+        Call this `GZ_RATE_HZ` times per simulated second.
         """
         limited_targets = zip(self._limiters, self._command, strict=True)
-        forward, left, angular = (limiter.approach(target, 1.0 / GZ_RATE) for limiter, target in limited_targets)
+        forward, left, angular = (limiter.approach(target, 1.0 / GZ_RATE_HZ) for limiter, target in limited_targets)
         return forward, left, angular
 
 

@@ -55,7 +55,7 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
             )
         self.simulation.keep_awake(self.first_link)
 
-    def hold(self, forward: float, left: float, yaw_rate: float) -> None:
+    def set_planar_velocity(self, forward: float, left: float, yaw_rate: float) -> None:
         """Set the planar velocities in m/s and rad/s for the next step.
 
         The vertical velocity and the roll and pitch rates remain unchanged.
@@ -113,7 +113,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         return old_command != self._command
 
     def _move(self) -> None:
-        self.hold(*self._command)
+        self.set_planar_velocity(*self._command)
 
     def _publish(self) -> None:
         pose = self.simulation.model_pose(self.context.path)
