@@ -6,7 +6,7 @@ import shlex
 
 import pytest
 
-from linkwright.simulation.nodes.command_line import parse_simulator_command
+from linkwright.simulation.nodes.command_line import simulator_command
 
 FACTORY = "-s libgazebo_ros_init.so -s libgazebo_ros_factory.so"
 
@@ -23,7 +23,7 @@ FACTORY = "-s libgazebo_ros_init.so -s libgazebo_ros_factory.so"
     ],
 )
 def test_classic_command_line_is_parsed(line, parameters):
-    command = parse_simulator_command(shlex.split(line))
+    command = simulator_command(shlex.split(line))
     assert command is not None
     assert (command.package, command.executable) == ("gazebo_ros", "gzserver")
     assert command.parameters == parameters
@@ -43,7 +43,7 @@ def test_classic_command_line_is_parsed(line, parameters):
     ],
 )
 def test_gz_command_line_is_parsed(line, parameters):
-    command = parse_simulator_command(shlex.split(line))
+    command = simulator_command(shlex.split(line))
     assert command is not None
     assert (command.package, command.executable) == ("ros_gz_sim", "gzserver")
     assert command.parameters == parameters
@@ -51,13 +51,13 @@ def test_gz_command_line_is_parsed(line, parameters):
 
 def test_gui_only_commands_start_gzclient():
     for line in ("gzclient --verbose", "gz sim -g", "ign gazebo -g -v 4"):
-        command = parse_simulator_command(line.split())
+        command = simulator_command(line.split())
         assert command is not None
         assert command.executable == "gzclient"
 
 
 def test_ros_arguments_are_kept():
-    command = parse_simulator_command(["gzserver", "a.world", "--ros-args", "--params-file", "f.yaml"])
+    command = simulator_command(["gzserver", "a.world", "--ros-args", "--params-file", "f.yaml"])
     assert command is not None
     assert list(command.ros_arguments) == ["--ros-args", "--params-file", "f.yaml"]
     assert command.parameters == {"world": "a.world"}
@@ -65,4 +65,4 @@ def test_ros_arguments_are_kept():
 
 @pytest.mark.parametrize("line", ["gz topic -l", "ign service", "ros2 run a b", "gz", "python3 gzserver"])
 def test_other_commands_are_not_recognized(line):
-    assert parse_simulator_command(line.split()) is None
+    assert simulator_command(line.split()) is None

@@ -25,7 +25,7 @@ _GZ_VERBOSITY = ("-v", "--verbose")
 _ROS_ARGUMENTS = "--ros-args"
 
 
-def parse_simulator_command(command: Sequence[str]) -> NodeCommand | None:
+def simulator_command(command: Sequence[str]) -> NodeCommand | None:
     """Parse the command line of one of Gazebo's programs, or return None for other programs."""
     program, *arguments = command
     name = PurePath(program).name
