@@ -21,7 +21,7 @@ from linkwright.navigation.maps.map_files import MapSaveSettings, save_map
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import World
-from linkwright.simulation.ray_casting import GROUPS, cast
+from linkwright.simulation.ray_casting import GROUP_COUNT, cast_rays
 from linkwright.simulation.simulation import Simulation
 from linkwright.testing.scenes import read_world
 
@@ -55,7 +55,7 @@ def _scan_world(world: World) -> Grid:
     hits, passes = np.zeros(shape, np.int64), np.zeros(shape, np.int64)
     angles = np.linspace(-np.pi, np.pi, RAY_COUNT, endpoint=False)
     rays = np.column_stack((np.cos(angles), np.sin(angles), np.zeros(RAY_COUNT)))
-    groups = np.ones(GROUPS, np.uint8)
+    groups = np.ones(GROUP_COUNT, np.uint8)
     pending_cells, scanned_cells = [grid.cells_of(np.zeros(2))], set()
     while pending_cells:
         cell = pending_cells.pop()
@@ -64,7 +64,7 @@ def _scan_world(world: World) -> Grid:
         scanned_cells.add(tuple(cell))
         position = grid.centers_of(cell)
         origin = np.array((*position, LASER_HEIGHT_M))
-        distances, _ = cast(simulation.model, simulation.data, origin, rays, groups, apart_from=-1, reach=LASER_RANGE_M)
+        distances, _ = cast_rays(simulation.model, simulation.data, origin, rays, groups, excluded_body=-1, max_distance=LASER_RANGE_M)
         is_hit = distances > 0.0
         # Slightly inside the object, so that a wall on the border of two cells belongs to one of them.
         ends = position + (np.where(is_hit, distances + 0.002, LASER_RANGE_M))[:, None] * rays[:, :2]

@@ -20,8 +20,8 @@ from typing import Any
 
 from linkwright.geometry.single import Vector3
 from linkwright.loading.extensions import extensions
-from linkwright.simulation.plugins.parameters import _types
-from linkwright.simulation.plugins.registry import PLUGINS, plugin_class
+from linkwright.simulation.plugins.parameters import _get_types
+from linkwright.simulation.plugins.registry import PLUGIN_GROUP, find_plugin_class
 
 ROOT = Path(__file__).resolve().parent.parent
 TEXTS_FILE = ROOT / "tools" / "simulator_plugins.toml"
@@ -58,10 +58,10 @@ def _format_default(value: Any) -> str | None:
 
 
 def _iterate_parameters(library: str, texts: Any) -> Iterator[dict[str, Any]]:
-    meanings, extension = texts["parameters"], extensions(PLUGINS).get(library)
-    cls = None if extension is None else plugin_class(library)
+    meanings, extension = texts["parameters"], extensions(PLUGIN_GROUP).get(library)
+    cls = None if extension is None else find_plugin_class(library)
     format_table: Any = getattr(cls, "PARAMETERS", None)
-    types = {} if format_table is None else _types(format_table)
+    types = {} if format_table is None else _get_types(format_table)
     for field in () if format_table is None else fields(format_table):
         meaning, _, unit = meanings[field.name].partition(" | ")
         known = {"name": field.name, "type": _TYPES[types[field.name]], "meaning": meaning, "unit": unit}
@@ -86,7 +86,7 @@ def _find_class_name(library: str, texts: Any) -> str:
 def format_table() -> str:
     """Return the text of the table."""
     texts = tomllib.loads(TEXTS_FILE.read_text(encoding="utf-8"))
-    missing = {*extensions(PLUGINS)} - {*texts["libraries"]}
+    missing = {*extensions(PLUGIN_GROUP)} - {*texts["libraries"]}
     if missing:
         raise SystemExit(f"{TEXTS_FILE.name} has no words about {', '.join(sorted(missing))}")
     lines = []

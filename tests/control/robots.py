@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 from linkwright.control.hardware.description import HardwareDescription, hardware_from_robot
-from linkwright.control.hardware.resources import Resources, hardware_by_entry_points
+from linkwright.control.hardware.resources import Resources, create_installed_hardware
 from linkwright.control.manager.exchange import DirectExchange
+from linkwright.control.manager.hardware_loading import load_hardware
 from linkwright.control.manager.manager import ControllerManager
 from linkwright.control.manager.nodes import ProcessArguments
-from linkwright.control.manager.starting import load_hardware
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph
 from linkwright.graph.parameters.parameter import ParameterRules
@@ -77,5 +77,5 @@ def make_manager(
     controller_manager = ControllerManager(
         node, DirectExchange(), Resources(node.get_logger()), ProcessArguments(rules)
     )
-    load_hardware(controller_manager, text, DescriptionLibrary(), hardware_by_entry_points)
+    load_hardware(controller_manager, text, DescriptionLibrary(), create_installed_hardware)
     return controller_manager

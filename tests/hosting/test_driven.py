@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.control.odometry import yaw_of
+from linkwright.control.odometry import get_yaw
 from linkwright.descriptions import DescriptionLibrary, examine
 from linkwright.graph import Graph
 from linkwright.hosting.launch_log import LaunchLog
@@ -136,9 +136,9 @@ async def _assert_drives_one_meter_and_turns(path: Path) -> None:
         assert end[0] - start[0] == pytest.approx(1.0, abs=1e-3)
         assert end[1] == pytest.approx(0.0, abs=1e-3)
         await mbot.drive(0.0, 1.0, 2.0)
-        heading = yaw_of(mbot.pose)
+        heading = get_yaw(mbot.pose)
         await mbot.drive(0.0, 1.0, 1.0)
-        assert yaw_of(mbot.pose) - heading == pytest.approx(1.0, abs=0.01)
+        assert get_yaw(mbot.pose) - heading == pytest.approx(1.0, abs=0.01)
         assert mbot.odometry[-1].child_frame_id == "base_link"
 
 

@@ -18,7 +18,7 @@ from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
 from linkwright.lint.extension_names import CHILDREN
 from linkwright.loading.extensions import extensions
-from linkwright.simulation.plugins.registry import PLUGINS
+from linkwright.simulation.plugins.registry import PLUGIN_GROUP
 from linkwright.xacro.expressions.builtin_names import global_names
 from linkwright.xacro.session import Inputs
 
@@ -254,7 +254,7 @@ def test_completion_tables_cover_rules():
             rule = rule.child_rules.get(tag) or rule
         if path.startswith("ros2_control") and rule.tag == path.rpartition("/")[2]:
             assert {*rule.child_rules} <= {*tags}
-    assert {*extensions(PLUGINS)} <= {*simulator_plugins()}
+    assert {*extensions(PLUGIN_GROUP)} <= {*simulator_plugins()}
     assert all(
         child.text is not None or child.children
         for plugin in simulator_plugins().values()

@@ -6,7 +6,7 @@ from math import tan
 
 import pytest
 
-from linkwright.control.odometry import yaw_of
+from linkwright.control.odometry import get_yaw
 from linkwright.testing import Recording
 from tests.simulation.test_movers import drive
 from tests.simulation.test_plugins import SECOND_NS, running_server
@@ -78,9 +78,9 @@ async def test_car_drives_straight_with_correct_odometry():
 async def test_car_turns_according_to_steering(forward):
     async with running_server(GROUND, car(plugin())) as (server, graph, log):
         await drive(server, graph, forward, yaw_rate=0.3, seconds=2.0)
-        begin = yaw_of(server.simulation.model_pose("car"))
+        begin = get_yaw(server.simulation.model_pose("car"))
         await drive(server, graph, forward, yaw_rate=0.3, seconds=1.0)
-        yaw = yaw_of(server.simulation.model_pose("car")) - begin
+        yaw = get_yaw(server.simulation.model_pose("car")) - begin
         assert yaw == pytest.approx(0.5 * tan(0.3) / WHEELBASE, rel=0.05)
         left, right = (server.simulation.joint_state(f"car::{side}_steering_joint")[0] for side in ("left", "right"))
         assert abs(left - right) > 0.01

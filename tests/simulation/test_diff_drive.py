@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.control.odometry import yaw_of
+from linkwright.control.odometry import get_yaw
 from linkwright.messages import get_message
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND_NS, robot, running_server
@@ -78,9 +78,9 @@ async def test_robot_turns_in_place(plugin):
     async with running_server(GROUND, robot(plugin)) as (server, graph, _):
         driven_robot = DrivenRobot(server, graph)
         await driven_robot.drive(0.0, 1.0, 1.0)
-        start = yaw_of(driven_robot.pose)
+        start = get_yaw(driven_robot.pose)
         await driven_robot.drive(0.0, 1.0, 1.0)
-        assert yaw_of(driven_robot.pose) - start == pytest.approx(1.0, abs=0.01)
+        assert get_yaw(driven_robot.pose) - start == pytest.approx(1.0, abs=0.01)
         assert driven_robot.odometry.last.twist.twist.angular.z == pytest.approx(1.0, abs=0.02)
 
 

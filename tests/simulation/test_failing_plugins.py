@@ -15,7 +15,7 @@ from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.loading.extensions import extensions
 from linkwright.messages import get_message, get_service
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.plugins.registry import SENSORS
+from linkwright.simulation.plugins.registry import SENSOR_GROUP
 from linkwright.simulation.server import server as server_module
 from linkwright.testing import Recording, SteppedSimulation
 from tests.remote_publishers import RemotePublisher, RemoteTransport
@@ -92,8 +92,10 @@ class _Failing(SimulatedPlugin[_Parameters]):
 @pytest.fixture(autouse=True)
 def _failing(monkeypatch) -> None:
     """Let worlds use the plugin above as a library."""
-    find_class = server_module.plugin_class
-    monkeypatch.setattr(server_module, "plugin_class", lambda name: _Failing if name == "failing" else find_class(name))
+    find_class = server_module.find_plugin_class
+    monkeypatch.setattr(
+        server_module, "find_plugin_class", lambda name: _Failing if name == "failing" else find_class(name)
+    )
 
 
 def failing_plugin(failing_point: str) -> str:
@@ -174,7 +176,7 @@ CLASSIC = {
     "classic imu": sensor("imu", plugin("libgazebo_ros_imu_sensor.so"), "a"),
     "classic gps": sensor("gps", plugin("libgazebo_ros_gps_sensor.so"), "a"),
 }
-OF_GZ = {kind: sensor(kind, CAMERA if kind.startswith(_PICTURES) else "", "a") for kind in extensions(SENSORS)}
+OF_GZ = {kind: sensor(kind, CAMERA if kind.startswith(_PICTURES) else "", "a") for kind in extensions(SENSOR_GROUP)}
 
 
 @pytest.mark.parametrize("text", (CLASSIC | OF_GZ).values(), ids=(CLASSIC | OF_GZ).keys())

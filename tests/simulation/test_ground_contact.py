@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from linkwright.simulation.server.ground_contact import collision_warnings, lift_onto_ground
+from linkwright.simulation.server.ground_contact import find_collision_warnings, lift_onto_ground
 from tests.simulation.worlds import GROUND, box, make_simulation, model
 
 PLATE = (
@@ -55,5 +55,5 @@ def test_model_without_collisions_is_reported():
     for name, link in (("seen", visual), ("still", f"{visual}<gravity>false</gravity>")):
         simulation.spawn(model(f'<model name="{name}"><link name="link">{link}</link></model>'), name)
     simulation.spawn(model(box("crate", "0 0 2 0 0 0", "0.2 0.2 0.2")), "crate")
-    assert [diagnostic.code for diagnostic in collision_warnings(simulation, "seen")] == ["SIM143"]
-    assert collision_warnings(simulation, "still") == collision_warnings(simulation, "crate") == []
+    assert [diagnostic.code for diagnostic in find_collision_warnings(simulation, "seen")] == ["SIM143"]
+    assert find_collision_warnings(simulation, "still") == find_collision_warnings(simulation, "crate") == []

@@ -9,7 +9,7 @@ from math import atan, pi
 
 import pytest
 
-from linkwright.control.odometry import yaw_of
+from linkwright.control.odometry import get_yaw
 from linkwright.messages import get_message
 from linkwright.simulation.plugins.limits import SpeedLimits
 from linkwright.testing import Recording
@@ -59,10 +59,10 @@ def mecanum_robot(extra: str = "", name: str = "robot") -> str:
 
 
 def test_speed_limits_apply_to_velocity_acceleration_and_jerk():
-    limiter = SpeedLimits(max_velocity=1.0, max_linear_acceleration=2.0, min_acceleration=-4.0).limiter("linear")
+    limiter = SpeedLimits(max_velocity=1.0, max_linear_acceleration=2.0, min_acceleration=-4.0).create_limiter("linear")
     assert [limiter.approach(5.0, 0.1) for _ in range(7)] == pytest.approx([0.2, 0.4, 0.6, 0.8, 1.0, 1.0, 1.0])
     assert [limiter.approach(0.0, 0.1) for _ in range(3)] == pytest.approx([0.6, 0.2, 0.0])
-    slow = SpeedLimits(max_jerk=10.0, max_linear_velocity=0.1).limiter("angular")
+    slow = SpeedLimits(max_jerk=10.0, max_linear_velocity=0.1).create_limiter("angular")
     assert [slow.approach(5.0, 0.1) for _ in range(3)] == pytest.approx([0.1, 0.3, 0.6])
 
 
@@ -70,10 +70,10 @@ async def test_car_drives_commanded_circle_with_correct_odometry():
     async with running_server(GROUND, car(steering_plugin())) as (server, graph, log):
         odometry, transforms = (Recording(graph, server.node, topic) for topic in ("/odom", "/tf"))
         await drive(server, graph, 0.5, yaw_rate=0.3, seconds=2.0)
-        begin = yaw_of(server.simulation.model_pose("car"))
+        begin = get_yaw(server.simulation.model_pose("car"))
         await drive(server, graph, 0.5, yaw_rate=0.3, seconds=1.0)
         pose = server.simulation.model_pose("car")
-        assert yaw_of(pose) - begin == pytest.approx(0.3, rel=0.05)
+        assert get_yaw(pose) - begin == pytest.approx(0.3, rel=0.05)
         message = odometry.last
         assert (message.header.frame_id, message.child_frame_id) == ("car/odom", "car/base")
         assert (message.pose.pose.position.x, message.pose.pose.position.y) == pytest.approx(pose[:2], abs=0.05)
@@ -138,7 +138,7 @@ async def test_mecanum_drive_moves_in_any_direction_with_correct_odometry(comman
         await drive(server, graph, *command, seconds=1.0)
         end, last = server.simulation.model_pose("robot"), odometry.last
         assert end[2] == pytest.approx(0.2, abs=2e-3)
-        assert (end[0] - begin[0], end[1] - begin[1], yaw_of(end) - yaw_of(begin)) == pytest.approx(
+        assert (end[0] - begin[0], end[1] - begin[1], get_yaw(end) - get_yaw(begin)) == pytest.approx(
             displacement, abs=0.01
         )
         position = last.pose.pose.position
@@ -181,7 +181,7 @@ async def test_velocity_control_sets_velocity_in_model_frame():
         server.advance(SECOND_NS)
         x, y, z, *_ = server.simulation.model_pose("drone")
         assert (x, y, z) == pytest.approx((-0.015, 0.3, 5.5), abs=0.02)
-        assert yaw_of(server.simulation.model_pose("drone")) == pytest.approx(pi / 2 + 0.1, abs=1e-3)
+        assert get_yaw(server.simulation.model_pose("drone")) == pytest.approx(pi / 2 + 0.1, abs=1e-3)
         assert not log
 
 

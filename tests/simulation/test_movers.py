@@ -9,7 +9,7 @@ from math import pi
 
 import pytest
 
-from linkwright.control.odometry import yaw_of
+from linkwright.control.odometry import get_yaw
 from linkwright.messages import get_message
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND_NS, robot, running_server
@@ -56,7 +56,7 @@ async def test_planar_move_drives_in_any_direction_with_robot_frame_odometry():
         assert (message.pose.pose.position.x, message.pose.pose.position.y) == pytest.approx((x, y))
         assert (message.twist.twist.linear.x, message.twist.twist.linear.y) == pytest.approx((0.5, 0.25), abs=1e-3)
         await drive(server, graph, yaw_rate=1.0)
-        assert yaw_of(server.simulation.model_pose("mbot")) == pytest.approx(pi / 2 + 1.0, abs=2e-3)
+        assert get_yaw(server.simulation.model_pose("mbot")) == pytest.approx(pi / 2 + 1.0, abs=2e-3)
         assert not log
 
 

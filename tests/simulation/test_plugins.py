@@ -23,12 +23,12 @@ from linkwright.simulation.plugins.parameters import parameter, parameters_from
 from linkwright.simulation.plugins.registry import (
     _BUILT_IN,
     _OWN_SYSTEMS,
-    _SENSORS_OF_SYSTEMS,
-    SENSORS,
+    _SENSORS_BY_SYSTEM,
+    SENSOR_GROUP,
     is_built_in,
     is_gz_library,
 )
-from linkwright.simulation.plugins.ros_element import node_of
+from linkwright.simulation.plugins.ros_element import read_node_description
 from linkwright.simulation.server.server import ServerOptions, SimulationServer
 from linkwright.testing import Recording
 from tests.simulation.worlds import GROUND, box, make_simulation, mbot, model
@@ -83,13 +83,13 @@ def test_built_in_systems_are_recognized():
 
 
 def test_systems_listed_as_built_in_are_simulated():
-    sensor_types = extensions(SENSORS)
+    sensor_types = extensions(SENSOR_GROUP)
     assert [
-        type_name for types in _SENSORS_OF_SYSTEMS.values() for type_name in types if type_name not in sensor_types
+        type_name for types in _SENSORS_BY_SYSTEM.values() for type_name in types if type_name not in sensor_types
     ] == []
     for library in _BUILT_IN:
         name = library.removeprefix("gz-sim-").removesuffix("-system")
-        assert name in (*_OWN_SYSTEMS, *_SENSORS_OF_SYSTEMS) or library in CLASSIC_SYSTEMS, library
+        assert name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM) or library in CLASSIC_SYSTEMS, library
 
 
 @pytest.mark.parametrize("name", UNSIMULATED)
@@ -127,15 +127,17 @@ def test_ros_element_configures_plugin_node():
         "<ros><namespace>robots/one</namespace><remapping>odom:=odometry</remapping><argument>~/out:=scan</argument>"
         '<parameter name="gain" type="double">2</parameter></ros>'
     )
-    node = node_of("drive", _element(ros), "/spawned")
+    node = read_node_description("drive", _element(ros), "/spawned")
     assert node.full_name == "/robots/one/drive"
     assert node.remappings == [("~/out", "scan"), ("odom", "odometry")]
     assert node.parameters == {"gain": 2.0}
 
 
 def test_plugin_without_namespace_uses_robot_namespace():
-    assert node_of("drive-1", _element(""), "/spawned").full_name == "/spawned/drive_1"
-    assert node_of("drive", _element("<robotNamespace>/old</robotNamespace>"), "").full_name == "/old/drive"
+    assert read_node_description("drive-1", _element(""), "/spawned").full_name == "/spawned/drive_1"
+    assert (
+        read_node_description("drive", _element("<robotNamespace>/old</robotNamespace>"), "").full_name == "/old/drive"
+    )
 
 
 @asynccontextmanager

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from linkwright.simulation.ray_casting import GROUPS, cast
+from linkwright.simulation.ray_casting import GROUP_COUNT, cast_rays
 from tests.simulation.worlds import make_simulation
 
 
@@ -26,10 +26,10 @@ def test_rays_hit_bodies_with_offset_center_of_mass():
     simulation.refresh()
     rays = rng.normal(size=(720, 3))
     rays /= np.linalg.norm(rays, axis=1)[:, None]
-    groups, origin = np.ones(GROUPS, dtype=np.uint8), np.zeros(3)
+    groups, origin = np.ones(GROUP_COUNT, dtype=np.uint8), np.zeros(3)
     normals = np.zeros((720, 3))
-    distances, geoms = cast(
-        simulation.model, simulation.data, origin, rays, groups, apart_from=-1, reach=3.0, normals=normals
+    distances, geoms = cast_rays(
+        simulation.model, simulation.data, origin, rays, groups, excluded_body=-1, max_distance=3.0, normals=normals
     )
     hit = np.zeros(1, dtype=np.int32)
     single_distances = np.array(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
-from linkwright.simulation.server.overlaps import overlaps
+from linkwright.simulation.server.overlaps import find_overlaps
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND, box, make_simulation, model
@@ -60,7 +60,7 @@ def test_overlapping_bodies_separate_slowly(shape: str):
         gravity="0 0 0",
     )
     assert max_speed(simulation, 4.0, "one::link", "other::link") < SEPARATION_SPEED_LIMIT
-    assert not overlaps(simulation)
+    assert not find_overlaps(simulation)
 
 
 def test_body_moved_into_wall_leaves_it_slowly():
@@ -133,20 +133,20 @@ def test_overlapping_models_are_reported_deepest_first():
         free_body_model("beside", "ball", "5.9 0 0.5 0 0 0"),
         free_body_model("fine", "box", "9 0 0.495 0 0 0"),
     )
-    texts = [str(overlap.message) for overlap in overlaps(simulation)]
+    texts = [str(overlap.message) for overlap in find_overlaps(simulation)]
     assert texts == [
         "'lower' starts 0.40 m inside 'ground'",
         "'low' starts 0.30 m inside 'ground'",
         "'beside' starts 0.10 m inside 'lower'",
     ]
-    assert [str(overlap.message) for overlap in overlaps(simulation, {"beside"})] == texts[2:]
+    assert [str(overlap.message) for overlap in find_overlaps(simulation, {"beside"})] == texts[2:]
 
 
 def test_excess_overlaps_are_counted():
     simulation = make_simulation(
         GROUND, *[free_body_model(f"b{index}", "box", f"{2 * index} 0 0.2 0 0 0") for index in range(11)]
     )
-    result = overlaps(simulation)
+    result = find_overlaps(simulation)
     assert len(result) == 9
     assert str(result[-1].message) == "3 other pairs of models overlap"
 

@@ -6,7 +6,7 @@ from math import pi
 
 import pytest
 
-from linkwright.control.odometry import yaw_of
+from linkwright.control.odometry import get_yaw
 from tests.simulation.test_movers import drive
 from tests.simulation.test_plugins import running_server
 from tests.simulation.worlds import GROUND, box
@@ -49,9 +49,9 @@ def friction_element(mu: float, mu2: float) -> str:
 async def test_skid_steering_turn_rate_matches_coulomb_friction(length, surface):
     async with running_server(GROUND, skid_robot(length, surface)) as (server, graph, log):
         await drive(server, graph, yaw_rate=0.5, seconds=1.0)
-        begin = yaw_of(server.simulation.model_pose("robot"))
+        begin = get_yaw(server.simulation.model_pose("robot"))
         await drive(server, graph, yaw_rate=0.5, seconds=1.0)
-        share = (yaw_of(server.simulation.model_pose("robot")) - begin) / 0.5
+        share = (get_yaw(server.simulation.model_pose("robot")) - begin) / 0.5
         expected = TRACK_WIDTH**2 / (TRACK_WIDTH**2 + length**2)
         assert 0.8 * expected < share < 1.05 * expected
         assert not log
@@ -65,5 +65,5 @@ async def test_skid_steering_drives_straight(surface):
         await drive(server, graph, 0.5, seconds=1.0)
         end = server.simulation.model_pose("robot")
         assert end[0] - begin[0] == pytest.approx(0.5, abs=0.01)
-        assert (end[1], yaw_of(end)) == pytest.approx((0.0, 0.0), abs=1e-3)
+        assert (end[1], get_yaw(end)) == pytest.approx((0.0, 0.0), abs=1e-3)
         assert not log

@@ -6,7 +6,7 @@ from math import pi
 
 import pytest
 
-from linkwright.control.odometry import yaw_of
+from linkwright.control.odometry import get_yaw
 from linkwright.messages import get_message
 from linkwright.testing import Recording
 from tests.simulation.test_plugins import SECOND_NS, running_server
@@ -136,14 +136,14 @@ async def test_vehicle_turns_on_the_spot_with_speed_of_its_tracks(turning):
     async with running_server(GROUND, tank_model()) as (server, graph, _):
         await drive(server, graph, 0.0, turning, 1.0)
         speed = 0.5 / (2 * 0.5) * turning  # of the tracks; their corners are at a distance of 0.42 m from the center
-        assert yaw_of(server.simulation.model_pose("tank")) == pytest.approx(speed / 0.42, rel=0.1)
+        assert get_yaw(server.simulation.model_pose("tank")) == pytest.approx(speed / 0.42, rel=0.1)
         assert model_position(server, "tank") == pytest.approx((0.0, 0.0), abs=0.02)
 
 
 async def test_vehicle_drives_arc_around_center_of_rotation():
     async with running_server(GROUND, tank_model()) as (server, graph, _):
         await drive(server, graph, 0.5, 0.5, 1.0)
-        assert 0.2 < yaw_of(server.simulation.model_pose("tank")) < 1.2
+        assert 0.2 < get_yaw(server.simulation.model_pose("tank")) < 1.2
         x, y = model_position(server, "tank")
         assert x > 0.3
         assert y > 0.02

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.messages import get_message
-from linkwright.simulation.plugins.protobuf_text import TextFormatError, message_of, parse_fields
+from linkwright.simulation.plugins.protobuf_text import TextFormatError, message_from_fields, parse_fields
 from linkwright.testing import Recording
 from tests.simulation.fluids.server import running_server
 from tests.simulation.test_plugins import SECOND_NS
@@ -143,4 +143,4 @@ def test_text_with_mistake_is_rejected(text):
 
 
 def test_repeated_field_with_one_value_is_sequence():
-    assert list(message_of("actuator_msgs/msg/Actuators", parse_fields("velocity: 1")).velocity) == [1.0]
+    assert list(message_from_fields("actuator_msgs/msg/Actuators", parse_fields("velocity: 1")).velocity) == [1.0]

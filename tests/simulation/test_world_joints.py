@@ -7,7 +7,7 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from linkwright.simulation.server.unsimulated import unsimulated_elements
+from linkwright.simulation.server.unsimulated import find_unsimulated_elements
 from tests.simulation.test_loading import load_world, step_simulation
 from tests.simulation.test_server import simulator
 from tests.simulation.worlds import box, make_simulation
@@ -127,7 +127,7 @@ def test_world_joints_support_mimic_and_gearbox():
 def test_sensor_in_world_joint_is_reported_as_unsimulated():
     sensor = '<sensor name="force" type="force_torque"/>'
     simulation = make_simulation(box("a", "0 0 9 0 0 0"), joint("fixed", "world", "a", sensor))
-    assert unsimulated_elements(simulation.world) == ["<sensor> in <joint> of <world>"]
+    assert find_unsimulated_elements(simulation.world) == ["<sensor> in <joint> of <world>"]
 
 
 async def test_attached_model_falls_when_its_parent_is_deleted(tmp_path):

@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
         LinkwrightError: CLI332, no simulation is running; CLI333, the simulation rejects the model.
     """
     from linkwright.packages import PackageFinder
-    from linkwright.simulation.nodes.spawner import SPAWN_SERVICE, Entity, spawn_request
+    from linkwright.simulation.nodes.spawner import SPAWN_SERVICE, Entity, create_spawn_request
 
     path = Path(arguments.file).absolute()
     model = load_model(path, parse_assignments(arguments.values), PackageFinder(start=[path.parent, Path.cwd()]))
@@ -59,7 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         try:
-            response = await call(session, SPAWN_SERVICE, "/spawn_entity", spawn_request(entity, model.text))
+            response = await call(session, SPAWN_SERVICE, "/spawn_entity", create_spawn_request(entity, model.text))
         except NoResponseError as error:
             message = phrase("there is no running simulation to add '{name}' to", name=entity.name)
             hint = phrase("start a simulation with the same ROS_DOMAIN_ID, for example with `linkwright sim empty`")

@@ -8,7 +8,7 @@ from typing import Any, Protocol
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.scene.scene import Scene
 
-_SERVO_SPEED = 2.0
+_DEFAULT_SERVO_SPEED = 2.0
 """The speed of a servo if neither the caller nor the joint limits it, in rad/s or m/s."""
 
 
@@ -54,18 +54,18 @@ class Motor:
         self._simulation = simulation
         self._name = name
         self._revision = -1
-        self._number = -1
+        self._cached_index = -1
         self._released_gain = 0.0
 
     @property
     def target(self) -> float:
         """The target velocity, in rad/s, or in m/s for a prismatic joint."""
-        index = self._actuator_index()
+        index = self._find_actuator()
         return float(self._simulation.data.ctrl[index])
 
     @target.setter
     def target(self, velocity: float) -> None:
-        index = self._actuator_index()
+        index = self._find_actuator()
         self._simulation.data.ctrl[index] = velocity
         if self._released_gain:
             self._set_gain(index, self._released_gain)
@@ -76,24 +76,24 @@ class Motor:
 
         Rebuilding the model switches the motor on again, so call this after each rebuild.
         """
-        number = self._actuator_index()
-        gain = float(self._simulation.model.actuator_gainprm[number, 0])
+        index = self._find_actuator()
+        gain = float(self._simulation.model.actuator_gainprm[index, 0])
         if gain:
             self._released_gain = gain
-            self._set_gain(number, 0.0)
+            self._set_gain(index, 0.0)
 
     def _set_gain(self, index: int, gain: float) -> None:
         model = self._simulation.model
         model.actuator_gainprm[index, 0], model.actuator_biasprm[index, 2] = gain, -gain
 
-    def _actuator_index(self) -> int:
+    def _find_actuator(self) -> int:
         """Return the index of the actuator in MuJoCo's current model."""
         simulation = self._simulation
         simulation.recompile_if_changed()
         if self._revision != simulation.revision:
-            self._number = int(simulation.model.actuator(self._name).id)
+            self._cached_index = int(simulation.model.actuator(self._name).id)
             self._revision = simulation.revision
-        return self._number
+        return self._cached_index
 
 
 class Servo:
@@ -114,7 +114,7 @@ class Servo:
         self._joint = joint
         self._name = name
         speed = min(speed, simulation.scene.speed_limit(joint))
-        self._speed = speed if isfinite(speed) else _SERVO_SPEED
+        self._speed = speed if isfinite(speed) else _DEFAULT_SERVO_SPEED
         self._position = 0.0
 
     @property

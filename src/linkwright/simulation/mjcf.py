@@ -11,7 +11,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, phrase
 from linkwright.packages import PackageFinder
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.worlds import Sdf, World
-from linkwright.simulation.rendering.ray_renderer import mean_color
+from linkwright.simulation.rendering.ray_renderer import compute_mean_color
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 
@@ -51,7 +51,7 @@ def _replace_textures(spec: Any, model: Any) -> None:
             int(number) for number in np.atleast_1d(model.mat_texid[model.material(material.name).id])
         } - {-1} or {-1}
         if texture_index >= 0:
-            mean_colors[material.name] = np.array([*mean_color(model, texture_index), 1.0])
+            mean_colors[material.name] = np.array([*compute_mean_color(model, texture_index), 1.0])
             material.rgba = material.rgba * mean_colors[material.name]
             material.textures = [""] * len(material.textures)
     for geom in spec.geoms:

@@ -17,7 +17,7 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.scene.scene import SERVO
+from linkwright.simulation.scene.scene import SERVO_SUFFIX
 
 _MAX_SEPARATION_SPEED = 0.3
 """The maximum speed in m/s at which overlapping bodies separate. At this speed, a body rises by 5 mm."""
@@ -40,7 +40,7 @@ class Recovery:
     def __init__(self, model: Any, data: Any) -> None:
         self._mujoco, self._model, self._data = load_mujoco(), model, data
         self._remaining_steps = 0
-        servo_equalities = [index for index in range(model.neq) if SERVO in model.equality(index).name]
+        servo_equalities = [index for index in range(model.neq) if SERVO_SUFFIX in model.equality(index).name]
         self._is_limited = np.ones(model.neq, dtype=bool)
         self._is_limited[servo_equalities] = False
         self.expect()
@@ -77,14 +77,14 @@ class Recovery:
         max_speeds[: np.count_nonzero(is_active)] = _MAX_SEPARATION_SPEED
         margins = data.efc_margin[rows]
         depths = data.efc_pos[rows] - margins
-        max_depths = self._maximum_depths(
+        max_depths = self._compute_max_depths(
             np.concatenate(solrefs), -np.copysign(1.0, depths) * data.efc_vel[rows], max_speeds
         )
         is_too_deep = np.abs(depths) > max_depths
         data.efc_pos[rows[is_too_deep]] = (margins + np.copysign(max_depths, depths))[is_too_deep]
         return bool(is_too_deep.any())
 
-    def _maximum_depths(self, solref: Array, speeds: Array, max_speeds: Array) -> Array:
+    def _compute_max_depths(self, solref: Array, speeds: Array, max_speeds: Array) -> Array:
         """Return the depths in m or rad at which springs reach their maximum speeds after a step.
 
         Args:

@@ -14,12 +14,12 @@ class Task:
     Attributes:
         period: the time between two calls, in simulated nanoseconds.
         function: the function to call, without arguments.
-        cancelled: whether the task was cancelled, so that the function is no longer called.
+        is_cancelled: whether the task was cancelled, so that the function is no longer called.
     """
 
     period: int
     function: Callable[[], None]
-    cancelled: bool = False
+    is_cancelled: bool = False
 
 
 class Schedule:
@@ -35,7 +35,7 @@ class Schedule:
     @property
     def next_time(self) -> int | None:
         """The time of the next call, in nanoseconds, or None if there are no tasks."""
-        while self._heap and self._heap[0][2].cancelled:
+        while self._heap and self._heap[0][2].is_cancelled:
             heappop(self._heap)
         return self._heap[0][0] if self._heap else None
 
@@ -50,7 +50,7 @@ class Schedule:
         """Call each due task once, even if several of its periods have passed."""
         while self._heap and self._heap[0][0] <= now:
             time, number, task = self._heap[0]
-            if task.cancelled:
+            if task.is_cancelled:
                 heappop(self._heap)
                 continue
             next_time = time + task.period
@@ -61,5 +61,5 @@ class Schedule:
 
     def restart(self) -> None:
         """Reschedule all tasks, because simulated time restarts at 0."""
-        self._heap = [(task.period, turn, task) for _, turn, task in self._heap]
+        self._heap = [(task.period, number, task) for _, number, task in self._heap]
         heapify(self._heap)

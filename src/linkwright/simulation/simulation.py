@@ -20,13 +20,13 @@ from linkwright.simulation.actuators import Motor, Servo
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.restitution import Stepper
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
-from linkwright.simulation.scene.compiling import compile_scene, count_links, rejected_models, step_in_nanoseconds
+from linkwright.simulation.scene.compiling import compile_scene, count_links, find_rejected_models, step_to_nanoseconds
 from linkwright.simulation.scene.figures import move_actors, set_kinematic_poses
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.scene import Scene
 from linkwright.simulation.schedule import Schedule, Task
 from linkwright.simulation.sleep import Sleep
-from linkwright.simulation.solving import Solving
+from linkwright.simulation.solver_selection import SolverSelector
 
 _MAX_VALUE = 1e10
 """A position or velocity of at least this value, in m, rad, m/s or rad/s, counts as unstable, as in MuJoCo."""
@@ -67,24 +67,24 @@ class Simulation:
         count_links(self.world.models)
         self.wind = self.world.wind
         self.finder = finder
-        self._given_step = step
+        self._requested_step = step
         self._meshes = MeshLibrary(finder)
         self.scene = Scene(self.world, self._meshes, step)
         self.revision = 0
         try:
             compiled = compile_scene(self.scene)
         except LinkwrightError:
-            rejected = rejected_models(self.world, finder)
+            rejected = find_rejected_models(self.world, finder)
             if not rejected:
                 raise
             self._meshes = MeshLibrary(finder)
             self.scene = Scene(self.world, self._meshes, step, rejected)
             compiled = compile_scene(self.scene)
-        self.step = step_in_nanoseconds(self.scene.step, self.world)
+        self.step = step_to_nanoseconds(self.scene.step, self.world)
         self.time = 0
         self.schedule = Schedule()
         self._sleep = Sleep(self.schedule)
-        self._solving = Solving(self.schedule, self._sleep)
+        self._solving = SolverSelector(self.schedule, self._sleep)
         self._bodies: dict[str, int] = {}
         self._joints: dict[str, tuple[int, int]] = {}
         self._pushes: dict[str, dict[Hashable, Array]] = {}
@@ -138,14 +138,14 @@ class Simulation:
         old_world, self.world, self.finder = self.world, with_saved_state(world), finder
         self.wind = self.world.wind
         self._meshes.set_finder(finder)
-        self.scene.set_physics(self.world, self._given_step or self.scene.step_of(self.world))
+        self.scene.set_physics(self.world, self._requested_step or self.scene.choose_step(self.world))
         self.step = round(self.scene.step * NANOSECONDS_PER_SECOND)
-        if _compiled_properties(old_world) != _compiled_properties(self.world):
+        if _get_compiled_properties(old_world) != _get_compiled_properties(self.world):
             self.mark_changed()
 
     def create_separate_simulation(self, world: World, finder: ResourceFinder) -> Simulation:
         """Return a separate simulation of another world, with the settings of this one."""
-        return Simulation(world, finder, step=self._given_step)
+        return Simulation(world, finder, step=self._requested_step)
 
     def set_initial_poses(self, poses: Mapping[str, Transform]) -> None:
         """Set the initial poses of models, and move free models there.
@@ -348,7 +348,7 @@ class Simulation:
         return all(bool((np.abs(state) < _MAX_VALUE).all()) for state in self._state)
 
     def _unstable_error(self, count: int, positions: Array, velocities: Array) -> UnstableError:
-        """Return the error for an unstable simulation, and restore the last step before the failure.
+        """Restore the last step before a failure, and return the error.
 
         The steps since the last good state are simulated again to find this step; the error names the fastest body.
         """
@@ -362,8 +362,8 @@ class Simulation:
             self.time += self.step
         has_invalid_force = ~np.isfinite(data.xfrc_applied).all(axis=1)
         failed = np.nan_to_num(np.abs(data.qvel), nan=np.inf)
-        degree = int(np.argmax(np.where(failed == failed.max(), np.abs(good_state[1]), -1.0)))
-        body = int(np.argmax(has_invalid_force)) if has_invalid_force.any() else int(model.dof_bodyid[degree])
+        dof = int(np.argmax(np.where(failed == failed.max(), np.abs(good_state[1]), -1.0)))
+        body = int(np.argmax(has_invalid_force)) if has_invalid_force.any() else int(model.dof_bodyid[dof])
         mujoco.mj_resetData(model, data)
         data.qpos[:], data.qvel[:] = good_state
         values = {"time": f"{self.seconds:.3f}", "link": model.body(body).name}
@@ -467,11 +467,11 @@ class Simulation:
             message = phrase("'{name}' is fixed to the world", name=name)
             hint = phrase("delete it, and spawn it again at the intended pose")
             if scene_model.attached_to:
-                other = min(scene_model.attached_to)
+                other_model = min(scene_model.attached_to)
                 message = phrase(
-                    "a joint of the world connects '{name}' to '{other_model}'", name=name, other_model=other
+                    "a joint of the world connects '{name}' to '{other_model}'", name=name, other_model=other_model
                 )
-                hint = phrase("move '{other_model}' instead", other_model=other)
+                hint = phrase("move '{other_model}' instead", other_model=other_model)
             raise LinkwrightError(Diagnostic("SIM103", message, hint=hint))
         root, offset = self._first_link(name)
         joint = self.data.joint(f"{root}#free")
@@ -530,9 +530,9 @@ class Simulation:
         within a step.
         """
         self.refresh()
-        self.data.joint(name).qfrc_applied[0] = self._clipped_force(name, force)
+        self.data.joint(name).qfrc_applied[0] = self._clip_force(name, force)
 
-    def _clipped_force(self, name: str, force: float) -> float:
+    def _clip_force(self, name: str, force: float) -> float:
         """Return a joint force or torque clipped to the joint's limits, as in gz's engine DART.
 
         Limits of 0 or less are ignored.
@@ -589,6 +589,6 @@ class Simulation:
         self._sleep.wake()
 
 
-def _compiled_properties(world: World) -> tuple[object, ...]:
-    """Return the properties of a world for which a change requires MuJoCo's model to be rebuilt."""
+def _get_compiled_properties(world: World) -> tuple[object, ...]:
+    """Return the properties of a world whose change requires rebuilding MuJoCo's model."""
     return gravity_of(world), physics_of(world).max_step_size, world.scene, world.lights

@@ -16,7 +16,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.schedule import Schedule, Task
 
-_CHECK_PERIOD = 50_000_000
+_CHECK_PERIOD_NS = 50_000_000
 """The time between two checks, in nanoseconds."""
 _MIN_CALM_CHECKS = 5
 """The number of successive checks that must find a body at rest."""
@@ -52,11 +52,11 @@ class Sleep:
         self._model, self._data = model, data
         policies = self._mujoco.mjtSleepPolicy
         self._may_sleep: Any = model.tree_sleep_policy == policies.mjSLEEP_AUTO_ALLOWED
-        self._seconds = step * max(1, round(_CHECK_PERIOD / step)) * 1e-9
+        self._seconds = step * max(1, round(_CHECK_PERIOD_NS / step)) * 1e-9
         self._calm_checks = np.zeros(model.ntree, dtype=np.int64)
         self._last_positions: Array = data.qpos.copy()
         if self._task is not None:
-            self._task.cancelled, self._task = True, None
+            self._task.is_cancelled, self._task = True, None
         if self._may_sleep.any():
             self._task = self._schedule.add(round(self._seconds * 1e9), self._update_sleep, now)
             lengths: Array = np.array(model.dof_length)
@@ -97,8 +97,8 @@ class Sleep:
 
     def _set_policies(self) -> None:
         policies = self._mujoco.mjtSleepPolicy
-        allowed = self._may_sleep & (self._calm_checks >= _MIN_CALM_CHECKS)
-        self._model.tree_sleep_policy[:] = np.where(allowed, policies.mjSLEEP_AUTO_ALLOWED, policies.mjSLEEP_NEVER)
+        may_sleep = self._may_sleep & (self._calm_checks >= _MIN_CALM_CHECKS)
+        self._model.tree_sleep_policy[:] = np.where(may_sleep, policies.mjSLEEP_AUTO_ALLOWED, policies.mjSLEEP_NEVER)
 
     def _update_sleep(self) -> None:
         model, data = self._model, self._data
@@ -111,11 +111,13 @@ class Sleep:
         np.maximum.at(contact_speed, self._tree_indices, np.abs(velocity) * self._lengths)
         free_speed = np.zeros(model.ntree)
         np.maximum.at(free_speed, self._tree_indices, np.maximum(np.abs(velocity), np.abs(data.qvel)))
-        is_at_rest = np.where(self._are_touching(), contact_speed < _MAX_CONTACT_SPEED, free_speed < _MAX_FREE_SPEED)
+        is_at_rest = np.where(
+            self._find_touching_trees(), contact_speed < _MAX_CONTACT_SPEED, free_speed < _MAX_FREE_SPEED
+        )
         self._calm_checks = np.where(is_at_rest, self._calm_checks + 1, 0)
         self._set_policies()
 
-    def _are_touching(self) -> Any:
+    def _find_touching_trees(self) -> Any:
         """Return whether each tree has a contact, shape (trees,)."""
         model, contacts = self._model, self._data.contact
         geoms = contacts.geom[contacts.efc_address >= 0]

@@ -496,9 +496,11 @@ async def test_state_is_published_each_update_or_at_set_rate(bench):
 
 
 async def test_errors_of_held_joints_are_computed_only_for_subscribers(bench, monkeypatch):
-    compare, comparisons = JointTrajectoryController._compare, []
+    compare, comparisons = JointTrajectoryController._compute_error, []
     monkeypatch.setattr(
-        JointTrajectoryController, "_compare", lambda self, target: comparisons.append(target) or compare(self, target)
+        JointTrajectoryController,
+        "_compute_error",
+        lambda self, target: comparisons.append(target) or compare(self, target),
     )
     arm = Arm(bench)
     await arm.run(0.1)

@@ -31,8 +31,8 @@ def test_velocity_is_mean_of_last_measurements():
 
 def test_commanded_velocity_is_not_smoothed():
     odometer = Odometer(4)
-    odometer.add_commanded((1.0, 0.0, 0.0), 0.5)
-    odometer.add_commanded((0.0, 0.0, 0.0), 0.5)
+    odometer.integrate_command((1.0, 0.0, 0.0), 0.5)
+    odometer.integrate_command((0.0, 0.0, 0.0), 0.5)
     assert (odometer.pose.x, odometer.velocity) == (0.5, (0.0, 0.0, 0.0))
 
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.control.motion.pid import BACK_CALCULATION, CLAMPED, CONDITIONAL, STRATEGIES, Pid, PidGains
-from linkwright.control.motion.tolerances import StateTolerance, Tolerances, effective_tolerance
+from linkwright.control.motion.tolerances import StateTolerance, Tolerances, resolve_tolerance
 
 
 def test_command_is_sum_of_p_i_and_d_terms():
@@ -71,14 +71,14 @@ def test_tolerances_bound_errors_unless_zero():
     tolerance = StateTolerance(0.1, 0.0, 1.0)
     assert tolerance.is_within(-0.1, 99.0, 1.0)
     assert not tolerance.is_within(0.11, 0.0, 0.0)
-    assert list(tolerance.violations(-0.2, 9.0, 2.0)) == [("Position", -0.2, 0.1), ("Acceleration", 2.0, 1.0)]
+    assert list(tolerance.find_violations(-0.2, 9.0, 2.0)) == [("Position", -0.2, 0.1), ("Acceleration", 2.0, 1.0)]
 
 
 def test_goal_tolerances_replace_erase_or_keep_defaults():
-    assert [effective_tolerance(0.5, value) for value in (0.2, 0.0, -1.0)] == [0.2, 0.5, 0.0]
+    assert [resolve_tolerance(0.5, value) for value in (0.2, 0.0, -1.0)] == [0.2, 0.5, 0.0]
     with pytest.raises(ValueError, match="-2"):
-        effective_tolerance(0.5, -2.0)
-    assert StateTolerance(0.1, 0.2, 0.3).overridden(0.0, -1.0, 1.0) == StateTolerance(0.1, 0.0, 1.0)
+        resolve_tolerance(0.5, -2.0)
+    assert StateTolerance(0.1, 0.2, 0.3).override(0.0, -1.0, 1.0) == StateTolerance(0.1, 0.0, 1.0)
     tolerances = Tolerances((StateTolerance(), StateTolerance()), (StateTolerance(), StateTolerance()))
     assert tolerances.with_path(1, StateTolerance(1.0)).path == (StateTolerance(), StateTolerance(1.0))
     assert tolerances.with_goal(0, StateTolerance(2.0)).goal == (StateTolerance(2.0), StateTolerance())

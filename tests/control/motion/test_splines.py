@@ -47,7 +47,7 @@ def solve_polynomial(start: list[float], end: list[float], duration: float) -> n
 def test_segment_of_positions_is_linear(p0: float, p1: float, duration: float):
     segment = Segment(MotionState([p0]), MotionState([p1]), duration)
     for fraction in (0.0, 0.3, 1.0):
-        state = segment.at(fraction * duration)
+        state = segment.sample(fraction * duration)
         assert state.positions == pytest.approx([p0 + fraction * (p1 - p0)], abs=1e-9)
         assert state.velocities == pytest.approx([(p1 - p0) / duration])
         assert state.accelerations == [0.0]
@@ -61,16 +61,16 @@ def test_segment_is_polynomial_through_both_points(p0, v0, a0, p1, v1, a1, durat
     scale = 1.0 + max(map(abs, (p0, p1, v0, v1, a0, a1))) * max(1.0, duration, duration**-2)
     for fraction in (0.0, 0.1, 0.5, 0.9, 1.0):
         time = fraction * duration
-        state = segment.at(time)
+        state = segment.sample(time)
         assert state.positions[0] == pytest.approx(float(expected(time)), abs=1e-9 * scale)
         assert state.velocities[0] == pytest.approx(float(expected.deriv()(time)), abs=1e-8 * scale)
         assert state.accelerations[0] == pytest.approx(float(expected.deriv(2)(time)), abs=1e-7 * scale)
 
 
 def test_segment_uses_only_values_given_at_both_points():
-    state = Segment(MotionState([0.0], [1.0], [1.0]), MotionState([1.0]), 2.0).at(1.0)
+    state = Segment(MotionState([0.0], [1.0], [1.0]), MotionState([1.0]), 2.0).sample(1.0)
     assert (state.positions, state.velocities) == ([0.5], [0.5])
-    cubic = Segment(MotionState([0.0], [0.0], [9.0]), MotionState([1.0], [0.0]), 2.0).at(1.0)
+    cubic = Segment(MotionState([0.0], [0.0], [9.0]), MotionState([1.0], [0.0]), 2.0).sample(1.0)
     assert cubic.positions == pytest.approx([0.5])
     assert cubic.velocities == pytest.approx([0.75])
 

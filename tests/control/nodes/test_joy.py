@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from linkwright.control.nodes.teleop.joy import JoyLinuxNode, JoyNode, deflection
+from linkwright.control.nodes.teleop.joy import JoyLinuxNode, JoyNode, compute_deflection
 from linkwright.control.nodes.teleop.twist_joy import TeleopTwistJoy
 from linkwright.diagnostics import LinkwrightError
 from linkwright.messages import get_message
@@ -45,7 +45,7 @@ class Joystick:
 
 @pytest.fixture
 def joystick(tmp_path, monkeypatch):
-    monkeypatch.setattr("linkwright.control.nodes.teleop.joystick_device.FOLDER", tmp_path)
+    monkeypatch.setattr("linkwright.control.nodes.teleop.joystick_device.DEVICE_FOLDER", tmp_path)
     joystick = Joystick(tmp_path / "js0")
     yield joystick
     if joystick.file is not None:
@@ -93,7 +93,7 @@ async def test_axes_and_buttons_match_ros(joystick, harness, joy_messages, start
 
 
 def test_deadzone_is_continuous():
-    assert [round(deflection(value, 0.1), 4) for value in (0, 3276, -3277, -32767, 32767, -32768)] == [
+    assert [round(compute_deflection(value, 0.1), 4) for value in (0, 3276, -3277, -32767, 32767, -32768)] == [
         0,
         0,
         0,
@@ -101,7 +101,7 @@ def test_deadzone_is_continuous():
         -1,
         1,
     ]
-    assert deflection(-18022, 0.1) == pytest.approx(0.5, abs=1e-4)
+    assert compute_deflection(-18022, 0.1) == pytest.approx(0.5, abs=1e-4)
 
 
 async def test_unchanged_state_is_republished_at_autorepeat_rate(joystick, harness, joy_messages, start_node):

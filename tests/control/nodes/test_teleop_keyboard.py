@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import pytest
 
 from linkwright.control.nodes.teleop.keyboard import TeleopTwistKeyboard
-from linkwright.control.nodes.teleop.keys import keys_in
+from linkwright.control.nodes.teleop.keys import split_keys
 from linkwright.diagnostics import LinkwrightError
 from linkwright.nodes import NodeOptions
 from tests.waiting import TIMEOUT_S, eventually
@@ -111,7 +111,7 @@ async def test_arrow_keys_stop_robot(start_driver):
     driver = start_driver()
     await driver.type("i", 1)
     assert await driver.type("\x1bOC", 2) == (0, 0, 0, 0)
-    assert list(keys_in("\x1b[1;5Ai\x1b")) == ["\x1b[1;5A", "i", "\x1b"]
+    assert list(split_keys("\x1b[1;5Ai\x1b")) == ["\x1b[1;5A", "i", "\x1b"]
 
 
 async def test_message_type_matches_subscriber(start_driver, harness):

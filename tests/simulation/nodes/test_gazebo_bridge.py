@@ -21,7 +21,7 @@ from linkwright.simulation.nodes.bridge import (
     parse_bridge_argument,
     read_bridge_file,
 )
-from linkwright.simulation.plugins.bridged import hidden_gz_topic
+from linkwright.simulation.plugins.bridged_topics import hidden_gz_topic
 from tests.places import GAZEBO_PACKAGE
 from tests.remote_publishers import RemotePublisher, RemoteTransport
 

@@ -17,7 +17,7 @@ NO_PACKAGES = PackageFinder(start=Path("/nonexistent"), environment={})
 
 
 def rename_world(path: Path, name: str = "机器人 é") -> EditedWorld:
-    world = EditedWorld.of_file(path, NO_PACKAGES)
+    world = EditedWorld.from_file(path, NO_PACKAGES)
     world.edit(lambda text: change(text, [Change("box", new_name=name)]))
     return world
 
@@ -44,13 +44,13 @@ def test_save_keeps_encoding_bom_and_line_ends(tmp_path, bom, encoding, declared
     saved_text = data.removeprefix(bom).decode(encoding)
     written_name = "&#26426;&#22120;&#20154; é" if encoding == "latin-1" else "机器人 é"
     assert saved_text == text.replace("'box'", f"'{written_name}'")
-    assert "机器人 é" in EditedWorld.of_file(path, NO_PACKAGES).world.entities
+    assert "机器人 é" in EditedWorld.from_file(path, NO_PACKAGES).world.entities
 
 
 def test_change_without_effect_adds_no_undo_step(tmp_path):
     path = tmp_path / "w.world"
     path.write_text(PLAIN)
-    world = EditedWorld.of_file(path, NO_PACKAGES)
+    world = EditedWorld.from_file(path, NO_PACKAGES)
     world.edit(lambda text: change(text, [Change("box", pose=(2, 0, 0.25, 0, 0, 0), size=(0.5, 0.5, 0.5))]))
     assert (world.can_undo, world.is_unsaved) == (False, False)
     world.undo()
@@ -101,7 +101,7 @@ def test_xacro_world_is_saved_expanded_to_new_file(tmp_path):
     world.save("made.world")
     assert world.file == tmp_path / "made.world"
     assert "${" in path.read_text()
-    assert EditedWorld.of_file(world.file, NO_PACKAGES).world.entities["机器人 é"].world_pose[0] == 2
+    assert EditedWorld.from_file(world.file, NO_PACKAGES).world.entities["机器人 é"].world_pose[0] == 2
 
 
 def test_shipped_worlds_are_not_overwritten(tmp_path):
@@ -111,7 +111,7 @@ def test_shipped_worlds_are_not_overwritten(tmp_path):
     assert EditedWorld(PLAIN, shipped_path, NO_PACKAGES).file is None
     path = model_file(Path(linkwright.__file__).parent / "sdf" / "models" / "sun")
     with pytest.raises(EditError, match="there is no world in"):
-        EditedWorld.of_file(path, NO_PACKAGES)
+        EditedWorld.from_file(path, NO_PACKAGES)
 
 
 def test_unsaved_changes_are_stored(tmp_path):

@@ -14,7 +14,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.cameras import Camera, Clip, Distortion, ImageFormat, Intrinsics
 from linkwright.sdf.optics import Optics, distort, optics_of, undistorted
 from linkwright.simulation.rendering import opengl
-from linkwright.simulation.rendering.choice import METHODS, make_renderer
+from linkwright.simulation.rendering.factory import METHODS, make_renderer
 from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.simulation import Simulation
 from tests.simulation.sensors.rooms import block

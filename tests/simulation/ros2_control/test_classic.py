@@ -13,7 +13,7 @@ from linkwright.control.motion.pid import CLAMPED, NONE
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.graph import Graph, LogLevel
 from linkwright.sdf.from_urdf import model_from_robot
-from linkwright.simulation.plugins.ros2_control.classic_gains import classic_gains, gains_of_namespace
+from linkwright.simulation.plugins.ros2_control.classic_gains import parse_gains, read_gains
 from linkwright.testing import Recording
 from tests.simulation.ros2_control.test_plugin import ControlledRobot
 from tests.simulation.test_plugins import running_server
@@ -188,7 +188,7 @@ async def test_integral_of_pid_acts_within_its_clamp(file, gains, is_reached):
 
 @pytest.mark.parametrize(("value", "strategy"), [(True, CLAMPED), (False, NONE)])
 def test_antiwindup_selects_the_strategy(value, strategy):
-    gains = classic_gains("swing", {"swing.p": 1.0, "swing.antiwindup": value}, Graph().create_node("a").get_logger())
+    gains = parse_gains("swing", {"swing.p": 1.0, "swing.antiwindup": value}, Graph().create_node("a").get_logger())
     assert gains is not None
     assert gains.antiwindup == strategy
 
@@ -329,4 +329,4 @@ async def test_documented_parameters_move_the_joint(page, tmp_path):
         publisher.publish(publisher.msg_type(data=-0.3))
         await world.advance(3.0)
         assert world.server.simulation.joint_state("arm::elbow")[0] == pytest.approx(-0.3, abs=0.01)
-        assert gains_of_namespace([str(path)], "/") == {"wrist.p": 50.0, "wrist.d": 5.0}
+        assert read_gains([str(path)], "/") == {"wrist.p": 50.0, "wrist.d": 5.0}

@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-from linkwright.control.odometry import yaw_of
+from linkwright.control.odometry import get_yaw
 from linkwright.kinematics.planar import PlanarPose
 from tests.control.controllers.driving import stamped_twist
 from tests.simulation.ros2_control.test_plugin import PLUGINS, ControlledRobot
@@ -147,7 +147,7 @@ class DrivenRobot(ControlledRobot):
     def truth(self) -> PlanarPose:
         """Return the robot's pose in the world."""
         pose = self.server.simulation.model_pose(self.robot.model)
-        return PlanarPose(pose[0], pose[1], yaw_of(pose))
+        return PlanarPose(pose[0], pose[1], get_yaw(pose))
 
     @property
     def odometry(self) -> PlanarPose:
@@ -157,7 +157,7 @@ class DrivenRobot(ControlledRobot):
         return PlanarPose(
             pose.position.x,
             pose.position.y,
-            yaw_of((0.0, 0.0, 0.0, orientation.x, orientation.y, orientation.z, orientation.w)),
+            get_yaw((0.0, 0.0, 0.0, orientation.x, orientation.y, orientation.z, orientation.w)),
         )
 
 

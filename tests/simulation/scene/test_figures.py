@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from linkwright.simulation.ray_casting import GROUPS, cast
+from linkwright.simulation.ray_casting import GROUP_COUNT, cast_rays
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
-from linkwright.simulation.scene.figures import skeleton_origin
-from linkwright.simulation.server.unsimulated import unsimulated_elements
+from linkwright.simulation.scene.figures import read_skeleton_origin
+from linkwright.simulation.server.unsimulated import find_unsimulated_elements
 from tests.simulation.worlds import GROUND, box, make_simulation
 
 BALL = "<geometry><sphere><radius>0.5</radius></sphere></geometry>"
@@ -57,10 +57,12 @@ def test_rays_against_visuals_hit_actor():
     simulation = make_simulation(GROUND, ACTOR)
     simulation.advance(SECOND_NS)
     simulation.refresh()
-    groups = np.zeros(GROUPS, dtype=np.uint8)
+    groups = np.zeros(GROUP_COUNT, dtype=np.uint8)
     groups[VISUAL_GROUP] = 1
     origin, ray = np.array([0.0, 0.0, 1.0]), np.array([[1.0, 0.0, 0.0]])
-    distances, _ = cast(simulation.model, simulation.data, origin, ray, groups, apart_from=-1, reach=10.0)
+    distances, _ = cast_rays(
+        simulation.model, simulation.data, origin, ray, groups, excluded_body=-1, max_distance=10.0
+    )
     assert distances[0] == pytest.approx(3.5)
 
 
@@ -106,7 +108,7 @@ DAE = """<?xml version="1.0"?>
 def test_skin_is_placed_at_skeleton_origin(tmp_path: Path, matrix, begins):
     file = tmp_path / "walk.dae"
     file.write_text(DAE.format(matrix=matrix))
-    assert skeleton_origin(file) == pytest.approx(begins)
+    assert read_skeleton_origin(file) == pytest.approx(begins)
 
 
 def test_missing_skin_is_replaced_by_plain_figure():
@@ -124,5 +126,5 @@ def test_unsimulated_elements_are_reported_once():
         '<model name="m"><static>true</static><link name="l"><projector name="p"/><projector name="q"/></link></model>'
     )
     walker = ACTOR.replace("<script>", '<animation name="walk"/><plugin name="p" filename="libwalk.so"/><script>')
-    element_names = unsimulated_elements(make_simulation(GROUND, projectors, walker).world)
+    element_names = find_unsimulated_elements(make_simulation(GROUND, projectors, walker).world)
     assert element_names == ["<animation> in <actor>", "<projector>", "libwalk.so in <actor>"]

@@ -139,18 +139,18 @@ def test_force_torque_sensor_measures_suspended_weight(direction: str, sign: int
 
 def test_geodetic_positions_match_wgs_84():
     globe = Globe(SphericalCoordinates(latitude_deg=0.0, longitude_deg=0.0))
-    assert globe.geodetic(np.zeros(3)) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+    assert globe.to_geodetic(np.zeros(3)) == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
     # At the equator, a degree is 110 574.3 m to the north and 111 319.5 m to the east. Over 10 m the arc is straight.
-    assert globe.geodetic(np.array([0.0, 10.0, 5.0])) == pytest.approx((10 / 110574.276, 0.0, 5.0), abs=1e-5)
-    assert globe.geodetic(np.array([10.0, 0.0, 0.0])) == pytest.approx((0.0, 10 / 111319.491, 0.0), abs=1e-5)
+    assert globe.to_geodetic(np.array([0.0, 10.0, 5.0])) == pytest.approx((10 / 110574.276, 0.0, 5.0), abs=1e-5)
+    assert globe.to_geodetic(np.array([10.0, 0.0, 0.0])) == pytest.approx((0.0, 10 / 111319.491, 0.0), abs=1e-5)
     high = Globe(SphericalCoordinates(latitude_deg=47.5, longitude_deg=8.5, elevation=430.0))
-    assert high.geodetic(np.zeros(3)) == pytest.approx((47.5, 8.5, 430.0), abs=1e-8)
+    assert high.to_geodetic(np.zeros(3)) == pytest.approx((47.5, 8.5, 430.0), abs=1e-8)
 
 
 def test_heading_rotates_world_on_earth():
     globe = Globe(SphericalCoordinates(latitude_deg=10.0, heading_deg=90.0))
-    assert globe.east_north_up(np.array([1.0, 0.0, 0.0])) == pytest.approx([0, 1, 0])
-    latitude, longitude, _ = globe.geodetic(np.array([100.0, 0.0, 0.0]))
+    assert globe.to_east_north_up(np.array([1.0, 0.0, 0.0])) == pytest.approx([0, 1, 0])
+    latitude, longitude, _ = globe.to_geodetic(np.array([100.0, 0.0, 0.0]))
     assert latitude > 10.0
     assert longitude == pytest.approx(0.0)
 

@@ -7,8 +7,8 @@ import pytest
 
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.rendering.choice import make_renderer
-from linkwright.simulation.rendering.renderer import Channels, axes_of
+from linkwright.simulation.rendering.factory import make_renderer
+from linkwright.simulation.rendering.renderer import Channels, compute_image_axes
 from linkwright.vision.datasets.arrangement import Arrangement, arrange
 from linkwright.vision.datasets.classes import find_objects, make_default_rules
 from linkwright.vision.datasets.labels import encode_run_lengths, find_bounding_box, label_image
@@ -67,7 +67,7 @@ def test_full_boxes_of_balls_match_projected_outlines(world):
     for arrangement in take_shots(world, 12):
         labels, _ = label_arrangement(world, arrangement)
         label_by_box = {label.full_box: label for label in labels}
-        axes = axes_of(arrangement.pose)
+        axes = compute_image_axes(arrangement.pose)
         for movable in (placed_object for placed_object in arrangement.placed_objects if placed_object.label == 0):
             center = (world.simulation.data.geom_xpos[movable.geoms[0]] - np.array(arrangement.pose[:3])) @ axes
             if center[2] < 0.5:

@@ -10,7 +10,7 @@ import pytest
 
 from linkwright.geometry.single import quaternion_from_rpy
 from linkwright.sdf.optics import Optics
-from linkwright.simulation.rendering.choice import make_renderer
+from linkwright.simulation.rendering.factory import make_renderer
 from linkwright.simulation.rendering.renderer import Channels
 from linkwright.simulation.server.worlds import load_world
 from linkwright.simulation.simulation import Simulation

@@ -31,10 +31,10 @@ class AckermannSteeringController(SteeringController[Parameters]):
     """A controller of a car with two driven rear wheels and two steered front wheels."""
 
     PARAMETERS = Parameters
-    KIND = "Ackermann"
-    JOINTS = (2, 2)
+    VEHICLE = "Ackermann"
+    JOINT_COUNTS = (2, 2)
 
-    def drive(self) -> CarDrive:
+    def create_drive(self) -> CarDrive:
         """Return the drive with the dimensions from the parameters.
 
         The dimensions have different names in Humble and Jazzy.

@@ -48,7 +48,7 @@ class Goal:
         """Return whether the goal has this handle."""
         return self._handle is handle
 
-    def feedback(self, message: Any) -> None:
+    def publish_feedback(self, message: Any) -> None:
         """Publish a feedback message for the goal."""
         self._node.call_on_loop(partial(self._handle.publish_feedback, message))
 
@@ -88,7 +88,7 @@ class ControllerAction:
         name: the action's name.
         is_allowed: returns whether a goal message is accepted; called on the event loop.
         begin: called with each accepted goal, in the update thread.
-        cancel: called with the goal to be cancelled, in the update thread, if it is the latest goal that `begin`
+        cancel: called with the goal to cancel, in the update thread, if it is the latest goal that `begin`
             received.
     """
 

@@ -1,4 +1,4 @@
-"""``battery_state_broadcaster/BatteryStateBroadcaster``: the states of batteries, one by one and combined.
+"""``battery_state_broadcaster/BatteryStateBroadcaster``: states of batteries.
 
 Source: ros2_controllers (parameters, names of interfaces, topics, the combined state).
 """
@@ -21,7 +21,7 @@ _UNKNOWN = 0
 
 
 def _check_technology(name: str, value: int) -> Phrase | None:
-    """Return an error message unless a number is a technology of ``sensor_msgs/msg/BatteryState``."""
+    """Return an error message unless a number is a technology of ``BatteryState``."""
     if 0 <= value <= _MAX_TECHNOLOGY:
         return None
     return phrase(
@@ -77,7 +77,10 @@ class BatteryParameters:
 
 
 class BatteryStateBroadcaster(Controller[BatteryParameters]):
-    """A broadcaster of ``~/raw_battery_states``, and of their combination in ``~/battery_state``."""
+    """A broadcaster of the state of each battery, and of their combination.
+
+    The topics are ``~/raw_battery_states`` and ``~/battery_state``.
+    """
 
     PARAMETERS = BatteryParameters
 
@@ -86,9 +89,9 @@ class BatteryStateBroadcaster(Controller[BatteryParameters]):
         parameters = self.parameters
         if parameters.sensor_name:
             return [f"{parameters.sensor_name}/voltage"]
-        return [f"{battery}/{name}" for battery in parameters.batteries for name in self._interfaces(battery)]
+        return [f"{battery}/{name}" for battery in parameters.batteries for name in self._list_interfaces(battery)]
 
-    def _interfaces(self, battery: str) -> list[str]:
+    def _list_interfaces(self, battery: str) -> list[str]:
         enabled = self.parameters.interfaces[battery]
         return ["battery_voltage", *(item.name for item in fields(enabled) if getattr(enabled, item.name))]
 
@@ -121,19 +124,19 @@ class BatteryStateBroadcaster(Controller[BatteryParameters]):
         stamp = Time.from_nanoseconds(time_ns)
         values = iter(state.value for state in self.states)
         if self.parameters.sensor_name:
-            self._combined.publish(self._lone_battery(stamp, next(values)))
+            self._combined.publish(self._build_single_battery_state(stamp, next(values)))
             return
         batteries = []
         for name in self.parameters.batteries:
-            measured = {interface: next(values) for interface in self._interfaces(name)}
-            batteries.append(_battery_state(stamp, name, measured, self.parameters.properties[name]))
+            measured = {interface: next(values) for interface in self._list_interfaces(name)}
+            batteries.append(_build_battery_state(stamp, name, measured, self.parameters.properties[name]))
         self._single.publish(get_message("control_msgs/msg/BatteryStateArray")(battery_states=batteries))
-        self._combined.publish(self._combination(stamp, batteries))
+        self._combined.publish(self._combine_states(stamp, batteries))
 
-    def _lone_battery(self, stamp: Time, voltage: float) -> Any:
-        """Return the state of the battery of ``sensor_name``, of which only the voltage is measured."""
+    def _build_single_battery_state(self, stamp: Time, voltage: float) -> Any:
+        """Return the state of a battery whose voltage alone is measured, by ``sensor_name``."""
         parameters = self.parameters
-        return _message(
+        return _build_message(
             stamp,
             voltage=voltage,
             present=True,
@@ -141,25 +144,27 @@ class BatteryStateBroadcaster(Controller[BatteryParameters]):
             power_supply_technology=parameters.power_supply_technology,
         )
 
-    def _combination(self, stamp: Time, batteries: Sequence[Any]) -> Any:
+    def _combine_states(self, stamp: Time, batteries: Sequence[Any]) -> Any:
         """Return the combined state.
 
-        Voltage, temperature, current and percentage are the means of those that are measured; charges and capacities
-        are sums.
+        Voltage, temperature, current and percentage are means over the batteries that measure them; charges and
+        capacities are sums.
         """
-        enabled = self.parameters.interfaces.values()
+        interfaces_by_battery = self.parameters.interfaces.values()
         technologies = {battery.power_supply_technology for battery in batteries}
-        has_charge = any(interfaces.battery_charge for interfaces in enabled)
-        has_percentage = [
+        has_charge = any(interfaces.battery_charge for interfaces in interfaces_by_battery)
+        percentage_mask = [
             interfaces.battery_percentage or isfinite(properties.maximum_voltage - properties.minimum_voltage)
-            for interfaces, properties in zip(enabled, self.parameters.properties.values(), strict=True)
+            for interfaces, properties in zip(interfaces_by_battery, self.parameters.properties.values(), strict=True)
         ]
-        return _message(
+        return _build_message(
             stamp,
-            voltage=_mean([battery.voltage for battery in batteries]),
-            temperature=_mean_of(batteries, "temperature", [item.battery_temperature for item in enabled]),
-            current=_mean_of(batteries, "current", [item.battery_current for item in enabled]),
-            percentage=_mean_of(batteries, "percentage", has_percentage),
+            voltage=_average([battery.voltage for battery in batteries]),
+            temperature=_average_quantity(
+                batteries, "temperature", [item.battery_temperature for item in interfaces_by_battery]
+            ),
+            current=_average_quantity(batteries, "current", [item.battery_current for item in interfaces_by_battery]),
+            percentage=_average_quantity(batteries, "percentage", percentage_mask),
             charge=sum(battery.charge for battery in batteries if not isnan(battery.charge)) if has_charge else nan,
             capacity=sum(battery.capacity for battery in batteries),
             design_capacity=sum(battery.design_capacity for battery in batteries),
@@ -172,7 +177,7 @@ class BatteryStateBroadcaster(Controller[BatteryParameters]):
         )
 
 
-def _battery_state(stamp: Time, name: str, measured: Mapping[str, float], properties: BatteryProperties) -> Any:
+def _build_battery_state(stamp: Time, name: str, measured: Mapping[str, float], properties: BatteryProperties) -> Any:
     """Return the state of a battery. Quantities that are not measured are NaN or unknown."""
     voltage = measured["battery_voltage"]
     percentage = measured.get("battery_percentage")
@@ -180,7 +185,7 @@ def _battery_state(stamp: Time, name: str, measured: Mapping[str, float], proper
         span = properties.maximum_voltage - properties.minimum_voltage
         percentage = (voltage - properties.minimum_voltage) * 100.0 / span if isfinite(span) else nan
     is_present = measured.get("battery_present", 0.0 if isnan(voltage) else voltage)
-    return _message(
+    return _build_message(
         stamp,
         name,
         voltage=voltage,
@@ -190,8 +195,8 @@ def _battery_state(stamp: Time, name: str, measured: Mapping[str, float], proper
         capacity=properties.capacity,
         design_capacity=properties.design_capacity,
         percentage=percentage,
-        power_supply_status=_number(measured.get("battery_power_supply_status", nan)),
-        power_supply_health=_number(measured.get("battery_power_supply_health", nan)),
+        power_supply_status=_to_constant(measured.get("battery_power_supply_status", nan)),
+        power_supply_health=_to_constant(measured.get("battery_power_supply_health", nan)),
         power_supply_technology=properties.power_supply_technology,
         present=bool(is_present) and not isnan(is_present),
         location=properties.location,
@@ -199,21 +204,21 @@ def _battery_state(stamp: Time, name: str, measured: Mapping[str, float], proper
     )
 
 
-def _message(stamp: Time, frame: str = "", **values: Any) -> Any:
+def _build_message(stamp: Time, frame: str = "", **values: Any) -> Any:
     """Return a battery state. Quantities without a value are NaN."""
     unknown = dict.fromkeys(("temperature", "current", "charge", "capacity", "percentage"), nan)
     return get_message("sensor_msgs/msg/BatteryState")(header=Header(stamp=stamp, frame_id=frame), **unknown | values)
 
 
-def _number(value: float) -> int:
+def _to_constant(value: float) -> int:
     return int(value) if isfinite(value) else _UNKNOWN
 
 
-def _mean_of(batteries: Sequence[Any], quantity: str, is_measured: Sequence[bool]) -> float:
+def _average_quantity(batteries: Sequence[Any], quantity: str, measured_mask: Sequence[bool]) -> float:
     """Return the mean of a quantity over the batteries that measure it; NaN if none does."""
-    pairs = zip(batteries, is_measured, strict=True)
-    return _mean([getattr(battery, quantity) for battery, has_value in pairs if has_value])
+    pairs = zip(batteries, measured_mask, strict=True)
+    return _average([getattr(battery, quantity) for battery, is_measured in pairs if is_measured])
 
 
-def _mean(values: Sequence[float]) -> float:
+def _average(values: Sequence[float]) -> float:
     return sum(values) / len(values) if values else nan

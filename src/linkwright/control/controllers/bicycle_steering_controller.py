@@ -25,10 +25,10 @@ class BicycleSteeringController(SteeringController[Parameters]):
     """A controller of a bicycle with a driven rear wheel and a steered front wheel."""
 
     PARAMETERS = Parameters
-    KIND = "Bicycle"
-    JOINTS = (1, 1)
+    VEHICLE = "Bicycle"
+    JOINT_COUNTS = (1, 1)
 
-    def drive(self) -> CarDrive:
+    def create_drive(self) -> CarDrive:
         """Return the drive with the dimensions from the parameters.
 
         The dimensions have different names in Humble and Jazzy.

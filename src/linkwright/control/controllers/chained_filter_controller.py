@@ -1,4 +1,4 @@
-"""``chained_filter_controller/ChainedFilter``: filtered values of state interfaces, for other controllers.
+"""``chained_filter_controller/ChainedFilter``: filtered state interfaces for other controllers.
 
 Source: ros2_controllers (parameters, the names of exported states). The types of filters are in
 `linkwright.control.controllers.value_filters`.
@@ -16,7 +16,7 @@ from linkwright.control.controllers.value_filters import FILTERS, FilterParamete
 from linkwright.diagnostics import did_you_mean, joined, phrase
 from linkwright.nodes.parameter_tables import declare_table, not_empty, parameter
 
-_CHAIN = "filter_chain"
+_SHARED_CHAIN = "filter_chain"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,14 +53,14 @@ class ChainedFilterController(Controller[ChainedFilterParameters]):
         Raises:
             ControllerError: a filter has an unknown type.
         """
-        shared_chain = list(self._read_chain(_CHAIN))
+        shared_chain = list(self._read_chain(_SHARED_CHAIN))
         self._chains = {
-            name: shared_chain or list(self._read_chain(f"{name}.{_CHAIN}"))
+            name: shared_chain or list(self._read_chain(f"{name}.{_SHARED_CHAIN}"))
             for name in self.parameters.input_interfaces
         }
 
     def _read_chain(self, prefix: str) -> Iterator[FilterParameters]:
-        """Yield the parameters of the filters of a chain, from ``filter1`` to the first number that is missing."""
+        """Yield the parameters of a chain's filters: ``filter1``, ``filter2`` and so on."""
         node = self.node.graph_node
         for number in count(1):
             name = f"{prefix}.filter{number}"

@@ -1,4 +1,4 @@
-"""Trajectory controllers under their type names of ROS 1, which contain the commanded interface.
+"""Trajectory controllers with their type names of ROS 1, which name the command interface.
 
 Source: position_controllers, velocity_controllers and effort_controllers of ros_controllers.
 """
@@ -38,7 +38,7 @@ class EffortParameters(PositionParameters):
 
 
 class _ClassicTrajectoryController(JointTrajectoryController):
-    """A trajectory controller that also accepts trajectories on ``~/command``, its topic in ROS 1."""
+    """A trajectory controller that also receives ``~/command``, the topic of ROS 1."""
 
     def on_configure(self) -> None:
         """Create the topics, the service and the action."""

@@ -9,15 +9,15 @@ A controller is a class that is declared as an entry point of the group ``linkwr
             return [f"{joint}/position" for joint in self.parameters.joints]
 
         def on_configure(self):
-            self._wanted = nan
+            self._target = nan
             self.node.subscribe("std_msgs/msg/Float64", "~/command", self._on_command)
 
         def on_activate(self):
-            self._wanted = nan
+            self._target = nan
 
         def update(self, time_ns, period_s):
             for command in self.commands:
-                command.value = self._wanted
+                command.value = self._target
 
 All methods are called in one thread, the update thread. The callbacks have the same names, order and meaning as in
 ``controller_interface`` of ros2_control.
@@ -121,7 +121,9 @@ class Controller(ABC, Generic[P]):
             self.node.logger.warning(message if hint is None else joined((message, hint), "; "))
 
     def declare_parameters(self) -> None:
-        """Declare parameters whose names follow from the values of others. The table is declared before this call.
+        """Declare parameters whose names follow from the values of other parameters.
+
+        The parameters in `PARAMETERS` are declared before this call.
 
         Raises:
             LinkwrightError: a parameter has a value that is not allowed.

@@ -128,7 +128,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
         for index, command in enumerate(self.commands):
             command.value = left_speed if index < count else right_speed
         if self._settings.open_loop:
-            self._odometry.odometer.add_commanded((forward, 0.0, angular), period_s)
+            self._odometry.odometer.integrate_command((forward, 0.0, angular), period_s)
         else:
             self._measure(period_s, moves=forward != 0.0 or angular != 0.0)
         self._publish(time_ns, forward, 0.0, angular)
@@ -152,7 +152,7 @@ class DiffDriveController(LimitedDrive[Parameters]):
                     index=invalid_index % count,
                 )
             )
-        speeds = self._speeds([left_mean, right_mean], period_s)
+        speeds = self._compute_speeds([left_mean, right_mean], period_s)
         if speeds is not None:
             forward, angular = self._drive.motion(*speeds)
             self._odometry.odometer.measure((forward, 0.0, angular), period_s)

@@ -13,7 +13,9 @@ P = TypeVar("P")
 
 
 class DriveController(Controller[P], Generic[P]):
-    """The base class of drive controllers, which creates nothing: `on_configure` of a subclass sets the attributes.
+    """The base class of drive controllers.
+
+    `on_configure` of a subclass creates the attributes.
 
     Attributes:
         _input: the velocity commands.
@@ -39,7 +41,7 @@ class DriveController(Controller[P], Generic[P]):
         for command in self.commands:
             command.value = 0.0
 
-    def _speeds(self, values: list[float], period_s: float) -> list[float] | None:
+    def _compute_speeds(self, values: list[float], period_s: float) -> list[float] | None:
         """Return the velocities of the wheels in rad/s, computed from the values of their states.
 
         Returns None if the states are positions and no time has passed.

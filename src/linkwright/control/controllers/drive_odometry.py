@@ -8,16 +8,16 @@ from typing import Any
 from linkwright.control.controllers.controller import ControllerError
 from linkwright.control.controllers.node import ControllerNode
 from linkwright.control.motion.odometer import Odometer
-from linkwright.control.odometry import OdometryTopics, Variances, transforms_topic
+from linkwright.control.odometry import OdometryTopics, Variances, create_transform_output
 from linkwright.diagnostics import phrase
 from linkwright.messages import Time
 from linkwright.nodes.parameter_tables import parameter
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_AXES = 6
+_DEGREES_OF_FREEDOM = 6
 
 
-def variances(name: str, values: tuple[float, ...]) -> Variances:
+def check_variances(name: str, values: tuple[float, ...]) -> Variances:
     """Return the six values of a parameter as variances.
 
     The order is x, y, z, roll, pitch, yaw.
@@ -25,12 +25,12 @@ def variances(name: str, values: tuple[float, ...]) -> Variances:
     Raises:
         ControllerError: the parameter does not have six values.
     """
-    if len(values) != _AXES:
+    if len(values) != _DEGREES_OF_FREEDOM:
         raise ControllerError(
             phrase(
                 "'{name}' must have {expected_count} numbers, but it has {count}",
                 name=name,
-                expected_count=_AXES,
+                expected_count=_DEGREES_OF_FREEDOM,
                 count=len(values),
             )
         )
@@ -48,7 +48,7 @@ class OdometryParameters:
     enable_odom_tf: bool = parameter(True, description="whether the transform of odometry is published")
 
 
-def frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
+def resolve_frame_prefix(node: ControllerNode, prefix: str, *, enabled: bool = True) -> str:
     """Return the prefix of frame names.
 
     The prefix is empty or ends with a slash, and never begins with one.
@@ -90,26 +90,26 @@ class DriveOdometry:
     def __init__(
         self,
         node: ControllerNode,
-        odometry: str,
-        transforms: str,
+        odometry_topic: str,
+        transform_topic: str,
         *,
         frame: str,
-        child: str,
+        child_frame: str,
         pose_variances: Variances,
         velocity_variances: Variances,
         publishes_transforms: bool,
         publishes_pose: bool = True,
         window: int = 1,
-        rate: float = 0.0,
+        rate_hz: float = 0.0,
     ) -> None:
         self.odometer = Odometer(max(window, 1))
         self.frame = frame
-        output = node.publisher("nav_msgs/msg/Odometry", odometry)
-        tf_output = transforms_topic(node, transforms)
-        self._topics = OdometryTopics(frame, child, output, None, pose_variances, velocity_variances)
-        self._transforms = OdometryTopics(frame, child, None, tf_output if publishes_transforms else None)
+        output = node.publisher("nav_msgs/msg/Odometry", odometry_topic)
+        tf_output = create_transform_output(node, transform_topic)
+        self._topics = OdometryTopics(frame, child_frame, output, None, pose_variances, velocity_variances)
+        self._transforms = OdometryTopics(frame, child_frame, None, tf_output if publishes_transforms else None)
         self._fixed_pose = None if publishes_pose else Odometer().pose.transform
-        self._period_ns = round(NANOSECONDS_PER_SECOND / rate) if rate > 0.0 else 0
+        self._period_ns = round(NANOSECONDS_PER_SECOND / rate_hz) if rate_hz > 0.0 else 0
         self._last_published_ns: int | None = None
 
     def publish(self, time_ns: int) -> None:
@@ -119,11 +119,11 @@ class DriveOdometry:
         """
         if not self._is_due(time_ns):
             return
-        is_wanted = self._topics.is_wanted
-        if not is_wanted and not self._transforms.is_wanted:
+        has_subscription = self._topics.is_wanted
+        if not has_subscription and not self._transforms.is_wanted:
             return
         stamp, pose = Time.from_nanoseconds(time_ns), self.odometer.pose.transform
-        if is_wanted:
+        if has_subscription:
             self._topics.publish(stamp, self._fixed_pose or pose, *self.odometer.velocity)
         self._transforms.publish(stamp, pose, 0.0, 0.0, 0.0)
 
@@ -152,24 +152,24 @@ class DriveOdometry:
 
 
 def create_odometry(
-    node: ControllerNode, parameters: OdometryParameters, odometry: str, transforms: str, **settings: Any
+    node: ControllerNode, parameters: OdometryParameters, odometry_topic: str, transform_topic: str, **settings: Any
 ) -> DriveOdometry:
     """Return the odometry of a drive, whose frames have the prefix from its parameters.
 
     Args:
         node: the controller's node.
-        parameters: the parameters.
-        odometry: the name of the odometry topic.
-        transforms: the name of the transform topic.
-        settings: the other arguments of `DriveOdometry`.
+        parameters: the parameters with the frames and their prefix.
+        odometry_topic: the name of the odometry topic.
+        transform_topic: the name of the transform topic.
+        settings: the other keyword arguments of `DriveOdometry`.
     """
-    prefix = frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
+    prefix = resolve_frame_prefix(node, parameters.tf_frame_prefix, enabled=parameters.tf_frame_prefix_enable)
     return DriveOdometry(
         node,
-        odometry,
-        transforms,
+        odometry_topic,
+        transform_topic,
         frame=prefix + parameters.odom_frame_id,
-        child=prefix + parameters.base_frame_id,
+        child_frame=prefix + parameters.base_frame_id,
         publishes_transforms=parameters.enable_odom_tf,
         **settings,
     )

@@ -46,7 +46,7 @@ class _ForwardingController(Controller[P], Generic[P]):
     """The base class of controllers that forward ``~/commands`` to interfaces."""
 
     @abstractmethod
-    def _interface_names(self) -> Sequence[str]:
+    def _list_interface_names(self) -> Sequence[str]:
         """Return the names of the commanded interfaces.
 
         Raises:
@@ -55,11 +55,11 @@ class _ForwardingController(Controller[P], Generic[P]):
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the names of the commanded interfaces."""
-        return self._interface_names()
+        return self._list_interface_names()
 
     def on_configure(self) -> None:
         """Subscribe to the commands."""
-        self._interface_names()
+        self._list_interface_names()
         self._command: Sequence[float] | None = None
         commander = self.node.commander(self._stop_velocities)
         self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
@@ -87,11 +87,10 @@ class _ForwardingController(Controller[P], Generic[P]):
         """
         if self._command is None:
             return False
-        is_velocity = [name.endswith(f"/{VELOCITY}") for name in self._interface_names()]
+        velocity_mask = [name.endswith(f"/{VELOCITY}") for name in self._list_interface_names()]
         old_values = self._command
         self._command = [
-            0.0 if is_velocity_value else value
-            for is_velocity_value, value in zip(is_velocity, old_values, strict=True)
+            0.0 if is_velocity else value for is_velocity, value in zip(velocity_mask, old_values, strict=True)
         ]
         return self._command != old_values
 
@@ -116,7 +115,7 @@ class ForwardCommandController(_ForwardingController[ForwardParameters]):
 
     PARAMETERS = ForwardParameters
 
-    def _interface_names(self) -> Sequence[str]:
+    def _list_interface_names(self) -> Sequence[str]:
         if not self.parameters.joints:
             raise ControllerError("'joints' parameter was empty")
         if not self.parameters.interface_name:
@@ -129,7 +128,7 @@ class MultiInterfaceForwardCommandController(_ForwardingController[MultiInterfac
 
     PARAMETERS = MultiInterfaceParameters
 
-    def _interface_names(self) -> Sequence[str]:
+    def _list_interface_names(self) -> Sequence[str]:
         if not self.parameters.joint:
             raise ControllerError("'joint' parameter is empty")
         if not self.parameters.interface_names:
@@ -137,14 +136,14 @@ class MultiInterfaceForwardCommandController(_ForwardingController[MultiInterfac
         return [f"{self.parameters.joint}/{name}" for name in self.parameters.interface_names]
 
 
-class _Group(_ForwardingController[GroupParameters]):
+class _JointGroupController(_ForwardingController[GroupParameters]):
     PARAMETERS = GroupParameters
     INTERFACE: str
     """The interface of the joints that is commanded."""
-    STOPS = True
+    STOPS_ON_DEACTIVATION = True
     """Whether the joints are commanded to 0 on deactivation."""
 
-    def _interface_names(self) -> Sequence[str]:
+    def _list_interface_names(self) -> Sequence[str]:
         if not self.parameters.joints:
             raise ControllerError("'joints' parameter was empty")
         return [f"{joint}/{self.INTERFACE}" for joint in self.parameters.joints]
@@ -152,25 +151,25 @@ class _Group(_ForwardingController[GroupParameters]):
     def on_deactivate(self) -> None:
         """Command zero to the joints, unless their positions are commanded."""
         super().on_deactivate()
-        if self.STOPS:
+        if self.STOPS_ON_DEACTIVATION:
             for command in self.commands:
                 command.value = 0.0
 
 
-class JointGroupPositionController(_Group):
+class JointGroupPositionController(_JointGroupController):
     """``position_controllers/JointGroupPositionController``."""
 
     INTERFACE = POSITION
-    STOPS = False  # Joints keep their positions.
+    STOPS_ON_DEACTIVATION = False  # Joints keep their positions.
 
 
-class JointGroupVelocityController(_Group):
+class JointGroupVelocityController(_JointGroupController):
     """``velocity_controllers/JointGroupVelocityController``."""
 
     INTERFACE = VELOCITY
 
 
-class JointGroupEffortController(_Group):
+class JointGroupEffortController(_JointGroupController):
     """``effort_controllers/JointGroupEffortController``."""
 
     INTERFACE = EFFORT

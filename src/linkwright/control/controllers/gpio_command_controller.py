@@ -1,4 +1,4 @@
-"""``gpio_controllers/GpioCommandController``: digital and analog inputs and outputs of ``<gpio>`` elements.
+"""``gpio_controllers/GpioCommandController``: inputs and outputs of ``<gpio>`` elements.
 
 Source: ros2_controllers (parameters, topics, the states that are published by default).
 """
@@ -16,7 +16,7 @@ from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.messages import Header, Time, get_message
 from linkwright.nodes.parameter_tables import for_each, parameter
 
-_TYPE = "control_msgs/msg/DynamicInterfaceGroupValues"
+_MESSAGE_TYPE = "control_msgs/msg/DynamicInterfaceGroupValues"
 
 
 def _check_names(name: str, value: Sequence[str]) -> Phrase | None:
@@ -48,7 +48,7 @@ class GpioParameters:
 
 
 class GpioCommandController(Controller[GpioParameters]):
-    """A controller that forwards ``~/commands`` to interfaces of GPIOs and publishes their states.
+    """A controller that forwards ``~/commands`` to GPIOs and publishes their states.
 
     If no GPIO has state interfaces in the parameters, all state interfaces of the description are published.
     """
@@ -57,7 +57,7 @@ class GpioCommandController(Controller[GpioParameters]):
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the command interfaces in the parameters."""
-        return _names(self.parameters.command_interfaces)
+        return _list_interface_names(self.parameters.command_interfaces)
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the state interfaces in the parameters, or else in the description."""
@@ -70,15 +70,15 @@ class GpioCommandController(Controller[GpioParameters]):
             ControllerError: there are neither command nor state interfaces.
         """
         parameters = self.parameters
-        self._states = _names(parameters.state_interfaces) or self._described_states()
+        self._states = _list_interface_names(parameters.state_interfaces) or self._find_described_states()
         if not self._states and not self.command_interfaces():
             raise ControllerError("No command or state interfaces are configured")
         self._values: dict[str, float] = {}
         if self.command_interfaces():
-            self.node.subscribe(_TYPE, "~/commands", self._on_command)
-        self._output = self.node.publisher(_TYPE, "~/gpio_states")
+            self.node.subscribe(_MESSAGE_TYPE, "~/commands", self._on_command)
+        self._output = self.node.publisher(_MESSAGE_TYPE, "~/gpio_states")
 
-    def _described_states(self) -> list[str]:
+    def _find_described_states(self) -> list[str]:
         """Return the state interfaces that the description has for the GPIOs."""
         hardware = [] if self.robot is None else hardware_from_robot(self.robot)[0]
         described = {gpio.name: gpio.states for component in hardware for gpio in component.gpios}
@@ -98,9 +98,9 @@ class GpioCommandController(Controller[GpioParameters]):
             if command.name in self._values:
                 command.value = self._values[command.name]
         if self._output.is_wanted:
-            self._output.publish(self._message(time_ns))
+            self._output.publish(self._build_message(time_ns))
 
-    def _message(self, time_ns: int) -> Any:
+    def _build_message(self, time_ns: int) -> Any:
         """Return the states of all GPIOs, with empty lists for GPIOs without state interfaces."""
         interface_value = get_message("control_msgs/msg/InterfaceValue")
         groups = []
@@ -110,10 +110,10 @@ class GpioCommandController(Controller[GpioParameters]):
             groups.append(interface_value(interface_names=names, values=values))
         header = Header(stamp=Time.from_nanoseconds(time_ns), frame_id="")
         gpios = list(self.parameters.gpios)
-        return get_message(_TYPE)(header=header, interface_groups=gpios, interface_values=groups)
+        return get_message(_MESSAGE_TYPE)(header=header, interface_groups=gpios, interface_values=groups)
 
     def _on_command(self, message: Any) -> None:
-        """Store the values of a command that is complete and finite; the others are reported."""
+        """Store the values of a complete and finite command, or log why a command is invalid."""
         logger = self.node.logger
         names = {command.name for command in self.commands}
         if not names:
@@ -144,6 +144,6 @@ class GpioCommandController(Controller[GpioParameters]):
                     self._values[full_name] = value
 
 
-def _names(groups: Mapping[str, GpioInterfaces]) -> list[str]:
+def _list_interface_names(groups: Mapping[str, GpioInterfaces]) -> list[str]:
     """Return the full names of the interfaces of all GPIOs."""
     return [f"{gpio}/{name}" for gpio, group in groups.items() for name in group.interfaces]

@@ -113,13 +113,13 @@ class Gripper(Controller[P]):
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the gripper, and end the goal if it is reached or the gripper is stalled."""
         position, velocity = self._position_state.value, self._velocity_state.value
-        effort = self._command(self._target - position, velocity, period_s)
+        effort = self._write_commands(self._target - position, velocity, period_s)
         goal = self._goal
         if goal is None:
             return
         if time_ns >= self._next_feedback_ns:
             self._next_feedback_ns = time_ns + round(NANOSECONDS_PER_SECOND / self.parameters.action_monitor_rate)
-            goal.feedback(self._report(self._feedback(), position, velocity, effort))
+            goal.publish_feedback(self._fill_message(self._feedback(), position, velocity, effort))
         if abs(velocity) > self.parameters.stall_velocity_threshold:
             self._last_motion_ns = time_ns
         is_reached = abs(self._target - position) < self.parameters.goal_tolerance
@@ -128,7 +128,7 @@ class Gripper(Controller[P]):
         )
         if not is_reached and not is_stalled:
             return
-        result = self._report(self._result(), position, velocity, effort)
+        result = self._fill_message(self._result(), position, velocity, effort)
         result.reached_goal, result.stalled = is_reached, is_stalled
         end = goal.succeed if is_reached or self.parameters.allow_stalling else goal.abort
         end(result)
@@ -137,11 +137,11 @@ class Gripper(Controller[P]):
     # --- goals --------------------------------------------------------------------------------------------------------
 
     def _is_allowed(self, request: Any) -> bool:
-        problem = self._goal_problem(request)
+        error = self._find_goal_error(request)
         if not self._active:
-            problem = "Can't accept new action goals. Controller is not running."
-        if problem is not None:
-            self.node.logger.error(problem)
+            error = "Can't accept new action goals. Controller is not running."
+        if error is not None:
+            self.node.logger.error(error)
             return False
         self.node.logger.info("Received & accepted new action goal")
         return True
@@ -151,7 +151,7 @@ class Gripper(Controller[P]):
         if not self._active:
             goal.abort(self._result())
             return
-        self._accept(goal.request)
+        self._store_goal(goal.request)
         self._goal = goal
         self._last_motion_ns = self.time_ns
         self._next_feedback_ns = 0
@@ -174,18 +174,18 @@ class Gripper(Controller[P]):
 
     # --- steps that differ between grippers ---------------------------------------------------------------------------
 
-    def _goal_problem(self, request: Any) -> str | None:
+    def _find_goal_error(self, request: Any) -> str | None:
         """Return the error message for an invalid goal, or None if the goal is valid."""
         if isfinite(request.command.position):
             return None
         return "Received action goal with a position that is not a number"
 
-    def _accept(self, request: Any) -> None:
+    def _store_goal(self, request: Any) -> None:
         """Store the position and maximum effort of a goal."""
         self._target = request.command.position
         self._max_effort = request.command.max_effort
 
-    def _command(self, error: float, velocity: float, period_s: float) -> float:
+    def _write_commands(self, error: float, velocity: float, period_s: float) -> float:
         """Write the commands, and return the effort to report.
 
         By default, the reported effort is the maximum effort.
@@ -193,7 +193,7 @@ class Gripper(Controller[P]):
         self.commands[0].value = self._target
         return self._max_effort
 
-    def _report(self, message: Any, position: float, velocity: float, effort: float) -> Any:
+    def _fill_message(self, message: Any, position: float, velocity: float, effort: float) -> Any:
         """Set the fields of a result or feedback message, and return the message."""
         message.position, message.effort = position, effort
         return message
@@ -224,7 +224,7 @@ class EffortGripper(Gripper[EffortGripperParameters]):
         super().on_deactivate()
         self.commands[0].value = 0.0
 
-    def _command(self, error: float, velocity: float, period_s: float) -> float:
+    def _write_commands(self, error: float, velocity: float, period_s: float) -> float:
         self._pid.gains = self.parameters.gains[self.parameters.joint].pid
         effort = self._pid.command(error, period_s, -velocity)
         limit = abs(self._max_effort)
@@ -255,13 +255,13 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
         super()._hold_position()
         self._max_velocity = self.parameters.max_velocity
 
-    def _goal_problem(self, request: Any) -> str | None:
+    def _find_goal_error(self, request: Any) -> str | None:
         positions = request.command.position
         if len(positions) != 1:
             return f"Received action goal with wrong number of position values, expects 1, got {len(positions)}"
         return None if isfinite(positions[0]) else "Received action goal with a position that is not a number"
 
-    def _accept(self, request: Any) -> None:
+    def _store_goal(self, request: Any) -> None:
         parameters, command = self.parameters, request.command
         self._target = command.position[0]
         self._max_effort = (
@@ -270,8 +270,8 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
         uses_goal_velocity = parameters.max_velocity_interface and len(command.velocity)
         self._max_velocity = command.velocity[0] if uses_goal_velocity else parameters.max_velocity
 
-    def _command(self, error: float, velocity: float, period_s: float) -> float:
-        effort = super()._command(error, velocity, period_s)
+    def _write_commands(self, error: float, velocity: float, period_s: float) -> float:
+        effort = super()._write_commands(error, velocity, period_s)
         limits = iter(self.commands[1:])
         if self.parameters.max_effort_interface:
             next(limits).value = self._max_effort
@@ -279,7 +279,7 @@ class ParallelGripper(Gripper[ParallelGripperParameters]):
             next(limits).value = self._max_velocity
         return effort
 
-    def _report(self, message: Any, position: float, velocity: float, effort: float) -> Any:
+    def _fill_message(self, message: Any, position: float, velocity: float, effort: float) -> Any:
         message.state = JointState(
             name=[self.parameters.joint], position=[position], velocity=[velocity], effort=[effort]
         )

@@ -61,20 +61,20 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
 
     PARAMETERS = Parameters
 
-    def _wheel_interfaces(self, kind: str) -> list[str]:
+    def _list_wheel_interfaces(self, kind: str) -> list[str]:
         parameters = self.parameters
         names = parameters.front_left_wheel_name, parameters.front_right_wheel_name, parameters.rear_left_wheel_name
         return [f"{name}/{kind}" for name in (*names, parameters.rear_right_wheel_name)]
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the wheels' velocity interfaces: front left, front right, rear left, rear right."""
-        return self._wheel_interfaces(VELOCITY)
+        return self._list_wheel_interfaces(VELOCITY)
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the position or velocity interfaces of the wheels, or none for open-loop odometry."""
         if self.parameters.open_loop:
             return ()
-        return self._wheel_interfaces(POSITION if self.parameters.position_feedback else VELOCITY)
+        return self._list_wheel_interfaces(POSITION if self.parameters.position_feedback else VELOCITY)
 
     def limits(self) -> Mapping[str, SpeedLimits]:
         """Return the limits of the velocities forward, to the left, and about z."""
@@ -87,7 +87,7 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         Raises:
             ControllerError: wheels or their dimensions are missing, or a limit is invalid.
         """
-        self._check()
+        self._check_parameters()
         parameters = self.parameters
         self._drive = MecanumDrive(
             parameters.wheel_separation_x_multiplier * parameters.wheel_separation_x / 2.0
@@ -96,7 +96,7 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         )
         super().on_configure()
 
-    def _check(self) -> None:
+    def _check_parameters(self) -> None:
         parameters = self.parameters
         corners = ("front_left", "front_right", "rear_left", "rear_right")
         names = [f"{corner}_wheel_name" for corner in corners]
@@ -116,7 +116,7 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         for command, value in zip(self.commands, speeds, strict=True):
             command.value = value
         if self._settings.open_loop:
-            self._odometry.odometer.add_commanded((forward, sideways, angular), period_s)
+            self._odometry.odometer.integrate_command((forward, sideways, angular), period_s)
         else:
             self._measure(period_s)
         self._publish(time_ns, forward, sideways, angular)
@@ -125,6 +125,6 @@ class HusarionMecanumController(LimitedDrive[Parameters]):
         values = [state.value for state in self.states]
         if not all(map(isfinite, values)):
             return
-        speeds = self._speeds(values, period_s)
+        speeds = self._compute_speeds(values, period_s)
         if speeds is not None:
             self._odometry.odometer.measure(self._drive.motion(*speeds), period_s)

@@ -66,7 +66,7 @@ class JointStateBroadcaster(Controller[Parameters]):
         fields = {interface_map.position: 0, interface_map.velocity: 1, interface_map.effort: 2}
         self._states_by_joint: dict[str, dict[str, StateInterface]] = {}
         joints: dict[str, list[StateInterface | None]] = {}
-        robot_joints = self._robot_joints()
+        robot_joints = self._list_robot_joints()
         for state in self.states:
             self._states_by_joint.setdefault(state.component, {})[state.kind] = state
             if state.kind in fields and (robot_joints is None or state.component in robot_joints):
@@ -84,43 +84,44 @@ class JointStateBroadcaster(Controller[Parameters]):
         # A field that no joint provides, often the efforts, is the same in each message, so its values are computed
         # only once.
         self._columns = [
-            (column, _values(column) if {unknown_state, zero_state}.issuperset(column) else None) for column in columns
+            (column, _to_array(column) if {unknown_state, zero_state}.issuperset(column) else None)
+            for column in columns
         ]
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Publish to the topics that have subscriptions."""
         if self._output.is_wanted:
-            self._output.publish(self._joint_states(self._header(time_ns)))
+            self._output.publish(self._build_joint_states(self._build_header(time_ns)))
         if self._dynamic_output.is_wanted:
-            self._dynamic_output.publish(self._dynamic_states(self._header(time_ns)))
+            self._dynamic_output.publish(self._build_dynamic_states(self._build_header(time_ns)))
 
-    def _robot_joints(self) -> set[str] | None:
+    def _list_robot_joints(self) -> set[str] | None:
         if not self.parameters.use_urdf_to_filter or self.parameters.joints:
             return None
         return set(self.robot.joints) if self.robot is not None else None
 
-    def _header(self, time_ns: int) -> Header:
+    def _build_header(self, time_ns: int) -> Header:
         return Header(stamp=Time.from_nanoseconds(time_ns), frame_id=self.parameters.frame_id)
 
-    def _joint_states(self, header: Header) -> JointState:
+    def _build_joint_states(self, header: Header) -> JointState:
         position, velocity, effort = (
-            _values(column) if fixed_values is None else fixed_values[:] for column, fixed_values in self._columns
+            _to_array(column) if fixed_values is None else fixed_values[:] for column, fixed_values in self._columns
         )
         return JointState(header=header, name=[*self._names], position=position, velocity=velocity, effort=effort)
 
-    def _dynamic_states(self, header: Header) -> object:
+    def _build_dynamic_states(self, header: Header) -> object:
         value_type = get_message("control_msgs/msg/InterfaceValue")
-        rows = [
+        interface_values = [
             value_type(interface_names=list(states), values=[state.value for state in states.values()])
             for states in self._states_by_joint.values()
         ] + [value_type(interface_names=[POSITION, VELOCITY, EFFORT], values=[0.0, 0.0, 0.0]) for _ in self._extra]
         names: Sequence[str] = [*self._states_by_joint, *self._extra]
         return get_message("control_msgs/msg/DynamicJointState")(
-            header=header, joint_names=list(names), interface_values=rows
+            header=header, joint_names=list(names), interface_values=interface_values
         )
 
 
-def _values(states: Sequence[StateInterface]) -> array[float]:
+def _to_array(states: Sequence[StateInterface]) -> array[float]:
     """Return the values of states as an array for a message field.
 
     An array is faster than a list, because the message checks each element of a list.

@@ -14,10 +14,10 @@ from typing import Any
 from linkwright.control.controllers.action import ControllerAction, Goal
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.joint_trajectory_goals import (
-    nanoseconds,
-    tolerances_of,
-    trajectory_error,
-    trajectory_of,
+    find_trajectory_error,
+    to_nanoseconds,
+    tolerances_from_goal,
+    trajectory_from_message,
 )
 from linkwright.control.controllers.joint_trajectory_parameters import Parameters
 from linkwright.control.hardware.interfaces import (
@@ -66,7 +66,7 @@ class JointTrajectoryController(Controller[Parameters]):
     def on_configure(self) -> None:
         """Create the publishers, the subscription, the service and the action server."""
         parameters = self.parameters
-        self._check(parameters)
+        self._check_parameters(parameters)
         self._active = False
         self._goal: Goal | None = None
         self._is_wrapped = [self._wraps_around(joint) for joint in parameters.joints]
@@ -104,9 +104,9 @@ class JointTrajectoryController(Controller[Parameters]):
         self._measured_states = tuple(self._state.get(kind, []) for kind in (POSITION, VELOCITY, ACCELERATION))
         self._has_velocity_error = VELOCITY in self._state and (VELOCITY in self._command or EFFORT in self._command)
         self._has_acceleration_error = ACCELERATION in self._state and ACCELERATION in self._command
-        self._timeout_s = self._allowed_timeout(parameters)
+        self._timeout_s = self._check_timeout(parameters)
         self._create_pids(parameters)
-        self._current = self._read()
+        self._current = self._read_state()
         if parameters.set_last_command_interface_value_as_state_on_activation:
             self._current = self._replace_by_commands(self._current)
         if not all(map(isfinite, self._current.positions)):
@@ -131,7 +131,7 @@ class JointTrajectoryController(Controller[Parameters]):
         """Remove the action server."""
         self._action.close()
 
-    def _check(self, parameters: Parameters) -> None:
+    def _check_parameters(self, parameters: Parameters) -> None:
         if parameters.command_joints and len(parameters.command_joints) != len(parameters.joints):
             raise ControllerError("'command_joints' parameter has to have the same size as 'joints' parameter.")
         states = set(parameters.state_interfaces)
@@ -156,7 +156,7 @@ class JointTrajectoryController(Controller[Parameters]):
             or (robot_joint is not None and robot_joint.type == "continuous")
         )
 
-    def _allowed_timeout(self, parameters: Parameters) -> float:
+    def _check_timeout(self, parameters: Parameters) -> float:
         goal_time = parameters.constraints.goal_time
         if 0.0 < parameters.cmd_timeout <= goal_time:
             self.node.logger.warning(
@@ -169,21 +169,21 @@ class JointTrajectoryController(Controller[Parameters]):
     # --- trajectories -------------------------------------------------------------------------------------------------
 
     def _on_trajectory(self, message: Any) -> None:
-        problem = trajectory_error(message, self.parameters, self.time_ns)
-        if problem is not None:
-            self.node.logger.error(problem)
+        error = find_trajectory_error(message, self.parameters, self.time_ns)
+        if error is not None:
+            self.node.logger.error(error)
         elif self._active:
             self._cancel_goal("Current goal cancelled due to new incoming trajectory.")
             self._tolerances = self.parameters.tolerances
-            self._follow(trajectory_of(message, self.parameters, self._held_positions()))
+            self._follow(trajectory_from_message(message, self.parameters, self._get_positions_to_hold()))
 
     def _is_allowed(self, request: Any) -> bool:
         self.node.logger.info("Received new action goal")
-        problem = trajectory_error(request.trajectory, self.parameters, self.time_ns)
+        error = find_trajectory_error(request.trajectory, self.parameters, self.time_ns)
         if not self._active:
-            problem = "Can't accept new action goals. Controller is not running."
-        if problem is not None:
-            self.node.logger.error(problem)
+            error = "Can't accept new action goals. Controller is not running."
+        if error is not None:
+            self.node.logger.error(error)
             return False
         self.node.logger.info("Accepted new action goal")
         return True
@@ -195,8 +195,10 @@ class JointTrajectoryController(Controller[Parameters]):
         self._cancel_goal("Current goal cancelled due to new incoming action.")
         parameters = self.parameters
         self._goal = goal
-        self._tolerances = tolerances_of(goal.request, parameters.joints, parameters.tolerances, self.node.logger.error)
-        self._follow(trajectory_of(goal.request.trajectory, parameters, self._held_positions()))
+        self._tolerances = tolerances_from_goal(
+            goal.request, parameters.joints, parameters.tolerances, self.node.logger.error
+        )
+        self._follow(trajectory_from_message(goal.request.trajectory, parameters, self._get_positions_to_hold()))
 
     def _cancel(self, goal: Goal) -> None:
         self.node.logger.info("Got request to cancel goal")
@@ -211,12 +213,12 @@ class JointTrajectoryController(Controller[Parameters]):
             self._goal.cancel(self._result(error_code=self._result.INVALID_GOAL, error_string=reason))
             self._goal = None
 
-    def _held_positions(self) -> list[float]:
+    def _get_positions_to_hold(self) -> list[float]:
         """Return the positions for joints that a trajectory leaves out, in the order of the joints.
 
         These are the last commanded positions, or the current positions if no positions are commanded.
         """
-        return self._finite_or(self._command.get(POSITION), self._current.positions)
+        return self._get_finite_values_or(self._command.get(POSITION), self._current.positions)
 
     def _follow(self, trajectory: Trajectory) -> None:
         self._trajectory, self._is_held = trajectory, False
@@ -224,14 +226,14 @@ class JointTrajectoryController(Controller[Parameters]):
 
     def _hold(self, state: MotionState | None = None) -> None:
         """Hold the joints in a state, or at their current positions if the state is None."""
-        held_state = MotionState(self._read().positions) if state is None else state
+        held_state = MotionState(self._read_state().positions) if state is None else state
         self._follow(Trajectory([TrajectoryPoint(0, held_state)]))
         self._is_held = True
         self._tolerances = self.parameters.tolerances
 
     # --- states -------------------------------------------------------------------------------------------------------
 
-    def _read(self) -> MotionState:
+    def _read_state(self) -> MotionState:
         positions, velocities, accelerations = self._measured_states
         return MotionState(
             [position.value for position in positions],
@@ -245,15 +247,17 @@ class JointTrajectoryController(Controller[Parameters]):
         Otherwise hardware that sags under load would be commanded to the sagged position.
         """
         return MotionState(
-            self._finite_or(self._command.get(POSITION), state.positions),
-            self._finite_or(self._command.get(VELOCITY) if state.velocities else None, state.velocities),
-            self._finite_or(self._command.get(ACCELERATION) if state.accelerations else None, state.accelerations),
+            self._get_finite_values_or(self._command.get(POSITION), state.positions),
+            self._get_finite_values_or(self._command.get(VELOCITY) if state.velocities else None, state.velocities),
+            self._get_finite_values_or(
+                self._command.get(ACCELERATION) if state.accelerations else None, state.accelerations
+            ),
         )
 
     @staticmethod
-    def _finite_or(interfaces: Sequence[Interface] | None, values: Sequence[float]) -> list[float]:
-        finite_values = [interface.value for interface in interfaces or ()]
-        return finite_values if finite_values and all(map(isfinite, finite_values)) else list(values)
+    def _get_finite_values_or(interfaces: Sequence[Interface] | None, defaults: Sequence[float]) -> list[float]:
+        interface_values = [interface.value for interface in interfaces or ()]
+        return interface_values if interface_values and all(map(isfinite, interface_values)) else list(defaults)
 
     @property
     def _error(self) -> MotionState:
@@ -262,10 +266,10 @@ class JointTrajectoryController(Controller[Parameters]):
         A controller that holds its position needs the error only for its topics.
         """
         if self._computed_error is None:
-            self._computed_error = self._compare(self._desired)
+            self._computed_error = self._compute_error(self._desired)
         return self._computed_error
 
-    def _compare(self, desired: MotionState) -> MotionState:
+    def _compute_error(self, desired: MotionState) -> MotionState:
         """Return the error of the current state: the desired values minus the current values.
 
         Errors of velocities and accelerations are zero if the controller does not control them.
@@ -296,7 +300,7 @@ class JointTrajectoryController(Controller[Parameters]):
         if time_ns < self._next_sample_ns - self._period_ns:
             self._cancel_goal("Time jumped backwards.")
             self._hold()
-        self._current = self._read()
+        self._current = self._read_state()
         trajectory = self._trajectory
         is_first = not trajectory.is_started
         if is_first:
@@ -308,31 +312,31 @@ class JointTrajectoryController(Controller[Parameters]):
         assert next_sample is not None, "the trajectory has begun"
         self._next_sample_ns, self._next_sample = time_ns + self._period_ns, next_sample
         self._desired, self._computed_error = desired.state, None
-        self._check_and_command(time_ns, period_s, desired.state, next_sample, first=is_first)
-        self._publish(time_ns, desired.state)
+        self._check_and_command(time_ns, period_s, desired.state, next_sample, is_first=is_first)
+        self._publish_state(time_ns, desired.state)
 
     def _check_and_command(
-        self, time_ns: int, period_s: float, desired: MotionState, next_sample: Sample, *, first: bool
+        self, time_ns: int, period_s: float, desired: MotionState, next_sample: Sample, *, is_first: bool
     ) -> None:
         tolerances, late_s = self._tolerances, (time_ns - next_sample.point_ns) / NANOSECONDS_PER_SECOND
         violates_path = misses_goal = False
         if not self._is_held:
-            violates_path = (first or not next_sample.has_ended) and not self._is_within(tolerances.path)
+            violates_path = (is_first or not next_sample.has_ended) and not self._is_within(tolerances.path)
             misses_goal = next_sample.has_ended and not self._is_within(tolerances.goal)
         is_overdue = misses_goal and 0.0 < tolerances.goal_time_s < late_s
         if not violates_path and not is_overdue:
-            self._write(next_sample.state, period_s)
+            self._write_commands(next_sample.state, period_s)
         if self._goal is not None:
             self._publish_feedback(self._goal, time_ns, desired)
         if violates_path:
-            self._report(tolerances.path)
+            self._log_violations(tolerances.path)
             self._fail(
                 self._result.PATH_TOLERANCE_VIOLATED,
                 "Aborted due to path tolerance violation",
                 "Holding position due to state tolerance violation",
             )
         elif is_overdue:
-            self._report(tolerances.goal)
+            self._log_violations(tolerances.goal)
             self._fail(
                 self._result.GOAL_TOLERANCE_VIOLATED,
                 f"Aborted due to goal_time_tolerance exceeding by {late_s:f} seconds",
@@ -352,13 +356,13 @@ class JointTrajectoryController(Controller[Parameters]):
         errors = zip(tolerances, error.positions, error.velocities, error.accelerations, strict=True)
         return all(tolerance.is_within(*joint_errors) for tolerance, *joint_errors in errors)
 
-    def _report(self, tolerances: Sequence[StateTolerance]) -> None:
+    def _log_violations(self, tolerances: Sequence[StateTolerance]) -> None:
         error = self._error
         errors = zip(
             self.parameters.joints, tolerances, error.positions, error.velocities, error.accelerations, strict=True
         )
         for joint, tolerance, *values in errors:
-            for name, value, limit in tolerance.violations(*values):
+            for name, value, limit in tolerance.find_violations(*values):
                 self.node.logger.error(
                     f"State tolerances failed for joint '{joint}': {name} Error: {value:f}, {name} Tolerance: {limit:f}"
                 )
@@ -372,7 +376,7 @@ class JointTrajectoryController(Controller[Parameters]):
             self._goal = None
         self._hold()
 
-    def _write(self, target: MotionState, period_s: float) -> None:
+    def _write_commands(self, target: MotionState, period_s: float) -> None:
         if self._has_pid:
             self._update_gains()
             (commands,) = self._command.values()
@@ -404,7 +408,7 @@ class JointTrajectoryController(Controller[Parameters]):
 
     # --- messages -----------------------------------------------------------------------------------------------------
 
-    def _point_message(self, state: MotionState) -> Any:
+    def _build_point(self, state: MotionState) -> Any:
         return self._point_type(
             positions=state.positions, velocities=state.velocities, accelerations=state.accelerations
         )
@@ -413,17 +417,17 @@ class JointTrajectoryController(Controller[Parameters]):
         if time_ns < self._next_feedback_ns:
             return
         self._next_feedback_ns = time_ns + round(NANOSECONDS_PER_SECOND / self.parameters.action_monitor_rate)
-        goal.feedback(
+        goal.publish_feedback(
             self._feedback_type(
                 header=Header(stamp=Time.from_nanoseconds(time_ns)),
                 joint_names=list(self.parameters.joints),
-                desired=self._point_message(desired),
-                actual=self._point_message(self._current),
-                error=self._point_message(self._error),
+                desired=self._build_point(desired),
+                actual=self._build_point(self._current),
+                error=self._build_point(self._error),
             )
         )
 
-    def _publish(self, time_ns: int, desired: MotionState) -> None:
+    def _publish_state(self, time_ns: int, desired: MotionState) -> None:
         rate = self.parameters.state_publish_rate
         if rate and time_ns < self._next_state_ns:
             return
@@ -431,14 +435,14 @@ class JointTrajectoryController(Controller[Parameters]):
         outputs = [output for output in self._outputs if output.is_wanted]
         if not outputs:
             return
-        reference, feedback = self._point_message(desired), self._point_message(self._current)
+        reference, feedback = self._build_point(desired), self._build_point(self._current)
         commands = {kind: [interface.value for interface in interfaces] for kind, interfaces in self._command.items()}
         message = self._state_type(
             header=Header(stamp=Time.from_nanoseconds(time_ns)),
             joint_names=list(self.parameters.joints),
             reference=reference,
             feedback=feedback,
-            error=self._point_message(self._error),
+            error=self._build_point(self._error),
             output=self._point_type(
                 positions=commands.get(POSITION, []),
                 velocities=commands.get(VELOCITY, []),
@@ -458,7 +462,7 @@ class JointTrajectoryController(Controller[Parameters]):
         elif not self._trajectory.is_started:
             response.message = "Currently there is no valid trajectory instance."
         else:
-            sample = self._trajectory.sample(nanoseconds(request.time))
+            sample = self._trajectory.sample(to_nanoseconds(request.time))
             if sample is None:
                 response.message = "Requested sample time is earlier than the current trajectory start time."
             elif sample.has_ended:

@@ -12,7 +12,7 @@ from typing import Any
 
 from linkwright.control.controllers.joint_trajectory_parameters import Parameters
 from linkwright.control.motion.splines import MotionState
-from linkwright.control.motion.tolerances import Tolerances, effective_tolerance
+from linkwright.control.motion.tolerances import Tolerances, resolve_tolerance
 from linkwright.control.motion.trajectory import Trajectory, TrajectoryPoint
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -20,12 +20,12 @@ _VELOCITY_EPSILON = 1.1920929e-07
 """The maximum final velocity that counts as zero, in rad/s or m/s: the epsilon of a 32-bit float."""
 
 
-def nanoseconds(time: Any) -> int:
+def to_nanoseconds(time: Any) -> int:
     """Convert a time or duration message to nanoseconds."""
     return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)
 
 
-def trajectory_error(message: Any, parameters: Parameters, now_ns: int) -> str | None:
+def find_trajectory_error(message: Any, parameters: Parameters, now_ns: int) -> str | None:
     """Return ros2_controllers' error message for an invalid trajectory, or None.
 
     Args:
@@ -40,8 +40,8 @@ def trajectory_error(message: Any, parameters: Parameters, now_ns: int) -> str |
         return "Empty joint names on incoming trajectory."
     if not points:
         return "Empty trajectory received."
-    start, last_point = nanoseconds(message.header.stamp), points[-1]
-    end = start + nanoseconds(last_point.time_from_start)
+    start, last_point = to_nanoseconds(message.header.stamp), points[-1]
+    end = start + to_nanoseconds(last_point.time_from_start)
     if start and end < now_ns:
         return (
             f"Received trajectory with non-zero start time ({start / NANOSECONDS_PER_SECOND:f}) that ends in the past "
@@ -56,13 +56,13 @@ def trajectory_error(message: Any, parameters: Parameters, now_ns: int) -> str |
         for name, velocity in zip(names, last_point.velocities, strict=False):
             if abs(velocity) > _VELOCITY_EPSILON:
                 return f"Velocity of last trajectory point of joint {name} is not zero: {velocity:.15f}"
-    return _points_error(points, len(names), allow_integration=parameters.allow_integration_in_goal_trajectories)
+    return _find_point_error(points, len(names), allow_integration=parameters.allow_integration_in_goal_trajectories)
 
 
-def _points_error(points: Sequence[Any], count: int, *, allow_integration: bool) -> str | None:
+def _find_point_error(points: Sequence[Any], count: int, *, allow_integration: bool) -> str | None:
     previous_ns = 0
     for index, point in enumerate(points):
-        time_ns = nanoseconds(point.time_from_start)
+        time_ns = to_nanoseconds(point.time_from_start)
         if index and time_ns <= previous_ns:
             return (
                 f"Time between points {index - 1} and {index} is not strictly increasing, "
@@ -83,11 +83,11 @@ def _points_error(points: Sequence[Any], count: int, *, allow_integration: bool)
     return None
 
 
-def trajectory_of(message: Any, parameters: Parameters, held_positions: Sequence[float]) -> Trajectory:
+def trajectory_from_message(message: Any, parameters: Parameters, held_positions: Sequence[float]) -> Trajectory:
     """Convert a message to a trajectory of all joints of a controller.
 
     Args:
-        message: trajectory_msgs/msg/JointTrajectory, which must be valid (see `trajectory_error`).
+        message: trajectory_msgs/msg/JointTrajectory, which must be valid (see `find_trajectory_error`).
         parameters: the parameters of the controller.
         held_positions: the positions of all joints, in rad or m, for joints that the message does not name.
     """
@@ -106,7 +106,7 @@ def trajectory_of(message: Any, parameters: Parameters, held_positions: Sequence
     zeros = [0.0] * len(message_indices)
     points = [
         TrajectoryPoint(
-            nanoseconds(point.time_from_start),
+            to_nanoseconds(point.time_from_start),
             MotionState(
                 reorder(point.positions, held_positions),
                 reorder(point.velocities, zeros),
@@ -116,10 +116,12 @@ def trajectory_of(message: Any, parameters: Parameters, held_positions: Sequence
         for point in message.points
     ]
     interpolated = parameters.interpolation_method == "splines"
-    return Trajectory(points, nanoseconds(message.header.stamp), interpolated=interpolated)
+    return Trajectory(points, to_nanoseconds(message.header.stamp), interpolated=interpolated)
 
 
-def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Callable[[str], object]) -> Tolerances:
+def tolerances_from_goal(
+    goal: Any, joints: Sequence[str], default: Tolerances, log: Callable[[str], object]
+) -> Tolerances:
     """Return the controller's tolerances, overridden by the tolerances of a goal.
 
     Args:
@@ -137,7 +139,7 @@ def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Ca
             index = joints.index(tolerance.name)
             old_tolerance = (tolerances.path if field == "path_tolerance" else tolerances.goal)[index]
             try:
-                new_tolerance = old_tolerance.overridden(tolerance.position, tolerance.velocity, tolerance.acceleration)
+                new_tolerance = old_tolerance.override(tolerance.position, tolerance.velocity, tolerance.acceleration)
             except ValueError:
                 log(f"joint '{tolerance.name}' specified in goal.{field} has a negative tolerance that is not -1.")
                 log("Using default tolerances.")
@@ -145,8 +147,8 @@ def tolerances_of(goal: Any, joints: Sequence[str], default: Tolerances, log: Ca
             change = tolerances.with_path if field == "path_tolerance" else tolerances.with_goal
             tolerances = change(index, new_tolerance)
     try:
-        goal_time_s = effective_tolerance(
-            tolerances.goal_time_s, nanoseconds(goal.goal_time_tolerance) / NANOSECONDS_PER_SECOND
+        goal_time_s = resolve_tolerance(
+            tolerances.goal_time_s, to_nanoseconds(goal.goal_time_tolerance) / NANOSECONDS_PER_SECOND
         )
     except ValueError:
         log("goal.goal_time_tolerance is negative and not -1. Using default tolerances.")

@@ -144,6 +144,6 @@ class Parameters:
         stopped_velocity = self.constraints.stopped_velocity_tolerance
         return Tolerances(
             tuple(StateTolerance(constraint.trajectory) for constraint in joint_constraints),
-            tuple(StateTolerance(of_joint.goal, stopped_velocity) for of_joint in joint_constraints),
+            tuple(StateTolerance(constraint.goal, stopped_velocity) for constraint in joint_constraints),
             self.constraints.goal_time,
         )

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 from linkwright.control.controllers.drive_controller import DriveController
-from linkwright.control.controllers.drive_odometry import OdometryParameters, create_odometry, variances
+from linkwright.control.controllers.drive_odometry import OdometryParameters, check_variances, create_odometry
 from linkwright.control.controllers.speed_limits import NO_LIMITS, SpeedLimits
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.messages import Header, Time, Vector3, get_message
@@ -64,18 +64,18 @@ class LimitedDrive(DriveController[P], Generic[P]):
         """
         parameters, node = self.parameters, self.node
         self._settings, self._has_angles = parameters, parameters.position_feedback
-        self._limiters = [limits.limiter(axis) for axis, limits in self.limits().items()]
+        self._limiters = [limits.create_limiter(axis) for axis, limits in self.limits().items()]
         unstamped = "" if parameters.use_stamped_vel else "~/cmd_vel_unstamped"
-        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=parameters.cmd_vel_timeout, unstamped=unstamped)
+        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=parameters.cmd_vel_timeout, unstamped_topic=unstamped)
         self._odometry = create_odometry(
             node,
             parameters,
             "~/odom",
             "/tf",
-            pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
-            velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            pose_variances=check_variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            velocity_variances=check_variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
             window=parameters.velocity_rolling_window_size,
-            rate=parameters.publish_rate,
+            rate_hz=parameters.publish_rate,
         )
         publishes_limited = parameters.publish_limited_velocity
         self._limited_output = (

@@ -13,7 +13,7 @@ from typing import Any
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_controller import DriveController
-from linkwright.control.controllers.drive_odometry import OdometryParameters, create_odometry, variances
+from linkwright.control.controllers.drive_odometry import OdometryParameters, check_variances, create_odometry
 from linkwright.control.controllers.husarion_mecanum_controller import HusarionMecanumController, LinearLimits
 from linkwright.control.controllers.limited_drive import AngularLimits
 from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
@@ -97,14 +97,14 @@ class MecanumDriveController(DriveController[Parameters]):
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the wheels' velocity interfaces: front left, front right, rear right, rear left."""
-        return [f"{name}/{VELOCITY}" for name in self._joints("command")]
+        return [f"{name}/{VELOCITY}" for name in self._list_joint_names("command")]
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the wheels' velocity interfaces: front left, front right, rear right, rear left."""
-        pairs = zip(self._joints("state"), self._joints("command"), strict=True)
+        pairs = zip(self._list_joint_names("state"), self._list_joint_names("command"), strict=True)
         return [f"{measured or commanded}/{VELOCITY}" for measured, commanded in pairs]
 
-    def _joints(self, kind: str) -> list[str]:
+    def _list_joint_names(self, kind: str) -> list[str]:
         return [getattr(self.parameters, f"{corner}_wheel_{kind}_joint_name") for corner in _CORNERS]
 
     def reference_interfaces(self) -> Sequence[str]:
@@ -124,7 +124,7 @@ class MecanumDriveController(DriveController[Parameters]):
         self._settings, kinematics = parameters, parameters.kinematics
         problems = [
             not_empty(f"{corner}_wheel_command_joint_name", name)
-            for corner, name in zip(_CORNERS, self._joints("command"), strict=True)
+            for corner, name in zip(_CORNERS, self._list_joint_names("command"), strict=True)
         ]
         problems += [
             above(0.0)(f"kinematics.{name}", getattr(kinematics, name))
@@ -136,7 +136,7 @@ class MecanumDriveController(DriveController[Parameters]):
         self._drive = MecanumDrive(kinematics.sum_of_robot_center_projection_on_X_Y_axis, kinematics.wheels_radius)
         linear = parameters.linear
         axes = {"linear.x": linear.x, "linear.y": linear.y, "angular.z": parameters.angular.z}
-        self._limiters = [limits.limiter(axis) for axis, limits in axes.items()]
+        self._limiters = [limits.create_limiter(axis) for axis, limits in axes.items()]
         timeout = parameters.reference_timeout
         self._input = VelocityInput(node, "~/reference", timeout_s=timeout, qos=REFERENCE_QOS)
         self._odometry = create_odometry(
@@ -144,8 +144,8 @@ class MecanumDriveController(DriveController[Parameters]):
             parameters,
             "~/odometry",
             "~/tf_odometry",
-            pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
-            velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            pose_variances=check_variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            velocity_variances=check_variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
         )
         self._odometry.create_reset_service(node)
         self._state = node.publisher("control_msgs/msg/MecanumDriveControllerState", "~/controller_state")
@@ -170,17 +170,20 @@ class MecanumDriveController(DriveController[Parameters]):
         front_left, front_right, rear_right, rear_left = measured = [state.value for state in self.states]
         if all(map(isfinite, measured)):
             motion = self._drive.motion(front_left, front_right, rear_left, rear_right)
-            self._odometry.odometer.measure(self._base_velocity(*motion), period_s)
+            self._odometry.odometer.measure(self._to_base_velocity(*motion), period_s)
         requested = [reference.value for reference in self.references]
-        self._command_wheels(self._limited(requested, period_s))
+        self._command_wheels(self._limit_velocity(requested, period_s))
         self._odometry.publish(time_ns)
         if self._state.is_wanted:
             self._publish_state(time_ns, measured, requested)
         for reference in self.references:
             reference.value = nan
 
-    def _limited(self, requested: list[float], period_s: float) -> list[float]:
-        """Return the velocities within the limits; zeros, without limits, if a requested one is not a finite number."""
+    def _limit_velocity(self, requested: list[float], period_s: float) -> list[float]:
+        """Return the velocities within the limits.
+
+        If a requested velocity is not finite, all are 0 at once, without limits of the acceleration.
+        """
         if not all(map(isfinite, requested)):
             self._restart_limiters()
             return [0.0] * len(requested)
@@ -198,7 +201,7 @@ class MecanumDriveController(DriveController[Parameters]):
         for command, value in zip(self.commands, (front_left, front_right, rear_right, rear_left), strict=True):
             command.value = value
 
-    def _base_velocity(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float]:
+    def _to_base_velocity(self, forward: float, sideways: float, angular: float) -> tuple[float, float, float]:
         """Return the velocity of the robot's frame from the velocity of the wheels' center."""
         offset = self._settings.kinematics.base_frame_offset
         base_forward, base_sideways = _rotate(

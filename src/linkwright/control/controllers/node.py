@@ -34,7 +34,7 @@ class ControllerNode(SteppedNode):
 
 
 class _Call:
-    """A function call with the interface of a publisher, so that it is queued with the messages."""
+    """A function call that can be queued with messages, because it looks like a publisher."""
 
     __slots__ = ("_call",)
 

@@ -1,4 +1,4 @@
-"""``omni_wheel_drive_controller/OmniWheelDriveController``: a drive of three or more omni wheels.
+"""``omni_wheel_drive_controller/OmniWheelDriveController``: three or more omni wheels.
 
 Source: ros2_controllers (parameters, defaults, topics, the order of wheels). Deliberate differences: odometry follows
 arcs, and a command that is not finite stops the robot.
@@ -12,7 +12,7 @@ from math import isfinite
 
 from linkwright.control.controllers.controller import ControllerError, InterfaceNames
 from linkwright.control.controllers.drive_controller import DriveController
-from linkwright.control.controllers.drive_odometry import OdometryParameters, create_odometry, variances
+from linkwright.control.controllers.drive_odometry import OdometryParameters, check_variances, create_odometry
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.kinematics.drives import OmniDrive
@@ -99,8 +99,8 @@ class OmniWheelDriveController(DriveController[OmniWheelParameters]):
             parameters,
             "~/odom",
             "/tf",
-            pose_variances=variances("diagonal_covariance.pose", covariance.pose),
-            velocity_variances=variances("diagonal_covariance.twist", covariance.twist),
+            pose_variances=check_variances("diagonal_covariance.pose", covariance.pose),
+            velocity_variances=check_variances("diagonal_covariance.twist", covariance.twist),
         )
         self._odometry.create_reset_service(node)
 
@@ -118,13 +118,13 @@ class OmniWheelDriveController(DriveController[OmniWheelParameters]):
         for command, value in zip(self.commands, self._drive.wheel_speeds(forward, sideways, angular), strict=True):
             command.value = value
         if self.parameters.open_loop:
-            self._odometry.odometer.add_commanded((forward, sideways, angular), period_s)
+            self._odometry.odometer.integrate_command((forward, sideways, angular), period_s)
         else:
             self._measure([state.value for state in self.states], period_s)
         self._odometry.publish(time_ns)
 
     def _measure(self, values: list[float], period_s: float) -> None:
         """Integrate the measured motion. States that are not finite leave the odometry unchanged."""
-        speeds = self._speeds(values, period_s) if all(map(isfinite, values)) else None
+        speeds = self._compute_speeds(values, period_s) if all(map(isfinite, values)) else None
         if speeds is not None:
             self._odometry.odometer.measure(self._drive.motion(speeds), period_s)

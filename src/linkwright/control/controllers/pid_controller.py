@@ -20,7 +20,7 @@ from linkwright.graph.qos.profile import QoSProfile, ReliabilityPolicy
 from linkwright.messages import Header, Time, get_message
 from linkwright.nodes.parameter_tables import for_each, not_empty, parameter
 
-_LATEST = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+_LATEST_MESSAGE_QOS = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 def _check_interfaces(name: str, value: tuple[str, ...]) -> Phrase | None:
@@ -62,13 +62,13 @@ class Parameters:
     gains: Mapping[str, Gains] = for_each("dof_names", Gains)
 
     @property
-    def measured(self) -> tuple[str, ...]:
+    def measured_dof_names(self) -> tuple[str, ...]:
         """The names of the degrees of freedom that provide states and references."""
         return self.reference_and_state_dof_names or self.dof_names
 
 
 class PidController(Controller[Parameters]):
-    """A PID controller with references from the topic ``~/reference`` or from another controller."""
+    """A PID controller with references from ``~/reference`` or from another controller."""
 
     PARAMETERS = Parameters
 
@@ -78,19 +78,23 @@ class PidController(Controller[Parameters]):
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the state interfaces, kind by kind, or none if states are received on a topic."""
-        return () if self.parameters.use_external_measured_states else self._interface_names()
+        return () if self.parameters.use_external_measured_states else self._list_interface_names()
 
     def reference_interfaces(self) -> Sequence[str]:
         """Return the names of the references, in the order of the states."""
-        return self._interface_names()
+        return self._list_interface_names()
 
     def exported_states(self) -> Sequence[str]:
         """Return the names of the exported states, in the order of the states."""
-        return self._interface_names()
+        return self._list_interface_names()
 
-    def _interface_names(self) -> list[str]:
+    def _list_interface_names(self) -> list[str]:
         parameters = self.parameters
-        return [f"{name}/{kind}" for kind in parameters.reference_and_state_interfaces for name in parameters.measured]
+        return [
+            f"{name}/{kind}"
+            for kind in parameters.reference_and_state_interfaces
+            for name in parameters.measured_dof_names
+        ]
 
     def on_configure(self) -> None:
         """Create the publisher, the subscriptions and the service.
@@ -99,25 +103,25 @@ class PidController(Controller[Parameters]):
             ControllerError: the two lists of degrees of freedom differ in length.
         """
         parameters = self.parameters
-        if len(parameters.measured) != len(parameters.dof_names):
+        if len(parameters.measured_dof_names) != len(parameters.dof_names):
             raise ControllerError(
                 f"Size of 'dof_names' ({len(parameters.dof_names)}) and 'reference_and_state_dof_names' "
-                f"({len(parameters.measured)}) parameters has to be the same!"
+                f"({len(parameters.measured_dof_names)}) parameters has to be the same!"
             )
         self._pids = [Pid(parameters.gains[dof_name].pid) for dof_name in parameters.dof_names]
         self._uses_feedforward = parameters.enable_feedforward
         self._output = self.node.publisher("control_msgs/msg/MultiDOFStateStamped", "~/controller_state")
         self._state_type = get_message("control_msgs/msg/SingleDOFState")
-        self.node.subscribe("control_msgs/msg/MultiDOFCommand", "~/reference", self._on_reference, _LATEST)
+        self.node.subscribe("control_msgs/msg/MultiDOFCommand", "~/reference", self._on_reference, _LATEST_MESSAGE_QOS)
         if parameters.use_external_measured_states:
             self.node.subscribe(
-                "control_msgs/msg/MultiDOFCommand", "~/measured_state", self._on_measured_state, _LATEST
+                "control_msgs/msg/MultiDOFCommand", "~/measured_state", self._on_measured_state, _LATEST_MESSAGE_QOS
             )
         self.node.service("std_srvs/srv/SetBool", "~/set_feedforward_control", self._on_set_feedforward)
 
     def on_activate(self) -> None:
         """Discard earlier references, and reset the integrals that are not kept."""
-        self._measured_values = [state.value for state in self.states] or [nan] * len(self._interface_names())
+        self._measured_values = [state.value for state in self.states] or [nan] * len(self._list_interface_names())
         self._export_states()
         self._awaits_states = self.parameters.set_current_state_as_first_setpoint
         for reference in self.references:
@@ -144,7 +148,7 @@ class PidController(Controller[Parameters]):
         ):
             gains = self.parameters.gains[name]
             if isfinite(self.references[index].value) and isfinite(self._measured_values[index]):
-                command.value = self._command(index, pid, gains, period_s)
+                command.value = self._compute_command(index, pid, gains, period_s)
         if self._output.is_wanted:
             self._publish(time_ns, period_s)
 
@@ -159,56 +163,58 @@ class PidController(Controller[Parameters]):
         for exported, value in zip(self.exported, self._measured_values, strict=True):
             exported.value = value
 
-    def _command(self, index: int, pid: Pid, gains: Gains, period_s: float) -> float:
+    def _compute_command(self, index: int, pid: Pid, gains: Gains, period_s: float) -> float:
         pid.gains = gains.pid
-        rate = self._error_rate(index)
-        reference = self._reference_rate(index) if self._has_rates else self.references[index].value
+        rate = self._compute_error_rate(index)
+        reference = self._get_reference_rate(index) if self._has_rates else self.references[index].value
         feedforward = gains.feedforward_gain * reference if self._uses_feedforward and isfinite(reference) else 0.0
-        return feedforward + pid.command(self._error(index), period_s, rate if isfinite(rate) else None)
+        return feedforward + pid.command(self._compute_error(index), period_s, rate if isfinite(rate) else None)
 
     @property
     def _has_rates(self) -> bool:
         return len(self.references) == 2 * len(self._pids)
 
-    def _error(self, index: int) -> float:
+    def _compute_error(self, index: int) -> float:
         reference, measured = self.references[index].value, self._measured_values[index]
         wraps_around = self.parameters.gains[self.parameters.dof_names[index]].angle_wraparound
         return shortest_turn(measured, reference) if wraps_around else reference - measured
 
-    def _reference_rate(self, index: int) -> float:
+    def _get_reference_rate(self, index: int) -> float:
         return self.references[len(self._pids) + index].value if self._has_rates else nan
 
-    def _error_rate(self, index: int) -> float:
-        return self._reference_rate(index) - self._measured_values[len(self._pids) + index] if self._has_rates else nan
+    def _compute_error_rate(self, index: int) -> float:
+        return (
+            self._get_reference_rate(index) - self._measured_values[len(self._pids) + index] if self._has_rates else nan
+        )
 
     # --- topics -------------------------------------------------------------------------------------------------------
 
     def _on_reference(self, message: Any) -> None:
         if self.is_chained or not self.references:
             return
-        values = self._ordered_values(message)
+        values = self._order_values(message)
         for reference, value in zip(self.references, values, strict=False):
             if isfinite(value):
                 reference.value = value
 
     def _on_measured_state(self, message: Any) -> None:
-        values = self._ordered_values(message)
+        values = self._order_values(message)
         if values:
             self._measured_values = values
 
-    def _ordered_values(self, message: Any) -> list[float]:
+    def _order_values(self, message: Any) -> list[float]:
         """Return a message's values, and rates if used, in the order of the controller.
 
         Returns an empty list, and logs an error, if the message is invalid.
         """
-        expected_names = list(self.parameters.measured)
+        expected_names = list(self.parameters.measured_dof_names)
         names, values, rates = list(message.dof_names) or expected_names, list(message.values), list(message.values_dot)
-        is_wrong_size = (
+        has_wrong_size = (
             len(names) != len(expected_names)
             or len(values) != len(expected_names)
             or (rates and len(rates) != len(expected_names))
         )
-        if is_wrong_size:
+        if has_wrong_size:
             self.node.logger.error(
                 f"Size of input data names ({len(names)}) and/or values ({len(values)}) is not matching the expected "
                 f"size ({len(expected_names)})."
@@ -232,7 +238,7 @@ class PidController(Controller[Parameters]):
     def _publish(self, time_ns: int, period_s: float) -> None:
         message = get_message("control_msgs/msg/MultiDOFStateStamped")
         states = []
-        for index, name in enumerate(self.parameters.measured):
+        for index, name in enumerate(self.parameters.measured_dof_names):
             rate_index = len(self._pids) + index
             states.append(
                 self._state_type(
@@ -240,8 +246,8 @@ class PidController(Controller[Parameters]):
                     reference=self.references[index].value,
                     feedback=self._measured_values[index],
                     feedback_dot=self._measured_values[rate_index] if self._has_rates else nan,
-                    error=self._error(index),
-                    error_dot=self._error_rate(index),
+                    error=self._compute_error(index),
+                    error_dot=self._compute_error_rate(index),
                     time_step=period_s,
                     output=self.commands[index].value,
                 )

@@ -46,9 +46,9 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the state interfaces of the joints, followed by the scaling factor if it is named."""
-        names, factor = super().state_interfaces(), self._factor_name
+        names, factor_name = super().state_interfaces(), self._factor_name
         assert not isinstance(names, Interfaces), "the joints are named"
-        return [*names, factor] if factor else names
+        return [*names, factor_name] if factor_name else names
 
     def on_activate(self) -> None:
         """Hold the joints at their current positions."""
@@ -74,5 +74,5 @@ class ScaledJointTrajectoryController(JointTrajectoryController):
     def _publish_feedback(self, goal: Goal, time_ns: int, desired: MotionState) -> None:
         super()._publish_feedback(goal, time_ns + self._delay_ns, desired)
 
-    def _publish(self, time_ns: int, desired: MotionState) -> None:
-        super()._publish(time_ns + self._delay_ns, desired)
+    def _publish_state(self, time_ns: int, desired: MotionState) -> None:
+        super()._publish_state(time_ns + self._delay_ns, desired)

@@ -1,4 +1,4 @@
-"""Broadcasters of IMUs, force-torque sensors, range sensors, poses, GNSS receivers and magnetometers.
+"""Broadcasters of sensors: IMU, force-torque, range, pose, GNSS and magnetometer.
 
 Source: ``imu_sensor_broadcaster``, ``force_torque_sensor_broadcaster``, ``range_sensor_broadcaster``,
 ``pose_broadcaster``, ``gps_sensor_broadcaster`` and ``magnetometer_broadcaster`` of ros2_controllers (parameters, names
@@ -47,7 +47,7 @@ class ImuParameters:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Vector:
+class VectorNames:
     """The names of the three interfaces of a vector."""
 
     x: str = ""
@@ -56,7 +56,7 @@ class Vector:
 
 
 @dataclass(frozen=True, kw_only=True)
-class QuaternionNames(Vector):
+class QuaternionNames(VectorNames):
     """The names of the four interfaces of a quaternion."""
 
     w: str = ""
@@ -66,15 +66,15 @@ class QuaternionNames(Vector):
 class WrenchNames:
     """The names of the interfaces of a force-torque sensor."""
 
-    force: Vector = Vector()
-    torque: Vector = Vector()
+    force: VectorNames = VectorNames()
+    torque: VectorNames = VectorNames()
 
 
 @dataclass(frozen=True, kw_only=True)
 class PoseNames:
     """The names of the interfaces of a pose."""
 
-    position: Vector = Vector()
+    position: VectorNames = VectorNames()
     orientation: QuaternionNames = QuaternionNames()
 
 
@@ -97,7 +97,7 @@ class AxisFactors:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Offset:
+class WrenchOffset:
     """The offset of a wrench, in N and N m."""
 
     force: AxisOffsets = AxisOffsets()
@@ -105,7 +105,7 @@ class Offset:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Multiplier:
+class WrenchMultiplier:
     """The factors by which a wrench is multiplied."""
 
     force: AxisFactors = AxisFactors()
@@ -122,8 +122,8 @@ class WrenchParameters:
     frame_id: str = parameter("", description="the frame_id of the messages", check=not_empty)
     sensor_name: str = parameter("", description="the name of the sensor in ros2_control")
     interface_names: WrenchNames = WrenchNames()
-    offset: Offset = Offset()
-    multiplier: Multiplier = Multiplier()
+    offset: WrenchOffset = WrenchOffset()
+    multiplier: WrenchMultiplier = WrenchMultiplier()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -208,13 +208,15 @@ class SensorBroadcaster(Controller[P]):
 
     def on_configure(self) -> None:
         """Create the publisher."""
-        self._kind = get_message(self.TYPE)
+        self._message_class = get_message(self.TYPE)
         self._output = self.node.publisher(self.TYPE, self.TOPIC)
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Publish a message if the topic has a subscription."""
         if self._output.is_wanted:
-            self._output.publish(self.message(self._kind, self.header(time_ns), [state.value for state in self.states]))
+            self._output.publish(
+                self.message(self._message_class, self.header(time_ns), [state.value for state in self.states])
+            )
 
     def header(self, time_ns: int) -> Header:
         """Return a header with a time in nanoseconds and the frame from the parameters."""
@@ -222,12 +224,12 @@ class SensorBroadcaster(Controller[P]):
         return Header(stamp=Time.from_nanoseconds(time_ns), frame_id=frame)
 
 
-def _wrench_values(wrench: WrenchNames | Offset | Multiplier) -> list[Any]:
+def _list_components(wrench: WrenchNames | WrenchOffset | WrenchMultiplier) -> list[Any]:
     """Return the six values of forces and torques: force x, y, z, torque x, y, z."""
     return [getattr(vector, axis) for vector in (wrench.force, wrench.torque) for axis in "xyz"]
 
 
-def _vector(values: Sequence[float]) -> Vector3:
+def _to_vector(values: Sequence[float]) -> Vector3:
     return Vector3(x=values[0], y=values[1], z=values[2])
 
 
@@ -250,9 +252,9 @@ class ImuBroadcaster(SensorBroadcaster[ImuParameters]):
             header=header,
             orientation=from_values(Quaternion, values[:4]),
             orientation_covariance=parameters.static_covariance_orientation,
-            angular_velocity=_vector(values[4:7]),
+            angular_velocity=_to_vector(values[4:7]),
             angular_velocity_covariance=parameters.static_covariance_angular_velocity,
-            linear_acceleration=_vector(values[7:]),
+            linear_acceleration=_to_vector(values[7:]),
             linear_acceleration_covariance=parameters.static_covariance_linear_acceleration,
         )
 
@@ -270,7 +272,7 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
             ControllerError: neither or both of ``sensor_name`` and ``interface_names`` are set.
         """
         parameters = self.parameters
-        interface_names = _wrench_values(parameters.interface_names)
+        interface_names = _list_components(parameters.interface_names)
         if not parameters.sensor_name and not any(interface_names):
             raise ControllerError(
                 "'sensor_name' or at least one 'interface_names.[force|torque].[x|y|z]' parameter has to be specified."
@@ -300,12 +302,12 @@ class ForceTorqueBroadcaster(SensorBroadcaster[WrenchParameters]):
         wrench_values = [
             ((next(remaining_values) if name else 0.0) + offset) * factor
             for name, offset, factor in zip(
-                self._names, _wrench_values(parameters.offset), _wrench_values(parameters.multiplier), strict=True
+                self._names, _list_components(parameters.offset), _list_components(parameters.multiplier), strict=True
             )
         ]
         wrench = get_message("geometry_msgs/msg/Wrench")
         return message_class(
-            header=header, wrench=wrench(force=_vector(wrench_values[:3]), torque=_vector(wrench_values[3:]))
+            header=header, wrench=wrench(force=_to_vector(wrench_values[:3]), torque=_to_vector(wrench_values[3:]))
         )
 
 
@@ -390,14 +392,15 @@ class PoseBroadcaster(SensorBroadcaster[PoseParameters]):
         super().update(time_ns, period_s)
         rate = self.parameters.tf.publish_rate
         period_ns = round(NANOSECONDS_PER_SECOND / rate) if rate else 0
-        is_waiting = 0 < self._next_transform_ns - time_ns <= period_ns  # More after a reset of simulated time.
-        if self._transforms is None or not self._child_frame or is_waiting:
+        # A remaining time above the period means that simulated time was reset.
+        is_too_early = 0 < self._next_transform_ns - time_ns <= period_ns
+        if self._transforms is None or not self._child_frame or is_too_early:
             return
         values = [state.value for state in self.states]
         if not self._transforms.is_wanted or not all(map(isfinite, values)):
             return
         self._next_transform_ns = time_ns + period_ns
-        transform = Transform(translation=_vector(values), rotation=from_values(Quaternion, values[3:]))
+        transform = Transform(translation=_to_vector(values), rotation=from_values(Quaternion, values[3:]))
         stamped_transform = TransformStamped(
             header=self.header(time_ns), child_frame_id=self._child_frame, transform=transform
         )
@@ -411,21 +414,24 @@ class GpsBroadcaster(SensorBroadcaster[GpsParameters]):
     TYPE, TOPIC = "sensor_msgs/msg/NavSatFix", "~/gps/fix"
 
     def state_interfaces(self) -> InterfaceNames:
-        """Return the interfaces of the status, the service and the position, and of its variances if they are read."""
-        angles = ("latitude", "longitude", "altitude")
-        names = ["status", "service", *angles]
+        """Return the interfaces of status, service and position, and of variances if enabled."""
+        coordinates = ("latitude", "longitude", "altitude")
+        names = ["status", "service", *coordinates]
         if self.parameters.read_covariance_from_interface:
-            names += (f"{angle}_covariance" for angle in angles)
+            names += (f"{coordinate}_covariance" for coordinate in coordinates)
         return [f"{self.parameters.sensor_name}/{name}" for name in names]
 
-    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
-        """Return a position message. A status or service that is not known is -1 or 0."""
+    def message(self, message_class: Any, header: Header, values: Sequence[float]) -> Any:
+        """Return a position message.
+
+        An unknown status is -1, and an unknown service is 0.
+        """
         status, service, latitude, longitude, altitude, *position_variances = values
         covariance = list(self.parameters.static_position_covariance)
         if position_variances:
             covariance = [0.0] * 9
             covariance[::4] = position_variances
-        return kind(
+        return message_class(
             header=header,
             status=get_message("sensor_msgs/msg/NavSatStatus")(
                 status=int(status) if isfinite(status) else -1, service=int(service) if isfinite(service) else 0
@@ -434,9 +440,9 @@ class GpsBroadcaster(SensorBroadcaster[GpsParameters]):
             longitude=longitude,
             altitude=altitude,
             position_covariance=covariance,
-            position_covariance_type=kind.COVARIANCE_TYPE_DIAGONAL_KNOWN
+            position_covariance_type=message_class.COVARIANCE_TYPE_DIAGONAL_KNOWN
             if position_variances
-            else kind.COVARIANCE_TYPE_KNOWN,
+            else message_class.COVARIANCE_TYPE_KNOWN,
         )
 
 
@@ -450,10 +456,10 @@ class MagnetometerBroadcaster(SensorBroadcaster[MagnetometerParameters]):
         """Return the interfaces of the magnetic field, in T."""
         return [f"{self.parameters.sensor_name}/magnetic_field.{axis}" for axis in "xyz"]
 
-    def message(self, kind: Any, header: Header, values: Sequence[float]) -> Any:
+    def message(self, message_class: Any, header: Header, values: Sequence[float]) -> Any:
         """Return a message of the magnetic field with the covariance from the parameters."""
-        return kind(
+        return message_class(
             header=header,
-            magnetic_field=_vector(values),
+            magnetic_field=_to_vector(values),
             magnetic_field_covariance=self.parameters.static_covariance,
         )

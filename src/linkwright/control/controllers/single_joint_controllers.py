@@ -31,7 +31,10 @@ class JointParameters:
 
 @dataclass(frozen=True, kw_only=True)
 class ClassicPid(PidParameters):
-    """The gains of a PID controller of ROS 1, whose integral term is 0 without a bound."""
+    """The gains of a PID controller of ROS 1.
+
+    Without a bound, the integral term is 0.
+    """
 
     @property
     def pid(self) -> PidGains:
@@ -58,18 +61,18 @@ P = TypeVar("P", bound=JointParameters)
 class _SingleJointController(Controller[P], Generic[P]):
     """The base class of controllers that follow the number on ``~/command``."""
 
-    INTERFACE: str
+    COMMAND_INTERFACE: str
     """The interface of the joint that is commanded."""
-    FOLLOWED: str
+    CONTROLLED_INTERFACE: str
     """The kind of the number on ``~/command``."""
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the interface of the joint that is commanded."""
-        return [f"{self.parameters.joint}/{self.INTERFACE}"]
+        return [f"{self.parameters.joint}/{self.COMMAND_INTERFACE}"]
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the measured value that the command refers to."""
-        return [f"{self.parameters.joint}/{self.FOLLOWED}"]
+        return [f"{self.parameters.joint}/{self.CONTROLLED_INTERFACE}"]
 
     def on_configure(self) -> None:
         """Subscribe to the commands."""
@@ -79,19 +82,19 @@ class _SingleJointController(Controller[P], Generic[P]):
 
     def on_activate(self) -> None:
         """Start at the current position, or at 0."""
-        self._target = self.states[0].value if self.FOLLOWED == POSITION else 0.0
+        self._target = self.states[0].value if self.CONTROLLED_INTERFACE == POSITION else 0.0
 
     def on_deactivate(self) -> None:
         """Command zero, unless positions are commanded."""
-        if self.INTERFACE != POSITION:
+        if self.COMMAND_INTERFACE != POSITION:
             self.commands[0].value = 0.0
 
     def update(self, time_ns: int, period_s: float) -> None:
         """Command the joint."""
-        self.commands[0].value = self._command(period_s)
+        self.commands[0].value = self._compute_command(period_s)
 
     @abstractmethod
-    def _command(self, period_s: float) -> float:
+    def _compute_command(self, period_s: float) -> float:
         """Return the command of the joint; NaN for no command."""
 
     def _on_command(self, message: Any) -> None:
@@ -104,7 +107,7 @@ class _SingleJointController(Controller[P], Generic[P]):
 
     def _stop_motion(self) -> bool:
         """Stop a commanded velocity, and return whether there was one."""
-        if self.FOLLOWED != VELOCITY or not abs(self._target) > 0.0:
+        if self.CONTROLLED_INTERFACE != VELOCITY or not abs(self._target) > 0.0:
             return False
         self._target = 0.0
         return True
@@ -115,28 +118,28 @@ class _ForwardingController(_SingleJointController[JointParameters]):
 
     def state_interfaces(self) -> InterfaceNames:
         """Return the position where the controller starts, or none if it starts at 0."""
-        return super().state_interfaces() if self.FOLLOWED == POSITION else ()
+        return super().state_interfaces() if self.CONTROLLED_INTERFACE == POSITION else ()
 
-    def _command(self, period_s: float) -> float:
+    def _compute_command(self, period_s: float) -> float:
         return self._target
 
 
 class JointPositionController(_ForwardingController):
     """``position_controllers/JointPositionController``."""
 
-    INTERFACE = FOLLOWED = POSITION
+    COMMAND_INTERFACE = CONTROLLED_INTERFACE = POSITION
 
 
 class JointVelocityController(_ForwardingController):
     """``velocity_controllers/JointVelocityController``."""
 
-    INTERFACE = FOLLOWED = VELOCITY
+    COMMAND_INTERFACE = CONTROLLED_INTERFACE = VELOCITY
 
 
 class JointEffortController(_ForwardingController):
     """``effort_controllers/JointEffortController``."""
 
-    INTERFACE = FOLLOWED = EFFORT
+    COMMAND_INTERFACE = CONTROLLED_INTERFACE = EFFORT
 
 
 class _PidController(_SingleJointController[PidJointParameters]):
@@ -147,28 +150,28 @@ class _PidController(_SingleJointController[PidJointParameters]):
         super().on_activate()
         self._pid = Pid(self.parameters.pid.pid)
         joint = self.robot.joints.get(self.parameters.joint) if self.robot is not None else None
-        self._turns_endlessly = self.FOLLOWED == POSITION and joint is not None and joint.type == "continuous"
+        self._is_continuous = self.CONTROLLED_INTERFACE == POSITION and joint is not None and joint.type == "continuous"
 
-    def _command(self, period_s: float) -> float:
+    def _compute_command(self, period_s: float) -> float:
         self._pid.gains = self.parameters.pid.pid
         measured = self.states[0].value
-        error = shortest_turn(measured, self._target) if self._turns_endlessly else self._target - measured
+        error = shortest_turn(measured, self._target) if self._is_continuous else self._target - measured
         return self._pid.command(error, period_s)
 
 
 class EffortPositionController(_PidController):
     """``effort_controllers/JointPositionController``."""
 
-    INTERFACE, FOLLOWED = EFFORT, POSITION
+    COMMAND_INTERFACE, CONTROLLED_INTERFACE = EFFORT, POSITION
 
 
 class EffortVelocityController(_PidController):
     """``effort_controllers/JointVelocityController``."""
 
-    INTERFACE, FOLLOWED = EFFORT, VELOCITY
+    COMMAND_INTERFACE, CONTROLLED_INTERFACE = EFFORT, VELOCITY
 
 
 class VelocityPositionController(_PidController):
     """``velocity_controllers/JointPositionController``."""
 
-    INTERFACE, FOLLOWED = VELOCITY, POSITION
+    COMMAND_INTERFACE, CONTROLLED_INTERFACE = VELOCITY, POSITION

@@ -38,7 +38,7 @@ class SpeedLimits:
     max_jerk: float = parameter(nan, description="in m/s³ or rad/s³; NaN for no limit")
     min_jerk: float = parameter(nan, description="in m/s³ or rad/s³; NaN for -max_jerk")
 
-    def limiter(self, axis: str) -> SpeedLimiter:
+    def create_limiter(self, axis: str) -> SpeedLimiter:
         """Return a limiter with these limits.
 
         Args:
@@ -49,17 +49,17 @@ class SpeedLimits:
         """
         velocity = acceleration = reverse_acceleration = jerk = UNBOUNDED
         if self._is_enabled(axis, "velocity", self.has_velocity_limits, self.max_velocity):
-            velocity = _bounds(axis, "velocity", self.min_velocity, self.max_velocity)
+            velocity = _check_bounds(axis, "velocity", self.min_velocity, self.max_velocity)
         if self._is_enabled(axis, "acceleration", self.has_acceleration_limits, self.max_acceleration):
             max_acceleration = self.max_acceleration
             min_acceleration = _first_number(self.max_acceleration_reverse, self.min_acceleration, -max_acceleration)
             braking_limit = _first_number(self.max_deceleration, min_acceleration)
-            acceleration = _bounds(axis, "acceleration", braking_limit, max_acceleration)
-            reverse_acceleration = _bounds(
+            acceleration = _check_bounds(axis, "acceleration", braking_limit, max_acceleration)
+            reverse_acceleration = _check_bounds(
                 axis, "acceleration", min_acceleration, _first_number(self.max_deceleration_reverse, max_acceleration)
             )
         if self._is_enabled(axis, "jerk", self.has_jerk_limits, self.max_jerk):
-            jerk = _bounds(axis, "jerk", self.min_jerk, self.max_jerk)
+            jerk = _check_bounds(axis, "jerk", self.min_jerk, self.max_jerk)
         return SpeedLimiter(velocity, acceleration, jerk, reverse_acceleration=reverse_acceleration, brakes_freely=True)
 
     @staticmethod
@@ -85,7 +85,7 @@ def _first_number(*values: float) -> float:
     return next(value for value in values if not isnan(value))
 
 
-def _bounds(axis: str, kind: str, min_value: float, max_value: float) -> Bounds:
+def _check_bounds(axis: str, kind: str, min_value: float, max_value: float) -> Bounds:
     min_value = _first_number(min_value, -max_value)
     if min_value > max_value:
         raise ControllerError(

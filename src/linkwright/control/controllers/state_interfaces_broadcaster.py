@@ -1,4 +1,4 @@
-"""``state_interfaces_broadcaster/StateInterfacesBroadcaster``: the values of any state interfaces.
+"""``state_interfaces_broadcaster/StateInterfacesBroadcaster``: values of state interfaces.
 
 Source: ros2_controllers (parameters, topics).
 """
@@ -25,7 +25,7 @@ class StateInterfacesParameters:
 
 
 class StateInterfacesBroadcaster(Controller[StateInterfacesParameters]):
-    """A broadcaster of values. Their names are published once, in the same order."""
+    """A broadcaster of values, whose names are published once, in the same order."""
 
     PARAMETERS = StateInterfacesParameters
 

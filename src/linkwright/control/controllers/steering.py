@@ -15,7 +15,7 @@ from math import cos, isfinite, nan, pi
 from typing import ClassVar, Generic, TypeVar
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
-from linkwright.control.controllers.drive_odometry import DriveOdometry, variances
+from linkwright.control.controllers.drive_odometry import DriveOdometry, check_variances
 from linkwright.control.controllers.velocity_input import REFERENCE_QOS, VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.diagnostics import phrase
@@ -72,30 +72,30 @@ class SteeringParameters:
         return rear if self.front_steering else front
 
     @property
-    def traction(self) -> tuple[str, ...]:
+    def traction_names(self) -> tuple[str, ...]:
         """The names of the driven joints."""
         return self.traction_joints_names or (
             self.rear_wheels_names if self.front_steering else self.front_wheels_names
         )
 
     @property
-    def steering(self) -> tuple[str, ...]:
+    def steering_names(self) -> tuple[str, ...]:
         """The names of the steered joints."""
         return self.steering_joints_names or (
             self.front_wheels_names if self.front_steering else self.rear_wheels_names
         )
 
     @property
-    def traction_states(self) -> tuple[str, ...]:
+    def traction_state_names(self) -> tuple[str, ...]:
         """The names of the components that provide the states of the driven joints."""
         humble_names = self.rear_wheels_state_names if self.front_steering else self.front_wheels_state_names
-        return self.traction_joints_state_names or humble_names or self.traction
+        return self.traction_joints_state_names or humble_names or self.traction_names
 
     @property
-    def steering_states(self) -> tuple[str, ...]:
+    def steering_state_names(self) -> tuple[str, ...]:
         """The names of the components that provide the states of the steered joints."""
         humble_names = self.front_wheels_state_names if self.front_steering else self.rear_wheels_state_names
-        return self.steering_joints_state_names or humble_names or self.steering
+        return self.steering_joints_state_names or humble_names or self.steering_names
 
 
 P = TypeVar("P", bound=SteeringParameters)
@@ -108,22 +108,22 @@ class SteeringController(Controller[P], Generic[P]):
     joints.
 
     Attributes:
-        KIND: the vehicle's name in error messages.
-        JOINTS: the number of driven joints, and of steered joints.
+        VEHICLE: the vehicle's name in error messages.
+        JOINT_COUNTS: the number of driven joints, and of steered joints.
     """
 
-    KIND: ClassVar[str]
-    JOINTS: ClassVar[tuple[int, int]]
+    VEHICLE: ClassVar[str]
+    JOINT_COUNTS: ClassVar[tuple[int, int]]
 
     @abstractmethod
-    def drive(self) -> CarDrive:
+    def create_drive(self) -> CarDrive:
         """Return the drive with the dimensions of the vehicle, without checking them."""
 
     def command_interfaces(self) -> InterfaceNames:
         """Return the velocities of the driven joints, then the positions of the steered joints."""
         parameters = self.parameters
-        return [f"{name}/{VELOCITY}" for name in parameters.traction] + [
-            f"{name}/{POSITION}" for name in parameters.steering
+        return [f"{name}/{VELOCITY}" for name in parameters.traction_names] + [
+            f"{name}/{POSITION}" for name in parameters.steering_names
         ]
 
     def state_interfaces(self) -> InterfaceNames:
@@ -133,8 +133,8 @@ class SteeringController(Controller[P], Generic[P]):
         """
         parameters = self.parameters
         kind = POSITION if parameters.position_feedback else VELOCITY
-        return [f"{traction_state}/{kind}" for traction_state in parameters.traction_states] + [
-            f"{steering_state}/{POSITION}" for steering_state in parameters.steering_states
+        return [f"{traction_state}/{kind}" for traction_state in parameters.traction_state_names] + [
+            f"{steering_state}/{POSITION}" for steering_state in parameters.steering_state_names
         ]
 
     def reference_interfaces(self) -> Sequence[str]:
@@ -150,22 +150,24 @@ class SteeringController(Controller[P], Generic[P]):
         parameters, node = self.parameters, self.node
         self._settings = parameters
         self._check_joints()
-        self._drive = self.drive()
+        self._drive = self.create_drive()
         for name, value in (("wheelbase", self._drive.wheelbase), ("traction_wheels_radius", self._drive.radius)):
             problem = above(0.0)(name, value)
             if problem is not None:
                 raise ControllerError(problem)
         unstamped = "" if parameters.use_stamped_vel else "~/reference_unstamped"
         timeout = parameters.reference_timeout
-        self._input = VelocityInput(node, "~/reference", timeout_s=timeout, unstamped=unstamped, qos=REFERENCE_QOS)
+        self._input = VelocityInput(
+            node, "~/reference", timeout_s=timeout, unstamped_topic=unstamped, qos=REFERENCE_QOS
+        )
         self._odometry = DriveOdometry(
             node,
             "~/odometry",
             "~/tf_odometry",
             frame=parameters.odom_frame_id,
-            child=parameters.base_frame_id,
-            pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
-            velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            child_frame=parameters.base_frame_id,
+            pose_variances=check_variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            velocity_variances=check_variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
             publishes_transforms=parameters.enable_odom_tf,
             window=parameters.velocity_rolling_window_size,
         )
@@ -173,19 +175,19 @@ class SteeringController(Controller[P], Generic[P]):
         self._state = node.publisher("control_msgs/msg/SteeringControllerStatus", "~/controller_state")
 
     def _check_joints(self) -> None:
-        parameters, (driven_count, steered_count) = self.parameters, self.JOINTS
+        parameters, (driven_count, steered_count) = self.parameters, self.JOINT_COUNTS
         for role, needed, names in (
-            ("traction", driven_count, parameters.traction),
-            ("steering", steered_count, parameters.steering),
-            ("traction state", driven_count, parameters.traction_states),
-            ("steering state", steered_count, parameters.steering_states),
+            ("traction", driven_count, parameters.traction_names),
+            ("steering", steered_count, parameters.steering_names),
+            ("traction state", driven_count, parameters.traction_state_names),
+            ("steering state", steered_count, parameters.steering_state_names),
         ):
             if len(names) != needed:
                 raise ControllerError(
                     phrase(
                         "{kind} configuration requires exactly {expected_count} {role} joint(s), "
                         "but {count} were provided",
-                        kind=self.KIND,
+                        kind=self.VEHICLE,
                         expected_count=needed,
                         role=role,
                         count=len(names),
@@ -204,7 +206,7 @@ class SteeringController(Controller[P], Generic[P]):
     def on_deactivate(self) -> None:
         """Stop the wheels, and keep the steering angle."""
         self._input.close()
-        for command in self.commands[: self.JOINTS[0]]:
+        for command in self.commands[: self.JOINT_COUNTS[0]]:
             command.value = 0.0
 
     def update_references(self, time_ns: int, period_s: float) -> None:
@@ -218,13 +220,15 @@ class SteeringController(Controller[P], Generic[P]):
         forward, angular = (reference.value for reference in self.references)
         is_finite = isfinite(forward) and isfinite(angular)
         if self._settings.open_loop:
-            self._odometry.odometer.add_commanded((forward, 0.0, angular) if is_finite else (0.0, 0.0, 0.0), period_s)
+            self._odometry.odometer.integrate_command(
+                (forward, 0.0, angular) if is_finite else (0.0, 0.0, 0.0), period_s
+            )
         else:
             self._measure(period_s)
         if is_finite:
-            self._move(forward, angular)
+            self._command_wheels(forward, angular)
         else:
-            for command in self.commands[: self.JOINTS[0]]:
+            for command in self.commands[: self.JOINT_COUNTS[0]]:
                 command.value = 0.0
         self._odometry.publish(time_ns)
         if self._state.is_wanted:
@@ -234,7 +238,7 @@ class SteeringController(Controller[P], Generic[P]):
 
     def _measure(self, period_s: float) -> None:
         """Update the odometry from wheels and steering, unless a value is not finite."""
-        driven_count, steered_count = self.JOINTS
+        driven_count, steered_count = self.JOINT_COUNTS
         values = [state.value for state in self.states]
         if not all(map(isfinite, values)) or period_s <= 0.0:
             return
@@ -246,12 +250,12 @@ class SteeringController(Controller[P], Generic[P]):
         forward, angular = self._drive.motion(wheels[-1], wheels[0], self._measured_angle)
         self._odometry.odometer.measure((forward, 0.0, angular), period_s)
 
-    def _move(self, forward: float, angular: float) -> None:
+    def _command_wheels(self, forward: float, angular: float) -> None:
         """Command the steering, and wheel velocities that match the measured steering angle.
 
         In open loop, wheel velocities match the commanded angle.
         """
-        parameters, (driven_count, steered_count) = self._settings, self.JOINTS
+        parameters, (driven_count, steered_count) = self._settings, self.JOINT_COUNTS
         angle = self._drive.steering_angle(forward, angular)
         wheel_angle = angle if parameters.open_loop else self._measured_angle
         if parameters.reduce_wheel_speed_until_steering_reached:
@@ -265,7 +269,7 @@ class SteeringController(Controller[P], Generic[P]):
             command.value = value
 
     def _publish_state(self, time_ns: int) -> None:
-        driven_count = self.JOINTS[0]
+        driven_count = self.JOINT_COUNTS[0]
         states, commands = [state.value for state in self.states], [command.value for command in self.commands]
         wheels: list[float] = states[:driven_count]
         has_positions = self._settings.position_feedback

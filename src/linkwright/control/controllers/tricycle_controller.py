@@ -11,7 +11,7 @@ from math import cos, inf, isnan, nan, pi
 from typing import Any
 
 from linkwright.control.controllers.controller import Controller, ControllerError, InterfaceNames
-from linkwright.control.controllers.drive_odometry import DriveOdometry, variances
+from linkwright.control.controllers.drive_odometry import DriveOdometry, check_variances
 from linkwright.control.controllers.velocity_input import VelocityInput
 from linkwright.control.hardware.interfaces import POSITION, VELOCITY
 from linkwright.control.motion.axle_limits import UNLIMITED, SteeringLimiter, TractionLimiter
@@ -119,20 +119,20 @@ class TricycleController(Controller[Parameters]):
                 raise ControllerError(problem)
         self._drive = TricycleDrive(parameters.wheelbase, parameters.wheel_radius)
         self._traction_limiter, self._steering_limiter = (
-            _traction_limiter(parameters.traction),
-            _steering_limiter(parameters.steering),
+            _create_traction_limiter(parameters.traction),
+            _create_steering_limiter(parameters.steering),
         )
         timeout = parameters.cmd_vel_timeout / 1000.0
         unstamped = "" if parameters.use_stamped_vel else "~/cmd_vel"
-        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=timeout, unstamped=unstamped)
+        self._input = VelocityInput(node, "~/cmd_vel", timeout_s=timeout, unstamped_topic=unstamped)
         self._odometry = DriveOdometry(
             node,
             "~/odom",
             "/tf",
             frame=parameters.odom_frame_id,
-            child=parameters.base_frame_id,
-            pose_variances=variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
-            velocity_variances=variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
+            child_frame=parameters.base_frame_id,
+            pose_variances=check_variances("pose_covariance_diagonal", parameters.pose_covariance_diagonal),
+            velocity_variances=check_variances("twist_covariance_diagonal", parameters.twist_covariance_diagonal),
             publishes_transforms=parameters.enable_odom_tf,
             publishes_pose=not parameters.odom_only_twist,
             window=parameters.velocity_rolling_window_size,
@@ -168,12 +168,12 @@ class TricycleController(Controller[Parameters]):
             raise ControllerError(phrase("Could not read feedback value"))
         forward, _, angular = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
         speed, angle = self._drive.wheel(forward, angular)
-        speed = self._traction_limiter.approach(speed * _speed_fraction(abs(angle - measured_angle)), period_s)
+        speed = self._traction_limiter.approach(speed * _compute_speed_fraction(abs(angle - measured_angle)), period_s)
         angle = self._steering_limiter.approach(angle, period_s)
         self.commands[0].value, self.commands[1].value = speed, angle
         if self._settings.open_loop:
             forward, angular = self._drive.motion(speed, angle)
-            self._odometry.odometer.add_commanded((forward, 0.0, angular), period_s)
+            self._odometry.odometer.integrate_command((forward, 0.0, angular), period_s)
         else:
             forward, angular = self._drive.motion(measured_speed, measured_angle)
             self._odometry.odometer.measure((forward, 0.0, angular), period_s)
@@ -187,24 +187,24 @@ class TricycleController(Controller[Parameters]):
         return response
 
 
-def _speed_fraction(error: float) -> float:
+def _compute_speed_fraction(error: float) -> float:
     """Return the fraction of the commanded speed for a steering error in rad."""
     if error < _MAX_FULL_SPEED_ERROR:
         return 1.0
     return _CREEP_FRACTION if error > _MIN_CREEP_ERROR else cos(error)
 
 
-def _traction_limiter(limits: TractionLimits) -> TractionLimiter:
+def _create_traction_limiter(limits: TractionLimits) -> TractionLimiter:
     limiter_name = "traction"
     return TractionLimiter(
-        _magnitude_bounds(limiter_name, "velocity", limits.min_velocity, limits.max_velocity),
-        _magnitude_bounds(limiter_name, "acceleration", limits.min_acceleration, limits.max_acceleration),
-        _magnitude_bounds(limiter_name, "deceleration", limits.min_deceleration, limits.max_deceleration),
-        _magnitude_bounds(limiter_name, "jerk", limits.min_jerk, limits.max_jerk),
+        _check_magnitude_bounds(limiter_name, "velocity", limits.min_velocity, limits.max_velocity),
+        _check_magnitude_bounds(limiter_name, "acceleration", limits.min_acceleration, limits.max_acceleration),
+        _check_magnitude_bounds(limiter_name, "deceleration", limits.min_deceleration, limits.max_deceleration),
+        _check_magnitude_bounds(limiter_name, "jerk", limits.min_jerk, limits.max_jerk),
     )
 
 
-def _steering_limiter(limits: SteeringLimits) -> SteeringLimiter:
+def _create_steering_limiter(limits: SteeringLimits) -> SteeringLimiter:
     limiter_name, min_position, max_position = "steering", limits.min_position, limits.max_position
     position = UNBOUNDED
     if not (isnan(min_position) and isnan(max_position)):
@@ -216,12 +216,12 @@ def _steering_limiter(limits: SteeringLimits) -> SteeringLimiter:
         raise _wrong_order_error(limiter_name, "position")
     return SteeringLimiter(
         position,
-        _magnitude_bounds(limiter_name, "velocity", limits.min_velocity, limits.max_velocity),
-        _magnitude_bounds(limiter_name, "acceleration", limits.min_acceleration, limits.max_acceleration),
+        _check_magnitude_bounds(limiter_name, "velocity", limits.min_velocity, limits.max_velocity),
+        _check_magnitude_bounds(limiter_name, "acceleration", limits.min_acceleration, limits.max_acceleration),
     )
 
 
-def _magnitude_bounds(limiter_name: str, kind: str, min_value: float, max_value: float) -> Bounds:
+def _check_magnitude_bounds(limiter_name: str, kind: str, min_value: float, max_value: float) -> Bounds:
     """Return the bounds of a magnitude, with defaults for bounds that are NaN.
 
     Raises:

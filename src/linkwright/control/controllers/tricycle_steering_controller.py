@@ -27,10 +27,10 @@ class TricycleSteeringController(SteeringController[Parameters]):
     """A controller of a tricycle with two driven wheels and a steered wheel."""
 
     PARAMETERS = Parameters
-    KIND = "Tricycle"
-    JOINTS = (2, 1)
+    VEHICLE = "Tricycle"
+    JOINT_COUNTS = (2, 1)
 
-    def drive(self) -> CarDrive:
+    def create_drive(self) -> CarDrive:
         """Return the drive with the dimensions from the parameters.
 
         The dimensions have different names in Humble and Jazzy.

@@ -36,7 +36,7 @@ def _check_divisor(name: str, value: tuple[float, ...]) -> Phrase | None:
 
 
 class FilterParameters(ABC):
-    """The base class of the parameters of a filter, which are a table of parameters."""
+    """The base class of the parameter tables of filters."""
 
     @abstractmethod
     def create(self) -> ValueFilter:
@@ -44,7 +44,7 @@ class FilterParameters(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class _Window(FilterParameters):
+class _WindowFilter(FilterParameters):
     """A filter of the last values."""
 
     REDUCE: ClassVar[Callable[[Collection[float]], float]]
@@ -63,22 +63,27 @@ class _Window(FilterParameters):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Mean(_Window):
+class MeanFilter(_WindowFilter):
     """``filters/MeanFilterDouble``: the mean of the last values."""
 
     REDUCE = fmean
 
 
 @dataclass(frozen=True, kw_only=True)
-class Median(_Window):
-    """``filters/MedianFilterDouble``: the median of the last values, for an even number the smaller one of two."""
+class MedianFilter(_WindowFilter):
+    """``filters/MedianFilterDouble``: the median of the last values.
+
+    For an even number of values, it is the smaller one of the two in the middle.
+    """
 
     REDUCE = median_low
 
 
 @dataclass(frozen=True, kw_only=True)
-class TransferFunction(FilterParameters):
-    """``filters/TransferFunctionFilterDouble``: a digital filter, a[0] y[n] = sum b[k] x[n-k] - sum a[k] y[n-k].
+class TransferFunctionFilter(FilterParameters):
+    """``filters/TransferFunctionFilterDouble``: a digital filter.
+
+    The results are a[0] y[n] = sum b[k] x[n-k] - sum a[k] y[n-k].
 
     Values before the first one are equal to the first one, and so are the results.
     """
@@ -107,8 +112,11 @@ class TransferFunction(FilterParameters):
 
 
 @dataclass(frozen=True, kw_only=True)
-class LowPass(FilterParameters):
-    """``control_filters/LowPassFilterDouble``: y[n] = b x[n-1] + a y[n-1]. The first value passes unchanged."""
+class LowPassFilter(FilterParameters):
+    """``control_filters/LowPassFilterDouble``: y[n] = b x[n-1] + a y[n-1].
+
+    The first value passes unchanged.
+    """
 
     sampling_frequency: float = parameter(0.0, description="the rate of the values, in Hz", check=above(0.0))
     damping_frequency: float = parameter(0.0, description="the cutoff frequency, in Hz", check=above(0.0))
@@ -117,14 +125,14 @@ class LowPass(FilterParameters):
     def create(self) -> ValueFilter:
         """Return a filter that has received no value."""
         damping = 10.0 ** (self.damping_intensity / -10.0)
-        kept = exp(-2.0 * pi * self.damping_frequency / (self.sampling_frequency * damping))
+        decay = exp(-2.0 * pi * self.damping_frequency / (self.sampling_frequency * damping))
         last_value = last_result = nan
 
         def apply(value: float) -> float:
             nonlocal last_value, last_result
             if isnan(last_result):
                 last_value = last_result = value
-            last_result = last_value * (1.0 - kept) + last_result * kept
+            last_result = last_value * (1.0 - decay) + last_result * decay
             last_value = value
             return last_result
 
@@ -132,7 +140,7 @@ class LowPass(FilterParameters):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Exponential(FilterParameters):
+class ExponentialFilter(FilterParameters):
     """``control_filters/ExponentialFilterDouble``: y[n] = alpha x[n] + (1 - alpha) y[n-1]."""
 
     alpha: float = parameter(0.5, description="the weight of the new value, 0 to 1", check=_check_fraction)
@@ -151,7 +159,7 @@ class Exponential(FilterParameters):
 
 @dataclass(frozen=True, kw_only=True)
 class RateLimiter(FilterParameters):
-    """``control_filters/RateLimiterDouble``: the value, with limits of it and of its derivatives.
+    """``control_filters/RateLimiterDouble``: limits a value and its derivatives.
 
     A limit that is NaN does not apply. A minimum that is NaN is the negative maximum.
     """
@@ -185,16 +193,16 @@ class RateLimiter(FilterParameters):
             max_jerk=self.max_second_derivative,
             min_jerk=self.min_second_derivative,
         )
-        limiter = limits.limiter("RateLimiterDouble")
+        limiter = limits.create_limiter("RateLimiterDouble")
         return lambda value: limiter.approach(value, self.sampling_interval)
 
 
 FILTERS: dict[str, type[Any]] = {
-    "filters/MeanFilterDouble": Mean,
-    "filters/MedianFilterDouble": Median,
-    "filters/TransferFunctionFilterDouble": TransferFunction,
-    "control_filters/LowPassFilterDouble": LowPass,
-    "control_filters/ExponentialFilterDouble": Exponential,
+    "filters/MeanFilterDouble": MeanFilter,
+    "filters/MedianFilterDouble": MedianFilter,
+    "filters/TransferFunctionFilterDouble": TransferFunctionFilter,
+    "control_filters/LowPassFilterDouble": LowPassFilter,
+    "control_filters/ExponentialFilterDouble": ExponentialFilter,
     "control_filters/RateLimiterDouble": RateLimiter,
 }
 """The parameter tables of filters, by the type of the filter."""

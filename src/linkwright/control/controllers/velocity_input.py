@@ -37,29 +37,35 @@ class VelocityInput:
     """
 
     def __init__(
-        self, node: ControllerNode, topic: str, *, timeout_s: float, unstamped: str = "", qos: QoSProfile | int = 10
+        self,
+        node: ControllerNode,
+        topic: str,
+        *,
+        timeout_s: float,
+        unstamped_topic: str = "",
+        qos: QoSProfile | int = 10,
     ) -> None:
         self._logger = node.logger
         self._timeout_ns = round(timeout_s * NANOSECONDS_PER_SECOND)
         self._is_open = False
-        self.forget()
+        self.discard_command()
         commander = node.commander(self._on_publisher_lost)
-        if topic != unstamped:
+        if topic != unstamped_topic:
             node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._on_stamped, qos, commander=commander)
-        if unstamped:
-            node.subscribe("geometry_msgs/msg/Twist", unstamped, self._on_twist, qos, commander=commander)
+        if unstamped_topic:
+            node.subscribe("geometry_msgs/msg/Twist", unstamped_topic, self._on_twist, qos, commander=commander)
 
     def open(self) -> None:
         """Discard the last command, and start accepting commands."""
-        self.forget()
+        self.discard_command()
         self._is_open = True
 
     def close(self) -> None:
         """Discard the last command, and stop accepting commands."""
-        self.forget()
+        self.discard_command()
         self._is_open = False
 
-    def forget(self) -> None:
+    def discard_command(self) -> None:
         """Discard the last command."""
         self._new_command: tuple[Velocity, int] | None = None
         self._command: tuple[Velocity, int] | None = None
@@ -67,7 +73,7 @@ class VelocityInput:
     def _on_publisher_lost(self) -> bool:
         """Discard the last command of a lost publisher, and return whether it was not zero."""
         velocity, _ = self._new_command or self._command or ((0.0,), 0)
-        self.forget()
+        self.discard_command()
         return any(velocity)
 
     def velocity(self, time_ns: int) -> Velocity | None:
@@ -96,14 +102,14 @@ class VelocityInput:
             )
         self._on_twist(message.twist, stamp_ns)
 
-    def _on_twist(self, twist: Any, stamp: int = 0) -> None:
+    def _on_twist(self, twist: Any, stamp_ns: int = 0) -> None:
         if not self._is_open:
             self._logger.warning(phrase("Can't accept new commands. subscriber is inactive"))
             return
-        self._new_command = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)), stamp
+        self._new_command = (float(twist.linear.x), float(twist.linear.y), float(twist.angular.z)), stamp_ns
 
-    def _receive(self, velocity: Velocity, stamp: int, now_ns: int) -> None:
-        start_ns = stamp if 0 < stamp <= now_ns else now_ns
+    def _receive(self, velocity: Velocity, stamp_ns: int, now_ns: int) -> None:
+        start_ns = stamp_ns if 0 < stamp_ns <= now_ns else now_ns
         if not all(map(isfinite, velocity)):
             self._command = None
             self._logger.warning(
@@ -116,7 +122,7 @@ class VelocityInput:
                 phrase(
                     "Ignoring the received message (timestamp {stamp:.3f}) because it is older than the current time "
                     "by {age:.3f} seconds, which exceeds the allowed timeout ({timeout:.3f})",
-                    stamp=stamp / NANOSECONDS_PER_SECOND,
+                    stamp=stamp_ns / NANOSECONDS_PER_SECOND,
                     age=(now_ns - start_ns) / NANOSECONDS_PER_SECOND,
                     timeout=self._timeout_ns / NANOSECONDS_PER_SECOND,
                 )

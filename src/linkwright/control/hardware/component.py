@@ -56,10 +56,12 @@ class Hardware:
         self.states: list[StateInterface] = []
         self.commands: list[CommandInterface] = []
         for component in description.components:
-            self.states += [self._state_interface(component, state) for state in component.states]
+            self.states += [self._create_state_interface(component, state) for state in component.states]
             self.commands += [CommandInterface(component.name, command.name) for command in component.commands]
 
-    def _state_interface(self, component: ComponentDescription, interface: InterfaceDescription) -> StateInterface:
+    def _create_state_interface(
+        self, component: ComponentDescription, interface: InterfaceDescription
+    ) -> StateInterface:
         value = interface.initial_value
         if value != value:  # NaN means that initial_value is missing, so the older parameter ``initial_NAME`` is used.
             text = component.parameters.get(f"initial_{interface.name}", "")

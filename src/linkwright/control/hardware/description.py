@@ -17,7 +17,7 @@ from linkwright.xmltree import Element
 
 SYSTEM, ACTUATOR, SENSOR = "system", "actuator", "sensor"
 _TYPES = (SYSTEM, ACTUATOR, SENSOR)
-_TRUE = ("true", "True", "TRUE", "1")
+_TRUE_TEXTS = ("true", "True", "TRUE", "1")
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +98,7 @@ class HardwareDescription:
 
     def is_set(self, name: str) -> bool:
         """Return whether a parameter of the hardware is ``true``."""
-        return self.parameters.get(name, "").strip() in _TRUE
+        return self.parameters.get(name, "").strip() in _TRUE_TEXTS
 
 
 def hardware_from_robot(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
@@ -108,7 +108,9 @@ def hardware_from_robot(robot: Robot) -> tuple[list[HardwareDescription], list[D
     and values that are not numbers.
     """
     reader = _Reader(robot)
-    hardware_list = [reader.hardware(extension) for extension in robot.extensions if extension.tag == "ros2_control"]
+    hardware_list = [
+        reader.parse_hardware(extension) for extension in robot.extensions if extension.tag == "ros2_control"
+    ]
     hardware_by_name: dict[str, HardwareDescription] = {}
     for hardware in hardware_list:
         if hardware is not None:
@@ -125,7 +127,7 @@ class _Reader:
         self._robot = robot
         self.findings: list[Diagnostic] = []
 
-    def hardware(self, element: Element) -> HardwareDescription | None:
+    def parse_hardware(self, element: Element) -> HardwareDescription | None:
         name, kind = element.attributes.get("name", ""), element.attributes.get("type", "")
         if not name or kind not in _TYPES:
             message = phrase("<ros2_control> has no name, or its type '{kind}' is not valid", kind=kind)
@@ -139,7 +141,7 @@ class _Reader:
             message = phrase("<ros2_control> '{name}' does not name a hardware plugin", name=name)
             self._report("CTL112", message, element, phrase("write <hardware><plugin>mock_components/GenericSystem"))
             return None
-        joints = [self._component(child, "joint") for child in element.elements("joint")]
+        joints = [self._parse_component(child, "joint") for child in element.elements("joint")]
         names = [joint.name for joint in joints]
         for joint_component, joint_element in zip(joints, element.elements("joint"), strict=True):
             if joint_component.name not in self._robot.joints:
@@ -157,43 +159,43 @@ class _Reader:
             name,
             kind,
             plugin.text().strip(),
-            element.attributes.get("is_async", "").strip() in _TRUE,
-            _parameters(hardware),
+            element.attributes.get("is_async", "").strip() in _TRUE_TEXTS,
+            _parse_parameters(hardware),
             tuple(joint for joint in joints if joint.name in self._robot.joints),
-            tuple(self._component(child, "sensor") for child in element.elements("sensor")),
-            tuple(self._component(child, "gpio") for child in element.elements("gpio")),
+            tuple(self._parse_component(child, "sensor") for child in element.elements("sensor")),
+            tuple(self._parse_component(child, "gpio") for child in element.elements("gpio")),
         )
 
-    def _component(self, element: Element, kind: str) -> ComponentDescription:
-        name, parameters = element.attributes.get("name", ""), _parameters(element)
+    def _parse_component(self, element: Element, kind: str) -> ComponentDescription:
+        name, parameters = element.attributes.get("name", ""), _parse_parameters(element)
         return ComponentDescription(
             name,
             kind,
-            self._interfaces(element, "command_interface"),
-            self._interfaces(element, "state_interface"),
+            self._parse_interfaces(element, "command_interface"),
+            self._parse_interfaces(element, "state_interface"),
             parameters,
-            self._mimic(name, element, parameters) if kind == "joint" else None,
+            self._parse_mimic(name, element, parameters) if kind == "joint" else None,
         )
 
-    def _mimic(self, name: str, element: Element, parameters: Mapping[str, str]) -> MimicDescription | None:
+    def _parse_mimic(self, name: str, element: Element, parameters: Mapping[str, str]) -> MimicDescription | None:
         if "mimic" in parameters:
             multiplier, offset = (parameters.get(item, "") for item in ("multiplier", "offset"))
             return MimicDescription(
                 parameters["mimic"],
-                1.0 if not multiplier else self._number(multiplier, element),
-                0.0 if not offset else self._number(offset, element),
+                1.0 if not multiplier else self._parse_number(multiplier, element),
+                0.0 if not offset else self._parse_number(offset, element),
             )
         joint = self._robot.joints.get(name)
         if joint is None or joint.mimic is None or element.attributes.get("mimic") in ("false", "False"):
             return None
         return MimicDescription(joint.mimic.joint, joint.mimic.multiplier, joint.mimic.offset)
 
-    def _interfaces(self, element: Element, tag: str) -> tuple[InterfaceDescription, ...]:
+    def _parse_interfaces(self, element: Element, tag: str) -> tuple[InterfaceDescription, ...]:
         interfaces = {}
         for child in element.elements(tag):
-            parameters = _parameters(child)
+            parameters = _parse_parameters(child)
             minimum, maximum, initial = (
-                self._number(parameters[name], child) if parameters.get(name, "").strip() else nan
+                self._parse_number(parameters[name], child) if parameters.get(name, "").strip() else nan
                 for name in ("min", "max", "initial_value")
             )
             name = child.attributes.get("name", "")
@@ -201,12 +203,12 @@ class _Reader:
             interfaces[name] = InterfaceDescription(name, minimum, maximum, initial, is_limited, parameters)
         return tuple(interfaces.values())
 
-    def _number(self, text: str, element: Element) -> float:
+    def _parse_number(self, text: str, element: Element) -> float:
         try:
             return float(text)
         except ValueError:
-            if text.strip() in (*_TRUE, "false", "False"):
-                return float(text.strip() in _TRUE)
+            if text.strip() in (*_TRUE_TEXTS, "false", "False"):
+                return float(text.strip() in _TRUE_TEXTS)
             self._report("CTL115", phrase("'{text}' is not a number", text=text), element, None)
             return nan
 
@@ -218,10 +220,10 @@ class _Reader:
 
 def _is_limited(element: Element) -> bool:
     limits = element.first("limits")
-    return limits is None or limits.attributes.get("enable", "true").strip() in _TRUE
+    return limits is None or limits.attributes.get("enable", "true").strip() in _TRUE_TEXTS
 
 
-def _parameters(element: Element | None) -> dict[str, str]:
+def _parse_parameters(element: Element | None) -> dict[str, str]:
     if element is None:
         return {}
     return {child.attributes.get("name", ""): child.text().strip() for child in element.elements("param")}

@@ -52,7 +52,7 @@ class JointLimits:
     kinds: frozenset[str] = frozenset()
 
 
-def limits_of(joint: Joint, component: ComponentDescription) -> JointLimits:
+def limits_from_joint(joint: Joint, component: ComponentDescription) -> JointLimits:
     """Return the limits of a joint, from its URDF element and its description as hardware."""
     limit, interfaces = joint.limit, {command.name: command for command in component.commands}
     position, velocity, effort, acceleration, deceleration = _UNLIMITED, inf, inf, inf, inf
@@ -62,12 +62,12 @@ def limits_of(joint: Joint, component: ComponentDescription) -> JointLimits:
         velocity, effort = abs(limit.velocity) or inf, abs(limit.effort) or inf
         acceleration = abs(limit.acceleration or inf)
         deceleration = abs(limit.deceleration or acceleration)
-    lower, upper = _range(interfaces.get(POSITION))
-    acceleration = min(acceleration, _max_magnitude(interfaces.get(ACCELERATION)))
+    lower, upper = _get_bounds(interfaces.get(POSITION))
+    acceleration = min(acceleration, _get_max_magnitude(interfaces.get(ACCELERATION)))
     return JointLimits(
         (max(position[0], lower), min(position[1], upper)),
-        min(velocity, _max_magnitude(interfaces.get(VELOCITY))),
-        min(effort, _max_magnitude(interfaces.get(EFFORT))),
+        min(velocity, _get_max_magnitude(interfaces.get(VELOCITY))),
+        min(effort, _get_max_magnitude(interfaces.get(EFFORT))),
         acceleration,
         deceleration if isfinite(deceleration) else acceleration,
         joint.safety,
@@ -95,9 +95,9 @@ class JointLimiter:
         self.name = name
         self._limits = limits
         self._limit_functions = {
-            POSITION: self._position,
-            VELOCITY: self._velocity,
-            EFFORT: self._effort,
+            POSITION: self._limit_position,
+            VELOCITY: self._limit_velocity,
+            EFFORT: self._limit_effort,
             ACCELERATION: self._limit_acceleration,
         }
         self._commands = {
@@ -108,12 +108,12 @@ class JointLimiter:
         self._states = states
         self._last_commands: dict[str, float] = {}
 
-    def enforce(self, period_s: float, claimed: Collection[str]) -> list[tuple[str, float, float]]:
+    def enforce(self, period_s: float, claimed_names: Collection[str]) -> list[tuple[str, float, float]]:
         """Limit commands in place.
 
         Args:
             period_s: the time since the last call, in seconds.
-            claimed: names of the interfaces that controllers have claimed; other interfaces are ignored.
+            claimed_names: names of the interfaces that controllers have claimed; other interfaces are ignored.
 
         Returns:
             For each command outside its limits: the kind, the commanded value and the limited value.
@@ -121,7 +121,7 @@ class JointLimiter:
         exceeded = []
         for kind, command in self._commands.items():
             requested = command.value
-            if command.name not in claimed:
+            if command.name not in claimed_names:
                 self._last_commands.pop(kind, None)
             elif not isnan(requested):
                 limited = self._last_commands[kind] = self._limit_functions[kind](requested, period_s)
@@ -130,11 +130,11 @@ class JointLimiter:
                     exceeded.append((kind, requested, limited))
         return exceeded
 
-    def _state(self, kind: str) -> float | None:
+    def _get_state(self, kind: str) -> float | None:
         state = self._states.get(kind)
         return None if state is None or not isfinite(state.value) else state.value
 
-    def _velocity_range(self, position: float | None) -> tuple[float, float]:
+    def _compute_velocity_range(self, position: float | None) -> tuple[float, float]:
         """Return the velocity limits in both directions, reduced near soft limits."""
         max_velocity, safety = self._limits.velocity, self._limits.safety
         if safety is None or position is None or not safety.k_position:
@@ -143,19 +143,19 @@ class JointLimiter:
         high = safety.k_position * (safety.soft_upper_limit - position)
         return _clamp(low, -max_velocity, max_velocity), _clamp(high, -max_velocity, max_velocity)
 
-    def _position(self, requested: float, period_s: float) -> float:
-        last_position = self._last_commands.get(POSITION, self._state(POSITION))
+    def _limit_position(self, requested: float, period_s: float) -> float:
+        last_position = self._last_commands.get(POSITION, self._get_state(POSITION))
         requested = _clamp(requested, *self._limits.position)
         if last_position is None:
             return requested
-        low, high = self._velocity_range(last_position)
+        low, high = self._compute_velocity_range(last_position)
         return _clamp(requested, last_position + low * period_s, last_position + high * period_s)
 
-    def _velocity(self, requested: float, period_s: float) -> float:
-        limits, position = self._limits, self._state(POSITION)
-        low, high = self._velocity_range(position)
+    def _limit_velocity(self, requested: float, period_s: float) -> float:
+        limits, position = self._limits, self._get_state(POSITION)
+        low, high = self._compute_velocity_range(position)
         requested = _clamp(requested, low, high)
-        last_velocity = self._last_commands.get(VELOCITY, self._state(VELOCITY))
+        last_velocity = self._last_commands.get(VELOCITY, self._get_state(VELOCITY))
         if last_velocity is not None:
             max_increase = limits.acceleration if last_velocity >= 0.0 else limits.deceleration
             max_decrease = limits.deceleration if last_velocity > 0.0 else limits.acceleration
@@ -167,15 +167,15 @@ class JointLimiter:
         lower, upper = limits.position
         return _clamp(requested, min(0.0, (lower - position) / period_s), max(0.0, (upper - position) / period_s))
 
-    def _effort(self, requested: float, period_s: float) -> float:
+    def _limit_effort(self, requested: float, period_s: float) -> float:
         limits, safety = self._limits, self._limits.safety
         low, high = -limits.effort, limits.effort
-        position, velocity = self._state(POSITION), self._state(VELOCITY)
+        position, velocity = self._get_state(POSITION), self._get_state(VELOCITY)
         if position is not None:
             low = 0.0 if position <= limits.position[0] else low
             high = 0.0 if position >= limits.position[1] else high
         if velocity is not None:
-            min_velocity, max_velocity = self._velocity_range(position)
+            min_velocity, max_velocity = self._compute_velocity_range(position)
             if safety is not None and safety.k_velocity:
                 low = _clamp(safety.k_velocity * (min_velocity - velocity), low, high)
                 high = _clamp(safety.k_velocity * (max_velocity - velocity), low, high)
@@ -185,7 +185,7 @@ class JointLimiter:
         return _clamp(requested, low, high)
 
     def _limit_acceleration(self, requested: float, period_s: float) -> float:
-        velocity = self._state(VELOCITY) or 0.0
+        velocity = self._get_state(VELOCITY) or 0.0
         is_braking = requested * velocity < 0.0
         max_acceleration = self._limits.deceleration if is_braking else self._limits.acceleration
         return _clamp(requested, -max_acceleration, max_acceleration)
@@ -204,14 +204,14 @@ class CommandLimits:
     def __init__(self, limiters: Sequence[JointLimiter], logger: Logger) -> None:
         self._limiters = limiters
         self._logger = logger
-        self._reported: set[tuple[str, str]] = set()
+        self._logged_interfaces: set[tuple[str, str]] = set()
 
-    def enforce(self, period_s: float, claimed: Collection[str]) -> None:
+    def enforce(self, period_s: float, claimed_names: Collection[str]) -> None:
         """Limit commands in place, as in `JointLimiter.enforce`."""
         for limiter in self._limiters:
-            for kind, requested, limited in limiter.enforce(period_s, claimed):
-                if (limiter.name, kind) not in self._reported:
-                    self._reported.add((limiter.name, kind))
+            for kind, requested, limited in limiter.enforce(period_s, claimed_names):
+                if (limiter.name, kind) not in self._logged_interfaces:
+                    self._logged_interfaces.add((limiter.name, kind))
                     self._logger.warning(
                         phrase(
                             "joint '{joint}': the commanded {kind} {requested:g} is outside its limits; {limited:g} "
@@ -224,7 +224,7 @@ class CommandLimits:
                     )
 
 
-def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
+def _get_bounds(interface: InterfaceDescription | None) -> tuple[float, float]:
     """Return the minimum and maximum of an interface in the description.
 
     Missing bounds are infinite.
@@ -237,9 +237,9 @@ def _range(interface: InterfaceDescription | None) -> tuple[float, float]:
     )
 
 
-def _max_magnitude(interface: InterfaceDescription | None) -> float:
+def _get_max_magnitude(interface: InterfaceDescription | None) -> float:
     """Return the largest magnitude that an interface permits in both directions."""
-    lower, upper = _range(interface)
+    lower, upper = _get_bounds(interface)
     return min(abs(lower), abs(upper))
 
 

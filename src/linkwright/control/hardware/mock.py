@@ -22,7 +22,7 @@ from linkwright.control.hardware.interfaces import (
 )
 from linkwright.graph.log.logger import Logger
 
-_STANDARD = (POSITION, VELOCITY, ACCELERATION, EFFORT)
+_STANDARD_INTERFACES = (POSITION, VELOCITY, ACCELERATION, EFFORT)
 _MODES = (POSITION, VELOCITY, ACCELERATION)
 
 
@@ -35,8 +35,8 @@ class _Joint:
     def __init__(self, description: ComponentDescription, states: dict[str, StateInterface]) -> None:
         self.description = description
         self.mode = POSITION
-        self.exposed_states = [states[state.name] for state in description.states if state.name in _STANDARD]
-        self.values = dict.fromkeys(_STANDARD, 0.0)
+        self.exposed_states = [states[state.name] for state in description.states if state.name in _STANDARD_INTERFACES]
+        self.values = dict.fromkeys(_STANDARD_INTERFACES, 0.0)
         for interface in self.exposed_states:
             if isnan(interface.value):
                 interface.value = 0.0
@@ -64,7 +64,7 @@ class GenericSystem(Hardware):
         self._mirrored_pairs: list[tuple[CommandInterface, StateInterface]] = []
         for command in self.commands:
             joint = self._joints.get(command.component)
-            if joint is not None and command.kind in _STANDARD:
+            if joint is not None and command.kind in _STANDARD_INTERFACES:
                 joint.commands[command.kind] = command
             elif command.name in states:
                 self._mirrored_pairs.append((command, states[command.name]))
@@ -79,22 +79,22 @@ class GenericSystem(Hardware):
             if self._offset_interface and state.kind == self._offset_interface and state.component in self._joints
         ]
         # Lookups are slow at 1 kHz, so states are copied directly unless dynamics or a mimic joint needs their values.
-        coupled = {other for joint, mimicked, _ in self._mimic_joints for other in (joint, mimicked)}
+        coupled = {coupled_joint for joint, mimicked, _ in self._mimic_joints for coupled_joint in (joint, mimicked)}
         joints = [joint for joint in self._joints.values() if self._has_dynamics or joint in coupled]
         uncoupled = [joint for joint in self._joints.values() if not self._has_dynamics and joint not in coupled]
         self._shown_states = [(state, joint.values, state.kind) for joint in joints for state in joint.exposed_states]
-        self._repeated_commands = [
-            (command, joint.values, kind, self._state_offset(kind))
+        self._commands_to_joints = [
+            (command, joint.values, kind, self._get_state_offset(kind))
             for joint in joints
             for kind, command in joint.commands.items()
         ]
-        self._copied_commands = [
-            (joint.commands[state.kind], state, self._state_offset(state.kind))
+        self._commands_to_states = [
+            (joint.commands[state.kind], state, self._get_state_offset(state.kind))
             for joint in uncoupled
             for state in joint.exposed_states
             if state.kind in joint.commands
         ]
-        self._read: Callable[[float], None] = self._integrate if self._has_dynamics else self._repeat
+        self._update_joints: Callable[[float], None] = self._integrate if self._has_dynamics else self._copy_commands
 
     def _add_mock_commands(self, kind: str, *, enabled: bool) -> None:
         names = {command.name for command in self.commands}
@@ -139,11 +139,11 @@ class GenericSystem(Hardware):
         """Compute the states from the commands."""
         if self._is_disabled:
             return
-        for command, state, offset in self._copied_commands:
+        for command, state, offset in self._commands_to_states:
             value = command.value
             if value == value:
                 state.value = value + offset
-        self._read(period_s)
+        self._update_joints(period_s)
         for joint, mimicked, mimic in self._mimic_joints:
             joint.values[POSITION] = mimic.multiplier * mimicked.values[POSITION] + mimic.offset
             for kind in (VELOCITY, ACCELERATION, EFFORT):
@@ -154,7 +154,7 @@ class GenericSystem(Hardware):
             if command.value == command.value:
                 state.value = command.value
         for joint, state in self._offset_states:
-            position = _command_value(joint.commands.get(POSITION))
+            position = _get_command(joint.commands.get(POSITION))
             if position is not None:
                 state.value = position + self._offset
 
@@ -162,26 +162,26 @@ class GenericSystem(Hardware):
     def _position_offset(self) -> float:
         return 0.0 if self._offset_interface else self._offset
 
-    def _state_offset(self, kind: str) -> float:
+    def _get_state_offset(self, kind: str) -> float:
         return self._position_offset if kind == POSITION else 0.0
 
-    def _repeat(self, _: float) -> None:
-        for command, values, kind, offset in self._repeated_commands:
+    def _copy_commands(self, _: float) -> None:
+        for command, values, kind, offset in self._commands_to_joints:
             value = command.value
             if value == value:
                 values[kind] = value + offset
 
     def _integrate(self, period_s: float) -> None:
         for joint in self._joints.values():
-            self._move(joint, period_s)
-            effort = _command_value(joint.commands.get(EFFORT))
+            self._integrate_joint(joint, period_s)
+            effort = _get_command(joint.commands.get(EFFORT))
             if effort is not None:
                 joint.values[EFFORT] = effort
 
-    def _move(self, joint: _Joint, period_s: float) -> None:
+    def _integrate_joint(self, joint: _Joint, period_s: float) -> None:
         """Integrate a joint over one period from its previous values, as ros2_control does."""
         values = joint.values
-        target = _command_value(joint.commands.get(joint.mode))
+        target = _get_command(joint.commands.get(joint.mode))
         velocity = values[VELOCITY]
         if joint.mode == POSITION:
             if target is not None:
@@ -199,6 +199,6 @@ class GenericSystem(Hardware):
             values[ACCELERATION] = (target - velocity) / period_s if period_s else 0.0
 
 
-def _command_value(command: Interface | None) -> float | None:
+def _get_command(command: Interface | None) -> float | None:
     """Return the value of a command, or None if there is no interface or no command."""
     return None if command is None or isnan(command.value) else command.value

@@ -26,7 +26,7 @@ _UP_TRANSITIONS = ("configure", "activate")
 _DOWN_TRANSITIONS = ("cleanup", "deactivate")
 
 
-def hardware_by_entry_points(description: HardwareDescription, logger: Logger) -> Hardware | None:
+def create_installed_hardware(description: HardwareDescription, logger: Logger) -> Hardware | None:
     """Create the hardware of a description, or return None if its type is not installed."""
     hardware_type = hardware_class(description.plugin)
     return None if hardware_type is None else hardware_type(description, logger)
@@ -49,7 +49,7 @@ class Resources:
         self._logger = logger
         self._states: dict[str, StateInterface] = {}
         self._commands: dict[str, CommandInterface] = {}
-        self._owners: dict[str, Hardware] = {}
+        self._hardware_by_interface: dict[str, Hardware] = {}
         self._references: dict[str, list[CommandInterface]] = {}
         self._exported: dict[str, list[StateInterface]] = {}
         self._available: set[str] = set()
@@ -92,7 +92,9 @@ class Resources:
                 self._states.setdefault(state.name, state)
             for command in hardware.commands:
                 self._commands.setdefault(command.name, command)
-            self._owners.update((state.name, hardware) for state in (*hardware.states, *hardware.commands))
+            self._hardware_by_interface.update(
+                (state.name, hardware) for state in (*hardware.states, *hardware.commands)
+            )
             self._logger.info(f"Successful initialization of hardware '{description.name}'")
 
     # --- interfaces ---------------------------------------------------------------------------------------------------
@@ -115,8 +117,8 @@ class Resources:
 
         An interface is available if its hardware is configured or its controller is active.
         """
-        owner = self._owners.get(name)
-        return name in self._available if owner is None else owner.state in (INACTIVE, ACTIVE)
+        hardware = self._hardware_by_interface.get(name)
+        return name in self._available if hardware is None else hardware.state in (INACTIVE, ACTIVE)
 
     def states(self, names: Sequence[str] | Interfaces) -> list[StateInterface]:
         """Return state interfaces by name, or all available state interfaces.
@@ -157,10 +159,10 @@ class Resources:
         return match
 
     def add_exported_interfaces(
-        self, controller: str, references: list[CommandInterface], exported: list[StateInterface]
+        self, controller: str, references: list[CommandInterface], exported_states: list[StateInterface]
     ) -> None:
         """Add the references and exported states of a chainable controller."""
-        self._references[controller], self._exported[controller] = references, exported
+        self._references[controller], self._exported[controller] = references, exported_states
 
     def remove_exported_interfaces(self, controller: str) -> None:
         """Remove the references and exported states of a controller."""
@@ -249,7 +251,7 @@ class Resources:
                     else:
                         hardware.timings[0].measure(hardware.read, time_ns, period_s)
                 except Exception as error:  # noqa: BLE001 - an error of hardware must not stop other hardware
-                    failed.append(self._fail(hardware, "reading", error))
+                    failed.append(self._handle_failure(hardware, "reading", error))
         return failed
 
     def write(self, time_ns: int, period_s: float) -> list[Hardware]:
@@ -266,18 +268,18 @@ class Resources:
                     else:
                         hardware.timings[1].measure(hardware.write, time_ns, period_s)
                 except Exception as error:  # noqa: BLE001 - an error of hardware must not stop other hardware
-                    failed.append(self._fail(hardware, "writing", error))
+                    failed.append(self._handle_failure(hardware, "writing", error))
         return failed
 
-    def _fail(self, hardware: Hardware, work: str, error: Exception) -> Hardware:
-        self._logger.error(f"Error while {work} hardware '{hardware.description.name}': {_reason(error)}")
+    def _handle_failure(self, hardware: Hardware, activity: str, error: Exception) -> Hardware:
+        self._logger.error(f"Error while {activity} hardware '{hardware.description.name}': {_describe_error(error)}")
         failure = _call_hardware(hardware.on_error)
         if failure:
             self._logger.error(f"'on_error' of hardware '{hardware.description.name}' failed: {failure}")
         hardware.state = FINALIZED if failure else UNCONFIGURED
         return hardware
 
-    def names_of(self, hardware: Hardware) -> set[str]:
+    def list_interface_names(self, hardware: Hardware) -> set[str]:
         """Return the names of all state and command interfaces of a hardware component."""
         return {state.name for state in (*hardware.states, *hardware.commands)}
 
@@ -287,11 +289,11 @@ def _call_hardware(callback: Callable[..., object], *arguments: object) -> str:
     try:
         callback(*arguments)
     except Exception as error:  # noqa: BLE001 - an error of hardware must not stop other hardware
-        return _reason(error)
+        return _describe_error(error)
     return ""
 
 
-def _reason(error: Exception) -> str:
+def _describe_error(error: Exception) -> str:
     if isinstance(error, LinkwrightError):
         return str(error.diagnostics[0].message)
     return f"{type(error).__name__}: {error}"

@@ -21,10 +21,14 @@ from linkwright.xmltree import Element
 
 HARDWARE_NAME = "gazebo_ros_control"
 """The name of the hardware that a robot's transmissions describe."""
-_PLUGIN = "gazebo_ros_control/DefaultRobotHWSim"
-_KINDS = {"EffortJointInterface": EFFORT, "PositionJointInterface": POSITION, "VelocityJointInterface": VELOCITY}
-_TYPES_OF_SEVERAL_JOINTS = ("DifferentialTransmission", "FourBarLinkageTransmission")
-_STATES = tuple(InterfaceDescription(kind) for kind in (POSITION, VELOCITY, EFFORT))
+_PLUGIN_TYPE = "gazebo_ros_control/DefaultRobotHWSim"
+_INTERFACES_BY_CLASS = {
+    "EffortJointInterface": EFFORT,
+    "PositionJointInterface": POSITION,
+    "VelocityJointInterface": VELOCITY,
+}
+_MULTI_JOINT_TYPES = ("DifferentialTransmission", "FourBarLinkageTransmission")
+_STATE_INTERFACES = tuple(InterfaceDescription(kind) for kind in (POSITION, VELOCITY, EFFORT))
 
 
 def hardware_from_transmissions(robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
@@ -46,7 +50,7 @@ def hardware_from_transmissions(robot: Robot) -> tuple[list[HardwareDescription]
         reader.findings.append(Diagnostic("CTL116", message, severity=Severity.WARNING, hint=hint))
     if not joints:
         return [], reader.findings
-    return [HardwareDescription(HARDWARE_NAME, SYSTEM, _PLUGIN, joints=tuple(joints.values()))], reader.findings
+    return [HardwareDescription(HARDWARE_NAME, SYSTEM, _PLUGIN_TYPE, joints=tuple(joints.values()))], reader.findings
 
 
 class _Reader:
@@ -58,8 +62,8 @@ class _Reader:
         """Return the joint of a transmission with its interfaces, or None if it cannot be used."""
         name = transmission.attributes.get("name", "")
         joints = list(transmission.elements("joint"))
-        kind = _class_name(_type_of(transmission))
-        if kind in _TYPES_OF_SEVERAL_JOINTS or len(joints) > 1:
+        kind = _strip_package(_get_type(transmission))
+        if kind in _MULTI_JOINT_TYPES or len(joints) > 1:
             message = phrase(
                 "transmission '{name}' is left out: gazebo_ros_control drives one joint for each transmission",
                 name=name,
@@ -80,14 +84,14 @@ class _Reader:
             )
             self._report("CTL118", message, joints[0], did_you_mean(joint_name, self._robot.joints))
             return None
-        interface = self._interface(transmission, joints[0], joint_name)
+        interface = self._find_interface(transmission, joints[0], joint_name)
         if interface is None:
             return None
         return ComponentDescription(
-            joint_name, "joint", (InterfaceDescription(interface),), _STATES, mimic=_mimic_of(joint)
+            joint_name, "joint", (InterfaceDescription(interface),), _STATE_INTERFACES, mimic=_get_mimic(joint)
         )
 
-    def _interface(self, transmission: Element, joint: Element, joint_name: str) -> str | None:
+    def _find_interface(self, transmission: Element, joint: Element, joint_name: str) -> str | None:
         """Return the kind of a joint's command interface, or None if it has no valid one.
 
         Old files have the interface in ``<actuator>``.
@@ -99,7 +103,7 @@ class _Reader:
                 for actuator in list(transmission.elements("actuator"))[:1]
                 for interface in actuator.elements("hardwareInterface")
             ]
-        names = [_class_name(element.text()) for element in elements]
+        names = [_strip_package(element.text()) for element in elements]
         if len(names) > 1:
             message = phrase(
                 "joint '{joint}' has several hardware interfaces, but a simulated joint has only one: {name} is used",
@@ -107,8 +111,8 @@ class _Reader:
                 name=names[0],
             )
             self._report("CTL119", message, joint, phrase("remove the other <hardwareInterface> elements"))
-        if names and names[0] in _KINDS:
-            return _KINDS[names[0]]
+        if names and names[0] in _INTERFACES_BY_CLASS:
+            return _INTERFACES_BY_CLASS[names[0]]
         message = phrase("joint '{joint}' is left out: it has no <hardwareInterface>", joint=joint_name)
         if names:
             message = phrase(
@@ -116,7 +120,9 @@ class _Reader:
                 joint=joint_name,
                 name=names[0],
             )
-        hint = phrase("write one of {names}", names=joined([f"hardware_interface/{name}" for name in _KINDS]))
+        hint = phrase(
+            "write one of {names}", names=joined([f"hardware_interface/{name}" for name in _INTERFACES_BY_CLASS])
+        )
         self._report("CTL118", message, joint, hint)
         return None
 
@@ -126,17 +132,17 @@ class _Reader:
         )
 
 
-def _type_of(transmission: Element) -> str:
+def _get_type(transmission: Element) -> str:
     """Return the type of a transmission, from its element or, in old files, from its attribute."""
     element = transmission.first("type")
     return element.text() if element is not None else transmission.attributes.get("type", "")
 
 
-def _class_name(name: str) -> str:
+def _strip_package(name: str) -> str:
     """Return a class name without its package, such as ``hardware_interface/``."""
     return name.strip().rpartition("/")[2]
 
 
-def _mimic_of(joint: Joint) -> MimicDescription | None:
+def _get_mimic(joint: Joint) -> MimicDescription | None:
     mimic = joint.mimic
     return None if mimic is None else MimicDescription(mimic.joint, mimic.multiplier, mimic.offset)

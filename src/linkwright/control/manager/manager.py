@@ -19,7 +19,7 @@ from linkwright.control.hardware.interfaces import CommandInterface, StateInterf
 from linkwright.control.hardware.limits import CommandLimits
 from linkwright.control.hardware.resources import Resources
 from linkwright.control.manager.loaded import LoadedController
-from linkwright.control.manager.nodes import ProcessArguments, controller_node, string_list
+from linkwright.control.manager.nodes import ProcessArguments, create_controller_node, read_string_list
 from linkwright.control.manager.switching import BEST_EFFORT, Switch, SwitchPlanner, SwitchRefusedError
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph import Node, Parameter
@@ -94,7 +94,7 @@ class ControllerManager:
         if name in self.controllers:
             logger.error(f"A controller named '{name}' was already loaded inside the controller manager")
             return False
-        type_name = next(iter(string_list(self.node, f"{name}.type")), "")
+        type_name = next(iter(read_string_list(self.node, f"{name}.type")), "")
         if not type_name:
             logger.error(f"The 'type' param was not defined for '{name}'.")
             return False
@@ -112,7 +112,7 @@ class ControllerManager:
         if controller is None:
             logger.error(f"Could not initialize the controller named '{name}'")
             return False
-        fallbacks = tuple(string_list(self.node, f"{name}.fallback_controllers"))
+        fallbacks = tuple(read_string_list(self.node, f"{name}.fallback_controllers"))
         self.controllers[name] = LoadedController(name, str(type_name), controller, fallbacks)
         self.on_change()
         return True
@@ -120,7 +120,7 @@ class ControllerManager:
     def _create_controller(self, controller_type: type[Controller[Any]], name: str) -> Controller[Any] | None:
         node = None
         try:
-            node = controller_node(self.node, name, self._process_arguments)
+            node = create_controller_node(self.node, name, self._process_arguments)
             rate = node.declare_parameter("update_rate", int(self.update_rate)).value
             if not is_before_iron() and node.declare_parameter("is_async", False).value:
                 node.get_logger().info(
@@ -131,7 +131,7 @@ class ControllerManager:
         except LinkwrightError as error:
             self._log_error(error)
         except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
-            self._logger.error(_with_traceback("Exception thrown during init stage with message", error))  # noqa: TRY400 - `_with_traceback` contains the traceback
+            self._logger.error(_add_traceback("Exception thrown during init stage with message", error))  # noqa: TRY400 - `_add_traceback` contains the traceback
         if node is not None:
             node.destroy_node()
         return None
@@ -227,7 +227,7 @@ class ControllerManager:
             self._logger.error(f"After configuring, controller '{name}' is in state '{label}' , expected inactive.")
             return False
         controller.state = INACTIVE
-        self._set_rate(loaded)
+        self._set_update_period(loaded)
         references = [
             CommandInterface(name, reference_interface) for reference_interface in controller.reference_interfaces()
         ]
@@ -249,7 +249,7 @@ class ControllerManager:
         self.on_change()
         return is_clean
 
-    def _set_rate(self, loaded: LoadedController) -> None:
+    def _set_update_period(self, loaded: LoadedController) -> None:
         controller_rate, manager_rate = loaded.controller.update_rate, self.update_rate
         loaded.period_ns = (
             0
@@ -289,7 +289,7 @@ class ControllerManager:
             references = set(self.resources.reference_names(loaded.name))
             read_controllers: set[str] = set()
             if loaded.is_configured:
-                read_controllers = _component_names(loaded.required_state_interfaces([])) - _component_names(
+                read_controllers = _get_component_names(loaded.required_state_interfaces([])) - _get_component_names(
                     loaded.claimed_command_interfaces([])
                 )
             for other in self.controllers.values():
@@ -331,12 +331,12 @@ class ControllerManager:
         if not switch.activate and not switch.deactivate:
             self._logger.info("Empty activate and deactivate list, not requesting switch")
             return True, "Empty activate and deactivate list, not requesting switch"
-        start, stop = self._interfaces(switch.activate), self._interfaces(switch.deactivate)
+        start, stop = self._list_claimed_interfaces(switch.activate), self._list_claimed_interfaces(switch.deactivate)
         if start or stop:
-            problem = self.resources.prepare_switch(start, stop)
-            if problem:
+            refusal = self.resources.prepare_switch(start, stop)
+            if refusal:
                 message = "Could not switch controllers since prepare command mode switch was rejected."
-                self._logger.error(problem)
+                self._logger.error(refusal)
                 self._logger.error(message)
                 return False, message
         failed = self._perform_switch(switch, start, stop)
@@ -345,7 +345,7 @@ class ControllerManager:
             return False, "; ".join(failed)
         return True, "Successfully switched controllers!"
 
-    def _interfaces(self, names: Sequence[str]) -> list[str]:
+    def _list_claimed_interfaces(self, names: Sequence[str]) -> list[str]:
         all_names = self.resources.command_names
         return [
             command_name
@@ -418,12 +418,12 @@ class ControllerManager:
 
     def _release(self, loaded: LoadedController) -> None:
         claims = self.resources.claims
-        for name in [interface_name for interface_name, owner in claims.items() if owner == loaded.name]:
+        for name in [interface_name for interface_name, claimant in claims.items() if claimant == loaded.name]:
             del claims[name]
         loaded.controller.commands, loaded.controller.states = [], []
 
     def _call_callback(self, loaded: LoadedController, callback_name: str, callback: Callable[[], object]) -> bool:
-        """Call a callback of a controller, log any error, and return whether the callback succeeded."""
+        """Call a callback of a controller, and return whether it succeeded; errors are logged."""
         logger = loaded.controller.node.logger
         try:
             callback()
@@ -431,7 +431,7 @@ class ControllerManager:
             logger.error(error.diagnostics[0].message)  # noqa: TRY400 - the message is for users
             return False
         except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
-            logger.error(_with_traceback(f"Caught exception in callback for {callback_name}", error))  # noqa: TRY400 - `_with_traceback` contains the traceback
+            logger.error(_add_traceback(f"Caught exception in callback for {callback_name}", error))  # noqa: TRY400 - `_add_traceback` contains the traceback
             self._on_error(loaded)
             return False
         return True
@@ -441,7 +441,7 @@ class ControllerManager:
             loaded.controller.on_error()
         except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
             logger = loaded.controller.node.logger
-            logger.error(_with_traceback("Caught exception in callback for on_error", error))  # noqa: TRY400 - as above
+            logger.error(_add_traceback("Caught exception in callback for on_error", error))  # noqa: TRY400 - as above
 
     def set_hardware_state(self, name: str, target: LifecycleState) -> bool:
         """Bring hardware to a lifecycle state, and return whether the state was reached.
@@ -450,7 +450,7 @@ class ControllerManager:
         """
         hardware = self.resources.components[name]
         if hardware.state is ACTIVE and target is not ACTIVE:
-            self._stop(self._users_of([hardware]))
+            self._stop(self._find_users([hardware]))
         is_reached = self.resources.set_state(name, target)
         self.on_change()
         return is_reached
@@ -466,7 +466,7 @@ class ControllerManager:
         """
         failed = self.resources.read(time_ns, period_s)
         if failed:
-            self._stop_users_of(failed)
+            self._stop_users(failed)
         for loaded in self._active:
             if loaded.controller.state is not ACTIVE:
                 continue  # The failure of an earlier controller deactivated it in this cycle.
@@ -485,7 +485,7 @@ class ControllerManager:
                 else:
                     loaded.timing.measure(loaded.controller.step, time_ns, step_s)
             except Exception as error:  # noqa: BLE001 - an error of a controller must not stop other controllers
-                self._fail(loaded, error)  # Safe in the loop: a new list replaces `_active`.
+                self._handle_failure(loaded, error)  # Safe in the loop: a new list replaces `_active`.
                 continue
             replaced_name = loaded.replace_invalid_commands()
             if replaced_name:
@@ -494,7 +494,7 @@ class ControllerManager:
             self.limits.enforce(period_s, self.resources.claims)
         failed = self.resources.write(time_ns, period_s)
         if failed:
-            self._stop_users_of(failed)
+            self._stop_users(failed)
 
     def _log_wrong_command(self, loaded: LoadedController, name: str) -> None:
         loaded.controller.node.logger.error(
@@ -502,17 +502,17 @@ class ControllerManager:
             throttle_duration_sec=1.0,
         )
 
-    def _fail(self, loaded: LoadedController, error: Exception) -> None:
+    def _handle_failure(self, loaded: LoadedController, error: Exception) -> None:
         """Handle an exception in a controller's update.
 
         The controller and the controllers that command it are deactivated, their joints are stopped, and the fallbacks
         are activated.
         """
-        message = _with_traceback("Caught exception while updating", error)
+        message = _add_traceback("Caught exception while updating", error)
         if isinstance(error, ControllerError):
             message = error.diagnostics[0].message
         loaded.controller.node.logger.error(message)
-        stopped_controllers = [loaded, *self._commanding_controllers(loaded)]
+        stopped_controllers = [loaded, *self._find_commanders(loaded)]
         names = " ".join(controller.name for controller in stopped_controllers)
         self._logger.error(f"Deactivating controllers : [ {names} ] as their update resulted in an error!")
         self._stop(stopped_controllers)
@@ -521,20 +521,20 @@ class ControllerManager:
             self._logger.error(f"Activating fallback controllers : [ {' '.join(loaded.fallbacks)} ]")
             self.switch(loaded.fallbacks, (), BEST_EFFORT)
 
-    def _commanding_controllers(self, loaded: LoadedController) -> list[LoadedController]:
+    def _find_commanders(self, loaded: LoadedController) -> list[LoadedController]:
         """Return the active controllers that command a controller directly or indirectly."""
         references = self.resources.reference_names(loaded.name)
-        owners = dict.fromkeys(
+        claimants = dict.fromkeys(
             self.resources.claims[reference] for reference in references if reference in self.resources.claims
         )
-        commanders = [self.controllers[owner] for owner in owners]
+        commanders = [self.controllers[claimant] for claimant in claimants]
         return [
             *commanders,
-            *(indirect for controller in commanders for indirect in self._commanding_controllers(controller)),
+            *(indirect for controller in commanders for indirect in self._find_commanders(controller)),
         ]
 
-    def _stop_users_of(self, failed: Sequence[Hardware]) -> None:
-        users = self._users_of(failed)
+    def _stop_users(self, failed: Sequence[Hardware]) -> None:
+        users = self._find_users(failed)
         if users:
             self._logger.error(
                 f"Deactivating controllers : [ {' '.join(controller.name for controller in users)} ] as their "
@@ -543,9 +543,9 @@ class ControllerManager:
             self._stop(users)
         self.on_change()
 
-    def _users_of(self, hardware: Sequence[Hardware]) -> list[LoadedController]:
+    def _find_users(self, hardware: Sequence[Hardware]) -> list[LoadedController]:
         """Return the active controllers that use hardware, and the controllers that command them."""
-        names = {name for component in hardware for name in self.resources.names_of(component)}
+        names = {name for component in hardware for name in self.resources.list_interface_names(component)}
         users = [
             loaded
             for loaded in self._active
@@ -556,7 +556,7 @@ class ControllerManager:
             *(
                 controller
                 for loaded in users
-                for controller in self._commanding_controllers(loaded)
+                for controller in self._find_commanders(loaded)
                 if controller not in users
             ),
         ]
@@ -576,12 +576,12 @@ class ControllerManager:
             self._logger.error(f"{diagnostic.message}{hint}")
 
 
-def _component_names(interfaces: Iterable[str]) -> set[str]:
+def _get_component_names(interfaces: Iterable[str]) -> set[str]:
     """Return the joints or controllers at the beginning of interface names."""
     return {interface.partition("/")[0] for interface in interfaces}
 
 
-def _with_traceback(message: str, error: Exception) -> str:
+def _add_traceback(message: str, error: Exception) -> str:
     """Return an error message with a traceback, for authors of controllers."""
     frames = traceback.format_exception(type(error), error, error.__traceback__)
     return f"{message}: {type(error).__name__}: {error}\n{''.join(frames).rstrip()}"

@@ -32,7 +32,7 @@ class ProcessArguments:
     remappings: Sequence[tuple[str, str]] = ()
 
 
-def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node:
+def create_controller_node(manager: Node, name: str, process: ProcessArguments) -> Node:
     """Create the node of a controller.
 
     Raises:
@@ -45,7 +45,7 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
         values["use_sim_time"] = manager.get_parameter("use_sim_time").value
     values |= process.parameters.for_node(full_name)
     ignored_findings = process.parameters.skipped_findings_for(full_name)
-    for path in string_list(manager, f"{name}.params_file"):
+    for path in read_string_list(manager, f"{name}.params_file"):
         rules = read_parameter_file(path)
         values |= rules.for_node(full_name)
         ignored_findings += rules.skipped_findings_for(full_name)
@@ -54,7 +54,11 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
     ros_arguments = parse(
         [
             "--ros-args",
-            *(argument for argument in string_list(manager, f"{name}.node_options_args") if argument != "--ros-args"),
+            *(
+                argument
+                for argument in read_string_list(manager, f"{name}.node_options_args")
+                if argument != "--ros-args"
+            ),
         ]
     )
     values |= ros_arguments.parameters_for(full_name)
@@ -70,7 +74,7 @@ def controller_node(manager: Node, name: str, process: ProcessArguments) -> Node
     return node
 
 
-def string_list(node: Node, name: str) -> list[str]:
+def read_string_list(node: Node, name: str) -> list[str]:
     """Return the strings in a parameter that is a string or a list of strings.
 
     Returns an empty list if the parameter is not set.

@@ -19,7 +19,10 @@ from linkwright.graph.stepped.node import SteppedNode
 from linkwright.messages import get_message, is_before_iron
 
 _PACKAGE = "controller_manager_msgs"
-_PLAIN, _CHAINABLE = "controller_interface::ControllerInterface", "controller_interface::ChainableControllerInterface"
+_CONTROLLER_BASE, _CHAINABLE_CONTROLLER_BASE = (
+    "controller_interface::ControllerInterface",
+    "controller_interface::ChainableControllerInterface",
+)
 _STATES = {state.state_id: state for state in (UNCONFIGURED, INACTIVE, ACTIVE, FINALIZED)}
 
 
@@ -53,7 +56,7 @@ class ManagerServices:
             "SetHardwareComponentState": self._set_state,
         }
         for name, callback in callbacks.items():
-            node.service(f"{_PACKAGE}/srv/{name}", f"~/{_service_name(name)}", callback)
+            node.service(f"{_PACKAGE}/srv/{name}", f"~/{_to_service_name(name)}", callback)
         self.publish_activity()
 
     def publish_activity(self) -> None:
@@ -61,11 +64,11 @@ class ManagerServices:
         message = get_message(f"{_PACKAGE}/msg/ControllerManagerActivity")()
         message.header.stamp = self._manager.node.get_clock().now().to_msg()
         message.controllers = [
-            _named_state(controller.name, controller.controller.state)
+            _build_named_state(controller.name, controller.controller.state)
             for controller in self._manager.controllers.values()
         ]
         message.hardware_components = [
-            _named_state(name, hardware.state) for name, hardware in self._manager.resources.components.items()
+            _build_named_state(name, hardware.state) for name, hardware in self._manager.resources.components.items()
         ]
         self._activity_output.publish(message)
 
@@ -86,24 +89,26 @@ class ManagerServices:
         }
         components = {name: hardware.state for name, hardware in self._manager.resources.components.items()}
         message.status = [
-            _status(f"{name}: Controllers Activity", "controllers", controllers),
-            _status(f"{name}: Hardware Components Activity", "hardware components", components),
+            _build_status(f"{name}: Controllers Activity", "controllers", controllers),
+            _build_status(f"{name}: Hardware Components Activity", "hardware components", components),
         ]
         self._diagnostics_output.publish(message)
 
     # --- controllers --------------------------------------------------------------------------------------------------
 
     def _list_controllers(self, _: Any, response: Any) -> Any:
-        response.controller = [self._controller(controller) for controller in self._manager.controllers.values()]
+        response.controller = [
+            self._build_controller_message(controller) for controller in self._manager.controllers.values()
+        ]
         return response
 
-    def _controller(self, loaded: LoadedController) -> Any:
+    def _build_controller_message(self, loaded: LoadedController) -> Any:
         resources = self._manager.resources
         controller = loaded.controller
         message = get_message(f"{_PACKAGE}/msg/ControllerState")(name=loaded.name, type=loaded.type)
         message.state = controller.state.label
         message.update_rate = int(controller.update_rate)
-        message.claimed_interfaces = [name for name, owner in resources.claims.items() if owner == loaded.name]
+        message.claimed_interfaces = [name for name, claimant in resources.claims.items() if claimant == loaded.name]
         message.is_chainable, message.is_chained = loaded.is_chainable, controller.is_chained
         if not loaded.is_configured:
             return message
@@ -130,21 +135,21 @@ class ManagerServices:
 
     def _list_components(self, _: Any, response: Any) -> Any:
         response.component = [
-            self._component_message(component) for component in self._manager.resources.components.values()
+            self._build_component_message(component) for component in self._manager.resources.components.values()
         ]
         return response
 
-    def _component_message(self, hardware: Hardware) -> Any:
+    def _build_component_message(self, hardware: Hardware) -> Any:
         description = hardware.description
         message = get_message(f"{_PACKAGE}/msg/HardwareComponentState")(name=description.name, type=description.type)
         message.plugin_name = message.class_type = description.plugin
         message.rw_rate = int(self._manager.update_rate)
         message.state.id, message.state.label = hardware.state.state_id, hardware.state.label
-        message.command_interfaces = [self._interface_message(command.name) for command in hardware.commands]
-        message.state_interfaces = [self._interface_message(state.name) for state in hardware.states]
+        message.command_interfaces = [self._build_interface_message(command.name) for command in hardware.commands]
+        message.state_interfaces = [self._build_interface_message(state.name) for state in hardware.states]
         return message
 
-    def _interface_message(self, name: str) -> Any:
+    def _build_interface_message(self, name: str) -> Any:
         resources = self._manager.resources
         return get_message(f"{_PACKAGE}/msg/HardwareInterface")(
             name=name,
@@ -156,9 +161,9 @@ class ManagerServices:
     def _list_interfaces(self, _: Any, response: Any) -> Any:
         resources = self._manager.resources
         response.command_interfaces = [
-            self._interface_message(command_name) for command_name in resources.command_names
+            self._build_interface_message(command_name) for command_name in resources.command_names
         ]
-        response.state_interfaces = [self._interface_message(state_name) for state_name in resources.state_names]
+        response.state_interfaces = [self._build_interface_message(state_name) for state_name in resources.state_names]
         for state_interface in response.state_interfaces:
             state_interface.is_claimed = False
         return response
@@ -179,7 +184,7 @@ class ManagerServices:
         return response
 
 
-def _service_name(name: str) -> str:
+def _to_service_name(name: str) -> str:
     """Return the name of a service from its type: ``list_controllers`` for ``ListControllers``."""
     return "".join(f"_{letter.lower()}" if letter.isupper() else letter for letter in name).lstrip("_")
 
@@ -201,17 +206,17 @@ def _list_types(_: Any, response: Any) -> Any:
             continue  # The error of a broken package is reported on loading.
         is_chainable = controller_type.reference_interfaces is not Controller.reference_interfaces
         response.types.append(name)
-        response.base_classes.append(_CHAINABLE if is_chainable else _PLAIN)
+        response.base_classes.append(_CHAINABLE_CONTROLLER_BASE if is_chainable else _CONTROLLER_BASE)
     return response
 
 
-def _named_state(name: str, state: LifecycleState) -> Any:
+def _build_named_state(name: str, state: LifecycleState) -> Any:
     message = get_message(f"{_PACKAGE}/msg/NamedLifecycleState")(name=name)
     message.state.id, message.state.label = state.state_id, state.label
     return message
 
 
-def _status(name: str, subject: str, states: dict[str, LifecycleState]) -> Any:
+def _build_status(name: str, subject: str, states: dict[str, LifecycleState]) -> Any:
     status = get_message("diagnostic_msgs/msg/DiagnosticStatus")(name=name, hardware_id="ros2_control")
     value = get_message("diagnostic_msgs/msg/KeyValue")
     status.values = [value(key=key, value=state.label) for key, state in states.items()]

@@ -40,9 +40,9 @@ class StatisticsTopics:
 
         The caller is a timer with a period of 1 s.
         """
-        is_wanted = self._full_output.is_wanted or self._values.is_wanted
-        timings = dict(self._timings(enabled=is_wanted))
-        if not is_wanted:
+        has_subscription = self._full_output.is_wanted or self._values.is_wanted
+        timings = dict(self._list_timings(enabled=has_subscription))
+        if not has_subscription:
             return
         statistics = {f"{name}/{kind}": value for name, timing in timings.items() for kind, value in timing.items()}
         stamp = self._manager.node.get_clock().now().to_msg()
@@ -64,7 +64,7 @@ class StatisticsTopics:
             message.header.stamp = stamp
             self._full_output.publish(message)
 
-    def _timings(self, *, enabled: bool) -> Iterator[tuple[str, Timing]]:
+    def _list_timings(self, *, enabled: bool) -> Iterator[tuple[str, Timing]]:
         """Switch measuring on or off, and yield each timing with the prefix of its name."""
         for name, loaded in self._manager.controllers.items():
             loaded.timing = (loaded.timing or Timing()) if enabled else None

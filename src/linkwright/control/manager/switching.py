@@ -74,8 +74,8 @@ class SwitchPlanner:
             SwitchRefusedError: a part of the request is impossible, and the switch is strict.
         """
         switch = self._switch
-        switch.deactivate = self._existing_names(deactivate, "deactivate")
-        switch.activate = self._existing_names(activate, "activate")
+        switch.deactivate = self._filter_existing_names(deactivate, "deactivate")
+        switch.activate = self._filter_existing_names(activate, "activate")
         if self._adds_following:
             self._add_following()
         if self._force:
@@ -84,14 +84,16 @@ class SwitchPlanner:
             if self._controllers[name].is_active:
                 switch.from_chained += [
                     following_name
-                    for following_name in self._following_names(self._controllers[name])
+                    for following_name in self._find_following_names(self._controllers[name])
                     if following_name not in switch.from_chained
                 ]
-        switch.activate = [item for item in switch.activate if self._is_permitted(item, self._activation_problem(item))]
+        switch.activate = [
+            item for item in switch.activate if self._is_permitted(item, self._find_activation_obstacle(item))
+        ]
         switch.deactivate = [
             item
             for item in switch.deactivate
-            if self._is_permitted(item, self._deactivation_problem(item), "deactivate")
+            if self._is_permitted(item, self._find_deactivation_obstacle(item), "deactivate")
         ]
         for name in (*switch.to_chained, *switch.from_chained):
             if self._controllers[name].is_active and name not in switch.deactivate:
@@ -100,7 +102,7 @@ class SwitchPlanner:
         self._check_current_states()
         return switch
 
-    def _existing_names(self, names: Sequence[str], action: str) -> list[str]:
+    def _filter_existing_names(self, names: Sequence[str], action: str) -> list[str]:
         existing_names = []
         for name in dict.fromkeys(names):
             if name in self._controllers:
@@ -113,24 +115,24 @@ class SwitchPlanner:
                 raise SwitchRefusedError(message)
         return existing_names
 
-    def _is_permitted(self, name: str, problem: str, action: str = "activate") -> bool:
-        if not problem:
+    def _is_permitted(self, name: str, obstacle: str, action: str = "activate") -> bool:
+        if not obstacle:
             return True
-        self._logger.warning(problem)
+        self._logger.warning(obstacle)
         self._logger.warning(f"Could not {action} controller with name '{name}'. {_ADVICE}")
         if self._is_strict:
             self._logger.error("Aborting, no controller is switched! (::STRICT switch)")
-            raise SwitchRefusedError(problem)
+            raise SwitchRefusedError(obstacle)
         return False
 
-    def _following_names(self, loaded: LoadedController) -> Iterator[str]:
+    def _find_following_names(self, loaded: LoadedController) -> Iterator[str]:
         """Yield the names of the controllers whose references a controller commands."""
         for interface in loaded.claimed_command_interfaces([]):
             name = interface.partition("/")[0]
             if name in self._controllers and name != loaded.name:
                 yield name
 
-    def _preceding_controllers(self, loaded: LoadedController) -> Iterator[LoadedController]:
+    def _find_preceding_controllers(self, loaded: LoadedController) -> Iterator[LoadedController]:
         """Yield the controllers that command the references of a controller."""
         references = set(self._resources.reference_names(loaded.name))
         for other in self._controllers.values():
@@ -141,7 +143,7 @@ class SwitchPlanner:
         switch = self._switch
         pending = list(switch.activate)
         while pending:
-            for name in self._following_names(self._controllers[pending.pop()]):
+            for name in self._find_following_names(self._controllers[pending.pop()]):
                 if self._controllers[name].is_inactive and name not in switch.activate:
                     switch.activate.insert(0, name)
                     pending.append(name)
@@ -149,11 +151,11 @@ class SwitchPlanner:
     def _add_conflicting(self) -> None:
         for name in self._switch.activate:
             for interface in self._controllers[name].claimed_command_interfaces(self._resources.command_names):
-                owner = self._resources.claims.get(interface)
-                if owner is not None and owner not in self._switch.deactivate:
-                    self._switch.deactivate.append(owner)
+                claimant = self._resources.claims.get(interface)
+                if claimant is not None and claimant not in self._switch.deactivate:
+                    self._switch.deactivate.append(claimant)
 
-    def _activation_problem(self, name: str) -> str:
+    def _find_activation_obstacle(self, name: str) -> str:
         loaded = self._controllers[name]
         if loaded.is_active and name in self._switch.deactivate:
             return ""
@@ -162,9 +164,13 @@ class SwitchPlanner:
                 f"Controller with name '{name}' is not inactive so its following controllers do not have to be "
                 "checked, because it cannot be activated."
             )
-        return self._following_problem(loaded)
+        return self._chain_following_controllers(loaded)
 
-    def _following_problem(self, loaded: LoadedController) -> str:
+    def _chain_following_controllers(self, loaded: LoadedController) -> str:
+        """Plan chained mode for the controllers that a controller commands.
+
+        Returns an error message, or an empty string if that is possible.
+        """
         switch = self._switch
         for interface in loaded.claimed_command_interfaces([]):
             commanded = self._controllers.get(interface.partition("/")[0])
@@ -180,22 +186,22 @@ class SwitchPlanner:
                 return f"The following controller with name '{name}' will be deactivated."
             if not commanded.is_active and name not in switch.activate:
                 return f"The following controller with name '{name}' is not active and will not be activated."
-            problem = self._following_problem(commanded)
-            if problem:
-                return problem
+            obstacle = self._chain_following_controllers(commanded)
+            if obstacle:
+                return obstacle
             if name in switch.from_chained:
                 switch.from_chained.remove(name)
             elif not commanded.controller.is_chained and name not in switch.to_chained:
                 switch.to_chained.append(name)
         return ""
 
-    def _deactivation_problem(self, name: str) -> str:
+    def _find_deactivation_obstacle(self, name: str) -> str:
         loaded = self._controllers[name]
         if not loaded.is_active:
             return f"Controller with name '{name}' can not be deactivated since it is not active."
         if not loaded.controller.is_chained:
             return ""
-        for other in self._preceding_controllers(loaded):
+        for other in self._find_preceding_controllers(loaded):
             if other.is_inactive and other.name in self._switch.activate:
                 return (
                     f"Could not deactivate controller with name '{name}' because preceding controller with name "

@@ -46,12 +46,12 @@ class TractionLimiter:
         """Reset the speed and the acceleration to zero."""
         self.speed = self._previous_speed = 0.0
 
-    def approach(self, target: float, seconds: float) -> float:
-        """Return the next speed towards a target, both in rad/s, `seconds` after the last call."""
+    def approach(self, target: float, duration_s: float) -> float:
+        """Return the next speed towards a target, both in rad/s, `duration_s` after the last call."""
         speed = self.speed
-        target = _limit_second_difference(speed, self._previous_speed, target, self._jerk, seconds)
+        target = _limit_second_difference(speed, self._previous_speed, target, self._jerk, duration_s)
         bounds = self._acceleration if abs(target) >= abs(speed) else self._deceleration
-        new_speed = speed + _limit_magnitude(bounds, target - speed, seconds)
+        new_speed = speed + _limit_magnitude(bounds, target - speed, duration_s)
         self.speed, self._previous_speed = _limit_magnitude(self._velocity, new_speed), speed
         return self.speed
 
@@ -80,22 +80,24 @@ class SteeringLimiter:
         """Reset the steering angle to a value in rad, and its velocity to zero."""
         self.angle = self._previous_angle = angle
 
-    def approach(self, target: float, seconds: float) -> float:
-        """Return the next angle towards a target, both in rad, `seconds` after the last call."""
+    def approach(self, target: float, duration_s: float) -> float:
+        """Return the next angle towards a target, both in rad, `duration_s` after the last call."""
         angle = self.angle
-        target = _limit_second_difference(angle, self._previous_angle, target, self._acceleration, seconds)
-        new_angle = angle + _limit_magnitude(self._velocity, target - angle, seconds)
+        target = _limit_second_difference(angle, self._previous_angle, target, self._acceleration, duration_s)
+        new_angle = angle + _limit_magnitude(self._velocity, target - angle, duration_s)
         self.angle, self._previous_angle = min(max(new_angle, self._position[0]), self._position[1]), angle
         return self.angle
 
 
-def _limit_second_difference(current: float, previous: float, target: float, bounds: Bounds, seconds: float) -> float:
+def _limit_second_difference(
+    current: float, previous: float, target: float, bounds: Bounds, duration_s: float
+) -> float:
     """Return the target, limited so that the second difference is within bounds.
 
-    `current` and `previous` are the last two values; `seconds` is the time between values.
+    `current` and `previous` are the last two values; `duration_s` is the time between values.
     """
     extrapolated = current + current - previous
-    return extrapolated + _limit_magnitude(bounds, target - extrapolated, seconds * seconds)
+    return extrapolated + _limit_magnitude(bounds, target - extrapolated, duration_s * duration_s)
 
 
 def _limit_magnitude(bounds: Bounds, value: float, factor: float = 1.0) -> float:

@@ -48,7 +48,7 @@ class Odometer:
         forward, sideways, angular = map(sum, zip(*recent, strict=True))
         self.velocity = forward / count, sideways / count, angular / count
 
-    def add_commanded(self, velocity: Velocity, seconds: float) -> None:
+    def integrate_command(self, velocity: Velocity, seconds: float) -> None:
         """Integrate a commanded velocity over a duration.
 
         The odometer's velocity becomes the commanded velocity, without smoothing.

@@ -54,13 +54,13 @@ class Segment:
                 continue
             velocities = start.velocities[joint], end.velocities[joint]
             if not (start.accelerations and end.accelerations):
-                polynomials.append(_cubic(start_position, end_position, *velocities, duration_s))
+                polynomials.append(_fit_cubic(start_position, end_position, *velocities, duration_s))
                 continue
             accelerations = start.accelerations[joint], end.accelerations[joint]
-            polynomials.append(_quintic(start_position, end_position, *velocities, *accelerations, duration_s))
+            polynomials.append(_fit_quintic(start_position, end_position, *velocities, *accelerations, duration_s))
         self._polynomials = polynomials
 
-    def at(self, seconds: float) -> MotionState:
+    def sample(self, seconds: float) -> MotionState:
         """Return the state at a time in seconds after the start, with values in all three lists."""
         positions: list[float] = []
         velocities: list[float] = []
@@ -73,7 +73,7 @@ class Segment:
         return MotionState(positions, velocities, accelerations)
 
 
-def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Polynomial:
+def _fit_cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Polynomial:
     """Return the cubic polynomial for the positions and velocities at both ends."""
     distance, length = p1 - p0, duration
     return (
@@ -86,7 +86,7 @@ def _cubic(p0: float, p1: float, v0: float, v1: float, duration: float) -> _Poly
     )
 
 
-def _quintic(p0: float, p1: float, v0: float, v1: float, a0: float, a1: float, duration: float) -> _Polynomial:
+def _fit_quintic(p0: float, p1: float, v0: float, v1: float, a0: float, a1: float, duration: float) -> _Polynomial:
     """Return the quintic polynomial for position, velocity and acceleration at both ends."""
     distance, length = p1 - p0, duration
     return (

@@ -34,7 +34,9 @@ class StateTolerance:
             and not (self.acceleration > 0.0 and abs(acceleration) > self.acceleration)
         )
 
-    def violations(self, position: float, velocity: float, acceleration: float) -> Iterator[tuple[str, float, float]]:
+    def find_violations(
+        self, position: float, velocity: float, acceleration: float
+    ) -> Iterator[tuple[str, float, float]]:
         """Yield the errors outside the tolerance, as name, error and tolerance."""
         errors = (
             ("Position", position, self.position),
@@ -45,16 +47,16 @@ class StateTolerance:
             if limit > 0.0 and abs(error) > limit:
                 yield name, error, limit
 
-    def overridden(self, position: float, velocity: float, acceleration: float) -> StateTolerance:
+    def override(self, position: float, velocity: float, acceleration: float) -> StateTolerance:
         """Return a copy with the tolerances of a goal: 0 keeps a tolerance, and -1 removes it.
 
         Raises:
             ValueError: a value is negative and not -1.
         """
         return StateTolerance(
-            effective_tolerance(self.position, position),
-            effective_tolerance(self.velocity, velocity),
-            effective_tolerance(self.acceleration, acceleration),
+            resolve_tolerance(self.position, position),
+            resolve_tolerance(self.velocity, velocity),
+            resolve_tolerance(self.acceleration, acceleration),
         )
 
 
@@ -82,7 +84,7 @@ class Tolerances:
         return replace(self, goal=(*self.goal[:joint], tolerance, *self.goal[joint + 1 :]))
 
 
-def effective_tolerance(default: float, goal_value: float) -> float:
+def resolve_tolerance(default: float, goal_value: float) -> float:
     """Return the tolerance for a goal, or the default if the goal does not specify one.
 
     Raises:

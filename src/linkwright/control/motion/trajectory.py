@@ -59,7 +59,7 @@ class Trajectory:
         self._is_interpolated = interpolated
         self.is_started = False
 
-    def begin(self, time_ns: int, current: MotionState, is_wrapped: Sequence[bool] = ()) -> None:
+    def begin(self, time_ns: int, current: MotionState, wrap_mask: Sequence[bool] = ()) -> None:
         """Start the trajectory from the current state.
 
         Missing positions of a point are integrated from its velocities. If the velocities are missing, too, they are
@@ -68,7 +68,7 @@ class Trajectory:
         Args:
             time_ns: the time of the current state.
             current: the state of the joints; its velocities and accelerations are used if the first point has them.
-            is_wrapped: whether each joint rotates without limits; such joints take the shorter way to the first point.
+            wrap_mask: for each joint whether it rotates without limits and takes the shorter way to the first point.
         """
         self.is_started = True
         self._start_ns = self._requested_start_ns or time_ns
@@ -78,10 +78,12 @@ class Trajectory:
         previous_ns, previous = time_ns, current
         for point in self.points:
             next_ns = self._start_ns + point.time_ns
-            point.state = _with_positions(previous, point.state, max(next_ns - previous_ns, 0) / NANOSECONDS_PER_SECOND)
+            point.state = _integrate_positions(
+                previous, point.state, max(next_ns - previous_ns, 0) / NANOSECONDS_PER_SECOND
+            )
             previous_ns, previous = next_ns, point.state
-        for joint, wraps in enumerate(is_wrapped):
-            if wraps:
+        for joint, is_wrapped in enumerate(wrap_mask):
+            if is_wrapped:
                 target = self.points[0].state.positions[joint]
                 current.positions[joint] = target - shortest_turn(current.positions[joint], target)
         self._begin_state = current
@@ -108,9 +110,9 @@ class Trajectory:
             index = next(index for index in range(len(self.points)) if time_ns < starts[index + 1])
             self._index = index
         passed_index = max(index - 1, 0)
-        return Sample(self._state(index, time_ns), passed_index, starts[passed_index + 1], has_ended=False)
+        return Sample(self._sample_segment(index, time_ns), passed_index, starts[passed_index + 1], has_ended=False)
 
-    def _state(self, index: int, time_ns: int) -> MotionState:
+    def _sample_segment(self, index: int, time_ns: int) -> MotionState:
         if not self._is_interpolated:
             return self.points[index].state if index else self._begin_state
         segment = self._segments[index]
@@ -119,7 +121,7 @@ class Trajectory:
             start = self.points[index - 1].state if index else self._begin_state
             segment = Segment(start, self.points[index].state, (end_ns - begin_ns) / NANOSECONDS_PER_SECOND)
             self._segments[index] = segment
-        return segment.at((time_ns - begin_ns) / NANOSECONDS_PER_SECOND)
+        return segment.sample((time_ns - begin_ns) / NANOSECONDS_PER_SECOND)
 
 
 def shortest_turn(start: float, end: float) -> float:
@@ -128,7 +130,7 @@ def shortest_turn(start: float, end: float) -> float:
     return rotation - tau if rotation > pi else rotation
 
 
-def _with_positions(previous: MotionState, state: MotionState, seconds: float) -> MotionState:
+def _integrate_positions(previous: MotionState, state: MotionState, seconds: float) -> MotionState:
     """Return a state with positions.
 
     Missing positions are integrated from velocities or accelerations. `previous` is the state `seconds` earlier.

@@ -16,9 +16,9 @@ from linkwright.messages import Duration, get_service
 from linkwright.nodes.options import SingleNode
 from linkwright.nodes.service_waits import wait_for_future, wait_for_service
 
-_LOG_PERIOD = 10.0
+_LOG_PERIOD_S = 10.0
 """The seconds between two log lines about a service that is not available."""
-_ATTEMPTS = 3
+_MAX_ATTEMPTS = 3
 
 
 class NoManagerError(Exception):
@@ -45,7 +45,11 @@ class ManagerClient:
         self._timeout, self._call_timeout = timeout, call_timeout
 
     async def call(self, service: str, **fields: Any) -> Any:
-        """Call one of the manager's services, such as ``list_controllers``, and return the response.
+        """Call one of the manager's services, and return the response.
+
+        Args:
+            service: the name of the service, such as ``list_controllers``.
+            fields: the fields of the request.
 
         Raises:
             NoManagerError: the manager is not available, or does not respond.
@@ -81,18 +85,18 @@ class ManagerClient:
         client = self._node.create_client(service_class, name)
         try:
             await self._wait_for_server(client, name)
-            for attempt in range(1, _ATTEMPTS + 1):
+            for attempt in range(1, _MAX_ATTEMPTS + 1):
                 future = client.call_async(service_class.Request(**fields))
                 if await wait_for_future(self._node, future, self._call_timeout):
                     return future.result()
                 client.remove_pending_request(future)
                 self._node.get_logger().warning(
                     f"Failed getting a result from calling {name} in {self._call_timeout:g}. "
-                    f"(Attempt {attempt} of {_ATTEMPTS}.)"
+                    f"(Attempt {attempt} of {_MAX_ATTEMPTS}.)"
                 )
         finally:
             self._node.destroy_client(client)
-        raise NoManagerError(f"Could not successfully call service {name} after {_ATTEMPTS} attempts.")
+        raise NoManagerError(f"Could not successfully call service {name} after {_MAX_ATTEMPTS} attempts.")
 
     async def _wait_for_server(self, client: Any, name: str) -> None:
         """Wait until the server of a client is available.
@@ -103,7 +107,7 @@ class ManagerClient:
         logger = self._node.get_logger()
         while not client.service_is_ready():
             logger.info(f"waiting for service {name} to become available...")
-            if await wait_for_service(self._node, client, self._timeout or _LOG_PERIOD):
+            if await wait_for_service(self._node, client, self._timeout or _LOG_PERIOD_S):
                 return
             if self._timeout:
                 raise NoManagerError(f"Could not contact service {name}")

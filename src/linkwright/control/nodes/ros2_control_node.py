@@ -11,12 +11,12 @@ from typing import Any
 
 from linkwright.control.hardware.component import Hardware
 from linkwright.control.hardware.description import HardwareDescription
-from linkwright.control.hardware.resources import Resources, hardware_by_entry_points
+from linkwright.control.hardware.resources import Resources, create_installed_hardware
 from linkwright.control.manager.exchange import DirectExchange
+from linkwright.control.manager.hardware_loading import load_hardware
 from linkwright.control.manager.manager import ControllerManager
 from linkwright.control.manager.nodes import ProcessArguments
 from linkwright.control.manager.services import ManagerServices
-from linkwright.control.manager.starting import load_hardware
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.graph import DESCRIPTION_QOS, Graph
 from linkwright.graph.command_line.ros_arguments import parse
@@ -27,7 +27,7 @@ from linkwright.messages import String
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_DEFAULT_RATE = 100
+_DEFAULT_UPDATE_RATE_HZ = 100
 _SIMULATOR_TYPES = ("GazeboSystem", "GazeboSimSystem", "IgnitionSystem")
 """The hardware types of gazebo_ros2_control, gz_ros2_control and their forks, which only run in a simulator."""
 
@@ -46,7 +46,7 @@ def _create_hardware(description: HardwareDescription, logger: Logger) -> Hardwa
             plugin=description.plugin,
         )
         raise LinkwrightError(Diagnostic("NODE833", message))
-    return hardware_by_entry_points(description, logger)
+    return create_installed_hardware(description, logger)
 
 
 class Ros2ControlNode(SingleNode):
@@ -73,8 +73,8 @@ class Ros2ControlNode(SingleNode):
         logger = self._node.get_logger()
         rate = self._read_update_rate()
         logger.info(f"update rate is {rate} Hz")
-        self._manages_overruns = self._is_on("overruns.manage")
-        self._warns_of_overruns = self._manages_overruns and self._is_on("overruns.print_warnings")
+        self._manages_overruns = self._is_enabled("overruns.manage")
+        self._warns_of_overruns = self._manages_overruns and self._is_enabled("overruns.print_warnings")
         logger.info(f"Overruns handling is : {'enabled' if self._manages_overruns else 'disabled'}")
         self._manager = ControllerManager(
             self._node,
@@ -108,13 +108,13 @@ class Ros2ControlNode(SingleNode):
         value: Any = self._node.get_parameter_or("update_rate").value
         if value is None:
             self._node.get_logger().warning("'update_rate' parameter not set, using default value.")
-            return _DEFAULT_RATE
+            return _DEFAULT_UPDATE_RATE_HZ
         if not isinstance(value, int) or isinstance(value, bool) or not 0 < value <= 100_000:
             message = phrase("the update_rate must be an integer from 1 to 100000 (Hz), but it is {value}", value=value)
             raise LinkwrightError(Diagnostic("NODE830", message, hint=phrase("write 'update_rate: 100'")))
         return value
 
-    def _is_on(self, parameter: str) -> bool:
+    def _is_enabled(self, parameter: str) -> bool:
         return self._node.get_parameter_or(parameter).value is not False
 
     def _on_description(self, message: String) -> None:
@@ -125,9 +125,9 @@ class Ros2ControlNode(SingleNode):
             return
         self._load(message.data)
 
-    def _load(self, text: str) -> None:
+    def _load(self, description: str) -> None:
         manager = self._manager
-        self._is_loaded = load_hardware(manager, text, self._library, _create_hardware) and bool(
+        self._is_loaded = load_hardware(manager, description, self._library, _create_hardware) and bool(
             manager.resources.components
         )
         if not self._is_loaded:  # Services of this node would hide the services of another manager.

@@ -35,7 +35,7 @@ class Spawner(ManagerProgram):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._unloads_on_close = False
-        arguments = parse_arguments(_parser(), remove_ros_arguments(options.arguments))
+        arguments = parse_arguments(_create_parser(), remove_ros_arguments(options.arguments))
         self._node, _ = create_node(graph, options, f"spawner_{arguments.controller_names[0]}")
         self._arguments = arguments
         process_files = [*options.parameters_of_others.files, *parse(options.arguments).parameters.files]
@@ -96,7 +96,7 @@ class Spawner(ManagerProgram):
         if any(controller.name == name for controller in response.controller):
             logger.warning("Controller already loaded, skipping load_controller")
             return True
-        for parameter, value in self._parameters(name).items():
+        for parameter, value in self._get_manager_parameters(name).items():
             assignment = f'controller param "{parameter}" to "{value}" for {name}'
             if not await self._client.set_parameter(f"{name}.{parameter}", value):
                 logger.fatal(f"Could not set {assignment}")
@@ -108,7 +108,7 @@ class Spawner(ManagerProgram):
         logger.info(f"Loaded {name}")
         return True
 
-    def _parameters(self, name: str) -> dict[str, Any]:
+    def _get_manager_parameters(self, name: str) -> dict[str, Any]:
         """Return the parameters to set on the manager for a controller, such as its type."""
         arguments, parameters = self._arguments, {}
         if arguments.controller_type:
@@ -173,7 +173,7 @@ class Unspawner(ManagerProgram):
         return 0
 
 
-def _parser() -> argparse.ArgumentParser:
+def _create_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="spawner", add_help=False, exit_on_error=False)
     parser.add_argument("controller_names", nargs="+")
     parser.add_argument("-c", "--controller-manager", default="controller_manager")

@@ -26,13 +26,13 @@ from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.standstill import VELOCITIES, send_stop
 from linkwright.perception.nodes.compressed import compress_image
-from linkwright.simulation.nodes.conversions import DEFAULT_ROS_TYPES, conversion
-from linkwright.simulation.plugins.bridged import hidden_gz_topic
+from linkwright.simulation.nodes.conversions import DEFAULT_ROS_TYPES, find_conversion
+from linkwright.simulation.plugins.bridged_topics import hidden_gz_topic
 
 _DIRECTIONS = {"[": "GZ_TO_ROS", "]": "ROS_TO_GZ", "@": "BIDIRECTIONAL"}
-_IMAGE = ("sensor_msgs/msg/Image", "gz.msgs.Image")
-_CLOCK = "rosgraph_msgs/msg/Clock"
-_COMPRESSED = "sensor_msgs/msg/CompressedImage"
+_IMAGE_TYPES = ("sensor_msgs/msg/Image", "gz.msgs.Image")
+_CLOCK_TYPE = "rosgraph_msgs/msg/Clock"
+_COMPRESSED_IMAGE_TYPE = "sensor_msgs/msg/CompressedImage"
 _Endpoint = tuple[Node, str, str]
 """A node, a topic and its type."""
 _OVERRIDABLE_QOS = QoSOverridingOptions(
@@ -87,7 +87,7 @@ class _BridgeDirection:
 
 
 class _Bridge(SingleNode):
-    _lazy = False
+    _is_lazy = False
     _expands_gz_names = False
 
     def _connect(self, graph: Graph, topics: Sequence[BridgedTopic]) -> None:
@@ -109,18 +109,18 @@ class _Bridge(SingleNode):
             self._node.get_logger().warning(f"{topic.ros_topic} is not bridged: there is no type {topic.ros_type}")
             return
         gz_type = DEFAULT_ROS_TYPES.get(topic.gz_type, topic.ros_type)
-        gz_topic = "/" + self._gz_name(topic.gz_topic).lstrip("/")
-        same_name = self._node.resolve_topic_name(topic.ros_topic) == gz_topic
-        if topic.ros_type == _CLOCK:  # The simulation publishes /clock itself.
+        gz_topic = "/" + self._resolve_gz_name(topic.gz_topic).lstrip("/")
+        has_same_name = self._node.resolve_topic_name(topic.ros_topic) == gz_topic
+        if topic.ros_type == _CLOCK_TYPE:  # The simulation publishes /clock itself.
             return
         to_ros, to_gz = (topic.direction in (direction, "BIDIRECTIONAL") for direction in ("GZ_TO_ROS", "ROS_TO_GZ"))
-        if same_name and topic.ros_type == gz_type:
+        if has_same_name and topic.ros_type == gz_type:
             self._create_endpoints(topic, to_ros=to_ros, to_gz=to_gz)
             return
-        if same_name and to_gz:  # The ROS topic owns the shared name, so the gz side uses its hidden name.
+        if has_same_name and to_gz:  # The ROS topic owns the shared name, so the gz side uses its hidden name.
             gz_topic = hidden_gz_topic(gz_topic)
         ros, gz = (self._node, topic.ros_topic, topic.ros_type), (self._gz_node, gz_topic, gz_type)
-        if to_ros and not (same_name and to_gz):
+        if to_ros and not (has_same_name and to_gz):
             self._forward_messages(topic, gz, ros)
         if to_gz:
             self._forward_messages(topic, ros, gz)
@@ -133,7 +133,7 @@ class _Bridge(SingleNode):
             profile = QoSProfile(topic.subscriber_queue, reliability=ReliabilityPolicy.BEST_EFFORT)
             self._node.create_subscription(topic.ros_type, topic.ros_topic, lambda _: None, profile, raw=True)
 
-    def _gz_name(self, name: str) -> str:
+    def _resolve_gz_name(self, name: str) -> str:
         """Return a gz topic name, below the node's namespace if ``expand_gz_topic_names`` is set.
 
         An absolute name is returned unchanged.
@@ -143,12 +143,12 @@ class _Bridge(SingleNode):
     def _forward_messages(self, topic: BridgedTopic, source: _Endpoint, target: _Endpoint) -> None:
         """Forward the messages of a topic in one direction."""
         (source_node, source_topic, source_type), (target_node, target_topic, target_type) = source, target
-        convert = conversion(source_type, target_type)
+        convert = find_conversion(source_type, target_type)
         if convert is None:
             text = f"{topic.ros_topic} is not bridged: {source_type} cannot be converted to {target_type}"
             self._node.get_logger().warning(text)
             return
-        lazy = self._lazy if topic.lazy is None else topic.lazy
+        lazy = self._is_lazy if topic.lazy is None else topic.lazy
         publishers: list[Publisher[Any]] = []
         commander = driver_watch = None
         if target_type in VELOCITIES:
@@ -200,9 +200,9 @@ class ParameterBridge(_Bridge):
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
             path = str(self._node.declare_parameter("config_file", "").value)
-            self._lazy = bool(self._node.declare_parameter("lazy", False).value)
+            self._is_lazy = bool(self._node.declare_parameter("lazy", False).value)
             self._expands_gz_names = bool(self._node.declare_parameter("expand_gz_topic_names", False).value)
-            topics = [parse_bridge_argument(word) for word in arguments if not self._is_service(word)]
+            topics = [parse_bridge_argument(argument) for argument in arguments if not self._is_service(argument)]
             topics += read_bridge_file(path) if path else []
             self._connect(graph, topics)
 
@@ -238,9 +238,9 @@ class ImageBridge(_Bridge):
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
-        self._connect(graph, [BridgedTopic(topic, topic, *_IMAGE, "GZ_TO_ROS") for topic in arguments])
-        for word in arguments:
-            self._compress(word)
+        self._connect(graph, [BridgedTopic(topic, topic, *_IMAGE_TYPES, "GZ_TO_ROS") for topic in arguments])
+        for topic in arguments:
+            self._compress(topic)
 
     def _compress(self, topic: str) -> None:
         """Publish the images of a topic as JPEG while the compressed topic has subscribers."""
@@ -262,10 +262,12 @@ class ImageBridge(_Bridge):
 
         def subscribe() -> Subscription[Any]:
             profile = QoSProfile(1, reliability=ReliabilityPolicy.BEST_EFFORT)
-            return self._gz_node.create_subscription(_IMAGE[0], "/" + topic.lstrip("/"), forward, profile)
+            return self._gz_node.create_subscription(_IMAGE_TYPES[0], "/" + topic.lstrip("/"), forward, profile)
 
         events = PublisherEventCallbacks(matched=_BridgeDirection(subscribe, lazy=True).on_matched)
-        publisher: Publisher[Any] = self._node.create_publisher(_COMPRESSED, name, _QUEUE_DEPTH, event_callbacks=events)
+        publisher: Publisher[Any] = self._node.create_publisher(
+            _COMPRESSED_IMAGE_TYPE, name, _QUEUE_DEPTH, event_callbacks=events
+        )
 
 
 def parse_bridge_argument(argument: str) -> BridgedTopic:
@@ -290,7 +292,7 @@ def parse_bridge_argument(argument: str) -> BridgedTopic:
                 hint=hint,
             )
         )
-    return BridgedTopic(name, name, _full_ros_type(ros_type), _current_gz_type(gz_type), _DIRECTIONS[direction_mark])
+    return BridgedTopic(name, name, _complete_ros_type(ros_type), _update_gz_type(gz_type), _DIRECTIONS[direction_mark])
 
 
 def read_bridge_file(path: str) -> list[BridgedTopic]:
@@ -340,7 +342,14 @@ def _parse_entry(entry: Any, position: int, path: str) -> BridgedTopic:
             path, phrase("entry {number}: '{key}' is neither true nor false", number=position, key="lazy")
         )
     return BridgedTopic(
-        ros_topic, gz_topic, _full_ros_type(ros_type), _current_gz_type(gz_type), direction, queues[0], queues[1], lazy
+        ros_topic,
+        gz_topic,
+        _complete_ros_type(ros_type),
+        _update_gz_type(gz_type),
+        direction,
+        queues[0],
+        queues[1],
+        lazy,
     )
 
 
@@ -350,9 +359,9 @@ def _bridge_file_error(path: str, reason: Any) -> LinkwrightError:
     return LinkwrightError(Diagnostic("NODE820", message, hint=hint))
 
 
-def _full_ros_type(ros_type: str) -> str:
+def _complete_ros_type(ros_type: str) -> str:
     return ros_type if ros_type.count("/") == 2 else ros_type.replace("/", "/msg/", 1)
 
 
-def _current_gz_type(gz_type: str) -> str:
+def _update_gz_type(gz_type: str) -> str:
     return gz_type.replace("ignition.msgs.", "gz.msgs.")

@@ -13,11 +13,12 @@ from typing import Any
 
 from linkwright.nodes.node_command import NodeCommand
 
-_CLASSIC_VALUES = """-s --server-plugin -g --gui-plugin -e --physics -p --play -o --profile -P --property --iters --seed
---record_path --record_encoding --record_period --record_filter --initial_sim_time --gui-client-plugin"""
+_CLASSIC_VALUE_OPTIONS = """-s --server-plugin -g --gui-plugin -e --physics -p --play -o --profile -P --property --iters
+--seed --record_path --record_encoding --record_period --record_filter --initial_sim_time --gui-client-plugin"""
 """Options of gazebo and gzserver that take the next argument as their value."""
-_GZ_VALUES = """-z --iterations --gui-config --physics-engine --render-engine --render-engine-server --render-engine-gui
---seed --record-path --record-topic --playback --network-role --network-secondaries --initial-sim-time --update-rate"""
+_GZ_VALUE_OPTIONS = """-z --iterations --gui-config --physics-engine --render-engine --render-engine-server
+--render-engine-gui --seed --record-path --record-topic --playback --network-role --network-secondaries
+--initial-sim-time --update-rate"""
 """Options of gz sim that take the next argument as their value."""
 _GZ_VERBOSITY = ("-v", "--verbose")
 """Options of gz sim that take the next argument as their value if it is a number."""
@@ -29,19 +30,19 @@ def simulator_command(command: Sequence[str]) -> NodeCommand | None:
     program, *arguments = command
     name = PurePath(program).name
     if name in ("gazebo", "gzserver"):
-        return classic_server(arguments, window=name == "gazebo")
+        return parse_classic_server_command(arguments, window=name == "gazebo")
     if name == "gzclient":
         return NodeCommand("gazebo_ros", "gzclient")
     if (name, arguments[:1]) in (("gz", ["sim"]), ("ign", ["gazebo"]), ("ign", ["sim"])):
-        return gz_server(arguments[1:])
+        return parse_gz_server_command(arguments[1:])
     return None
 
 
-def classic_server(arguments: Sequence[str], *, window: bool = False) -> NodeCommand:
+def parse_classic_server_command(arguments: Sequence[str], *, window: bool = False) -> NodeCommand:
     """Parse the arguments of ``gzserver``, or of ``gazebo``, which also opens a window."""
     gazebo_arguments, ros_arguments = _split_ros_arguments(arguments)
-    options, positional = _read(gazebo_arguments, _CLASSIC_VALUES.split())
-    parameters = _seed_parameter(options) | ({"gui": True} if window else {})
+    options, positional = _parse_options(gazebo_arguments, _CLASSIC_VALUE_OPTIONS.split())
+    parameters = _read_seed(options) | ({"gui": True} if window else {})
     if positional and positional[0]:
         parameters["world"] = positional[0]
     if "-u" in options or "--pause" in options:
@@ -49,16 +50,16 @@ def classic_server(arguments: Sequence[str], *, window: bool = False) -> NodeCom
     return NodeCommand("gazebo_ros", "gzserver", parameters, ros_arguments)
 
 
-def gz_server(arguments: Sequence[str]) -> NodeCommand:
+def parse_gz_server_command(arguments: Sequence[str]) -> NodeCommand:
     """Parse the arguments of ``gz sim``.
 
     Without ``-r``, the simulation starts paused.
     """
     gazebo_arguments, ros_arguments = _split_ros_arguments(arguments)
-    options, positional = _read(gazebo_arguments, _GZ_VALUES.split())
+    options, positional = _parse_options(gazebo_arguments, _GZ_VALUE_OPTIONS.split())
     if "-g" in options:
         return NodeCommand("ros_gz_sim", "gzclient")
-    parameters = _seed_parameter(options) | {"pause": "-r" not in options, "gui": "-s" not in options}
+    parameters = _read_seed(options) | {"pause": "-r" not in options, "gui": "-s" not in options}
     if any(positional):
         parameters["world"] = next(filter(None, positional))
     return NodeCommand("ros_gz_sim", "gzserver", parameters, ros_arguments)
@@ -70,7 +71,7 @@ def _split_ros_arguments(arguments: Sequence[str]) -> tuple[list[str], list[str]
     return list(arguments[:start]), list(arguments[start:])
 
 
-def _read(arguments: list[str], value_options: Sequence[str]) -> tuple[dict[str, str], list[str]]:
+def _parse_options(arguments: list[str], value_options: Sequence[str]) -> tuple[dict[str, str], list[str]]:
     """Split arguments into options with their values and positional arguments.
 
     A flag has an empty value. Arguments that consist only of spaces are dropped, but empty ones are kept: a launch file
@@ -93,6 +94,6 @@ def _read(arguments: list[str], value_options: Sequence[str]) -> tuple[dict[str,
     return options, positional
 
 
-def _seed_parameter(options: Mapping[str, str]) -> dict[str, Any]:
+def _read_seed(options: Mapping[str, str]) -> dict[str, Any]:
     seed = options.get("--seed", "")
     return {"seed": int(seed)} if seed.isdigit() else {}

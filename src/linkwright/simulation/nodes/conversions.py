@@ -21,20 +21,20 @@ DEFAULT_ROS_TYPES = {
 """The ROS type of each gz type that ros_gz_bridge can convert to several ROS types."""
 
 
-def conversion(source: str, target: str) -> Conversion | None:
+def find_conversion(source: str, target: str) -> Conversion | None:
     """Return the function that converts messages between two types, or None if there is none."""
     if source == target:
         return lambda message: message
-    source_payload = _PAYLOADS.get(source)
+    source_payload = _PAYLOAD_FIELDS.get(source)
     if source_payload is not None and source_payload[0] == target:
         return lambda message: getattr(message, source_payload[1])
-    target_payload = _PAYLOADS.get(target)
+    target_payload = _PAYLOAD_FIELDS.get(target)
     if target_payload is not None and target_payload[0] == source:
         return lambda message: get_message(target)(**{target_payload[1]: message})
     return _POSE_CONVERSIONS.get((source, target))
 
 
-_PAYLOADS = {
+_PAYLOAD_FIELDS = {
     "geometry_msgs/msg/TwistStamped": ("geometry_msgs/msg/Twist", "twist"),
     "geometry_msgs/msg/WrenchStamped": ("geometry_msgs/msg/Wrench", "wrench"),
     "geometry_msgs/msg/TransformStamped": ("geometry_msgs/msg/Transform", "transform"),

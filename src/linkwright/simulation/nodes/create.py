@@ -30,7 +30,7 @@ class Create(EntitySpawner):
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
-            options_by_name = self._parameter_options(options.parameters) | dict(_read_options(arguments))
+            options_by_name = self._read_parameter_options(options.parameters) | dict(_read_options(arguments))
             pose = {name: _parse_number(name, options_by_name.get(name, 0.0)) for name in _NUMBER_OPTIONS}
             name = str(options_by_name.get("name", ""))
             entity = Entity(name, (pose["x"], pose["y"], pose["z"]), (pose["R"], pose["P"], pose["Y"]))
@@ -41,7 +41,7 @@ class Create(EntitySpawner):
                 options.environment,
             )
 
-    def _parameter_options(self, parameters: dict[str, Any]) -> dict[str, Any]:
+    def _read_parameter_options(self, parameters: dict[str, Any]) -> dict[str, Any]:
         """Return the options whose values were passed as parameters."""
         option_names = [name for name in (*_TEXT_OPTIONS, *_NUMBER_OPTIONS, "allow_renaming") if name in parameters]
         for name in option_names:
@@ -66,19 +66,19 @@ class Create(EntitySpawner):
         parameter: Parameter = self._node.declare_parameter(name, "")
         return str(parameter.value)
 
-    def _spawn(self, text: str) -> None:
+    def _spawn(self, description: str) -> None:
         if not self._renames or self._has_description:
-            super()._spawn(text)
+            super()._spawn(description)
             return
 
         def name_and_spawn(names: list[str]) -> None:
-            self._entity = _with_free_name(self._entity, names)
-            super(Create, self)._spawn(text)
+            self._entity = _choose_free_name(self._entity, names)
+            super(Create, self)._spawn(description)
 
         self._request_names(name_and_spawn)
 
 
-def _with_free_name(entity: Entity, names: Sequence[str]) -> Entity:
+def _choose_free_name(entity: Entity, names: Sequence[str]) -> Entity:
     """Return the entity with a name that is not in `names`.
 
     A number is appended to the name if necessary.

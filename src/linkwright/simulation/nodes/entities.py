@@ -17,8 +17,8 @@ from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions, create_node, handle_start_errors
 from linkwright.simulation.nodes.spawner import SimulatorClient
 
-_DELETE, _SET_STATE = "gazebo_msgs/srv/DeleteEntity", "gazebo_msgs/srv/SetEntityState"
-_MODEL, _LINK = "6", "2"
+_DELETE_SERVICE, _SET_STATE_SERVICE = "gazebo_msgs/srv/DeleteEntity", "gazebo_msgs/srv/SetEntityState"
+_MODEL_TYPE, _LINK_TYPE = "6", "2"
 """The values of ros_gz_interfaces/msg/Entity.type that ``--type`` accepts: model and link."""
 
 
@@ -49,7 +49,9 @@ class Remove(SimulatorClient):
             self._remove(name)
 
     def _remove(self, name: str) -> None:
-        self._call_service(_DELETE, "delete_entity", get_service(_DELETE).Request(name=name), self._on_response)
+        self._call_service(
+            _DELETE_SERVICE, "delete_entity", get_service(_DELETE_SERVICE).Request(name=name), self._on_response
+        )
 
     def _on_response(self, response: Any) -> None:
         """Log the result of the request, and end with status 0 if it succeeded, else with 1."""
@@ -73,7 +75,7 @@ class DeleteEntity(Remove):
         self._node, arguments = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
             self._connect(self._node)
-            self._remove(_read(_create_parser("delete_entity"), arguments).name)
+            self._remove(_parse_command_line(_create_parser("delete_entity"), arguments).name)
 
 
 class SetEntityPose(Remove):
@@ -96,14 +98,14 @@ class SetEntityPose(Remove):
             rotation_options = parser.add_mutually_exclusive_group()
             rotation_options.add_argument("--quat", nargs=4, type=float)
             rotation_options.add_argument("--euler", nargs=3, type=float, default=(0.0, 0.0, 0.0))
-            arguments = _read(parser, command_line)
+            arguments = _parse_command_line(parser, command_line)
             state = get_message("gazebo_msgs/msg/EntityState")(name=arguments.name)
             position, orientation = state.pose.position, state.pose.orientation
             position.x, position.y, position.z = arguments.pos
             rotation = arguments.quat or quaternion_from_rpy(tuple(arguments.euler))
             orientation.x, orientation.y, orientation.z, orientation.w = rotation
-            request = get_service(_SET_STATE).Request(state=state)
-            self._call_service(_SET_STATE, "set_entity_state", request, self._on_response)
+            request = get_service(_SET_STATE_SERVICE).Request(state=state)
+            self._call_service(_SET_STATE_SERVICE, "set_entity_state", request, self._on_response)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -115,11 +117,11 @@ def _create_parser(program: str) -> _Parser:
     parser = _Parser(prog=program, add_help=False, allow_abbrev=False)
     parser.add_argument("--name")
     parser.add_argument("--id")
-    parser.add_argument("--type", choices=(_MODEL, _LINK), default=_MODEL)
+    parser.add_argument("--type", choices=(_MODEL_TYPE, _LINK_TYPE), default=_MODEL_TYPE)
     return parser
 
 
-def _read(parser: _Parser, command_line: Sequence[str]) -> argparse.Namespace:
+def _parse_command_line(parser: _Parser, command_line: Sequence[str]) -> argparse.Namespace:
     """Parse a command line that names an entity.
 
     Raises:

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from linkwright.nodes.watched_files import FileWatcher
     from linkwright.sdf.plugins import Plugin
 
-_EMPTY, _DESCRIPTION = "empty", "robot_description"
+_EMPTY_WORLD, _DESCRIPTION_PARAMETER = "empty", "robot_description"
 _LOGGED_WARNINGS = frozenset({"SDF150", "SDF160", "SDF161"})
 """The codes of warnings about unknown elements and missing files, which are logged like errors."""
 _PARAMETERS: dict[str, Any] = {
-    "world": _EMPTY,
+    "world": _EMPTY_WORLD,
     "world_sdf_file": "",
     "world_sdf_string": "",
     "publish_rate": 10.0,
@@ -37,7 +37,7 @@ _PARAMETERS: dict[str, Any] = {
     "seconds": 0.0,
     "usual_names": False,
     "gazebo_mistakes": False,
-    _DESCRIPTION: "",
+    _DESCRIPTION_PARAMETER: "",
     "robot_name": "",
     "robot_pose": [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     "robot_namespace": "",
@@ -110,10 +110,13 @@ class Simulator(SingleNode):
                 for diagnostic in loaded_world.diagnostics
                 if diagnostic.severity is Severity.ERROR or diagnostic.code in _LOGGED_WARNINGS
             )
-            self._log(logged_findings)
+            self._log_findings(logged_findings)
             simulation = Simulation(loaded_world.world, loaded_world.finder, step=parameters["step"] or None)
             server_options = ServerOptions(
-                parameters["seed"], parameters["usual_names"], parameters["gazebo_mistakes"], self._default_plugins()
+                parameters["seed"],
+                parameters["usual_names"],
+                parameters["gazebo_mistakes"],
+                self._get_default_plugins(),
             )
             self.server = SimulationServer(simulation, self._node, server_options)
             stepped_node = SteppedNode(self._node, self.server.exchange, owned=False)
@@ -129,10 +132,10 @@ class Simulator(SingleNode):
             )
             self.services = Services(self.server, self.runner, stepped_node, loaded_world, options.library)
             self.server.start()
-            if parameters[_DESCRIPTION]:
-                pose = _transform_of_pose(parameters["robot_pose"])
+            if parameters[_DESCRIPTION_PARAMETER]:
+                pose = _to_transform(parameters["robot_pose"])
                 robot = self.services.spawn(
-                    parameters[_DESCRIPTION], parameters["robot_name"], pose, parameters["robot_namespace"]
+                    parameters[_DESCRIPTION_PARAMETER], parameters["robot_name"], pose, parameters["robot_namespace"]
                 )
                 self._node.add_on_set_parameters_callback(partial(self._on_parameters, robot))
             self._reports.start_description()
@@ -154,7 +157,7 @@ class Simulator(SingleNode):
         self.server.close()
         super().close()
 
-    def _default_plugins(self) -> Sequence[Plugin]:
+    def _get_default_plugins(self) -> Sequence[Plugin]:
         """Return the default plugins of a world that does not declare any."""
         return ()
 
@@ -163,14 +166,14 @@ class Simulator(SingleNode):
 
         An invalid description is rejected with the reason.
         """
-        from linkwright.simulation.plugins.entities import finding_line
+        from linkwright.simulation.plugins.entities import format_finding
 
         for parameter in parameters:
-            if parameter.name == _DESCRIPTION:
+            if parameter.name == _DESCRIPTION_PARAMETER:
                 try:
                     self.services.replace_model(parameter.value, robot)
                 except LinkwrightError as error:
-                    return SetParametersResult(successful=False, reason=finding_line(error.diagnostics[0]))
+                    return SetParametersResult(successful=False, reason=format_finding(error.diagnostics[0]))
         return SetParametersResult(successful=True)
 
     def _finish(self, status: int) -> None:
@@ -180,17 +183,17 @@ class Simulator(SingleNode):
     def _publish_state(self) -> None:
         self._reports.publish_state(paused=self.runner.is_paused)
 
-    def _log(self, findings: Iterable[Diagnostic]) -> None:
+    def _log_findings(self, findings: Iterable[Diagnostic]) -> None:
         """Log the findings as errors or warnings, without repeating a message."""
         logger = self._node.get_logger()
         first_findings: dict[str, Diagnostic] = {}
         for finding in findings:
             first_findings.setdefault(str(finding.message), finding)
-        for diagnostic in first_findings.values():
-            location = f"{diagnostic.span}: " if diagnostic.span else ""
-            hint = f" ({diagnostic.hint})" if diagnostic.hint else ""
-            text = f"{location}{diagnostic.message}{hint}"
-            if diagnostic.severity is Severity.ERROR:
+        for first_finding in first_findings.values():
+            location = f"{first_finding.span}: " if first_finding.span else ""
+            hint = f" ({first_finding.hint})" if first_finding.hint else ""
+            text = f"{location}{first_finding.message}{hint}"
+            if first_finding.severity is Severity.ERROR:
                 logger.error(text)
             else:
                 logger.warning(text)
@@ -202,7 +205,7 @@ class GzServer(Simulator):
     A world without plugins gets the default plugins of gz.
     """
 
-    def _default_plugins(self) -> Sequence[Plugin]:
+    def _get_default_plugins(self) -> Sequence[Plugin]:
         from linkwright.simulation.plugins.registry import DEFAULT_GZ_SYSTEMS
 
         return DEFAULT_GZ_SYSTEMS
@@ -212,6 +215,6 @@ def _call_threadsafe(loop: asyncio.AbstractEventLoop, function: Callable[[int], 
     loop.call_soon_threadsafe(function, status)
 
 
-def _transform_of_pose(numbers: Sequence[float]) -> Transform:
+def _to_transform(numbers: Sequence[float]) -> Transform:
     x, y, z, roll, pitch, yaw = numbers
     return (x, y, z, *quaternion_from_rpy((roll, pitch, yaw)))

@@ -64,8 +64,10 @@ class SpawnEntity(EntitySpawner):
         else:
             self._spawn(read_stdin())
 
-    def _spawn(self, text: str) -> None:
-        super()._spawn(text.replace("package://", "model://") if self._arguments.package_to_model else text)
+    def _spawn(self, description: str) -> None:
+        super()._spawn(
+            description.replace("package://", "model://") if self._arguments.package_to_model else description
+        )
 
     def _wait_for_entity(self, name: str) -> None:
         def on_names(names: list[str]) -> None:

@@ -41,13 +41,13 @@ class Entity:
     reference_frame: str = ""
 
 
-def spawn_request(entity: Entity, text: str) -> Any:
+def create_spawn_request(entity: Entity, description: str) -> Any:
     """Return a request of ``/spawn_entity`` for an entity.
 
-    `text` is the URDF or SDF of the entity.
+    `description` is the URDF or SDF of the entity.
     """
     request = get_service(SPAWN_SERVICE).Request(
-        name=entity.name, xml=text, robot_namespace=entity.namespace, reference_frame=entity.reference_frame
+        name=entity.name, xml=description, robot_namespace=entity.namespace, reference_frame=entity.reference_frame
     )
     position, orientation = request.initial_pose.position, request.initial_pose.orientation
     position.x, position.y, position.z = entity.xyz
@@ -144,7 +144,7 @@ class EntitySpawner(SimulatorClient):
 
     # --- the request ----------------------------------------------------------------------------------------------
 
-    def _spawn(self, text: str) -> None:
+    def _spawn(self, description: str) -> None:
         """Spawn the entity from its URDF or SDF once the simulator is available.
 
         Later calls have no effect.
@@ -152,7 +152,9 @@ class EntitySpawner(SimulatorClient):
         if self._has_description:
             return
         self._has_description = True
-        self._call_service(SPAWN_SERVICE, "spawn_entity", spawn_request(self._entity, text), self._on_response)
+        self._call_service(
+            SPAWN_SERVICE, "spawn_entity", create_spawn_request(self._entity, description), self._on_response
+        )
 
     def _request_names(self, on_names: Callable[[list[str]], None]) -> None:
         """Request the names of the world's models, and pass them to a function."""

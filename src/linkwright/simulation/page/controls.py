@@ -1,4 +1,4 @@
-"""The simulation bar of the page, and requests of pages to add, delete, drag or push models.
+"""The simulation bar of the page, and requests to add, delete, drag or push models.
 
 The feature uses only topics and services.
 
@@ -40,14 +40,14 @@ from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.simulation.page.services import SimulationServices, refuse
 
 _STATE_TOPIC = "/simulation_state"
-_PAUSED = 2
+_PAUSED_STATE = 2
 """The value of simulation_interfaces/msg/SimulationState for a paused simulation."""
-_VELOCITIES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
-_PUSH_NS = 50_000_000
+_VELOCITY_TYPES = ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped")
+_PUSH_DURATION_NS = 50_000_000
 """The duration of a push in nanoseconds. Pages repeat the push while the user pulls."""
 
 _EMPTY_SERVICE = "std_srvs/srv/Empty"
-_ACTIONS = {
+_SERVICE_BY_ACTION = {
     "play": (_EMPTY_SERVICE, "/unpause_physics"),
     "pause": (_EMPTY_SERVICE, "/pause_physics"),
     "reset": (_EMPTY_SERVICE, "/reset_simulation"),
@@ -120,7 +120,7 @@ class SimulationFeature(PageFeature):
         """Carry out the request of a page."""
         match message:
             case ControlSimulation(action):
-                service_type, name = _ACTIONS[action]
+                service_type, name = _SERVICE_BY_ACTION[action]
                 fields = {"steps": 1} if action == "step" else {}
                 self._services.call_service(page, service_type, name, fields)
             case SpawnModel(address, position):
@@ -156,11 +156,12 @@ class SimulationFeature(PageFeature):
     def _is_drivable(self) -> bool:
         endpoints = self.context.node.graph.endpoints()
         return any(
-            endpoint.kind is EndpointKind.SUBSCRIPTION and endpoint.type_name in _VELOCITIES for endpoint in endpoints
+            endpoint.kind is EndpointKind.SUBSCRIPTION and endpoint.type_name in _VELOCITY_TYPES
+            for endpoint in endpoints
         )
 
     def _on_state(self, message: Any) -> None:
-        self._publish(replace(self._status, present=True, paused=message.state == _PAUSED))
+        self._publish(replace(self._status, present=True, paused=message.state == _PAUSED_STATE))
 
     def _on_metrics(self, message: Any) -> None:
         stamp = message.header.stamp
@@ -191,7 +192,7 @@ class SimulationFeature(PageFeature):
 
     async def _spawn(self, page: Page, address: str, position: list[float]) -> None:
         try:
-            model = await asyncio.to_thread(self._model_at, address.strip())
+            model = await asyncio.to_thread(self._read_model, address.strip())
         except LinkwrightError as error:
             refuse(page, error.diagnostics[0].located_message)
             return
@@ -201,7 +202,7 @@ class SimulationFeature(PageFeature):
         name, text = model
         fields: dict[str, Any] = {"xml": text}
         if _is_vector(position):
-            fields["initial_pose"] = _pose(position)
+            fields["initial_pose"] = _create_pose(position)
 
         def on_models_listed(response: Any) -> None:
             existing_names = () if response is None else response.model_names
@@ -219,7 +220,7 @@ class SimulationFeature(PageFeature):
         )
         self._services.call_service(page, "gazebo_msgs/srv/GetModelList", "/get_model_list", {}, on_models_listed)
 
-    def _model_at(self, address: str) -> tuple[str, str] | None:
+    def _read_model(self, address: str) -> tuple[str, str] | None:
         """Return the name and description of the model at an address.
 
         Returns None if the file is a world without a model.
@@ -269,7 +270,7 @@ class SimulationFeature(PageFeature):
         drag.is_calling = True
         offset, drag.pending_offset = drag.pending_offset, None
         state = type(drag.initial_state)(name=drag.model, reference_frame="world")
-        state.pose = _pose([start.x + offset[0], start.y + offset[1], start.z + offset[2]])
+        state.pose = _create_pose([start.x + offset[0], start.y + offset[1], start.z + offset[2]])
         state.pose.orientation = drag.initial_state.pose.orientation
 
         def on_pose_set(_: Any) -> None:
@@ -290,12 +291,15 @@ class SimulationFeature(PageFeature):
         point = from_values(get_message("geometry_msgs/msg/Point"), message.point)
         wrench.force.x, wrench.force.y, wrench.force.z = message.force
         fields = {"link_name": message.link, "reference_frame": "world", "reference_point": point, "wrench": wrench}
-        fields["duration"] = get_message("builtin_interfaces/msg/Duration")(sec=0, nanosec=_PUSH_NS)
+        fields["duration"] = get_message("builtin_interfaces/msg/Duration")(sec=0, nanosec=_PUSH_DURATION_NS)
         self._services.call_service(page, "gazebo_msgs/srv/ApplyLinkWrench", "/apply_link_wrench", fields)
 
 
 def _report_added(page: Page, name: str, actual_name: str, response: Any) -> None:
-    """Notify a page that a model was added, and of its new name if the original name was in use."""
+    """Notify a page that a model was added.
+
+    The notice contains the new name if the original name was in use.
+    """
     if response is None or not response.success:
         return
     page.send(ModelAdded(actual_name))
@@ -313,7 +317,7 @@ def _is_vector(numbers: Sequence[float]) -> bool:
     return len(numbers) == 3 and all(map(isfinite, numbers))
 
 
-def _pose(position: Sequence[float]) -> Any:
+def _create_pose(position: Sequence[float]) -> Any:
     pose = get_message("geometry_msgs/msg/Pose")()
     pose.position.x, pose.position.y, pose.position.z = position
     pose.orientation.w = 1.0

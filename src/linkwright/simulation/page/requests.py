@@ -3,16 +3,17 @@
 from linkwright.page.protocol.simulation import NO_SIMULATION, NO_WORLD
 from linkwright.panels.page_feature import OnDemand, messages
 
-_MODELING = "linkwright.page.protocol.simulation"
-_SIMULATION = "linkwright.page.protocol.simulation"
+_PROTOCOL_MODULE = "linkwright.page.protocol.simulation"
 
 ON_DEMAND = (
     OnDemand(
         "linkwright.simulation.page.modeling.feature:ModelingFeature",
         (
-            *messages(_MODELING, "AddEntity", "ChangeEntities", "CopyEntities", "DeleteEntities", "RequestModels"),
             *messages(
-                _MODELING, "GroupEntities", "RedoWorld", "SaveWorld", "SetModeling", "UndoWorld", "UngroupEntity"
+                _PROTOCOL_MODULE, "AddEntity", "ChangeEntities", "CopyEntities", "DeleteEntities", "RequestModels"
+            ),
+            *messages(
+                _PROTOCOL_MODULE, "GroupEntities", "RedoWorld", "SaveWorld", "SetModeling", "UndoWorld", "UngroupEntity"
             ),
         ),
         ("/world_description",),
@@ -20,7 +21,7 @@ ON_DEMAND = (
     ),
     OnDemand(
         "linkwright.simulation.page.controls:SimulationFeature",
-        messages(_SIMULATION, "ControlSimulation", "SpawnModel", "DeleteModel", "DragModel", "PushLink"),
+        messages(_PROTOCOL_MODULE, "ControlSimulation", "SpawnModel", "DeleteModel", "DragModel", "PushLink"),
         ("/simulation_state",),
         until=NO_SIMULATION,
         refuses_recordings=True,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from math import copysign, dist, hypot, tan
 from typing import Any
 
-from linkwright.control.odometry import OdometryTopics, planar_variances, planar_velocity, transforms_topic
+from linkwright.control.odometry import OdometryTopics, create_transform_output, planar_variances, to_planar_velocity
 from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import ackermann_angles
 from linkwright.messages import get_message
@@ -20,7 +20,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 _MOTOR_GAIN = 20.0
 """The gain of a wheel motor, in N m of torque per rad/s of velocity error."""
-_GRAVITY = 9.81
+_GRAVITY_M_S2 = 9.81
 """The acceleration of gravity in m/s2."""
 
 
@@ -71,14 +71,14 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         steering = [self.joint(name) for name in (parameters.left_steering_joint, parameters.right_steering_joint)]
         for joint in (*front, *rear):
             simulation.enable_rolling(joint)
-        self._radius = self._measure_radius(rear[1])
+        self._radius = self._get_wheel_radius(rear[1])
         self._measure_geometry(front, rear)
         simulation.keep_awake(self.first_link)
-        torque = simulation.mass_of(self.context.path) * _GRAVITY * self._radius / 2.0
+        torque = simulation.mass_of(self.context.path) * _GRAVITY_M_S2 * self._radius / 2.0
         self._motors = [simulation.add_velocity_motor(joint, _MOTOR_GAIN, torque) for joint in rear]
         self._servos = [simulation.add_servo(joint) for joint in steering]
         odometry = node.publisher("nav_msgs/msg/Odometry", "odom", 1) if parameters.publish_odom else None
-        transforms = transforms_topic(node) if parameters.publish_odom_tf else None
+        transforms = create_transform_output(node) if parameters.publish_odom_tf else None
         variances = planar_variances(parameters.covariance_x, parameters.covariance_y, parameters.covariance_yaw)
         self._topics = OdometryTopics(
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
@@ -110,7 +110,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
             servo.restart()
         self._drive(0.0)
 
-    def _measure_radius(self, joint: str) -> float:
+    def _get_wheel_radius(self, joint: str) -> float:
         radius = self.simulation.wheel_radius(self.simulation.scene.joints[joint].child)
         if radius is None:
             raise self.parameter_error(
@@ -163,7 +163,7 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._drive(seconds)
         old_pose, self._pose = self._pose, self.simulation.model_pose(self.context.path)
         self._distance += hypot(self._pose[0] - old_pose[0], self._pose[1] - old_pose[1])
-        velocity = planar_velocity(self._pose, *self.simulation.link_velocity(self.first_link))
+        velocity = to_planar_velocity(self._pose, *self.simulation.link_velocity(self.first_link))
         self._topics.publish(self.stamp(), self._pose, *velocity)
         if self._distance_topic is not None:
             self._distance_topic.publish(get_message("std_msgs/msg/Float32")(data=self._distance))

@@ -5,23 +5,23 @@ from __future__ import annotations
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.sdf.plugins import library_name
 
-_AIR_SPEED = phrase("the velocity that gz-sim-odometry-publisher-system publishes, in still air")
-_WIDE_CAMERA = phrase("a camera with a wide <horizontal_fov>")
+_AIR_SPEED_ALTERNATIVE = phrase("the velocity that gz-sim-odometry-publisher-system publishes, in still air")
+_WIDE_CAMERA_ALTERNATIVE = phrase("a camera with a wide <horizontal_fov>")
 
 _ALTERNATIVES = {
-    "air_speed": _AIR_SPEED,
+    "air_speed": _AIR_SPEED_ALTERNATIVE,
     "gazebo_ros_elevator": phrase("gz-sim-joint-position-controller-system for the joint of the cabin"),
-    "gz-sim-air-speed-system": _AIR_SPEED,
+    "gz-sim-air-speed-system": _AIR_SPEED_ALTERNATIVE,
     "gz-sim-camera-video-recorder-system": phrase("`linkwright bag record` with the topic of the camera"),
     "gz-sim-follow-actor-system": phrase("an <actor> with the waypoints of a <script>"),
     "gz-sim-log-playback-system": phrase("`linkwright bag play`"),
     "gz-sim-log-system": phrase("`linkwright sim --record`, or `linkwright bag record`"),
     "gz-sim-model-photo-shoot-system": phrase("a camera in front of the model"),
-    "wide_angle_camera": _WIDE_CAMERA,
-    "wideanglecamera": _WIDE_CAMERA,
+    "wide_angle_camera": _WIDE_CAMERA_ALTERNATIVE,
+    "wideanglecamera": _WIDE_CAMERA_ALTERNATIVE,
 }
 
 
-def alternative_to(name: str) -> Phrase | None:
+def find_alternative(name: str) -> Phrase | None:
     """Return the alternative to a plugin's library or a sensor type, or None."""
     return _ALTERNATIVES.get(library_name(name))

@@ -1,4 +1,4 @@
-"""Batteries whose voltage falls linearly with their charge: ``gz-sim-linearbatteryplugin-system``.
+"""Batteries with a linear voltage curve: ``gz-sim-linearbatteryplugin-system``.
 
 The open-circuit voltage is ``E0 + E1 (1 - q / c)``, with the charge q and the capacity c. The current of a load with
 the power P is ``P / V``; it passes a low-pass filter, and the internal resistance reduces the voltage.
@@ -24,16 +24,16 @@ from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_TYPE = "sensor_msgs/msg/BatteryState"
-_RATE = 50.0
+_MESSAGE_TYPE = "sensor_msgs/msg/BatteryState"
+_PUBLISH_RATE_HZ = 50.0
 """The rate of the state, in Hz, which gz does not exceed."""
-_SEARCH_RATE = 10.0
+_SEARCH_RATE_HZ = 10.0
 """The rate at which the plugin looks for the types of topics, in Hz of simulated time."""
 _SECONDS_PER_HOUR = 3600.0
 _MIN_VOLTAGE = 1e-3
 _FULL_LEVEL = 0.9
 """The state of charge from which a battery counts as full and takes no more current."""
-_REPEATED_STEPS = 100
+_RATE_CORRECTION_STEPS = 100
 """The number of steps whose charges gz subtracts again in each step."""
 
 
@@ -81,24 +81,24 @@ class GzBattery(SimulatedPlugin[BatteryParameters]):
         """
         parameters, node = self.parameters, self.node
         if parameters.capacity <= 0.0:
-            raise self._must_be_positive("capacity")
+            raise self._not_positive_error("capacity")
         self.loads: dict[str, float] = {}
         self._revision = -1
         self.reset()
         base = f"/model/{self.context.path}/battery/{parameters.battery_name}"
         if parameters.enable_recharge:
             if parameters.charging_time is None or parameters.charging_time <= 0.0:
-                raise self._must_be_positive("charging_time")
+                raise self._not_positive_error("charging_time")
             node.subscribe("std_msgs/msg/Bool", f"{base}/recharge/start", self._on_start_charging)
             node.subscribe("std_msgs/msg/Bool", f"{base}/recharge/stop", self._on_stop_charging)
         self._awaited_topics = dict.fromkeys(parameters.power_draining_topic, self._on_start_draining)
         self._awaited_topics |= dict.fromkeys(parameters.stop_power_draining_topic, self._on_stop_draining)
         if self._awaited_topics:
-            self.every(_SEARCH_RATE, self._subscribe_to_known_topics)
+            self.every(_SEARCH_RATE_HZ, self._subscribe_to_known_topics)
             self._subscribe_to_known_topics()
-        self._output = node.publisher(_TYPE, f"{base}/state")
+        self._output = node.publisher(_MESSAGE_TYPE, f"{base}/state")
         self.every(0.0, self._update)
-        self.every(_RATE, self._publish)
+        self.every(_PUBLISH_RATE_HZ, self._publish)
 
     def reset(self) -> None:
         """Restore the initial charge."""
@@ -107,7 +107,7 @@ class GzBattery(SimulatedPlugin[BatteryParameters]):
         self._charge = min(max(charge, 0.0), parameters.capacity)
         self._level = self._charge / parameters.capacity
         self._voltage, self._current = parameters.voltage, 0.0
-        self._recent_charges: deque[float] = deque(maxlen=_REPEATED_STEPS)
+        self._recent_charges: deque[float] = deque(maxlen=_RATE_CORRECTION_STEPS)
         self._is_draining, self._is_charging = parameters.start_draining, False
 
     @property
@@ -115,7 +115,7 @@ class GzBattery(SimulatedPlugin[BatteryParameters]):
         """Whether no charge is left."""
         return self._level <= 0.0
 
-    def _must_be_positive(self, tag: str) -> Exception:
+    def _not_positive_error(self, tag: str) -> Exception:
         return self.parameter_error(
             phrase("plugin '{plugin}': <{tag}> must be greater than 0", plugin=self.context.name, tag=tag)
         )
@@ -160,14 +160,14 @@ class GzBattery(SimulatedPlugin[BatteryParameters]):
             self._revision = simulation.revision
             self._find_commands()
         data = simulation.data
-        return bool(data.qfrc_applied[self._degrees].any() or data.ctrl[self._actuators].any())
+        return bool(data.qfrc_applied[self._degrees_of_freedom].any() or data.ctrl[self._actuators].any())
 
     def _find_commands(self) -> None:
         """Find the indices of the model's degrees of freedom and actuators."""
         model, prefix = self.simulation.model, f"{self.context.path}{SEPARATOR}"
         names = [model.joint(index).name for index in range(model.njnt)]
         joints = {index for index, name in enumerate(names) if name.startswith(prefix)}
-        self._degrees = [index for index, joint in enumerate(model.dof_jntid.tolist()) if joint in joints]
+        self._degrees_of_freedom = [index for index, joint in enumerate(model.dof_jntid.tolist()) if joint in joints]
         self._actuators = [index for index, (joint, _) in enumerate(model.actuator_trnid.tolist()) if joint in joints]
 
     def _move_charge(self, seconds: float) -> None:
@@ -204,9 +204,9 @@ class GzBattery(SimulatedPlugin[BatteryParameters]):
                 )
             )
 
-    def _status(self) -> int:
+    def _compute_status(self) -> int:
         """Return the status as a constant of the message."""
-        message = get_message(_TYPE)
+        message = get_message(_MESSAGE_TYPE)
         if self._is_charging:
             status = message.POWER_SUPPLY_STATUS_CHARGING
         elif self._is_draining:
@@ -218,12 +218,15 @@ class GzBattery(SimulatedPlugin[BatteryParameters]):
         return int(status)
 
     def _publish(self) -> None:
-        """Publish the state; as in gz, a positive current drains the battery unless the sign is inverted."""
+        """Publish the state of the battery.
+
+        As in gz, a positive current drains the battery unless the sign is inverted.
+        """
         if not self._output.is_wanted:
             return
         parameters = self.parameters
         self._output.publish(
-            get_message(_TYPE)(
+            get_message(_MESSAGE_TYPE)(
                 header=Header(stamp=self.stamp()),
                 voltage=self._voltage,
                 temperature=nan,
@@ -232,7 +235,7 @@ class GzBattery(SimulatedPlugin[BatteryParameters]):
                 capacity=parameters.capacity,
                 design_capacity=nan,
                 percentage=self._level * (100.0 if parameters.fix_issue_225 else 1.0),
-                power_supply_status=self._status(),
+                power_supply_status=self._compute_status(),
                 present=True,
             )
         )

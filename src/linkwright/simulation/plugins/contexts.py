@@ -27,9 +27,9 @@ def world_plugins(world: World, systems: Sequence[Plugin] = ()) -> Iterator[Plug
 
 
 def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginContext]:
-    """Yield the plugins of a model and its sensors, and the sensors without a publishing plugin.
+    """Yield the plugins of a model and its sensors, followed by those of nested models.
 
-    The plugins and sensors of nested models follow.
+    A sensor without a publishing plugin is yielded, too.
 
     Args:
         world: the world, as it was read.
@@ -37,25 +37,25 @@ def model_plugins(world: World, model: Model, path: str) -> Iterator[PluginConte
         path: the model's name in the world.
     """
     frames = Frames(model)
-    yield from _plugins_in_model(world, model, path, frames)
+    yield from _find_model_plugins(world, model, path, frames)
 
 
-def _plugins_in_model(world: World, model: Model, path: str, frames: Frames) -> Iterator[PluginContext]:
+def _find_model_plugins(world: World, model: Model, path: str, frames: Frames) -> Iterator[PluginContext]:
     for plugin in model.plugins:
         yield PluginContext(plugin.name or plugin.filename, plugin, world, model, path, None)
-    for placed_sensor in _sensors(model, path, frames):
+    for placed_sensor in _find_sensors(model, path, frames):
         plugins = placed_sensor.sensor.plugins
         for plugin in plugins:
             yield PluginContext(plugin.name or placed_sensor.sensor.name, plugin, world, model, path, placed_sensor)
         if all(is_built_in(plugin.filename) for plugin in plugins):  # true if a sensor has only systems of gz
             yield PluginContext(placed_sensor.sensor.name, None, world, model, path, placed_sensor)
     for nested_model in model.models:
-        yield from _plugins_in_model(
+        yield from _find_model_plugins(
             world, nested_model, f"{path}{SEPARATOR}{nested_model.name}", frames.inside(nested_model.name)
         )
 
 
-def _sensors(model: Model, path: str, frames: Frames) -> Iterator[PlacedSensor]:
+def _find_sensors(model: Model, path: str, frames: Frames) -> Iterator[PlacedSensor]:
     for link in model.links:
         for sensor in link.sensors:
             name = SEPARATOR.join((path, link.name, sensor.name))
@@ -65,12 +65,12 @@ def _sensors(model: Model, path: str, frames: Frames) -> Iterator[PlacedSensor]:
         for sensor in joint.sensors:
             try:
                 child = frames.link(joint.child)
-                pose = compose(_joint_in_link(frames, joint, child), transform_of(sensor.pose.pose))
+                pose = compose(_compute_joint_pose(frames, joint, child), transform_of(sensor.pose.pose))
             except FrameError:
                 continue
             name = SEPARATOR.join((path, joint.name, sensor.name))
             yield PlacedSensor(name, sensor, f"{path}{SEPARATOR}{child}", f"{path}{SEPARATOR}{joint.name}", pose)
 
 
-def _joint_in_link(frames: Frames, joint: Joint, link: str) -> Transform:
+def _compute_joint_pose(frames: Frames, joint: Joint, link: str) -> Transform:
     return compose(invert(frames.pose(link)), frames.pose(joint.name))

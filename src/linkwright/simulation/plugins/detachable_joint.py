@@ -15,7 +15,7 @@ from linkwright.messages import get_message
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_SEARCH_RATE = 100.0
+_SEARCH_RATE_HZ = 100.0
 """The rate at which the plugin searches for the child model, in Hz of simulated time."""
 _OWN_MODEL = "__model__"
 
@@ -60,7 +60,7 @@ class GzDetachableJoint(SimulatedPlugin[DetachableJointParameters]):
         self.node.subscribe("std_msgs/msg/Empty", parameters.attach_topic or f"{topic_prefix}/attach", self._on_attach)
         if self._should_attach and self._find_child():
             self._attach()
-        self.every(_SEARCH_RATE, self._attach_if_found)
+        self.every(_SEARCH_RATE_HZ, self._attach_if_found)
 
     def reset(self) -> None:
         """Restore the initial state, attached or detached."""

@@ -14,10 +14,10 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 from linkwright.control.odometry import (
     OdometryTopics,
+    create_transform_output,
     planar_variances,
-    planar_velocity,
+    to_planar_velocity,
     transform_message,
-    transforms_topic,
 )
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import compose, invert
@@ -29,8 +29,8 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.actuators import Motor
 from linkwright.simulation.plugins.gz_drive import (
-    GZ_RATE,
-    GZ_TORQUE,
+    GZ_MAX_TORQUE,
+    GZ_RATE_HZ,
     MOTOR_GAIN,
     DriveCommands,
     GzDriveParameters,
@@ -41,7 +41,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 P = TypeVar("P")
 
-_WORLD_SOURCE = 1
+_WORLD_ODOMETRY_SOURCE = 1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,14 +158,14 @@ class _DiffDrive(SimulatedPlugin[P], Generic[P]):
     def _read_angles(self) -> tuple[float, float]:
         """Return the angles of the first wheel pair in rad.
 
-        The wheel velocities are stored for `_measured_velocity`.
+        The wheel velocities are stored for `_measure_velocity`.
         """
         state, (left, right) = self.simulation.joint_state, self._pairs[0].joints
         (left_angle, left_speed), (right_angle, right_speed) = state(left), state(right)
         self._wheel_velocities = left_speed, right_speed
         return left_angle, right_angle
 
-    def _measured_velocity(self) -> tuple[float, float]:
+    def _measure_velocity(self) -> tuple[float, float]:
         """Return the forward velocity in m/s and the yaw rate in rad/s.
 
         The values are those at the last call of `_read_angles`.
@@ -192,12 +192,12 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
     CARRIED: ClassVar[tuple[str, ...]] = (*_DiffDrive.CARRIED, "_wheel_speeds")
 
     def start(self) -> None:
-        """Create motors for the wheels and publishers of the odometry, and subscribe to the commands."""
+        """Create the motors and the odometry topics, and subscribe to the commands."""
         parameters, node = self.parameters, self.node
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         separations, diameters = (
-            _one_per_pair(parameters.wheel_separation, count),
-            _one_per_pair(parameters.wheel_diameter, count),
+            _extend_to_count(parameters.wheel_separation, count),
+            _extend_to_count(parameters.wheel_diameter, count),
         )
         sizes = [(separation, diameter / 2.0) for separation, diameter in zip(separations, diameters, strict=True)]
         self._create_motors(parameters.left_joint, parameters.right_joint, sizes, parameters.max_wheel_torque)
@@ -205,12 +205,12 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         odometry = (
             node.publisher("nav_msgs/msg/Odometry", parameters.odometry_topic, 1) if parameters.publish_odom else None
         )
-        transforms = transforms_topic(node) if parameters.publish_odom_tf else None
+        transforms = create_transform_output(node) if parameters.publish_odom_tf else None
         variances = planar_variances(parameters.covariance_x, parameters.covariance_y, parameters.covariance_yaw)
         self._topics = OdometryTopics(
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
         )
-        self._uses_true_pose = parameters.odometry_source.strip().lower() in (str(_WORLD_SOURCE), "world")
+        self._uses_true_pose = parameters.odometry_source.strip().lower() in (str(_WORLD_ODOMETRY_SOURCE), "world")
         commander = node.commander(self._stop_motion)
         node.subscribe(
             "geometry_msgs/msg/Twist",
@@ -222,7 +222,9 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         )
         self.every(parameters.update_rate, self._update)
         if parameters.publish_wheel_tf:
-            self.every(parameters.update_rate, partial(self._publish_wheels, transforms or transforms_topic(node)))
+            self.every(
+                parameters.update_rate, partial(self._publish_wheels, transforms or create_transform_output(node))
+            )
 
     def _publish_wheels(self, output: Output) -> None:
         """Publish the transform of each wheel in the frame of its parent link."""
@@ -247,9 +249,11 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
         stamp = self.stamp()
         if self._uses_true_pose:
             pose = self.simulation.model_pose(self.context.path)
-            self._topics.publish(stamp, pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link)))
+            self._topics.publish(
+                stamp, pose, *to_planar_velocity(pose, *self.simulation.link_velocity(self.first_link))
+            )
         else:
-            forward, angular = self._measured_velocity()
+            forward, angular = self._measure_velocity()
             published_forward = abs(forward) if self.gazebo_mistakes else forward
             self._topics.publish(stamp, self._pose.transform, published_forward, 0.0, angular)
 
@@ -300,15 +304,15 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
     PARAMETERS = GzParameters
 
     def start(self) -> None:
-        """Create motors for the wheels and publishers of the odometry, and subscribe to the commands."""
+        """Create the motors and the odometry topics, and subscribe to the commands."""
         parameters = self.parameters
         count = max(len(parameters.left_joint), len(parameters.right_joint))
         sizes = [(parameters.wheel_separation, parameters.wheel_radius)] * count
-        self._create_motors(parameters.left_joint, parameters.right_joint, sizes, GZ_TORQUE)
+        self._create_motors(parameters.left_joint, parameters.right_joint, sizes, GZ_MAX_TORQUE)
         self._commands = DriveCommands(parameters)
         self._topics = connect_drive(self, parameters, self._commands)
         self.node.subscribe("std_msgs/msg/Bool", f"/model/{self.context.path}/enable", self._commands.enable)
-        self.every(GZ_RATE, self._drive)
+        self.every(GZ_RATE_HZ, self._drive)
         self.every(parameters.odom_publish_frequency, self._publish)
 
     def reset(self) -> None:
@@ -332,7 +336,7 @@ class GzDiffDrive(_DiffDrive[GzParameters]):
         self._update_odometry()
         if not self._topics.is_wanted:
             return
-        forward, angular = self._measured_velocity()
+        forward, angular = self._measure_velocity()
         self._topics.publish(self.stamp(), self._pose.transform, forward, 0.0, angular)
 
 
@@ -341,7 +345,7 @@ def _step_towards(value: float, target: float, max_step: float) -> float:
     return min(max(target, value - max_step), value + max_step)
 
 
-def _one_per_pair(values: tuple[float, ...], count: int) -> tuple[float, ...]:
+def _extend_to_count(values: tuple[float, ...], count: int) -> tuple[float, ...]:
     """Return exactly `count` values.
 
     The last value is repeated if there are too few, and surplus values are dropped.

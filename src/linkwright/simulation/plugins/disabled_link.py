@@ -1,4 +1,6 @@
-"""A link without dynamics until something touches it: ``libroboticsgroup_gazebo_disable_link_plugin.so``.
+"""A link without dynamics until something touches it.
+
+The library is ``libroboticsgroup_gazebo_disable_link_plugin.so``.
 
 Source: roboticsgroup_gazebo_plugins (the parameter), and ODE: a disabled body moves again as soon as it touches a
 moving body, and a body that a joint connects to an enabled one is enabled at once.
@@ -26,7 +28,10 @@ class DisabledLinkParameters:
 
 
 class DisabledLink(SimulatedPlugin[DisabledLinkParameters]):
-    """The substitute for ``libroboticsgroup_gazebo_disable_link_plugin.so``: the link floats until it is moved."""
+    """The substitute for ``libroboticsgroup_gazebo_disable_link_plugin.so``.
+
+    The link floats until it is moved.
+    """
 
     PARAMETERS = DisabledLinkParameters
 
@@ -65,7 +70,7 @@ class DisabledLink(SimulatedPlugin[DisabledLinkParameters]):
             self._is_enabled = True
             self._set_compensation(self._original_compensation)
 
-    def _set_compensation(self, share: float) -> None:
-        """Set the share of gravity that does not act on the link."""
-        self.simulation.scene.bodies[self._link].gravcomp = share
+    def _set_compensation(self, fraction: float) -> None:
+        """Set the fraction of gravity that does not act on the link."""
+        self.simulation.scene.bodies[self._link].gravcomp = fraction
         self.simulation.mark_changed()

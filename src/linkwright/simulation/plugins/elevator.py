@@ -23,12 +23,12 @@ from linkwright.messages import get_message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_FLOAT, _INTEGER = "std_msgs/msg/Float64", "std_msgs/msg/Int32"
-_DOOR_TOLERANCE, _CABIN_TOLERANCE = 0.02, 0.15
+_FLOAT_TYPE, _INTEGER_TYPE = "std_msgs/msg/Float64", "std_msgs/msg/Int32"
+_DOOR_TOLERANCE_M, _CABIN_TOLERANCE_M = 0.02, 0.15
 """The distances from its target at which a joint has arrived, in m."""
 _MAX_ARRIVAL_SPEED = 0.01
 """The speed in m/s up to which a joint has arrived."""
-_RANGE_TOLERANCE = 0.005
+_RANGE_TOLERANCE_M = 0.005
 """How much shorter than its maximum, in m, a range must be to show an obstacle in the door."""
 
 
@@ -75,7 +75,7 @@ class _Joint:
     def move(self, target: float) -> None:
         """Command a position in m."""
         self.target = target
-        self.output.publish(get_message(_FLOAT)(data=target))
+        self.output.publish(get_message(_FLOAT_TYPE)(data=target))
 
 
 @dataclass(slots=True)
@@ -111,7 +111,7 @@ class GzElevator(SimulatedPlugin[ElevatorParameters]):
             LinkwrightError: SIM134, the cabin or a door has no joint; SIM160, there is no floor.
         """
         parameters, node, base = self.parameters, self.node, f"/model/{self.context.path}"
-        self._cabin = self._find_joint(parameters.cabin_joint, _CABIN_TOLERANCE)
+        self._cabin = self._find_joint(parameters.cabin_joint, _CABIN_TOLERANCE_M)
         self._floors = list(self._find_floors())
         if not self._floors:
             raise self.parameter_error(
@@ -125,13 +125,13 @@ class GzElevator(SimulatedPlugin[ElevatorParameters]):
             topic = f"{base}/{parameters.door_joint_prefix}{number}/lidar"
             node.subscribe("sensor_msgs/msg/LaserScan", topic, partial(self._on_scan, floor), SENSOR_DATA_QOS)
         self.reset()
-        self._output = node.publisher(_INTEGER, parameters.state_topic or f"{base}/state")
-        node.subscribe(_INTEGER, parameters.cmd_topic or f"{base}/cmd", self._on_command)
+        self._output = node.publisher(_INTEGER_TYPE, parameters.state_topic or f"{base}/state")
+        node.subscribe(_INTEGER_TYPE, parameters.cmd_topic or f"{base}/cmd", self._on_command)
         self.every(parameters.update_rate, self._update)
         self.every(parameters.state_publish_rate, self._publish)
 
     def reset(self) -> None:
-        """Forget the commands."""
+        """Discard the commands."""
         self._state = _State.IDLE
         self._targets: list[int] = []
         self._later_targets: list[int] = []
@@ -141,7 +141,7 @@ class GzElevator(SimulatedPlugin[ElevatorParameters]):
         full_name = self.joint(name)
         self.simulation.keep_awake(self.simulation.scene.joints[full_name].child)
         topic = f"/model/{self.context.path}/joint/{name}/0/cmd_pos"
-        return _Joint(full_name, self.node.publisher(_FLOAT, topic), tolerance)
+        return _Joint(full_name, self.node.publisher(_FLOAT_TYPE, topic), tolerance)
 
     def _find_floors(self) -> Iterator[_Floor]:
         parameters, simulation, model = self.parameters, self.simulation, self.context.model
@@ -150,7 +150,7 @@ class GzElevator(SimulatedPlugin[ElevatorParameters]):
         from_world = invert(simulation.model_pose(self.context.path))
         for number in range(sum(pattern.fullmatch(link.name) is not None for link in links)):
             link = self.link(f"{parameters.floor_link_prefix}{number}")
-            door = self._find_joint(f"{parameters.door_joint_prefix}{number}", _DOOR_TOLERANCE)
+            door = self._find_joint(f"{parameters.door_joint_prefix}{number}", _DOOR_TOLERANCE_M)
             height = compose(from_world, simulation.link_pose(link))[2]
             yield _Floor(height, door, simulation.scene.joints[door.name].axes[0][0].limit.upper)
 
@@ -162,7 +162,7 @@ class GzElevator(SimulatedPlugin[ElevatorParameters]):
 
     def _on_scan(self, floor: _Floor, message: Any) -> None:
         if len(message.ranges):
-            floor.is_blocked = message.ranges[0] < message.range_max - _RANGE_TOLERANCE
+            floor.is_blocked = message.ranges[0] < message.range_max - _RANGE_TOLERANCE_M
 
     def _on_command(self, message: Any) -> None:
         target = int(message.data)
@@ -178,7 +178,7 @@ class GzElevator(SimulatedPlugin[ElevatorParameters]):
             self._leave_or_open()
 
     def _add_target(self, target: int) -> None:
-        """Add a floor to the targets, before the first target that the cabin reaches by passing the floor."""
+        """Add a floor to the targets, before the first target beyond the floor."""
         if target in self._targets:
             return
         previous = self._floor_number
@@ -239,4 +239,4 @@ class GzElevator(SimulatedPlugin[ElevatorParameters]):
         return abs(joint.target - position) <= joint.tolerance and abs(velocity) <= _MAX_ARRIVAL_SPEED
 
     def _publish(self) -> None:
-        self._output.publish(get_message(_INTEGER)(data=self._floor_number))
+        self._output.publish(get_message(_INTEGER_TYPE)(data=self._floor_number))

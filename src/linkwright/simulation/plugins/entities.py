@@ -37,7 +37,7 @@ class Entities:
         Raises:
             LinkwrightError: SIM141, there is no such link, or several models have one.
         """
-        return self._full_name(name, self._simulation.scene.bodies)
+        return self._find_full_name(name, self._simulation.scene.bodies)
 
     def joint(self, name: str) -> str:
         """Return the full name of a joint, ``model::joint``, from its full or short name.
@@ -47,7 +47,7 @@ class Entities:
         Raises:
             LinkwrightError: SIM141, there is no such joint, or several models have one.
         """
-        return self._full_name(name, self._simulation.scene.joints)
+        return self._find_full_name(name, self._simulation.scene.joints)
 
     def model(self, name: str) -> str:
         """Return `name` if a model has this name.
@@ -74,7 +74,7 @@ class Entities:
         return self._simulation.link_pose(self.link(name))
 
     def state(self, name: str, reference: str = "") -> Any:
-        """Return the pose and twist of a model or link as a message ``gazebo_msgs/msg/EntityState``.
+        """Return the pose and twist of a model or link as a ``gazebo_msgs/msg/EntityState``.
 
         Args:
             name: the name of the model or link.
@@ -90,7 +90,7 @@ class Entities:
         linear, angular = simulation.link_velocity(link)
         to_reference = invert(self.frame_pose(reference))
         message = get_message("gazebo_msgs/msg/EntityState")(name=name, reference_frame=reference or WORLD)
-        message.pose = pose_message(compose(to_reference, pose))
+        message.pose = pose_to_message(compose(to_reference, pose))
         message.twist.linear = from_values(Vector3, rotate(to_reference[3:], tuple(linear.tolist())))
         message.twist.angular = from_values(Vector3, rotate(to_reference[3:], tuple(angular.tolist())))
         return message
@@ -129,7 +129,7 @@ class Entities:
         """
         return _respond_without_message(response, partial(self.set_state, request.state), service, log)
 
-    def _full_name(self, name: str, full_names: Collection[str]) -> str:
+    def _find_full_name(self, name: str, full_names: Collection[str]) -> str:
         if name in full_names:
             return name
         matches = [full_name for full_name in full_names if full_name.endswith(f"{SEPARATOR}{name}")]
@@ -151,7 +151,7 @@ def fill_response(response: Any, operation: Callable[[], str]) -> Any:
     try:
         response.success, response.status_message = True, operation()
     except LinkwrightError as error:
-        response.success, response.status_message = False, finding_line(error.diagnostics[0])
+        response.success, response.status_message = False, format_finding(error.diagnostics[0])
     return response
 
 
@@ -167,11 +167,11 @@ def _respond_without_message(
         response.success = True
     except LinkwrightError as error:
         response.success = False
-        log(refusal_text(service, error))
+        log(describe_refusal(service, error))
     return response
 
 
-def refusal_text(service: str, error: LinkwrightError) -> Phrase:
+def describe_refusal(service: str, error: LinkwrightError) -> Phrase:
     """Return the reason why a service refused a request, with the hint in parentheses."""
     finding = error.diagnostics[0]
     if finding.hint:
@@ -179,14 +179,14 @@ def refusal_text(service: str, error: LinkwrightError) -> Phrase:
     return phrase("{service}: {problem}", service=service, problem=finding.message)
 
 
-def finding_line(finding: Diagnostic) -> str:
+def format_finding(finding: Diagnostic) -> str:
     """Return a finding on one line: location, message and hint."""
     location = f"{finding.span}: " if finding.span else ""
     hint = f" ({finding.hint})" if finding.hint else ""
     return f"{location}{finding.message}{hint}"
 
 
-def pose_message(pose: Transform) -> Any:
+def pose_to_message(pose: Transform) -> Any:
     """Return a pose as a message ``geometry_msgs/msg/Pose``."""
     point = from_values(get_message("geometry_msgs/msg/Point"), pose[:3])
     return get_message("geometry_msgs/msg/Pose")(position=point, orientation=from_values(Quaternion, pose[3:]))

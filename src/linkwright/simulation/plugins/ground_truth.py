@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from linkwright.control.odometry import TRANSFORMS, TRANSFORMS_DEPTH, planar_velocity, transform_message
+from linkwright.control.odometry import TRANSFORMS_DEPTH, TRANSFORMS_TYPE, to_planar_velocity, transform_message
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import (
     Transform,
@@ -94,13 +94,15 @@ class ClassicPose(SimulatedPlugin[ClassicPoseParameters]):
                 simulation.link_velocity(self._reference),
             )
             pose = compose(invert(frame), pose)
-            express = _rotated_by_frame if self.gazebo_mistakes else _in_frame_axes
+            express = _rotate_by_frame if self.gazebo_mistakes else _to_frame_axes
             linear, angular = express(frame, linear - base_linear), express(frame, angular - base_angular)
         x, y, z = (a + b for a, b in zip(pose[:3], parameters.xyz_offset, strict=True))
         offset_pose = (x, y, z, *quaternion_multiply(self._rotation_offset, pose[3:]))
         linear, angular = _add_noise(self._random, parameters.gaussian_noise, linear, angular)
         header = Header(stamp=self.stamp(), frame_id=parameters.frame_name)
-        message = _odometry(header, parameters.body_name, offset_pose, linear, angular, parameters.gaussian_noise**2)
+        message = _create_odometry(
+            header, parameters.body_name, offset_pose, linear, angular, parameters.gaussian_noise**2
+        )
         self._output.publish(message)
 
 
@@ -124,7 +126,7 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         self._odometry = node.publisher("nav_msgs/msg/Odometry", topic, conventional_topic="/odom")
         self._covariance_odometry = node.publisher("nav_msgs/msg/Odometry", covariance_topic)
         self._transforms = node.publisher(
-            TRANSFORMS, parameters.tf_topic or f"/model/{model}/pose", TRANSFORMS_DEPTH, conventional_topic="/tf"
+            TRANSFORMS_TYPE, parameters.tf_topic or f"/model/{model}/pose", TRANSFORMS_DEPTH, conventional_topic="/tf"
         )
         self.every(parameters.odom_publish_frequency, self._publish)
 
@@ -139,27 +141,27 @@ class GzOdometry(SimulatedPlugin[GzOdometryParameters]):
         pose = compose(simulation.model_pose(self.context.path), self._offset)
         linear, angular = simulation.link_velocity(self.first_link)
         if parameters.dimensions == 3:
-            linear, angular = _in_frame_axes(pose, linear), _in_frame_axes(pose, angular)
+            linear, angular = _to_frame_axes(pose, linear), _to_frame_axes(pose, angular)
         else:
-            forward, sideways, yaw_rate = planar_velocity(pose, linear, angular)
+            forward, sideways, yaw_rate = to_planar_velocity(pose, linear, angular)
             linear, angular = np.array((forward, sideways, 0.0)), np.array((0.0, 0.0, yaw_rate))
             pose = (pose[0], pose[1], 0.0, *pose[3:])
         linear, angular = _add_noise(self._random, parameters.gaussian_noise, linear, angular)
         header = Header(stamp=self.stamp(), frame_id=self._frame)
-        self._odometry.publish(_odometry(header, self._child_frame, pose, linear, angular, 0.0))
+        self._odometry.publish(_create_odometry(header, self._child_frame, pose, linear, angular, 0.0))
         self._covariance_odometry.publish(
-            _odometry(header, self._child_frame, pose, linear, angular, parameters.gaussian_noise**2)
+            _create_odometry(header, self._child_frame, pose, linear, angular, parameters.gaussian_noise**2)
         )
         self._transforms.publish(transform_message(header, self._child_frame, pose))
 
 
-def _in_frame_axes(frame: Transform, vector: Array) -> Array:
+def _to_frame_axes(frame: Transform, vector: Array) -> Array:
     """Return a vector, given in the axes of the world, in the axes of a frame."""
     x, y, z = vector
     return np.array(rotate(quaternion_inverse(frame[3:]), (float(x), float(y), float(z))))
 
 
-def _rotated_by_frame(frame: Transform, vector: Array) -> Array:
+def _rotate_by_frame(frame: Transform, vector: Array) -> Array:
     """Return a vector rotated by the orientation of a frame: the mistake of gazebo_ros_p3d."""
     x, y, z = vector
     return np.array(rotate(frame[3:], (float(x), float(y), float(z))))
@@ -173,9 +175,11 @@ def _add_noise(
     return linear + random.normal(0.0, standard_deviation, 3), angular + random.normal(0.0, standard_deviation, 3)
 
 
-def _odometry(header: Header, child: str, pose: Transform, linear: Array, angular: Array, variance: float) -> Any:
+def _create_odometry(
+    header: Header, child_frame: str, pose: Transform, linear: Array, angular: Array, variance: float
+) -> Any:
     """Return an odometry message with the same variance for all components of pose and twist."""
-    message = get_message("nav_msgs/msg/Odometry")(header=header, child_frame_id=child)
+    message = get_message("nav_msgs/msg/Odometry")(header=header, child_frame_id=child_frame)
     x, y, z, *rotation = pose
     message.pose.pose.position.x, message.pose.pose.position.y, message.pose.pose.position.z = x, y, z
     message.pose.pose.orientation = from_values(Quaternion, rotation)

@@ -14,8 +14,8 @@ from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import ackermann_angles
 from linkwright.kinematics.planar import PlanarPose
 from linkwright.simulation.plugins.gz_drive import (
-    GZ_RATE,
-    GZ_TORQUE,
+    GZ_MAX_TORQUE,
+    GZ_RATE_HZ,
     MOTOR_GAIN,
     DriveCommands,
     GzDriveParameters,
@@ -87,22 +87,22 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._odometry_joints = [joints[0] for joints in wheels]
         self._steering_joints = [joints[0] for joints in steering]
         self._motors = [
-            [simulation.add_velocity_motor(joint, MOTOR_GAIN, GZ_TORQUE) for joint in joints] for joints in wheels
+            [simulation.add_velocity_motor(joint, MOTOR_GAIN, GZ_MAX_TORQUE) for joint in joints] for joints in wheels
         ]
         max_steering_speed = max(parameters.steer_cmd_max, -parameters.steer_cmd_min)
         self._servos = [[simulation.add_servo(joint, max_steering_speed) for joint in joints] for joints in steering]
-        self._commands, self._limiter = DriveCommands(parameters), parameters.limiter("angular")
+        self._commands, self._limiter = DriveCommands(parameters), parameters.create_limiter("angular")
         self._angle = 0.0
         self._reset_motion()
         if parameters.steering_only:
             self._subscribe_to_angles()
-            self.every(GZ_RATE, self._steer_only)
+            self.every(GZ_RATE_HZ, self._steer_only)
             return
-        self._topics = connect_drive(self, self._drive_parameters(), self._commands)
-        self.every(GZ_RATE, self._drive)
+        self._topics = connect_drive(self, self._create_drive_parameters(), self._commands)
+        self.every(GZ_RATE_HZ, self._drive)
         self.every(parameters.odom_publish_frequency, self._publish)
 
-    def _drive_parameters(self) -> SteeringParameters:
+    def _create_drive_parameters(self) -> SteeringParameters:
         parameters = self.parameters
         model_topic = f"/model/{self.context.path}/{parameters.sub_topic}" if parameters.sub_topic else ""
         return replace(parameters, topic=parameters.topic or model_topic)
@@ -118,7 +118,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
     def _reset_motion(self) -> None:
         self._angle = 0.0
         self._pose = PlanarPose()
-        self._angles = self._wheel_angles()
+        self._angles = self._read_wheel_angles()
 
     def reset(self) -> None:
         """Stop the car, and reset its steering command and its odometry."""
@@ -146,12 +146,12 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
         self._update_odometry()
         parameters = self.parameters
         forward, _, angular = self._commands.next_velocity()
-        curvature = self._curvature(forward, angular)
+        curvature = self._compute_curvature(forward, angular)
         offset_ratio = parameters.wheel_separation / 2.0 * curvature
         self._set_wheel_targets(forward * (1.0 - offset_ratio), forward * (1.0 + offset_ratio))
         self._steer(*ackermann_angles(parameters.wheel_base * curvature, parameters.kingpin_width * curvature))
 
-    def _curvature(self, forward: float, angular: float) -> float:
+    def _compute_curvature(self, forward: float, angular: float) -> float:
         """Return the commanded curvature in 1/m, clipped to the steering limit.
 
         A curvature to the left is positive.
@@ -171,7 +171,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
 
     def _steer_only(self) -> None:
         parameters = self.parameters
-        angle = self._limiter.approach(self._angle, 1.0 / GZ_RATE)
+        angle = self._limiter.approach(self._angle, 1.0 / GZ_RATE_HZ)
         angle = min(max(angle, -parameters.steering_limit), parameters.steering_limit)
         longitudinal, lateral = 2.0 * parameters.wheel_base * cos(angle), parameters.wheel_separation * sin(angle)
         slope = 2.0 * parameters.wheel_base * sin(angle)
@@ -187,11 +187,11 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
             for servo in servos:
                 speed = parameters.steer_p_gain * (angle - servo.position)
                 speed = min(max(speed, parameters.steer_cmd_min), parameters.steer_cmd_max)
-                servo.move(servo.position + speed / GZ_RATE, 1.0 / GZ_RATE)
+                servo.move(servo.position + speed / GZ_RATE_HZ, 1.0 / GZ_RATE_HZ)
 
     # --- odometry -----------------------------------------------------------------------------------------------------
 
-    def _wheel_angles(self) -> tuple[float, ...]:
+    def _read_wheel_angles(self) -> tuple[float, ...]:
         return tuple(self.simulation.joint_state(joint)[0] for joint in self._odometry_joints)
 
     @property
@@ -202,7 +202,7 @@ class GzAckermann(SimulatedPlugin[SteeringParameters]):
 
     def _update_odometry(self) -> None:
         """Update the odometry from the rotation of the first wheel on each side."""
-        old_angles, self._angles = self._angles, self._wheel_angles()
+        old_angles, self._angles = self._angles, self._read_wheel_angles()
         distance = (
             sum(new_angle - old_angle for new_angle, old_angle in zip(self._angles, old_angles, strict=True))
             / 2.0

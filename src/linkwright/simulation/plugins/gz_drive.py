@@ -8,14 +8,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from linkwright.control.odometry import TRANSFORMS, TRANSFORMS_DEPTH, OdometryTopics
+from linkwright.control.odometry import TRANSFORMS_DEPTH, TRANSFORMS_TYPE, OdometryTopics
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.limits import SpeedLimits
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-GZ_RATE = 100.0
+GZ_RATE_HZ = 100.0
 """The rate in Hz at which drives of gz process commands. In gz, they are processed before each step."""
-GZ_TORQUE = 5.0
+GZ_MAX_TORQUE = 5.0
 """The maximum torque of a wheel in N m if a gz plugin specifies none. In gz, velocities are set without a limit."""
 MOTOR_GAIN = 20.0
 """The gain of a wheel motor, in N m of torque per rad/s of velocity error."""
@@ -46,7 +46,7 @@ class DriveCommands:
     """
 
     def __init__(self, limits: SpeedLimits) -> None:
-        self._limiters = tuple(limits.limiter(kind) for kind in ("linear", "linear", "angular"))
+        self._limiters = tuple(limits.create_limiter(kind) for kind in ("linear", "linear", "angular"))
         self.is_enabled = True
         self.restart()
 
@@ -82,10 +82,10 @@ class DriveCommands:
     def next_velocity(self) -> tuple[float, float, float]:
         """Advance the limited velocity towards the command, and return the new velocity.
 
-        Call this `GZ_RATE` times per simulated second.
+        Call this `GZ_RATE_HZ` times per simulated second.
         """
         limited_targets = zip(self._limiters, self._command, strict=True)
-        forward, left, angular = (limiter.approach(target, 1.0 / GZ_RATE) for limiter, target in limited_targets)
+        forward, left, angular = (limiter.approach(target, 1.0 / GZ_RATE_HZ) for limiter, target in limited_targets)
         return forward, left, angular
 
 
@@ -100,7 +100,7 @@ def connect_drive(
         "nav_msgs/msg/Odometry", parameters.odom_topic or f"/model/{model}/odometry", conventional_topic="/odom"
     )
     transforms = node.publisher(
-        TRANSFORMS, parameters.tf_topic or f"/model/{model}/tf", TRANSFORMS_DEPTH, conventional_topic="/tf"
+        TRANSFORMS_TYPE, parameters.tf_topic or f"/model/{model}/tf", TRANSFORMS_DEPTH, conventional_topic="/tf"
     )
     topic = parameters.topic or f"/model/{model}/cmd_vel"
     commander = node.commander(commands.stop)

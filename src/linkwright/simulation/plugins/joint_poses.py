@@ -48,7 +48,7 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
         """Drop the trajectory."""
         self._points = deque[Any]()
         self._joints: list[str] = []
-        self._start_times = 0
+        self._next_point_time = 0
 
     def _on_trajectory(self, message: Any) -> None:
         try:
@@ -62,15 +62,15 @@ class ClassicJointPoses(SimulatedPlugin[JointPoseParameters]):
             self.simulation.keep_awake(self.simulation.scene.joints[joint].child)
         self._points = deque(message.points)
         stamp = message.header.stamp
-        self._start_times = max(int(stamp.sec) * NANOSECONDS_PER_SECOND + int(stamp.nanosec), self.simulation.time)
+        self._next_point_time = max(int(stamp.sec) * NANOSECONDS_PER_SECOND + int(stamp.nanosec), self.simulation.time)
 
     def _move(self) -> None:
         """Set the joints to the next point of the trajectory if the point is due."""
-        if not self._points or self.simulation.time < self._start_times:
+        if not self._points or self.simulation.time < self._next_point_time:
             return
         point = self._points.popleft()
         for joint, position in zip(self._joints, point.positions, strict=False):
             self.simulation.set_joint_position(joint, float(position))
-        self._start_times += int(point.time_from_start.sec) * NANOSECONDS_PER_SECOND + int(
+        self._next_point_time += int(point.time_from_start.sec) * NANOSECONDS_PER_SECOND + int(
             point.time_from_start.nanosec
         )

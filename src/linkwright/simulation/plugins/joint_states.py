@@ -70,12 +70,12 @@ class ClassicJointStates(_JointStates[ClassicParameters]):
         Fixed and missing joints are skipped with a warning.
         """
         requested_names = [name for entry in self.parameters.joint_name for name in entry.replace(",", " ").split()]
-        joints_by_name = [(name, joint) for name in requested_names if (joint := self._joint(name)) is not None]
+        joints_by_name = [(name, joint) for name in requested_names if (joint := self._find_joint(name)) is not None]
         names, joints = [name for name, _ in joints_by_name], [joint for _, joint in joints_by_name]
         if names:
             self._publish_joints(names, joints, self.parameters.update_rate, "joint_states")
 
-    def _joint(self, name: str) -> str | None:
+    def _find_joint(self, name: str) -> str | None:
         try:
             return self.joint(name)
         except LinkwrightError as error:

@@ -55,7 +55,7 @@ class TrajectoryParameters:
         """
 
         def parameter_value(name: str, default: float) -> float:
-            return _value_at(getattr(self, f"{kind}_{name}"), index, default)
+            return _get_value(getattr(self, f"{kind}_{name}"), index, default)
 
         return Gains(
             p=parameter_value("p_gain", 0.0),
@@ -77,7 +77,7 @@ class _Joint:
 
     def __init__(self, name: str, index: int, parameters: TrajectoryParameters) -> None:
         self.name = name
-        self.position = _value_at(parameters.initial_position, index, 0.0)
+        self.position = _get_value(parameters.initial_position, index, 0.0)
         self.velocity = self.effort = 0.0
         self._position_controller = Pid(parameters.gains("position", index))
         self._velocity_controller = Pid(parameters.gains("velocity", index))
@@ -87,12 +87,12 @@ class _Joint:
 
         A target without a value in the point remains unchanged.
         """
-        self.position = _value_at(point.positions, index, self.position)
-        self.velocity = _value_at(point.velocities, index, self.velocity)
-        self.effort = _value_at(point.effort, index, self.effort)
+        self.position = _get_value(point.positions, index, self.position)
+        self.velocity = _get_value(point.velocities, index, self.velocity)
+        self.effort = _get_value(point.effort, index, self.effort)
 
     def force(self, position: float, velocity: float, seconds: float) -> float:
-        """Return the force in N m (or N) towards the targets, for the current position and velocity.
+        """Return the force in N m (or N) towards the targets, from the current state.
 
         `seconds` is the time since the last call.
         """
@@ -118,7 +118,7 @@ class _Trajectory:
     def advance(self, time: int) -> bool:
         """Advance to the current point for a time in ns, and return whether the point has changed."""
         old_index = self.index
-        while not self.is_at_last_point and self.start + _nanoseconds(self._point.time_from_start) < time:
+        while not self.is_at_last_point and self.start + _to_nanoseconds(self._point.time_from_start) < time:
             self.index += 1
         return self.index != old_index
 
@@ -172,7 +172,7 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
             self.node.logger.warning(
                 phrase("plugin '{plugin}' does not control a joint named {names}", plugin=plugin, names=names)
             )
-        start = _nanoseconds(message.header.stamp) if self.parameters.use_header_start_time else 0
+        start = _to_nanoseconds(message.header.stamp) if self.parameters.use_header_start_time else 0
         if not message.points:
             self._trajectory = None
             return
@@ -199,9 +199,9 @@ class GzJointTrajectory(SimulatedPlugin[TrajectoryParameters]):
             self.simulation.push_joint(joint.name, force)
 
 
-def _value_at(values: Any, index: int, default: float) -> float:
+def _get_value(values: Any, index: int, default: float) -> float:
     return float(values[index]) if index < len(values) else default
 
 
-def _nanoseconds(time: Any) -> int:
+def _to_nanoseconds(time: Any) -> int:
     return int(time.sec) * NANOSECONDS_PER_SECOND + int(time.nanosec)

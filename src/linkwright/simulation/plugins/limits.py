@@ -37,11 +37,11 @@ class SpeedLimits:
     min_angular_jerk: float | None = None
     max_angular_jerk: float | None = None
 
-    def limiter(self, kind: str) -> SpeedLimiter:
+    def create_limiter(self, kind: str) -> SpeedLimiter:
         """Return the limiter of one kind of velocity, ``linear`` or ``angular``."""
-        return SpeedLimiter(*(self._bounds(kind, item) for item in ("velocity", "acceleration", "jerk")))
+        return SpeedLimiter(*(self._select_bounds(kind, item) for item in ("velocity", "acceleration", "jerk")))
 
-    def _bounds(self, kind: str, derivative: str) -> tuple[float, float]:
+    def _select_bounds(self, kind: str, derivative: str) -> tuple[float, float]:
         specific_limits = (getattr(self, f"{side}_{kind}_{derivative}") for side in ("min", "max"))
         general_limits = (getattr(self, f"{side}_{derivative}") for side in ("min", "max"))
         lower, upper = (

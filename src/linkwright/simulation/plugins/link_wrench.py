@@ -55,7 +55,7 @@ class GzLinkWrench(SimulatedPlugin[LinkWrenchParameters]):
 
     PARAMETERS = LinkWrenchParameters
     IGNORED = ("persistent", "verbose")  # the first is read by reset
-    CARRIED = ("_persistent",)
+    CARRIED = ("_persistent_wrenches",)
 
     def start(self) -> None:
         """Read the persistent wrenches of the parameters, and subscribe to the commands.
@@ -76,10 +76,12 @@ class GzLinkWrench(SimulatedPlugin[LinkWrenchParameters]):
     def reset(self) -> None:
         """Restore the wrenches of the parameters."""
         element = self.context.element
-        self._new: list[_Wrench] = []
-        self._persistent = [] if element is None else [self._read(child) for child in element.elements("persistent")]
+        self._new_wrenches: list[_Wrench] = []
+        self._persistent_wrenches = (
+            [] if element is None else [self._read_wrench(child) for child in element.elements("persistent")]
+        )
 
-    def _read(self, element: Element) -> _Wrench:
+    def _read_wrench(self, element: Element) -> _Wrench:
         texts = {tag: self.text_in(element, tag) for tag in ("entity_name", "entity_type", "force", "torque")}
         try:
             values = [float(word) for tag in ("force", "torque") for word in (texts[tag] or "0 0 0").split()]
@@ -95,31 +97,33 @@ class GzLinkWrench(SimulatedPlugin[LinkWrenchParameters]):
         return _Wrench(texts["entity_name"], texts["entity_type"] == "model", np.array(values))
 
     def _on_wrench(self, message: Any) -> None:
-        wrench = _wrench_of(message)
+        wrench = _parse_wrench(message)
         try:
-            self._link_of(wrench)
+            self._find_link(wrench)
         except LinkwrightError as error:
             self.node.logger.warning(error.diagnostics[0].message)
         else:
-            self._new.append(wrench)
+            self._new_wrenches.append(wrench)
 
     def _on_persistent_wrench(self, message: Any) -> None:
-        self._persistent.append(_wrench_of(message))
+        self._persistent_wrenches.append(_parse_wrench(message))
 
     def _on_clear(self, message: Any) -> None:
-        cleared = self._entity_of(message.name, is_model=_is_model(message))
-        self._persistent = [
-            wrench for wrench in self._persistent if self._entity_of(wrench.name, is_model=wrench.is_model) != cleared
+        cleared_entity = self._find_full_name(message.name, is_model=_is_model(message))
+        self._persistent_wrenches = [
+            wrench
+            for wrench in self._persistent_wrenches
+            if self._find_full_name(wrench.name, is_model=wrench.is_model) != cleared_entity
         ]
 
-    def _entity_of(self, name: str, *, is_model: bool) -> str:
+    def _find_full_name(self, name: str, *, is_model: bool) -> str:
         """Return the full name of an entity, or the given name if the entity does not exist."""
         try:
             return self._entities.model(name) if is_model else self._entities.link(name)
         except LinkwrightError:
             return name
 
-    def _link_of(self, wrench: _Wrench) -> str:
+    def _find_link(self, wrench: _Wrench) -> str:
         """Return the link on which a wrench acts.
 
         Raises:
@@ -133,13 +137,13 @@ class GzLinkWrench(SimulatedPlugin[LinkWrenchParameters]):
     def _apply_wrenches(self) -> None:
         """Apply all wrenches for the next step."""
         totals: dict[str, Array] = {}
-        for wrench in (*self._persistent, *self._new):
+        for wrench in (*self._persistent_wrenches, *self._new_wrenches):
             try:
-                link = self._link_of(wrench)
+                link = self._find_link(wrench)
             except LinkwrightError:
                 continue  # the entity may exist later
             totals[link] = totals.get(link, 0.0) + wrench.values
-        self._new = []
+        self._new_wrenches = []
         self.stop_pushing(except_links=totals)
         for link, values in totals.items():
             self.push(link, values[:3], values[3:], at=self.simulation.link_pose(link)[:3])
@@ -153,6 +157,6 @@ def _is_model(entity: Any) -> bool:
     return bool(entity.type == get_message(_ENTITY_TYPE).MODEL)
 
 
-def _wrench_of(message: Any) -> _Wrench:
+def _parse_wrench(message: Any) -> _Wrench:
     values = (*vector_components(message.wrench.force), *vector_components(message.wrench.torque))
     return _Wrench(message.entity.name, _is_model(message.entity), np.array(values))

@@ -14,7 +14,7 @@ from linkwright.diagnostics import phrase
 from linkwright.kinematics.drives import MecanumDrive
 from linkwright.kinematics.planar import PlanarPose
 from linkwright.simulation.plugins.gz_drive import (
-    GZ_RATE,
+    GZ_RATE_HZ,
     MOTOR_GAIN,
     DriveCommands,
     GzDriveParameters,
@@ -45,7 +45,7 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
     CARRIED = ("_pose",)
 
     def start(self) -> None:
-        """Create motors for the wheels and publishers of the odometry, and subscribe to the commands.
+        """Create the motors and the odometry topics, and subscribe to the commands.
 
         Raises:
             LinkwrightError: SIM134, a joint does not exist; SIM160, a dimension is not positive, or the model is fixed.
@@ -78,13 +78,13 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         self._commands = DriveCommands(parameters)
         self._topics = connect_drive(self, parameters, self._commands)
         self._reset_motion()
-        self.every(GZ_RATE, self._drive)
+        self.every(GZ_RATE_HZ, self._drive)
         self.every(0.0, self._move)
         self.every(parameters.odom_publish_frequency, self._publish)
 
     def _reset_motion(self) -> None:
         self._pose = PlanarPose()
-        self._angles = self._wheel_states(0)
+        self._angles = self._read_wheel_states(0)
 
     def reset(self) -> None:
         """Stop the robot, and reset the odometry to its origin."""
@@ -106,11 +106,11 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
             for motor in motors:
                 motor.target = speed
 
-    def _wheel_states(self, derivative: int) -> list[float]:
+    def _read_wheel_states(self, derivative: int) -> list[float]:
         """Return the angles in rad (derivative 0) or velocities in rad/s (1) of the four wheels."""
         return [self.simulation.joint_state(joint)[derivative] for joint in self._wheels]
 
-    def _robot_motion(self, wheel_values: list[float]) -> tuple[float, float, float]:
+    def _compute_robot_motion(self, wheel_values: list[float]) -> tuple[float, float, float]:
         """Return the robot's displacement for wheel angles, or its velocity for wheel velocities.
 
         Wheel angles are in rad, and wheel velocities in rad/s.
@@ -118,13 +118,15 @@ class GzMecanum(PlanarDrive[MecanumParameters]):
         return self._drive_train.motion(*wheel_values)
 
     def _move(self) -> None:
-        old_angles, self._angles = self._angles, self._wheel_states(0)
+        old_angles, self._angles = self._angles, self._read_wheel_states(0)
         self._pose.advance(
-            *self._robot_motion(
+            *self._compute_robot_motion(
                 [new_angle - old_angle for new_angle, old_angle in zip(self._angles, old_angles, strict=True)]
             )
         )
-        self.hold(*self._robot_motion(self._wheel_states(1)))
+        self.set_planar_velocity(*self._compute_robot_motion(self._read_wheel_states(1)))
 
     def _publish(self) -> None:
-        self._topics.publish(self.stamp(), self._pose.transform, *self._robot_motion(self._wheel_states(1)))
+        self._topics.publish(
+            self.stamp(), self._pose.transform, *self._compute_robot_motion(self._read_wheel_states(1))
+        )

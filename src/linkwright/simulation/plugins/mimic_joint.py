@@ -1,4 +1,6 @@
-"""A joint that follows another one: ``libroboticsgroup_gazebo_mimic_joint_plugin.so`` and its copies.
+"""A joint that follows another joint.
+
+The library is ``libroboticsgroup_gazebo_mimic_joint_plugin.so`` or one of its copies.
 
 Gazebo classic ignores ``<mimic>`` in a URDF, so descriptions of grippers add this plugin. The simulation couples joints
 with ``<mimic>`` itself; then the plugin has nothing to do.
@@ -23,7 +25,7 @@ from linkwright.sdf.plugins import library_name
 from linkwright.simulation.actuators import Servo
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.plugins.ros2_control.classic_gains import classic_gains, gains_of_namespace
+from linkwright.simulation.plugins.ros2_control.classic_gains import parse_gains, read_gains
 from linkwright.xmltree import Element
 
 _GAINS_NAME = re.compile(r"(?P<namespace>.*?)/?gazebo_ros_control/pid_gains/(?P<joint>[^/]+)")
@@ -63,7 +65,7 @@ class MimicJoint(SimulatedPlugin[MimicParameters]):
         limit = axis.limit.effort if parameters.max_effort is None else parameters.max_effort
         self._max_effort = limit if isfinite(limit) and limit > 0.0 else inf
         simulation.keep_awake(simulation.scene.joints[self._follower].child)
-        gains = self._gains() if parameters.has_pid else None
+        gains = self._read_gains() if parameters.has_pid else None
         if gains is not None:
             self._pid = Pid(gains)
         else:
@@ -71,14 +73,17 @@ class MimicJoint(SimulatedPlugin[MimicParameters]):
         self.every(0.0, self._follow)
 
     def reset(self) -> None:
-        """Forget earlier errors, because simulated time restarts."""
+        """Discard earlier errors, because simulated time restarts."""
         if self._pid is not None:
             self._pid.reset()
         if self._servo is not None:
             self._servo.restart()
 
     def _is_coupled(self) -> bool:
-        """Return whether ``<mimic>`` already couples the joints; a warning is logged if its values differ."""
+        """Return whether ``<mimic>`` already couples the joints.
+
+        A warning is logged if its values differ from those of the plugin.
+        """
         mimic = self.simulation.scene.joints[self._follower].axes[0][0].mimic
         if mimic is None:
             return False
@@ -94,8 +99,11 @@ class MimicJoint(SimulatedPlugin[MimicParameters]):
             )
         return True
 
-    def _gains(self) -> PidGains | None:
-        """Return the gains in ``<hasPID>`` or in the parameter files, or None with a warning if there are none."""
+    def _read_gains(self) -> PidGains | None:
+        """Return the gains in ``<hasPID>`` or in the parameter files.
+
+        Returns None and logs a warning if there are none.
+        """
         joint, namespace = self.parameters.mimic_joint, self.node.name.rpartition("/")[0] or "/"
         name = _GAINS_NAME.fullmatch(self.parameters.has_pid[0])
         if name is not None:
@@ -104,11 +112,11 @@ class MimicJoint(SimulatedPlugin[MimicParameters]):
                 namespace = name["namespace"] or "/"
             elif name["namespace"]:
                 namespace = join(namespace, name["namespace"])
-        values: dict[str, Any] = gains_of_namespace(self._parameter_files(), namespace)
-        element = self._child("hasPID") or self._child("has_pid")
+        values: dict[str, Any] = read_gains(self._find_parameter_files(), namespace)
+        element = self._find_child("hasPID") or self._find_child("has_pid")
         if element is not None:
             values |= {f"{joint}.{child.tag}": child.text().strip() for child in element.elements()}
-        gains = classic_gains(joint, values, self.node.logger)
+        gains = parse_gains(joint, values, self.node.logger)
         if gains is None:
             warning = phrase(
                 "joint '{joint}' has no gain p in 'pid_gains' of '{node}', so it follows without a PID controller",
@@ -118,14 +126,14 @@ class MimicJoint(SimulatedPlugin[MimicParameters]):
             self.node.logger.warning(warning)
         return gains
 
-    def _parameter_files(self) -> Iterator[str]:
-        """Yield the parameter files of this plugin, and those of gazebo_ros_control in the same model."""
+    def _find_parameter_files(self) -> Iterator[str]:
+        """Yield the parameter files of this plugin and of the model's gazebo_ros_control."""
         yield from self.parameters.parameters
         for plugin in self.context.model.plugins if self.context.model is not None else ():
             if library_name(plugin.filename) == _CONTROL_LIBRARY and plugin.element is not None:
                 yield from (child.text().strip() for child in plugin.element.elements("parameters"))
 
-    def _child(self, tag: str) -> Element | None:
+    def _find_child(self, tag: str) -> Element | None:
         element = self.context.element
         return None if element is None else element.first(tag)
 

@@ -221,7 +221,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
                     plugin=self.context.name,
                 )
             )
-        self._mass, inertia = self._mass_and_inertia()
+        self._mass, inertia = self._compute_mass_and_inertia()
         inertias = np.eye(4)
         inertias[:3, :3] = inertia
         self._allocation = np.linalg.pinv(allocation) @ inertias
@@ -229,7 +229,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._attitude_gain = np.array(self.parameters.attitude_gain) @ inverse_inertia
         self._rate_gain = np.array(self.parameters.angular_rate_gain) @ inverse_inertia
 
-    def _mass_and_inertia(self) -> tuple[float, Array]:
+    def _compute_mass_and_inertia(self) -> tuple[float, Array]:
         """Return the model's mass in kg, and its inertia tensor in kg m2.
 
         The tensor is about the center of mass, in the axes of the body.
@@ -242,10 +242,10 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         masses = model.body_mass[bodies]
         center = masses @ data.xipos[bodies] / masses.sum()
         total = np.zeros((3, 3))
-        for part in bodies:
-            axes, offset = data.ximat[part].reshape(3, 3), data.xipos[part] - center
-            total += axes @ np.diag(model.body_inertia[part]) @ axes.T
-            total += model.body_mass[part] * (offset @ offset * np.eye(3) - np.outer(offset, offset))
+        for body_index in bodies:
+            axes, offset = data.ximat[body_index].reshape(3, 3), data.xipos[body_index] - center
+            total += axes @ np.diag(model.body_inertia[body_index]) @ axes.T
+            total += model.body_mass[body_index] * (offset @ offset * np.eye(3) - np.outer(offset, offset))
         rotation = data.xmat[body].reshape(3, 3)
         return float(masses.sum()), rotation.T @ total @ rotation
 
@@ -267,16 +267,16 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self._is_enabled = bool(message.data)
 
     def _command_rotors(self) -> None:
-        motors = self._motors()
+        motors = self._find_motors()
         if not self._is_enabled:
             for motor in motors.values():
                 motor.target_speed = 0.0
         elif self._command is not None:
-            for joint, speed in zip(self._joints, self._speeds(*self._command), strict=True):
+            for joint, speed in zip(self._joints, self._compute_speeds(*self._command), strict=True):
                 if joint in motors:
                     motors[joint].target_speed = float(speed)
 
-    def _motors(self) -> dict[str, GzMulticopterMotor]:
+    def _find_motors(self) -> dict[str, GzMulticopterMotor]:
         """Return the motors of the model that have started, by the names of their joints."""
         if len(self._rotors) < len(self._joints):  # the other motors have not started yet
             motors = [
@@ -287,7 +287,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
             self._rotors = {self.joint(motor.parameters.joint_name): motor for motor in motors}
         return self._rotors
 
-    def _speeds(self, linear: Array, yaw_rate: float) -> Array:
+    def _compute_speeds(self, linear: Array, yaw_rate: float) -> Array:
         """Return the target speed of each rotor, in rad/s, for a commanded velocity."""
         parameters, simulation = self.parameters, self.simulation
         rotation = rotation_matrix(simulation.link_pose(self._body)[3:])
@@ -295,7 +295,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         error = (velocity - rotation @ linear) * np.array(parameters.velocity_gain) / self._mass
         max_acceleration = np.array(parameters.max_acceleration)
         acceleration = np.clip(error, -max_acceleration, max_acceleration) + simulation.model.opt.gravity
-        target_attitude = _attitude(rotation, acceleration)
+        target_attitude = _compute_attitude(rotation, acceleration)
         skew = 0.5 * (target_attitude.T @ rotation - rotation.T @ target_attitude)
         tilt = np.array((skew[2, 1], skew[0, 2], skew[1, 0]))
         rate_error = rotation.T @ rates - rotation.T @ target_attitude @ np.array((0.0, 0.0, yaw_rate))
@@ -306,7 +306,7 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         return speeds
 
 
-def _attitude(rotation: Array, acceleration: Array) -> Array:
+def _compute_attitude(rotation: Array, acceleration: Array) -> Array:
     """Return the rotation matrix whose z axis is opposite to an acceleration.
 
     The heading stays the same.

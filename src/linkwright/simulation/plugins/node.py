@@ -14,7 +14,7 @@ from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.stepped.calls import Calls
 from linkwright.graph.stepped.exchange import Exchange
 from linkwright.graph.stepped.node import Output, SteppedNode
-from linkwright.simulation.plugins.bridged import BridgedTopics, hidden_gz_topic
+from linkwright.simulation.plugins.bridged_topics import BridgedTopics, hidden_gz_topic
 from linkwright.simulation.plugins.ros_element import override_profile
 from linkwright.xmltree import Element
 

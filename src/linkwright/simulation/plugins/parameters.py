@@ -25,7 +25,7 @@ from linkwright.xmltree import Element
 
 P = TypeVar("P")
 
-_ALIASES = "aliases"
+_ALIASES_KEY = "aliases"
 _COMMON_ELEMENTS = frozenset(
     (
         *("ros", "robotNamespace", "robot_namespace"),
@@ -46,7 +46,7 @@ def parameter(default: Any = MISSING, *, aliases: Sequence[str] = ()) -> Any:
 
     A parameter without a default is required.
     """
-    return field(default=default, metadata={_ALIASES: tuple(aliases)})
+    return field(default=default, metadata={_ALIASES_KEY: tuple(aliases)})
 
 
 def parameters_from(
@@ -71,20 +71,20 @@ def parameters_from(
         children_by_name.setdefault(child.tag, []).append(child)
     values: dict[str, Any] = {}
     names: dict[str, None] = {}
-    types = _types(parameter_class)  # type: ignore[arg-type]  # a class is hashable
+    types = _get_types(parameter_class)  # type: ignore[arg-type]  # a class is hashable
     for declared_field in fields(parameter_class):  # type: ignore[arg-type]  # a dataclass is asked for
-        accepted_names = (declared_field.name, *declared_field.metadata.get(_ALIASES, ()))
+        accepted_names = (declared_field.name, *declared_field.metadata.get(_ALIASES_KEY, ()))
         names |= dict.fromkeys(accepted_names)
         elements = next((children_by_name[name] for name in accepted_names if name in children_by_name), [])
-        value = _read(declared_field, types[declared_field.name], elements, findings)
+        value = _read_value(declared_field, types[declared_field.name], elements, findings)
         if value is not None:
             values[declared_field.name] = value
         elif declared_field.default is MISSING:
-            raise LinkwrightError(_missing_parameter(declared_field, element))
+            raise LinkwrightError(_missing_parameter_error(declared_field, element))
     for name, children in children_by_name.items():
         if name not in names and name not in _COMMON_ELEMENTS and name not in ignored and ":" not in name:
             findings.append(
-                _warning(
+                _create_warning(
                     "SIM130",
                     phrase("'{name}' is not a parameter of this plugin", name=name),
                     children[0],
@@ -95,11 +95,11 @@ def parameters_from(
 
 
 @cache
-def _types(table: Hashable) -> Mapping[str, Any]:
+def _get_types(table: Hashable) -> Mapping[str, Any]:
     return get_type_hints(table)
 
 
-def _read(declared_field: Field[Any], kind: Any, elements: list[Element], findings: list[Diagnostic]) -> Any:
+def _read_value(declared_field: Field[Any], kind: Any, elements: list[Element], findings: list[Diagnostic]) -> Any:
     """Return the value of a parameter, or None if there is no valid value.
 
     A finding is added for each invalid value.
@@ -113,7 +113,7 @@ def _read(declared_field: Field[Any], kind: Any, elements: list[Element], findin
             values.append(convert(text))
         except ValueError:
             message = phrase("'{text}' is not a valid value for '{name}'", text=text, name=declared_field.name)
-            findings.append(_warning("SIM131", message, child, phrase("the default is used")))
+            findings.append(_create_warning("SIM131", message, child, phrase("the default is used")))
     if not values:
         return None
     return tuple(values) if is_list else values[0]
@@ -143,12 +143,12 @@ _CONVERTERS: dict[Any, Callable[[str], Any]] = {
 }
 
 
-def _missing_parameter(declared_field: Field[Any], element: Element | None) -> Diagnostic:
+def _missing_parameter_error(declared_field: Field[Any], element: Element | None) -> Diagnostic:
     message = phrase("the plugin needs the parameter '{name}'", name=declared_field.name)
     if element is None:
         return Diagnostic("SIM132", message)
     return Diagnostic("SIM132", message, span=element.span(), source=element.source)
 
 
-def _warning(code: str, message: Phrase, element: Element, hint: Phrase | None) -> Diagnostic:
+def _create_warning(code: str, message: Phrase, element: Element, hint: Phrase | None) -> Diagnostic:
     return Diagnostic(code, message, element.span(), Severity.WARNING, hint=hint, source=element.source)

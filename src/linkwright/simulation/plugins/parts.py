@@ -13,7 +13,7 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.simulation import Simulation
 
-Pose = Callable[[], Transform]
+PoseFunction = Callable[[], Transform]
 
 
 class PartKind(Enum):
@@ -41,10 +41,10 @@ class Part:
     kind: PartKind
     name: str
     parent: str
-    pose: Pose
+    pose: PoseFunction
 
 
-def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
+def find_parts(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
     """Yield the parts of a model of a simulation.
 
     Each model and link precedes its parts.
@@ -54,13 +54,13 @@ def parts_of(simulation: Simulation, model: Model, path: str) -> Iterator[Part]:
         model: the model, with its includes resolved.
         path: the name of the model in the world; no part is yielded for a nested model such as ``robot::arm`` itself.
     """
-    frame_pose = _frame_pose(simulation, model, path)
+    frame_pose = _create_frame_pose(simulation, model, path)
     if SEPARATOR not in path:
         yield Part(PartKind.MODEL, path, simulation.world.name, frame_pose)
-    yield from _parts(simulation, model, path, Frames(model), frame_pose)
+    yield from _find_nested_parts(simulation, model, path, Frames(model), frame_pose)
 
 
-def _frame_pose(simulation: Simulation, model: Model, path: str) -> Pose:
+def _create_frame_pose(simulation: Simulation, model: Model, path: str) -> PoseFunction:
     """Return a function that returns the current pose of a model's frame in the world."""
     top_name, _, nested_path = path.partition(SEPARATOR)
     top_model = simulation.scene.models[top_name]
@@ -69,26 +69,30 @@ def _frame_pose(simulation: Simulation, model: Model, path: str) -> Pose:
     if not nested_path or not model.links:
         return lambda: simulation.model_pose(top_name)
     first_link = model.links[0].name
-    return _pose_on_link(simulation, f"{path}{SEPARATOR}{first_link}", Frames(model).pose(first_link))
+    return _create_pose_on_link(simulation, f"{path}{SEPARATOR}{first_link}", Frames(model).pose(first_link))
 
 
-def _pose_on_link(simulation: Simulation, link: str, link_in_frame: Transform) -> Pose:
-    """Return a function that returns the current pose in the world of a frame that is fixed to a link.
+def _create_pose_on_link(simulation: Simulation, link: str, link_in_frame: Transform) -> PoseFunction:
+    """Return a function that returns the current pose of a frame that is fixed to a link.
 
-    `link_in_frame` is the pose of the link in this frame.
+    The pose is in the world. `link_in_frame` is the pose of the link in this frame.
     """
     frame_in_link = invert(link_in_frame)
     return lambda: compose(simulation.link_pose(link), frame_in_link)
 
 
-def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, frame_pose: Pose) -> Iterator[Part]:
+def _find_nested_parts(
+    simulation: Simulation, model: Model, path: str, frames: Frames, frame_pose: PoseFunction
+) -> Iterator[Part]:
     """Yield the parts of a model.
 
     `frame_pose` returns the pose of the model's frame in the world.
     """
     for link in model.links:
         name = f"{path}{SEPARATOR}{link.name}"
-        yield Part(PartKind.LINK, name, path, partial(_relative_pose, frame_pose, partial(simulation.link_pose, name)))
+        yield Part(
+            PartKind.LINK, name, path, partial(_compute_relative_pose, frame_pose, partial(simulation.link_pose, name))
+        )
         for kind, items in (
             (PartKind.VISUAL, link.visuals),
             (PartKind.COLLISION, link.collisions),
@@ -102,15 +106,15 @@ def _parts(simulation: Simulation, model: Model, path: str, frames: Frames, fram
         first_link = next((link.name for link in nested_model.links), "")
         if not first_link:
             continue
-        nested_pose = _pose_on_link(simulation, f"{name}{SEPARATOR}{first_link}", nested_frames.pose(first_link))
-        yield Part(PartKind.NESTED_MODEL, name, path, partial(_relative_pose, frame_pose, nested_pose))
-        yield from _parts(simulation, nested_model, name, nested_frames, nested_pose)
+        nested_pose = _create_pose_on_link(simulation, f"{name}{SEPARATOR}{first_link}", nested_frames.pose(first_link))
+        yield Part(PartKind.NESTED_MODEL, name, path, partial(_compute_relative_pose, frame_pose, nested_pose))
+        yield from _find_nested_parts(simulation, nested_model, name, nested_frames, nested_pose)
 
 
 def _constant_pose(pose: Transform) -> Transform:
     return pose
 
 
-def _relative_pose(outer: Pose, inner: Pose) -> Transform:
-    """Return the pose of the frame `inner` in the frame `outer`."""
-    return compose(invert(outer()), inner())
+def _compute_relative_pose(reference: PoseFunction, target: PoseFunction) -> Transform:
+    """Return the pose of the frame `target` in the frame `reference`."""
+    return compose(invert(reference()), target())

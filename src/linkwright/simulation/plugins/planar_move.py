@@ -12,10 +12,10 @@ from typing import Any, Generic, TypeVar
 
 from linkwright.control.odometry import (
     OdometryTopics,
+    create_transform_output,
+    get_yaw,
     planar_variances,
-    planar_velocity,
-    transforms_topic,
-    yaw_of,
+    to_planar_velocity,
 )
 from linkwright.diagnostics import phrase
 from linkwright.simulation.plugins.parameters import parameter
@@ -55,12 +55,12 @@ class PlanarDrive(SimulatedPlugin[P], Generic[P]):
             )
         self.simulation.keep_awake(self.first_link)
 
-    def hold(self, forward: float, left: float, yaw_rate: float) -> None:
+    def set_planar_velocity(self, forward: float, left: float, yaw_rate: float) -> None:
         """Set the planar velocities in m/s and rad/s for the next step.
 
         The vertical velocity and the roll and pitch rates remain unchanged.
         """
-        yaw = yaw_of(self.simulation.model_pose(self.context.path))
+        yaw = get_yaw(self.simulation.model_pose(self.context.path))
         linear, angular = self.simulation.link_velocity(self.first_link)
         world_velocity = (forward * cos(yaw) - left * sin(yaw), forward * sin(yaw) + left * cos(yaw), float(linear[2]))
         self.simulation.set_model_velocity(
@@ -87,7 +87,7 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         odometry = (
             node.publisher("nav_msgs/msg/Odometry", parameters.odometry_topic, 1) if parameters.publish_odom else None
         )
-        transforms = transforms_topic(node) if parameters.publish_odom_tf else None
+        transforms = create_transform_output(node) if parameters.publish_odom_tf else None
         variances = planar_variances(parameters.covariance_x, parameters.covariance_y, parameters.covariance_yaw)
         self._topics = OdometryTopics(
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
@@ -113,12 +113,12 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         return old_command != self._command
 
     def _move(self) -> None:
-        self.hold(*self._command)
+        self.set_planar_velocity(*self._command)
 
     def _publish(self) -> None:
         pose = self.simulation.model_pose(self.context.path)
         self._topics.publish(
-            self.stamp(), pose, *planar_velocity(pose, *self.simulation.link_velocity(self.first_link))
+            self.stamp(), pose, *to_planar_velocity(pose, *self.simulation.link_velocity(self.first_link))
         )
 
     def reset(self) -> None:

@@ -208,8 +208,8 @@ class SimulatedPlugin(Generic[P]):
 
         Store the generator, and get a new one in `reset`, which repeats the same numbers.
         """
-        owner = self.sensor.name if self.context.sensor is not None else f"{self.context.path}::{self.context.name}"
-        return self._environment.random(owner)
+        name = self.sensor.name if self.context.sensor is not None else f"{self.context.path}::{self.context.name}"
+        return self._environment.random(name)
 
     def every(self, rate: float, function: Callable[[], None]) -> None:
         """Register a function to be called `rate` times per simulated second.
@@ -292,12 +292,12 @@ class SimulatedPlugin(Generic[P]):
 
     @staticmethod
     def text_in(parent: Element | None, tag: str) -> str:
-        """Return the text in a child of one of the plugin's nested elements, or an empty text for an absent child."""
+        """Return the text in a child of a nested element, or an empty text for an absent child."""
         child = None if parent is None else parent.first(tag)
         return "" if child is None else child.text().strip()
 
     def number_in(self, parent: Element | None, tag: str, default: float | None = None) -> float:
-        """Return the number in a child of one of the plugin's nested elements, for which `PARAMETERS` has no field.
+        """Return the number in a child of a nested element, for which `PARAMETERS` has no field.
 
         Args:
             parent: the nested element; None if it is absent.
@@ -329,7 +329,7 @@ class SimulatedPlugin(Generic[P]):
         An error in `stop` is passed to `on_error`.
         """
         for task in self._tasks:
-            task.cancelled = True
+            task.is_cancelled = True
         self.node.calls.close(self._end, on_error)
         self.node.close()
 
@@ -340,7 +340,7 @@ class SimulatedPlugin(Generic[P]):
             self.stop_pushing()
 
     def _full_name(self, name: str, known_names: Collection[str], code: str) -> str:
-        """Return the full name in `known_names` for a name that may omit the model or nested models.
+        """Return the full name for a name that may omit the model or nested models.
 
         Raises:
             LinkwrightError: the error `code`, there is no such name, or several nested models have it.

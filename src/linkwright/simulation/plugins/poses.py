@@ -15,7 +15,7 @@ from linkwright.graph.stepped.node import Output
 from linkwright.messages import Header, get_message
 from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.plugins.parts import Part, PartKind, parts_of
+from linkwright.simulation.plugins.parts import Part, PartKind, find_parts
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 _QUEUE_DEPTH = 100
@@ -48,11 +48,11 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         parameters, model, path = self.parameters, self.context.model, self.context.path
         if model is None:
             return
-        selected_kinds = self._selected_kinds()
-        parts = [part for part in parts_of(self.simulation, model, path) if part.kind in selected_kinds]
+        selected_kinds = self._select_kinds()
+        parts = [part for part in find_parts(self.simulation, model, path) if part.kind in selected_kinds]
         topic = f"/model/{path.replace(SEPARATOR, '/model/')}/pose"
         if parameters.static_publisher:
-            moving_links = self._links_with_joints(model)
+            moving_links = self._find_links_with_joints(model)
             static_parts = [part for part in parts if part.kind is not PartKind.LINK or part.name not in moving_links]
             parts = [part for part in parts if part not in static_parts]
             self._publish_at(
@@ -60,7 +60,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
             )
         self._publish_at(parameters.update_frequency, topic, parts)
 
-    def _selected_kinds(self) -> set[PartKind]:
+    def _select_kinds(self) -> set[PartKind]:
         """Return the kinds of parts that the parameters select."""
         parameters = self.parameters
         publishes_nested = parameters.publish_nested_model_pose
@@ -74,7 +74,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
             PartKind.COLLISION: parameters.publish_collision_pose,
             PartKind.SENSOR: parameters.publish_sensor_pose,
         }
-        return {kind for kind, is_wanted in selection.items() if is_wanted}
+        return {kind for kind, is_selected in selection.items() if is_selected}
 
     def _publish_at(self, rate: float, topic: str, parts: list[Part]) -> None:
         message_type = (
@@ -96,7 +96,7 @@ class GzPoses(SimulatedPlugin[PoseParameters]):
         for message in messages:
             output.publish(message)
 
-    def _links_with_joints(self, model: Model) -> set[str]:
+    def _find_links_with_joints(self, model: Model) -> set[str]:
         """Return the links of the model's movable joints, except the link with the model's frame."""
         prefix = f"{self.context.path}{SEPARATOR}"
         moving = {

@@ -19,7 +19,7 @@ from linkwright.messages import Vector3, from_values
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.worlds import physics_of
-from linkwright.simulation.plugins.entities import Entities, fill_response, pose_message, vector_components
+from linkwright.simulation.plugins.entities import Entities, fill_response, pose_to_message, vector_components
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.scene.bodies import set_coefficient
@@ -70,7 +70,7 @@ class ClassicProperties(SimulatedPlugin[NoParameters]):
             index = simulation.body(self._entities.link(request.link_name))
             body = simulation.model.body(index)
             w, x, y, z = body.iquat.tolist()
-            response.com = pose_message((*body.ipos.tolist(), x, y, z, w))
+            response.com = pose_to_message((*body.ipos.tolist(), x, y, z, w))
             response.gravity_mode = bool(simulation.model.body_gravcomp[index] == 0.0)
             response.mass = float(body.mass[0])
             response.ixx, response.iyy, response.izz = body.inertia.tolist()

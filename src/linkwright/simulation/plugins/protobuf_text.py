@@ -1,4 +1,6 @@
-"""The text format of protobuf, in which descriptions for gz write messages: ``linear: {x: 3}``.
+"""The text format of protobuf, such as ``linear: {x: 3}``.
+
+Descriptions for gz contain messages in this format.
 
 Source: the specification of the text format (https://protobuf.dev/reference/protobuf/textformat-spec/).
 """
@@ -13,11 +15,11 @@ from linkwright.messages import get_message
 from linkwright.messages.field_values import set_fields
 from linkwright.messages.message import Message
 
-_TOKEN = re.compile(
+_TOKEN_PATTERN = re.compile(
     r"""\s+|\#[^\n]*|(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')|(?P<word>[-+.\w]+)|(?P<mark>[:{}<>\[\],;])"""
 )
-_INTEGER = re.compile(r"[-+]?\d+")
-_CLOSING = {"{": "}", "<": ">"}
+_INTEGER_PATTERN = re.compile(r"[-+]?\d+")
+_CLOSING_BRACKETS = {"{": "}", "<": ">"}
 _KEYWORDS = {"true": True, "false": False}
 
 Fields = dict[str, list[Any]]
@@ -36,17 +38,17 @@ def parse_fields(text: str) -> Fields:
     Raises:
         TextFormatError: the text is not in the text format.
     """
-    return _Parser(text).fields("")
+    return _Parser(text).parse_fields_until("")
 
 
-def message_of(type_name: str, fields: Fields) -> Message:
+def message_from_fields(type_name: str, fields: Fields) -> Message:
     """Return a message of a ROS type from the values of its fields.
 
     Raises:
         FieldValueError: a field does not exist, or a value is not valid for it.
     """
     message: Message = get_message(type_name)()
-    set_fields(message, _plain_values(message, fields))
+    set_fields(message, _to_plain_values(message, fields))
     return message
 
 
@@ -55,11 +57,11 @@ def is_sequence(value: Any) -> bool:
     return not isinstance(value, (str, bytes, Message)) and (isinstance(value, Sequence) or hasattr(value, "__len__"))
 
 
-def _plain_values(message: Any, fields: Fields) -> dict[str, Any]:
+def _to_plain_values(message: Any, fields: Fields) -> dict[str, Any]:
     values: dict[str, Any] = {}
     for name, items in fields.items():
         default = getattr(message, name, None)
-        plain_items = [_plain_values(default, item) if isinstance(item, dict) else item for item in items]
+        plain_items = [_to_plain_values(default, item) if isinstance(item, dict) else item for item in items]
         values[name] = plain_items if is_sequence(default) else plain_items[-1]
     return values
 
@@ -68,14 +70,14 @@ class _Parser:
     """A parser of a text.
 
     Args:
-        text: the text.
+        text: the text to parse.
     """
 
     def __init__(self, text: str) -> None:
         self._tokens: list[tuple[str, str]] = []
         position = 0
         while position < len(text):
-            match = _TOKEN.match(text, position)
+            match = _TOKEN_PATTERN.match(text, position)
             if match is None:
                 raise TextFormatError(text)
             if match.lastgroup is not None:
@@ -84,51 +86,51 @@ class _Parser:
         self._tokens.append(("end", ""))
         self._tokens.reverse()
 
-    def fields(self, end: str) -> Fields:
+    def parse_fields_until(self, end: str) -> Fields:
         """Parse fields up to a token."""
         fields: Fields = {}
         while self._tokens[-1][1] != end:
-            kind, name = self._next()
+            kind, name = self._take_token()
             if kind != "word":
                 raise TextFormatError(name)
             if self._tokens[-1][1] == ":":
-                self._next()
-            elif self._tokens[-1][1] not in _CLOSING:
+                self._take_token()
+            elif self._tokens[-1][1] not in _CLOSING_BRACKETS:
                 raise TextFormatError(name)
-            fields.setdefault(name, []).extend(self._values())
+            fields.setdefault(name, []).extend(self._parse_values())
             if self._tokens[-1][1] in (",", ";"):
-                self._next()
-        self._next()
+                self._take_token()
+        self._take_token()
         return fields
 
-    def _next(self) -> tuple[str, str]:
+    def _take_token(self) -> tuple[str, str]:
         """Take the next token; the end of the text remains, so that every loop meets it."""
         return self._tokens.pop() if len(self._tokens) > 1 else self._tokens[0]
 
-    def _values(self) -> list[Any]:
+    def _parse_values(self) -> list[Any]:
         """Parse a value, or a list of values in brackets."""
         if self._tokens[-1][1] != "[":
-            return [self._value()]
-        self._next()
+            return [self._parse_value()]
+        self._take_token()
         values = []
         while self._tokens[-1][1] != "]":
-            values.append(self._value())
+            values.append(self._parse_value())
             if self._tokens[-1][1] == ",":
-                self._next()
-        self._next()
+                self._take_token()
+        self._take_token()
         return values
 
-    def _value(self) -> Any:
-        kind, text = self._next()
+    def _parse_value(self) -> Any:
+        kind, text = self._take_token()
         if kind == "text":
             return re.sub(r"\\(.)", r"\1", text[1:-1])
-        if text in _CLOSING:
-            return self.fields(_CLOSING[text])
+        if text in _CLOSING_BRACKETS:
+            return self.parse_fields_until(_CLOSING_BRACKETS[text])
         if kind != "word":
             raise TextFormatError(text)
         if text in _KEYWORDS:
             return _KEYWORDS[text]
-        if _INTEGER.fullmatch(text):
+        if _INTEGER_PATTERN.fullmatch(text):
             return int(text)
         try:
             return float(text)

@@ -23,9 +23,9 @@ from linkwright.sdf.plugins import Plugin, library_name
 if TYPE_CHECKING:
     from linkwright.simulation.plugins.plugin import PluginClass
 
-PLUGINS, SENSORS = "linkwright.simulated_plugins", "linkwright.simulated_sensors"
+PLUGIN_GROUP, SENSOR_GROUP = "linkwright.simulated_plugins", "linkwright.simulated_sensors"
 
-_SENSORS_OF_SYSTEMS = {
+_SENSORS_BY_SYSTEM = {
     "sensors": ("camera", "depth_camera", "rgbd_camera", "gpu_lidar", "segmentation", "boundingbox_camera"),
     "imu": ("imu",),
     "contact": ("contact",),
@@ -44,7 +44,7 @@ _NO_LIBRARY = ("", "__default__", "dummy")
 """The values of ``filename`` that mean "no library": in generated files, and in the settings of gz for a world."""
 _BUILT_IN = frozenset(
     (
-        *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_OF_SYSTEMS)),
+        *(f"gz-sim-{name}-system" for name in (*_OWN_SYSTEMS, *_SENSORS_BY_SYSTEM)),
         *("gazebo_ros_init", "gazebo_ros_factory", "gazebo_ros_force_system", "gazebo_ros_api_plugin"),
     )
 )
@@ -67,24 +67,24 @@ def is_built_in(filename: str) -> bool:
     return filename in _NO_LIBRARY or library_name(filename) in _BUILT_IN
 
 
-def plugin_class(library: str) -> PluginClass | None:
+def find_plugin_class(library: str) -> PluginClass | None:
     """Return the class that simulates the plugin in a library, or None if there is none.
 
-    The name of the library has the form of `library_name`.
+    The library is named as `library_name` returns it.
 
     Raises:
         LinkwrightError: SIM136, the class cannot be imported.
     """
-    return _find_class(PLUGINS, library)
+    return _find_class(PLUGIN_GROUP, library)
 
 
-def sensor_class(kind: str) -> PluginClass | None:
+def find_sensor_class(kind: str) -> PluginClass | None:
     """Return the class that simulates a sensor type without a plugin, or None if there is none.
 
     Raises:
         LinkwrightError: SIM136, the class cannot be imported.
     """
-    return _find_class(SENSORS, kind)
+    return _find_class(SENSOR_GROUP, kind)
 
 
 def _find_class(group: str, name: str) -> PluginClass | None:

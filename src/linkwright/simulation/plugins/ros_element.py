@@ -44,7 +44,7 @@ class NodeDescription:
         return join(absolute_namespace(rules.namespace(self.namespace, self.name)), rules.node_name(self.name))
 
 
-def node_of(name: str, element: Element | None, namespace: str) -> NodeDescription:
+def read_node_description(name: str, element: Element | None, namespace: str) -> NodeDescription:
     """Return the description of a plugin's node, from the element ``<ros>`` if there is one.
 
     Args:
@@ -55,7 +55,7 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
     Raises:
         LinkwrightError: an ``<argument>`` is not a ROS argument.
     """
-    node = NodeDescription(_node_name(name), _namespace(element) or namespace)
+    node = NodeDescription(_to_node_name(name), _find_namespace(element) or namespace)
     ros = element.first("ros") if element is not None else None
     if ros is None:
         return node
@@ -71,7 +71,9 @@ def node_of(name: str, element: Element | None, namespace: str) -> NodeDescripti
         arguments += ["-r", rule.text().strip()]
     parsed_arguments = parse(arguments)
     node.remappings = parsed_arguments.remappings_for(node.name)
-    node.parameters = {element.attributes.get("name", ""): _value(element) for element in ros.elements("parameter")}
+    node.parameters = {
+        element.attributes.get("name", ""): _read_value(element) for element in ros.elements("parameter")
+    }
     node.parameters |= parsed_arguments.parameters_for(node.full_name)
     for topic in (element for qos in ros.elements("qos") for element in qos.elements("topic")):
         for endpoint in ("publisher", "subscriber", "subscription"):
@@ -100,7 +102,7 @@ def override_profile(profile: QoSProfile, element: Element) -> QoSProfile:
     return result
 
 
-def _namespace(element: Element | None) -> str:
+def _find_namespace(element: Element | None) -> str:
     """Return the namespace in ``<ros>``, or in the plugin's element as in ROS 1.
 
     Returns an empty string if neither declares one.
@@ -120,12 +122,12 @@ def _declared_namespaces(element: Element | None) -> Iterator[str]:
         yield from (child.text() for child in element.elements(tag))
 
 
-def _node_name(name: str) -> str:
+def _to_node_name(name: str) -> str:
     valid_name = _INVALID_NAME_CHARACTER.sub("_", name) or "plugin"
     return f"_{valid_name}" if valid_name[0].isdigit() else valid_name
 
 
-def _value(element: Element) -> Any:
+def _read_value(element: Element) -> Any:
     text, kind = element.text().strip(), element.attributes.get("type", "string")
     if kind == "bool":
         return text.lower() in ("true", "1")

@@ -18,10 +18,10 @@ from linkwright.graph.stepped.node import Output
 from linkwright.messages.tf_message import TFMessage, TransformBatch
 from linkwright.sdf.frames import Frames
 from linkwright.sdf.poses import SEPARATOR
-from linkwright.simulation.plugins.parts import PartKind, Pose, parts_of
+from linkwright.simulation.plugins.parts import PartKind, PoseFunction, find_parts
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_ALL_POSES_RATE = 60.0
+_ALL_POSES_RATE_HZ = 60.0
 """The rate in Hz at which the poses of all entities are published."""
 _KIND_ORDER = (
     {PartKind.MODEL, PartKind.NESTED_MODEL},
@@ -47,7 +47,7 @@ class _Entities:
     """
 
     names: tuple[str, ...]
-    poses: Sequence[Transform | Pose]
+    poses: Sequence[Transform | PoseFunction]
 
 
 class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
@@ -63,7 +63,7 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         self._all_entities = self._moving_entities = _Entities((), ())
         all_output = self.node.publisher("tf2_msgs/msg/TFMessage", f"{world_topic}/pose/info")
         dynamic_output = self.node.publisher("tf2_msgs/msg/TFMessage", f"{world_topic}/dynamic_pose/info")
-        self.every(_ALL_POSES_RATE, lambda: self._publish(all_output, moving_only=False))
+        self.every(_ALL_POSES_RATE_HZ, lambda: self._publish(all_output, moving_only=False))
         self.every(
             max(self.parameters.dynamic_pose_hertz, 0.0), lambda: self._publish(dynamic_output, moving_only=True)
         )
@@ -89,23 +89,26 @@ class GzSceneBroadcaster(SimulatedPlugin[SceneParameters]):
         parts = [
             (part, model.model.static)
             for model in models
-            for part in parts_of(self.simulation, model.model, model.name)
+            for part in find_parts(self.simulation, model.model, model.name)
         ]
-        ordered = [(part, static) for kinds in _KIND_ORDER for part, static in parts if part.kind in kinds]
+        ordered_parts = [(part, is_static) for kinds in _KIND_ORDER for part, is_static in parts if part.kind in kinds]
         world = self.simulation.world
         lights = [(light.name, Frames(world).placed(light.pose)) for light in world.lights]
         self._all_entities = _Entities(
-            (*(_local_name(part.name) for part, _ in ordered), *(name for name, _ in lights)),
+            (*(_to_local_name(part.name) for part, _ in ordered_parts), *(name for name, _ in lights)),
             (
-                *(part.pose() if static or part.kind is PartKind.VISUAL else part.pose for part, static in ordered),
+                *(
+                    part.pose() if is_static or part.kind is PartKind.VISUAL else part.pose
+                    for part, is_static in ordered_parts
+                ),
                 *(pose for _, pose in lights),
             ),
         )
-        moving = [part for part, static in ordered if not static and part.kind is not PartKind.VISUAL]
+        moving_parts = [part for part, is_static in ordered_parts if not is_static and part.kind is not PartKind.VISUAL]
         self._moving_entities = _Entities(
-            tuple(_local_name(part.name) for part in moving), [part.pose for part in moving]
+            tuple(_to_local_name(part.name) for part in moving_parts), [part.pose for part in moving_parts]
         )
 
 
-def _local_name(name: str) -> str:
+def _to_local_name(name: str) -> str:
     return name.rpartition(SEPARATOR)[2]

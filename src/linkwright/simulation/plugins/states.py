@@ -35,7 +35,7 @@ class ClassicState(SimulatedPlugin[StateParameters]):
         self._models = node.publisher("gazebo_msgs/msg/ModelStates", "model_states", 1)
         self._links = node.publisher("gazebo_msgs/msg/LinkStates", "link_states", 1)
         if node.name.count("/") > 1:  # Without a namespace, these are the simulator's own services.
-            node.service("gazebo_msgs/srv/GetEntityState", "get_entity_state", self._get)
+            node.service("gazebo_msgs/srv/GetEntityState", "get_entity_state", self._get_entity_state)
             node.service("gazebo_msgs/srv/SetEntityState", "set_entity_state", self._set_entity_state)
         node.service("gazebo_msgs/srv/SetModelConfiguration", "set_joint_positions", self._set_joint_positions)
         self.every(self.parameters.update_rate, self._publish)
@@ -43,18 +43,18 @@ class ClassicState(SimulatedPlugin[StateParameters]):
     def _publish(self) -> None:
         models = self.simulation.scene.models
         if self._models.is_wanted:
-            self._models.publish(self._message("gazebo_msgs/msg/ModelStates", list(models)))
+            self._models.publish(self._create_message("gazebo_msgs/msg/ModelStates", list(models)))
         if self._links.is_wanted:
             links = [placed_link.link.name for model in models.values() for placed_link in model.structure.links]
-            self._links.publish(self._message("gazebo_msgs/msg/LinkStates", links))
+            self._links.publish(self._create_message("gazebo_msgs/msg/LinkStates", links))
 
-    def _message(self, message_type: str, names: list[str]) -> Any:
+    def _create_message(self, message_type: str, names: list[str]) -> Any:
         states = [self._entities.state(name) for name in names]
         return get_message(message_type)(
             name=names, pose=[state.pose for state in states], twist=[state.twist for state in states]
         )
 
-    def _get(self, request: Any, response: Any) -> Any:
+    def _get_entity_state(self, request: Any, response: Any) -> Any:
         return self._entities.fill_get_response("get_entity_state", request, response, self.node.logger.error)
 
     def _set_entity_state(self, request: Any, response: Any) -> Any:

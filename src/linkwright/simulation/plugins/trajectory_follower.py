@@ -1,4 +1,4 @@
-"""A model that a force and a torque move from waypoint to waypoint: ``gz-sim-trajectory-follower-system``.
+"""A model that follows waypoints: ``gz-sim-trajectory-follower-system``.
 
 The torque turns the link until it faces the next waypoint in the plane. Then the force pushes it forward, along its x
 axis, until it is close to the waypoint. The force acts at the origin of the link.
@@ -19,7 +19,7 @@ from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.xmltree import Element
 
-_CORNERS_OF_CIRCLE = 8
+_CIRCLE_CORNER_COUNT = 8
 _AT_REST = (0.0, 0.0, 0.0)
 
 Point = tuple[float, float]
@@ -79,7 +79,7 @@ class GzTrajectoryFollower(SimulatedPlugin[TrajectoryFollowerParameters]):
         pose = self.simulation.link_pose(self._link)
         if circle is not None:
             radius = self.number_in(circle, "radius")
-            angles = [2 * pi * index / _CORNERS_OF_CIRCLE for index in range(_CORNERS_OF_CIRCLE)]
+            angles = [2 * pi * index / _CIRCLE_CORNER_COUNT for index in range(_CIRCLE_CORNER_COUNT)]
             return [(pose[0] + radius * cos(angle), pose[1] + radius * sin(angle)) for angle in angles]
         if line is not None:
             direction, length = self.number_in(line, "direction"), self.number_in(line, "length")
@@ -119,7 +119,10 @@ class GzTrajectoryFollower(SimulatedPlugin[TrajectoryFollowerParameters]):
         self.push(self._link, rotate(axes, (force, 0.0, 0.0)), rotate(axes, (0.0, 0.0, torque)), at=pose[:3])
 
     def _choose_next_waypoint(self) -> None:
-        """Choose the next waypoint; the last one remains, so that the model returns if it is moved."""
+        """Choose the next waypoint.
+
+        The last waypoint remains, so that the model returns to it if it is moved.
+        """
         if self.parameters.loop:
             self._waypoints.rotate(-1)
         elif len(self._waypoints) > 1:

@@ -21,7 +21,13 @@ from linkwright.messages.errors import FieldValueError
 from linkwright.messages.message import Message
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.plugins.protobuf_text import Fields, TextFormatError, is_sequence, message_of, parse_fields
+from linkwright.simulation.plugins.protobuf_text import (
+    Fields,
+    TextFormatError,
+    is_sequence,
+    message_from_fields,
+    parse_fields,
+)
 from linkwright.xmltree import Element
 
 _ROS_TYPES = {
@@ -88,7 +94,7 @@ class GzTriggeredPublisher(SimulatedPlugin[TriggeredPublisherParameters]):
         self._matchers = [self._read_match(source, match) for match in source.elements("match")]
         self._outputs = [
             (
-                self.node.publisher(self._ros_type(output), self._topic(output)),
+                self.node.publisher(self._find_ros_type(output), self._read_topic(output)),
                 self._read_message(output, output.text()),
             )
             for output in element.elements("output")
@@ -97,7 +103,7 @@ class GzTriggeredPublisher(SimulatedPlugin[TriggeredPublisherParameters]):
             self.node.logger.warning(
                 phrase("plugin '{plugin}': calls of a <service> are not simulated", plugin=self.context.name)
             )
-        self.node.subscribe(self._ros_type(source), self._topic(source), self._on_message)
+        self.node.subscribe(self._find_ros_type(source), self._read_topic(source), self._on_message)
         if self.parameters.delay_ms > 0:
             self.every(0.0, self._publish_delayed)
 
@@ -105,7 +111,7 @@ class GzTriggeredPublisher(SimulatedPlugin[TriggeredPublisherParameters]):
         """Drop delayed messages."""
         self._due_times.clear()
 
-    def _ros_type(self, element: Element) -> str:
+    def _find_ros_type(self, element: Element) -> str:
         name = element.attributes.get("type", "")
         ros_type = _ROS_TYPES.get(name.rpartition(".")[2])
         if ros_type is None:
@@ -114,7 +120,7 @@ class GzTriggeredPublisher(SimulatedPlugin[TriggeredPublisherParameters]):
             )
         return ros_type
 
-    def _topic(self, element: Element) -> str:
+    def _read_topic(self, element: Element) -> str:
         topic = element.attributes.get("topic", "")
         if not topic:
             raise self.parameter_error(
@@ -134,7 +140,7 @@ class GzTriggeredPublisher(SimulatedPlugin[TriggeredPublisherParameters]):
             fields: Fields = parse_fields(f"{path[-1]}: {text}" if path else text)
             for name in reversed(path[:-1]):
                 fields = {name: [fields]}
-            return message_of(self._ros_type(typed_element), fields)
+            return message_from_fields(self._find_ros_type(typed_element), fields)
         except (TextFormatError, FieldValueError) as error:
             if isinstance(error, LinkwrightError):
                 raise self.parameter_error(error.diagnostics[0].message) from error
@@ -146,7 +152,7 @@ class GzTriggeredPublisher(SimulatedPlugin[TriggeredPublisherParameters]):
             raise self.parameter_error(message) from error
 
     def _read_match(self, source: Element, match: Element) -> Matcher:
-        """Return the function that tells whether a message matches."""
+        """Return a function that returns whether a message matches."""
         tolerance = float(match.attributes.get("tol", _DEFAULT_TOLERANCE))
         is_expected = match.attributes.get("logic_type", "positive") != "negative"
         path = tuple(filter(None, match.attributes.get("field", "").split(".")))
@@ -157,7 +163,7 @@ class GzTriggeredPublisher(SimulatedPlugin[TriggeredPublisherParameters]):
         return partial(_matches, path, expected, tolerance, is_expected)
 
     def _on_message(self, message: Any) -> None:
-        if all(is_match(message) for is_match in self._matchers):
+        if all(matches(message) for matches in self._matchers):
             if self.parameters.delay_ms > 0:
                 delay = self.parameters.delay_ms * NANOSECONDS_PER_SECOND // 1000
                 self._due_times.append(self.simulation.time + delay)
@@ -175,7 +181,10 @@ class GzTriggeredPublisher(SimulatedPlugin[TriggeredPublisherParameters]):
 
 
 def _matches(path: tuple[str, ...], expected: Any, tolerance: float, is_expected: bool, message: Any) -> bool:
-    """Return whether a message, or the field at a path, equals the expected one, or for a negative match differs."""
+    """Return whether a message, or the field at a path, matches the expected one.
+
+    It must be equal, or differ if `is_expected` is false.
+    """
     for name in path:
         expected, message = getattr(expected, name), getattr(message, name)
     if path and is_sequence(expected):

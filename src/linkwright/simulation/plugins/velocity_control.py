@@ -1,4 +1,4 @@
-"""The plugin ``gz-sim-velocity-control-system``, which moves a model at a commanded velocity.
+"""Motion of a model at a commanded velocity: ``gz-sim-velocity-control-system``.
 
 Source: gz-sim (parameters, topic; velocities are in the frame of the model and apply until the next message).
 """

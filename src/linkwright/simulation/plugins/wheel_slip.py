@@ -1,4 +1,6 @@
-"""Wheels whose slip grows with the force on them: ``gz-sim-wheel-slip-system``, and the plugins of Gazebo Classic.
+"""Wheels whose slip grows with the force on them.
+
+The plugins are ``gz-sim-wheel-slip-system``, ``libWheelSlipPlugin.so`` and ``libgazebo_ros_wheel_slip.so``.
 
 Below the limit of friction, the slip ratio of a wheel is its compliance times the ratio of the tangential force to the
 normal force. The contact point therefore moves against the force at ``c w r / N`` per newton, with the compliance c,
@@ -31,9 +33,9 @@ from linkwright.xmltree import Element
 P = TypeVar("P")
 _STABLE_GAIN = 0.5
 """The share of the greatest gain with which the surface follows the force without oscillation."""
-_PARAMETER_RATE = 10.0
+_PARAMETER_RATE_HZ = 10.0
 """The rate at which ROS parameters are read, in Hz of simulated time."""
-_COMPLIANCE = "slip_compliance_unitless"
+_COMPLIANCE_PARAMETER = "slip_compliance_unitless"
 _SLIP_TYPE = "gazebo_msgs/msg/WheelSlip"
 
 
@@ -80,7 +82,7 @@ class _WheelSlip(SimulatedPlugin[P], Generic[P]):
             raise self.parameter_error(message)
         self._revision = -1
         self._geoms: dict[str, list[int]] = {}
-        self.every(0.0, self._slip)
+        self.every(0.0, self._apply_slip)
 
     def reset(self) -> None:
         """Let the wheels stick again."""
@@ -95,7 +97,7 @@ class _WheelSlip(SimulatedPlugin[P], Generic[P]):
     def _read_wheel(self, element: Element) -> _Wheel:
         name, simulation = element.attributes.get("link_name", ""), self.simulation
         link = self.link(name)
-        joints = [joint for joint, placed in simulation.scene.joints.items() if placed.child == link]
+        joints = [joint for joint, placed_joint in simulation.scene.joints.items() if placed_joint.child == link]
         radius = self.number_in(element, "wheel_radius", simulation.wheel_radius(link) or 0.0)
         normal_force = self.number_in(element, "wheel_normal_force", 0.0)
         if len(joints) != 1 or min(radius, normal_force) <= 0.0:
@@ -135,28 +137,31 @@ class _WheelSlip(SimulatedPlugin[P], Generic[P]):
             for wheel in self.wheels
         }
 
-    def _slip(self) -> None:
+    def _apply_slip(self) -> None:
         self._find_geoms()
         simulation = self.simulation
         model, seconds = simulation.model, simulation.step / NANOSECONDS_PER_SECOND
         mass = simulation.mass_of(self.context.path.partition(SEPARATOR)[0]) / len(self.wheels)
         for wheel in self.wheels:
             speed = abs(simulation.joint_state(wheel.joint)[1]) * wheel.radius
-            forces = self._forces(wheel)
+            force = self._measure_force(wheel)
             target = np.zeros(3)
             for compliance, direction in zip((wheel.lateral, wheel.longitudinal), wheel.directions, strict=True):
                 slip_per_force = compliance * speed / wheel.normal_force
                 gain = min(_STABLE_GAIN * seconds / max(slip_per_force * mass, 1e-12), 1.0)
                 old_slip = float(wheel.slip @ direction)
-                target += (old_slip + gain * (slip_per_force * float(forces @ direction) - old_slip)) * direction
+                target += (old_slip + gain * (slip_per_force * float(force @ direction) - old_slip)) * direction
             wheel.slip = target
             for geom in self._geoms[wheel.link]:
                 model.geom_surfacevel[geom, :3] = target @ simulation.data.geom_xmat[geom].reshape(3, 3)
             if target.any():
                 model.flg_surfacevel = True
 
-    def _forces(self, wheel: _Wheel) -> Array:
-        """Return the force of the ground on a wheel in N, in world axes, and set the directions of its slip."""
+    def _measure_force(self, wheel: _Wheel) -> Array:
+        """Return the force of the ground on a wheel in N, in world axes.
+
+        The directions of the wheel's slip are updated.
+        """
         simulation, mujoco = self.simulation, load_mujoco()
         model, data, wrench, total = simulation.model, simulation.data, np.zeros(6), np.zeros(3)
         pairs = data.contact.geom[: data.ncon]
@@ -204,24 +209,27 @@ class ClassicWheelSlip(_WheelSlip[WheelSlipParameters]):
         self._values: dict[tuple[str, str], float] = {}
         self._set_compliances()
         self._output = self.node.publisher(_SLIP_TYPE, "wheel_slip")
-        self.every(_PARAMETER_RATE, self._set_compliances)
+        self.every(_PARAMETER_RATE_HZ, self._set_compliances)
         self.every(self.parameters.publisher_update_rate, self._publish)
 
     def _set_compliances(self) -> None:
         """Adopt the ROS parameters that have changed."""
         for side in ("lateral", "longitudinal"):
-            name = f"{_COMPLIANCE}_{side}"
-            common = float(self.node.parameter(name, -1.0))
+            name = f"{_COMPLIANCE_PARAMETER}_{side}"
+            shared_value = float(self.node.parameter(name, -1.0))
             for wheel in self.wheels:
-                own_default = common if common >= 0.0 else getattr(wheel, side)
-                own = float(self.node.parameter(f"{name}/{wheel.name}", own_default))
-                for key, value in (((name, wheel.name), common), ((f"{name}/", wheel.name), own)):
+                own_default = shared_value if shared_value >= 0.0 else getattr(wheel, side)
+                own_value = float(self.node.parameter(f"{name}/{wheel.name}", own_default))
+                for key, value in (((name, wheel.name), shared_value), ((f"{name}/", wheel.name), own_value)):
                     if value >= 0.0 and value != self._values.get(key):
                         setattr(wheel, side, value)
                     self._values[key] = value
 
     def _publish(self) -> None:
-        """Publish the lateral slip as an angle in rad, and the longitudinal slip as a share of the wheel's speed."""
+        """Publish the slips of the wheels.
+
+        The lateral slip is an angle in rad, and the longitudinal slip a fraction of the wheel's speed.
+        """
         if not self._output.is_wanted:
             return
         message = get_message(_SLIP_TYPE)()

@@ -35,13 +35,13 @@ class PlacedLight:
     color: Array
 
 
-def lights_of(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
+def collect_lights(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
     """Return the lights of a world and its links at their current poses, or else a sun.
 
     The first light is a faint light in the viewing direction of the camera, `forwards`. It replaces indirect light:
     without it, everything in the shade would have the same color.
     """
-    lights = [*_world_lights(simulation), *_link_lights(simulation)]
+    lights = [*_find_world_lights(simulation), *_find_link_lights(simulation)]
     if not lights:
         lights = [
             _place_light(Light("sun", "directional", diffuse=(0.8, 0.8, 0.8, 1.0), direction=_SUN_DIRECTION), IDENTITY)
@@ -49,7 +49,7 @@ def lights_of(simulation: Simulation, forwards: Array) -> list[PlacedLight]:
     return [PlacedLight(_CAMERA_LIGHT, np.zeros(3), forwards, np.array(_CAMERA_LIGHT.diffuse[:3])), *lights]
 
 
-def _world_lights(simulation: Simulation) -> Iterator[PlacedLight]:
+def _find_world_lights(simulation: Simulation) -> Iterator[PlacedLight]:
     frames = Frames(simulation.world)
     for light in simulation.world.lights:
         if light.light_on:
@@ -60,7 +60,7 @@ def _world_lights(simulation: Simulation) -> Iterator[PlacedLight]:
             yield _place_light(light, pose)
 
 
-def _link_lights(simulation: Simulation) -> Iterator[PlacedLight]:
+def _find_link_lights(simulation: Simulation) -> Iterator[PlacedLight]:
     for model in simulation.scene.models.values():
         for placed_link in model.structure.links:
             for light in placed_link.link.link.lights:

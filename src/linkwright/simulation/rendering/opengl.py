@@ -21,8 +21,8 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform, Vector3
 from linkwright.sdf.optics import Optics
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.rendering.lights import PlacedLight, lights_of
-from linkwright.simulation.rendering.renderer import Channels, Pixels, RenderedImage, axes_of
+from linkwright.simulation.rendering.lights import PlacedLight, collect_lights
+from linkwright.simulation.rendering.renderer import Channels, Pixels, RenderedImage, compute_image_axes
 from linkwright.simulation.rendering.triangles import is_infinite_plane
 from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
@@ -41,7 +41,7 @@ _UNIFORM_LIGHT_QUADS, _OTHER_LIGHT_QUADS = 1, 4
 """The squares along each edge of a box's face, in uniform and in other light. Light is computed at their corners."""
 _SLICES, _STACKS = 28, 14
 """The slices of spheres and cylinders, as in MuJoCo, and the stacks of spheres, which cover half the angle."""
-_COMPILE, _STRIP, _FAN = 0x1300, 0x5, 0x6
+_GL_COMPILE, _GL_TRIANGLE_STRIP, _GL_TRIANGLE_FAN = 0x1300, 0x5, 0x6
 """OpenGL's GL_COMPILE, GL_TRIANGLE_STRIP and GL_TRIANGLE_FAN."""
 _BUILT_IN, _SPHERE, _CYLINDER, _TUBE = 8, 0, 3, 4
 """The number of MuJoCo's display lists, and the indices of the sphere, the cylinder and the side of a capsule."""
@@ -68,7 +68,7 @@ class OpenGlRenderer:
         self._mujoco = mujoco = load_mujoco()
         self._thread = threading.get_ident()
         self._size = (640, 480)
-        self._gl = _context_class(backend)(*self._size)
+        self._gl = _import_context_class(backend)(*self._size)
         self._gl.make_current()
         self._functions: Any = import_module("OpenGL.raw.GL.VERSION.GL_1_0")
         self._visual_options = mujoco.MjvOption()
@@ -130,7 +130,7 @@ class OpenGlRenderer:
         model.vis.quality.offsamples = 0
         model.vis.quality.shadowsize = 0
         model.vis.global_.offwidth, model.vis.global_.offheight = self._size
-        is_uniform = _is_uniform(lights_of(simulation, np.zeros(3)))
+        is_uniform = _is_uniform(collect_lights(simulation, np.zeros(3)))
         model.vis.quality.numquads = _UNIFORM_LIGHT_QUADS if is_uniform else _OTHER_LIGHT_QUADS
         model.vis.quality.numslices, model.vis.quality.numstacks = _SLICES, _STACKS
         model.stat.extent = 1.0
@@ -165,11 +165,11 @@ class OpenGlRenderer:
         arc = [*zip(np.cos(elevations).tolist(), np.sin(elevations).tolist(), strict=True)]
         sphere_strips = [[(x * r, y * r, z) for r, z in arc for x, y in segment] for segment in pairwise(circle)]
         self._replace_display_list(
-            _SPHERE, [(_STRIP, [(corner, corner) for corner in strip]) for strip in sphere_strips]
+            _SPHERE, [(_GL_TRIANGLE_STRIP, [(corner, corner) for corner in strip]) for strip in sphere_strips]
         )
-        tube_strip = (_STRIP, [((x, y, 0.0), (x, y, z)) for x, y in circle for z in (1.0, -1.0)])
-        end_fans = [(_FAN, [((0.0, 0.0, z), (x, y, z)) for x, y in circle[:: int(z)]]) for z in (1.0, -1.0)]
-        if _is_uniform(lights_of(self._simulation, np.zeros(3))):
+        tube_strip = (_GL_TRIANGLE_STRIP, [((x, y, 0.0), (x, y, z)) for x, y in circle for z in (1.0, -1.0)])
+        end_fans = [(_GL_TRIANGLE_FAN, [((0.0, 0.0, z), (x, y, z)) for x, y in circle[:: int(z)]]) for z in (1.0, -1.0)]
+        if _is_uniform(collect_lights(self._simulation, np.zeros(3))):
             self._replace_display_list(_TUBE, [tube_strip])
             self._replace_display_list(_CYLINDER, [tube_strip, *end_fans])
 
@@ -179,7 +179,7 @@ class OpenGlRenderer:
         Each primitive consists of its OpenGL kind and the normal and position of each vertex.
         """
         gl = self._functions
-        gl.glNewList(self._draw_context.baseBuiltin + shape, _COMPILE)
+        gl.glNewList(self._draw_context.baseBuiltin + shape, _GL_COMPILE)
         for kind, vertices in primitives:
             gl.glBegin(kind)
             for normal, position in vertices:
@@ -196,10 +196,10 @@ class OpenGlRenderer:
 
     def _update_scene(self, pinhole: Optics, pose: Transform) -> None:
         simulation, mujoco = self._simulation, self._mujoco
-        model, axes = simulation.model, axes_of(pose)
+        model, axes = simulation.model, compute_image_axes(pose)
         model.vis.map.zfar = pinhole.far  # MuJoCo draws infinite planes up to zfar.
         groups = model.geom_group.copy()
-        model.geom_group[_outside_image(simulation, pinhole, np.array(pose[:3]), axes)] = COLLISION_GROUP
+        model.geom_group[_find_geoms_outside_image(simulation, pinhole, np.array(pose[:3]), axes)] = COLLISION_GROUP
         categories = mujoco.mjtCatBit.mjCAT_ALL.value
         try:
             mujoco.mjv_updateScene(
@@ -207,7 +207,7 @@ class OpenGlRenderer:
             )
         finally:
             model.geom_group[:] = groups
-        lights = lights_of(simulation, axes[:, 2])
+        lights = collect_lights(simulation, axes[:, 2])
         if _is_uniform(lights):
             self._flatten_planes(pinhole, np.array(pose[:3]))
         _, down, forwards = axes.T
@@ -328,7 +328,7 @@ class OpenGlRenderer:
         return geoms
 
 
-def _outside_image(simulation: Simulation, pinhole: Optics, origin: Array, axes: Array) -> Any:
+def _find_geoms_outside_image(simulation: Simulation, pinhole: Optics, origin: Array, axes: Array) -> Any:
     """Return whether each geom is outside the image, shape (geoms,).
 
     These geoms are hidden, because OpenGL would process all their vertices.
@@ -349,7 +349,7 @@ def _is_textured(model: Any, geom: int) -> bool:
     return material >= 0 and bool((np.atleast_1d(model.mat_texid[material]) >= 0).any())
 
 
-def _context_class(backend: str) -> Any:
+def _import_context_class(backend: str) -> Any:
     library = _LIBRARIES[backend]
     if library and find_library(library) is None:
         raise OSError(library)

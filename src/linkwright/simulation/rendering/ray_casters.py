@@ -10,9 +10,9 @@ import numpy as np
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.ray_casting import GROUPS
-from linkwright.simulation.rendering.movable import CameraView, MovableGeoms, pixels_towards
-from linkwright.simulation.rendering.triangles import Mesh, is_infinite_plane, triangles_of
+from linkwright.simulation.ray_casting import GROUP_COUNT
+from linkwright.simulation.rendering.movable_geoms import CameraView, MovableGeoms, find_covered_pixels
+from linkwright.simulation.rendering.triangles import Mesh, create_triangle_mesh, is_infinite_plane
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation
 
@@ -55,7 +55,7 @@ class MujocoCaster:
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self._mujoco = load_mujoco()
-        self._groups = np.zeros(GROUPS, dtype=np.uint8)
+        self._groups = np.zeros(GROUP_COUNT, dtype=np.uint8)
         self._groups[VISUAL_GROUP] = 1
 
     def cast(self, view: CameraView, *, normals: bool) -> Hits:
@@ -75,13 +75,13 @@ class MujocoCaster:
         )  # fmt: skip
         surface_normals = flat_normals.reshape(-1, 3)
         for ray in np.nonzero((geoms >= 0) & (distances < near * lengths))[0]:
-            geoms[ray], distances[ray], surface_normals[ray] = self._hit_beyond_near(
+            geoms[ray], distances[ray], surface_normals[ray] = self._find_hit_beyond_near(
                 origin, rays[ray], lengths[ray], near
             )
         relative_distances = np.where(geoms >= 0, distances / lengths, np.inf)
         return Hits(relative_distances.astype(np.float32), geoms, surface_normals.astype(np.float32))
 
-    def _hit_beyond_near(self, origin: Array, ray: Array, length: float, start: float) -> tuple[int, float, Array]:
+    def _find_hit_beyond_near(self, origin: Array, ray: Array, length: float, start: float) -> tuple[int, float, Array]:
         """Return a ray's first hit beyond the near clip plane: geom, distance and normal.
 
         The geom is -1 if there is no hit. The distance is in m.
@@ -92,7 +92,7 @@ class MujocoCaster:
         return int(geom[0]), start * length + remaining_distance, normal
 
 
-class _Triangles:
+class _TriangleTree:
     """The triangles of geoms at their current poses, in an Embree tree."""
 
     def __init__(self, meshes: dict[int, Mesh], data: Any) -> None:
@@ -156,9 +156,9 @@ class EmbreeCaster:
 
         self._simulation = simulation
         self._revision = -1
-        self._static_tree: _Triangles | None = None
+        self._static_tree: _TriangleTree | None = None
         self._movable_geoms = MovableGeoms(simulation, {})
-        self._fixed: dict[int, Mesh] = {}
+        self._static_meshes: dict[int, Mesh] = {}
         self._static_poses: Any = np.empty((0, 12))
         self._geom_sizes: Any = np.empty((0, 3))
         self._movable_meshes: dict[int, Mesh] = {}
@@ -170,7 +170,7 @@ class EmbreeCaster:
         simulation = self._simulation
         simulation.refresh()
         if self._revision != simulation.revision:
-            self._read(simulation.model)
+            self._read_model(simulation.model)
             self._revision = simulation.revision
         else:
             self._release_changed_geoms()
@@ -187,30 +187,34 @@ class EmbreeCaster:
             self._build_static_tree()
         if self._static_tree is not None:
             self._static_tree.cast_into(hits, origins, rays, near)
-        visible_boxes = self._movable_geoms.visible_geoms(view)
+        visible_boxes = self._movable_geoms.find_visible_geoms(view)
         if visible_boxes:
-            moving_triangles = _Triangles({geom: self._movable_meshes[geom] for geom in visible_boxes}, simulation.data)
+            moving_triangles = _TriangleTree(
+                {geom: self._movable_meshes[geom] for geom in visible_boxes}, simulation.data
+            )
             moving_triangles.cast_into(
-                hits, origins, rays, near, pixels_towards(view.optics, list(visible_boxes.values()))
+                hits, origins, rays, near, find_covered_pixels(view.optics, list(visible_boxes.values()))
             )
         return hits
 
-    def _read(self, model: Any) -> None:
-        self._fixed, self._movable_meshes, self._planes = {}, {}, []
+    def _read_model(self, model: Any) -> None:
+        self._static_meshes, self._movable_meshes, self._planes = {}, {}, []
         for geom in range(model.ngeom):
             if model.geom_group[geom] != VISUAL_GROUP or is_invisible(model, geom):
                 continue
             if is_infinite_plane(model, geom):
                 self._planes.append(geom)
-            elif (mesh := triangles_of(model, geom)) is not None:
-                meshes = self._fixed if model.body_weldid[model.geom_bodyid[geom]] == 0 else self._movable_meshes
+            elif (mesh := create_triangle_mesh(model, geom)) is not None:
+                meshes = (
+                    self._static_meshes if model.body_weldid[model.geom_bodyid[geom]] == 0 else self._movable_meshes
+                )
                 meshes[geom] = mesh
         self._reset_movable()
         self._build_static_tree()
 
     def _reset_movable(self) -> None:
         self._movable_geoms = MovableGeoms(self._simulation, self._movable_meshes)
-        self._static_poses, self._geom_sizes = self._current_static_poses(), self._simulation.model.geom_size.copy()
+        self._static_poses, self._geom_sizes = self._get_static_poses(), self._simulation.model.geom_size.copy()
 
     def _release_changed_geoms(self) -> None:
         """Move geoms whose pose or size has changed out of the static tree.
@@ -218,30 +222,30 @@ class EmbreeCaster:
         Static geoms change while a data set is generated, because each of its images shows a different scene.
         """
         model = self._simulation.model
-        static_geoms = np.array(list(self._fixed), dtype=np.int64)
-        moved_geoms = static_geoms[(self._current_static_poses() != self._static_poses).any(axis=1)]
+        static_geoms = np.array(list(self._static_meshes), dtype=np.int64)
+        moved_geoms = static_geoms[(self._get_static_poses() != self._static_poses).any(axis=1)]
         resized_geoms = np.flatnonzero((model.geom_size != self._geom_sizes).any(axis=1))
         if not len(moved_geoms) and not len(resized_geoms):
             return
-        static_count, resting_geoms = len(self._fixed), self._movable_geoms.resting
+        static_count, resting_geoms = len(self._static_meshes), self._movable_geoms.resting
         for geom in (*moved_geoms.tolist(), *resized_geoms.tolist()):
-            if geom in self._fixed:
-                self._movable_meshes[geom] = self._fixed.pop(geom)
+            if geom in self._static_meshes:
+                self._movable_meshes[geom] = self._static_meshes.pop(geom)
         for geom in resized_geoms.tolist():
-            if geom in self._movable_meshes and (mesh := triangles_of(model, geom)) is not None:
+            if geom in self._movable_meshes and (mesh := create_triangle_mesh(model, geom)) is not None:
                 self._movable_meshes[geom] = mesh
         self._reset_movable()
-        if resting_geoms or len(self._fixed) != static_count:
+        if resting_geoms or len(self._static_meshes) != static_count:
             self._build_static_tree()
 
-    def _current_static_poses(self) -> Any:
-        data, geoms = self._simulation.data, list(self._fixed)
+    def _get_static_poses(self) -> Any:
+        data, geoms = self._simulation.data, list(self._static_meshes)
         return np.concatenate([data.geom_xpos[geoms], data.geom_xmat[geoms]], axis=1)
 
     def _build_static_tree(self) -> None:
         """Build the tree of the static and resting geoms."""
-        meshes = self._fixed | {geom: self._movable_meshes[geom] for geom in self._movable_geoms.resting}
-        self._static_tree = _Triangles(meshes, self._simulation.data) if meshes else None
+        meshes = self._static_meshes | {geom: self._movable_meshes[geom] for geom in self._movable_geoms.resting}
+        self._static_tree = _TriangleTree(meshes, self._simulation.data) if meshes else None
 
     def _cast_to_planes(self, hits: Hits, origin: Array, rays: Any) -> None:
         data = self._simulation.data

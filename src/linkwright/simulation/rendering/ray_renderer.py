@@ -11,10 +11,10 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Transform
 from linkwright.sdf.optics import Optics
-from linkwright.simulation.rendering.lights import PlacedLight, lights_of
-from linkwright.simulation.rendering.movable import CameraView
+from linkwright.simulation.rendering.lights import PlacedLight, collect_lights
+from linkwright.simulation.rendering.movable_geoms import CameraView
 from linkwright.simulation.rendering.ray_casters import Caster, Hits
-from linkwright.simulation.rendering.renderer import Channels, RenderedImage, axes_of
+from linkwright.simulation.rendering.renderer import Channels, RenderedImage, compute_image_axes
 from linkwright.simulation.simulation import Simulation
 
 _DEFAULT_RGBA = (0.5, 0.5, 0.5, 1.0)
@@ -39,7 +39,7 @@ class RayRenderer:
 
     def render(self, optics: Optics, pose: Transform, channels: Channels) -> RenderedImage:
         """Render the current view of a camera."""
-        axes = axes_of(pose)
+        axes = compute_image_axes(pose)
         origin, rays = np.array(pose[:3]), optics.directions(axes)
         hits = self._caster.cast(CameraView(optics, origin, axes, rays), normals=Channels.COLOR in channels)
         is_clipped = ~((hits.distances >= optics.near) & (hits.distances <= optics.far))
@@ -59,30 +59,30 @@ class RayRenderer:
         simulation = self._simulation
         paints = simulation.model.geom_rgba, simulation.model.geom_matid  # these vary with each image of a data set
         if self._revision != simulation.revision or not all(map(np.array_equal, paints, self._known_paints)):
-            self._colors = geom_colors(simulation.model)
+            self._colors = compute_geom_colors(simulation.model)
             self._known_paints = tuple(paint.copy() for paint in paints)
             self._revision = simulation.revision
         scene = simulation.world.scene
         facing_signs = np.where(np.einsum("ij,ij->i", hits.normals, rays) > 0, np.float32(-1), np.float32(1))
         light = np.empty_like(hits.normals)
         light[:] = scene.ambient[:3]
-        for placed_light in lights_of(simulation, forwards):
-            received = _received_light(placed_light, hits, facing_signs, origin, rays)
+        for placed_light in collect_lights(simulation, forwards):
+            received = _compute_received_light(placed_light, hits, facing_signs, origin, rays)
             for channel, strength in enumerate(placed_light.color.astype(np.float32)):
                 light[:, channel] += received * strength
         light *= self._colors.take(hits.geoms, axis=0, mode="wrap")
         np.minimum(light, 1.0, out=light)
         light *= 255
         rendered = light.astype(np.uint8)
-        np.copyto(rendered, _background_color(scene.background), where=(hits.geoms < 0)[:, None])
+        np.copyto(rendered, _to_background_color(scene.background), where=(hits.geoms < 0)[:, None])
         return rendered
 
 
-def _background_color(color: Sequence[float]) -> Any:
+def _to_background_color(color: Sequence[float]) -> Any:
     return np.round(np.clip(np.array(color[:3]), 0, 1) * 255).astype(np.uint8)
 
 
-def _received_light(placed_light: PlacedLight, hits: Hits, facing_signs: Any, origin: Array, rays: Any) -> Any:
+def _compute_received_light(placed_light: PlacedLight, hits: Hits, facing_signs: Any, origin: Array, rays: Any) -> Any:
     """Return the fraction of a light's intensity that each hit receives, shape (n,)."""
     if placed_light.light.type == "directional":
         fractions = (hits.normals @ -placed_light.direction.astype(np.float32)) * facing_signs
@@ -107,7 +107,7 @@ def _received_light(placed_light: PlacedLight, hits: Hits, facing_signs: Any, or
     return fractions
 
 
-def geom_colors(model: Any) -> Any:
+def compute_geom_colors(model: Any) -> Any:
     """Return the colors of all geoms, from 0 to 1, shape (geoms, 3), float32.
 
     The color of a textured geom is multiplied by the mean color of the texture.
@@ -119,12 +119,12 @@ def geom_colors(model: Any) -> Any:
             colors[geom] = model.mat_rgba[material, :3]
         for texture in np.atleast_1d(model.mat_texid[material]):
             if texture >= 0:
-                colors[geom] *= mean_color(model, int(texture))
+                colors[geom] *= compute_mean_color(model, int(texture))
                 break
     return colors.astype(np.float32)
 
 
-def mean_color(model: Any, texture: int) -> Array:
+def compute_mean_color(model: Any, texture: int) -> Array:
     """Return the mean color of a texture in a MuJoCo model: red, green and blue from 0 to 1."""
     first, channels = model.tex_adr[texture], model.tex_nchannel[texture]
     count = model.tex_width[texture] * model.tex_height[texture] * channels

@@ -67,7 +67,7 @@ class Renderer(Protocol):
         """Free the system resources of the renderer."""
 
 
-def axes_of(pose: Transform) -> Array:
+def compute_image_axes(pose: Transform) -> Array:
     """Return the image axes of a camera in the world as columns, shape (3, 3).
 
     The axes point right, down and forwards.

@@ -22,18 +22,18 @@ from linkwright.sdf.links import Collision, Inertia, Inertial, Link, Visual
 from linkwright.sdf.poses import RawPose
 from linkwright.sdf.values import Color
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.scene.couplings import THREAD
+from linkwright.simulation.scene.couplings import THREAD_SUFFIX
 from linkwright.simulation.scene.meshes import MeshLibrary
 from linkwright.simulation.scene.shapes import add_shape
 from linkwright.simulation.scene.structure import PlacedJoint
-from linkwright.simulation.scene.surfaces import apply_surface, grip_of
+from linkwright.simulation.scene.surfaces import apply_surface, get_grip
 from linkwright.xmltree import Element
 
 _MIN_MOMENT_RATIO = 1e-9
 """The margin of the triangle inequality that MuJoCo requires, as a fraction of the largest principal moment."""
 COLLISION_GROUP, VISUAL_GROUP = 3, 2
 """MuJoCo's groups of collision geoms and of visual geoms."""
-SECOND_AXIS = "#2"
+SECOND_AXIS_SUFFIX = "#2"
 """The suffix of the name of a joint's second axis."""
 
 _MIN_MASS = 1e-6
@@ -58,13 +58,13 @@ class BodyWriter:
 
     Attributes:
         diagnostics: the findings on values and shapes that cannot be simulated.
-        unspecified: names of the colliding geoms whose friction is not specified.
-        grips: the friction that geoms have when a motor turns them, by geom name.
+        geoms_without_friction: names of the colliding geoms whose friction is not specified.
+        grip_by_geom: the friction that geoms have when a motor turns them, by geom name.
     """
 
     def __init__(self, meshes: MeshLibrary) -> None:
-        self.unspecified: set[str] = set()
-        self.grips: dict[str, float] = {}
+        self.geoms_without_friction: set[str] = set()
+        self.grip_by_geom: dict[str, float] = {}
         self.diagnostics: list[Diagnostic] = []
         self._meshes = meshes
         self._mujoco = load_mujoco()
@@ -136,31 +136,34 @@ class BodyWriter:
             child: the pose of the child link in the world.
         """
         joint_types = self._mujoco.mjtJoint
-        in_child = compose(invert(child), scene_joint.pose)
+        pose_in_child = compose(invert(child), scene_joint.pose)
         kind = scene_joint.joint.type
         if kind == "fixed":
             return
         if kind == "ball":
-            body.add_joint(name=scene_joint.name, type=joint_types.mjJNT_BALL, pos=list(in_child[:3]))
+            body.add_joint(name=scene_joint.name, type=joint_types.mjJNT_BALL, pos=list(pose_in_child[:3]))
             return
-        prismatic = kind == "prismatic"
+        is_prismatic = kind == "prismatic"
         count = 2 if kind in ("universal", "revolute2") else 1
         for axis, direction in scene_joint.axes[:count]:
-            name = scene_joint.name if axis is scene_joint.joint.axis else scene_joint.name + SECOND_AXIS
+            name = scene_joint.name if axis is scene_joint.joint.axis else scene_joint.name + SECOND_AXIS_SUFFIX
             joint = body.add_joint(
                 name=name,
-                type=joint_types.mjJNT_SLIDE if prismatic else joint_types.mjJNT_HINGE,
-                pos=list(in_child[:3]),
-                axis=list(rotate(in_child[3:], direction)),
+                type=joint_types.mjJNT_SLIDE if is_prismatic else joint_types.mjJNT_HINGE,
+                pos=list(pose_in_child[:3]),
+                axis=list(rotate(pose_in_child[3:], direction)),
             )
-            self._limit(joint, axis, endless=kind == "continuous")
+            self._apply_limits(joint, axis, endless=kind == "continuous")
             if kind == "screw":
-                anchor, direction_in_child = list(in_child[:3]), list(rotate(in_child[3:], direction))
+                anchor, direction_in_child = list(pose_in_child[:3]), list(rotate(pose_in_child[3:], direction))
                 body.add_joint(
-                    name=scene_joint.name + THREAD, type=joint_types.mjJNT_SLIDE, pos=anchor, axis=direction_in_child
+                    name=scene_joint.name + THREAD_SUFFIX,
+                    type=joint_types.mjJNT_SLIDE,
+                    pos=anchor,
+                    axis=direction_in_child,
                 )
 
-    def _limit(self, joint: Any, axis: Axis, *, endless: bool) -> None:
+    def _apply_limits(self, joint: Any, axis: Axis, *, endless: bool) -> None:
         limit, dynamics = axis.limit, axis.dynamics
         joint.limited = not endless and (isfinite(limit.lower) or isfinite(limit.upper)) and limit.lower < limit.upper
         if joint.limited:
@@ -178,15 +181,15 @@ class BodyWriter:
         counts: Counter[str] = Counter()
         for visual in link.visuals:
             pose = frames.in_link(visual.pose, link.name)
-            for geom in self._geoms(body, visual, pose, counts, fixed=fixed):
+            for geom in self._add_geoms(body, visual, pose, counts, fixed=fixed):
                 geom.group = VISUAL_GROUP
                 geom.contype = geom.conaffinity = 0
                 if visual.material is not None:
                     geom.material = (
-                        self._meshes.material_of(visual) if self._meshes.has_texture_coordinates(geom) else ""
+                        self._meshes.find_material(visual) if self._meshes.has_texture_coordinates(geom) else ""
                     )
                 if visual.material is not None or not geom.material:
-                    geom.rgba = _color(visual, _WHITE if geom.material else _GRAY)
+                    geom.rgba = _get_color(visual, _WHITE if geom.material else _GRAY)
 
     def add_collisions(self, body: Any, link: Link, frames: Frames, *, fixed: bool) -> None:
         """Add the collisions of a link as geoms, and record their friction."""
@@ -194,22 +197,22 @@ class BodyWriter:
         for collision in link.collisions:
             pose = frames.in_link(collision.pose, link.name)
             surface = collision.surface
-            for geom in self._geoms(body, collision, pose, counts, fixed=fixed):
+            for geom in self._add_geoms(body, collision, pose, counts, fixed=fixed):
                 geom.group = COLLISION_GROUP
                 geom.contype, geom.conaffinity = surface.category_bitmask, surface.collide_bitmask
                 apply_surface(geom, surface)
-                self.grips[geom.name] = grip_of(surface)
+                self.grip_by_geom[geom.name] = get_grip(surface)
                 if surface.friction is None:
-                    self.unspecified.add(geom.name)
+                    self.geoms_without_friction.add(geom.name)
 
-    def _geoms(
+    def _add_geoms(
         self, body: Any, item: Visual | Collision, pose: Transform, counts: Counter[str], *, fixed: bool
     ) -> Iterable[Any]:
         """Add the geoms of a visual or collision to a body, name them, and return them.
 
         `counts` contains the number of geoms with each name, because names must be unique in a body.
         """
-        collision = isinstance(item, Collision)
+        is_collision = isinstance(item, Collision)
         geoms = [] if isinstance(item, Collision) else self._meshes.add_textured_shape(body, item, pose)
         simple_geom = None if geoms else add_shape(body, item.geometry, pose, fixed=fixed)
         if simple_geom is not None:
@@ -222,7 +225,7 @@ class BodyWriter:
             index = counts[item.name]
             counts[item.name] += 1
             suffix = f"#{index}" if index else ""
-            geom.name = f"{body.name}::{item.name}#{'collision' if collision else 'visual'}{suffix}"
+            geom.name = f"{body.name}::{item.name}#{'collision' if is_collision else 'visual'}{suffix}"
         return geoms
 
     def _warn(self, code: str, message: Phrase, element: Element | None) -> None:
@@ -248,7 +251,7 @@ def _inertial_from_shapes(link: Link, frames: Frames) -> Inertial | None:
     return Inertial(total.mass, RawPose(Pose((x, y, z))), Inertia(ixx, iyy, izz, ixy, ixz, iyz))
 
 
-def _color(visual: Visual, default: Color) -> list[float]:
+def _get_color(visual: Visual, default: Color) -> list[float]:
     material = visual.material
     red, green, blue, alpha = (material.diffuse if material is not None else None) or default
     return [min(max(value, 0.0), 1.0) for value in (red, green, blue, alpha * (1.0 - visual.transparency))]
@@ -263,7 +266,7 @@ def set_coefficient(element: Any, name: str, value: float) -> None:
         setattr(element, name, value)
 
 
-def hinge_anchors(placed: PlacedJoint, distance: float) -> list[Vector3]:
+def compute_hinge_anchors(placed: PlacedJoint, distance: float) -> list[Vector3]:
     """Return two points on the axis of a joint, in the world, at the given distance in m.
 
     Fixing both points allows only rotation about this axis.

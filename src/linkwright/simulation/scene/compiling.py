@@ -74,18 +74,20 @@ def compile_scene(scene: Scene, previous: tuple[Any, Any] | None = None) -> tupl
         ) from None
 
 
-def rejected_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
-    """Return the models that MuJoCo rejects when each is compiled alone, with MuJoCo's messages.
+def find_rejected_models(world: World, finder: ResourceFinder) -> dict[str, Phrase]:
+    """Return the models that MuJoCo rejects, by name, with MuJoCo's messages.
+
+    Each model is compiled alone.
 
     Args:
         world: the world, with its includes resolved and as it was saved.
         finder: the finder of mesh files.
     """
-    messages = {model.name: _rejection_message(replace(world, models=(model,)), finder) for model in world.models}
+    messages = {model.name: _find_rejection_message(replace(world, models=(model,)), finder) for model in world.models}
     return {name: message for name, message in messages.items() if message is not None}
 
 
-def _rejection_message(world: World, finder: ResourceFinder) -> Phrase | None:
+def _find_rejection_message(world: World, finder: ResourceFinder) -> Phrase | None:
     """Return MuJoCo's message if a world cannot be compiled, or else None."""
     try:
         compile_scene(Scene(world, MeshLibrary(finder)))
@@ -94,7 +96,7 @@ def _rejection_message(world: World, finder: ResourceFinder) -> Phrase | None:
     return None
 
 
-def step_in_nanoseconds(step: float, world: World) -> int:
+def step_to_nanoseconds(step: float, world: World) -> int:
     """Return a time step in ns from a time step in s.
 
     An error refers to the element of `world` that sets the time step, if there is one.

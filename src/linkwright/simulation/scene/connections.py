@@ -53,25 +53,27 @@ class Connections:
             return ConnectedModel(structure, (), frozenset())
         available_models = {WORLD, name, *earlier_models}
         joints = (*self.attaching.values(), *self.loops)
-        own_joints = [joint for joint in joints if name in _models(joint) and _models(joint) <= available_models]
+        own_joints = [
+            joint for joint in joints if name in _get_model_names(joint) and _get_model_names(joint) <= available_models
+        ]
         attaching_joints = {
             joint.child: joint
             for joint in own_joints
-            if self.attaching.get(joint.child) is joint and model_of(joint.child) == name
+            if self.attaching.get(joint.child) is joint and get_model_name(joint.child) == name
         }
         links = tuple(
             TreeLink(tree_link.link, attaching_joints.get(tree_link.link.name, tree_link.joint))
             for tree_link in structure.links
         )
         loops = tuple(joint for joint in own_joints if attaching_joints.get(joint.child) is not joint)
-        attached_to = frozenset(model for joint in own_joints for model in _models(joint)) - {WORLD, name}
+        attached_to = frozenset(model for joint in own_joints for model in _get_model_names(joint)) - {WORLD, name}
         return ConnectedModel(replace(structure, links=links), loops, attached_to)
 
     def sort_by_attachment(self, names: Sequence[str]) -> list[str]:
         """Return model names in the given order, but each after the models that it is attached to."""
         parents: dict[str, list[str]] = {}
         for joint in self.attaching.values():
-            parents.setdefault(model_of(joint.child), []).append(model_of(joint.parent))
+            parents.setdefault(get_model_name(joint.child), []).append(get_model_name(joint.parent))
         selected_names = set(names)
         ordered: dict[str, None] = {}
         visited: set[str] = set()  # Joints may connect the models in a cycle.
@@ -106,7 +108,7 @@ class ConnectedModel:
     attached_to: frozenset[str]
 
 
-def connections_of(world: World) -> Connections:
+def find_connections(world: World) -> Connections:
     """Return the joints of a world, except joints whose links are missing or never move.
 
     Args:
@@ -115,8 +117,8 @@ def connections_of(world: World) -> Connections:
     if not world.joints:
         return Connections({}, (), {})
     frames = Frames(world)
-    placed_joints = _placed_joints(world, frames)
-    models = {model for joint in placed_joints for model in _models(joint)}
+    placed_joints = _place_joints(world, frames)
+    models = {model for joint in placed_joints for model in _get_model_names(joint)}
     poses: dict[str, Transform] = {}
     tree_links: dict[str, TreeLink] = {}
     for model in world.models:
@@ -137,8 +139,8 @@ def connections_of(world: World) -> Connections:
         known_links = tree_links.keys() | {WORLD}
         if not {joint.parent, joint.child} <= known_links or not {joint.parent, joint.child} & moving_links:
             continue
-        can_attach = len(_models(joint)) > 1 and joint.joint.type != "gearbox"  # A model orders its own links.
-        candidates = (joint, _reversed_joint(joint)) if can_attach else ()
+        can_attach = len(_get_model_names(joint)) > 1 and joint.joint.type != "gearbox"  # A model orders its own links.
+        candidates = (joint, _reverse_joint(joint)) if can_attach else ()
         suitable_joints = (
             candidate
             for candidate in candidates
@@ -153,16 +155,16 @@ def connections_of(world: World) -> Connections:
     return Connections(attaching, tuple(loops), poses)
 
 
-def model_of(link: str) -> str:
+def get_model_name(link: str) -> str:
     """Return the top-level model of a link or joint name, or ``world`` for the world itself."""
     return link.partition(SEPARATOR)[0]
 
 
-def _models(joint: PlacedJoint) -> set[str]:
-    return {model_of(joint.parent), model_of(joint.child)}
+def _get_model_names(joint: PlacedJoint) -> set[str]:
+    return {get_model_name(joint.parent), get_model_name(joint.child)}
 
 
-def _placed_joints(world: World, frames: Frames) -> list[PlacedJoint]:
+def _place_joints(world: World, frames: Frames) -> list[PlacedJoint]:
     joints_by_name: dict[str, PlacedJoint] = {}
     for joint in world.joints:
         try:
@@ -174,7 +176,7 @@ def _placed_joints(world: World, frames: Frames) -> list[PlacedJoint]:
     return list(joints_by_name.values())
 
 
-def _reversed_joint(joint: PlacedJoint) -> PlacedJoint:
+def _reverse_joint(joint: PlacedJoint) -> PlacedJoint:
     """Return a joint with its parent and child exchanged.
 
     Positions keep their signs.

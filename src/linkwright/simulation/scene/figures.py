@@ -56,7 +56,7 @@ class Figure:
         return self.pose if self.walk is None else compose(self.origin, self.walk.pose(seconds))
 
 
-def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
+def create_figures(world: World, meshes: MeshLibrary) -> list[Figure]:
     """Return the actors and roads of a world.
 
     Actors whose pose is not defined are left out; `check` reports them. The waypoints of an actor are in the frame of
@@ -70,10 +70,10 @@ def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
     frames, figures = Frames(world), []
     used_names = {model.name for model in world.models}
     for actor in world.actors:
-        actor = _with_free_name(actor, used_names)
+        actor = _choose_free_name(actor, used_names)
         try:
             pose = frames.placed(actor.pose)
-            model = actor_model(actor, _skin_origin(actor, meshes))
+            model = actor_model(actor, _find_skin_origin(actor, meshes))
             links = tuple(links_of(model, Frames(model), IDENTITY, actor.name))
         except FrameError:
             continue
@@ -82,13 +82,13 @@ def figures_of(world: World, meshes: MeshLibrary) -> list[Figure]:
         initial_pose = compose(origin, walk.pose(0.0)) if walk.has_waypoints else pose
         figures.append(Figure(model, initial_pose, walk if walk.has_waypoints else None, origin, links))
     for road in world.roads:
-        model = _with_free_name(road_model(road), used_names)
+        model = _choose_free_name(road_model(road), used_names)
         links = tuple(links_of(model, Frames(model), IDENTITY, model.name))
         figures.append(Figure(model, IDENTITY, None, IDENTITY, links))
     return figures
 
 
-def _with_free_name(item: T, used_names: set[str]) -> T:
+def _choose_free_name(item: T, used_names: set[str]) -> T:
     """Return an actor or road with an unused name, and add this name to the used names."""
     while item.name in used_names:
         item = replace(item, name=f"{item.name}~")
@@ -118,22 +118,22 @@ def move_actors(figures: Iterable[Figure], model: Any, data: Any, seconds: float
             _set_mocap_pose(int(model.body(placed_link.name).mocapid[0]), compose(pose, placed_link.pose), data)
 
 
-def set_kinematic_poses(structure: KinematicTrees, moved: Transform, model: Any, data: Any) -> bool:
+def set_kinematic_poses(structure: KinematicTrees, displacement: Transform, model: Any, data: Any) -> bool:
     """Set the poses of a model's kinematic links in MuJoCo's data.
 
     Returns whether the model has such links.
 
     Args:
         structure: the links of the model.
-        moved: the transform in the world that moves the model from its initial pose to its new pose.
+        displacement: the transform in the world that moves the model from its initial pose to its new pose.
         model: MuJoCo's model.
         data: MuJoCo's data.
     """
     links = [tree_link.link for tree_link in structure.links]
     kinematic_links = {int(model.body(link.name).mocapid[0]): link for link in links}
     kinematic_links.pop(-1, None)
-    for mocap_id, link in kinematic_links.items():
-        _set_mocap_pose(mocap_id, compose(moved, link.pose), data)
+    for mocap_index, link in kinematic_links.items():
+        _set_mocap_pose(mocap_index, compose(displacement, link.pose), data)
     return bool(kinematic_links)
 
 
@@ -143,7 +143,7 @@ def _set_mocap_pose(mocap_index: int, pose: Transform, data: Any) -> None:
     data.mocap_quat[mocap_index] = qw, qx, qy, qz
 
 
-def _skin_origin(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
+def _find_skin_origin(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
     """Return the origin, in m, of the skeleton of an actor's skin.
 
     Returns None if the mesh file is missing.
@@ -155,11 +155,11 @@ def _skin_origin(actor: Actor, meshes: MeshLibrary) -> Vector3 | None:
     path = meshes.file(actor.skin.filename, actor.element)
     if path is None:
         return None
-    return skeleton_origin(path) if path.suffix.lower() == ".dae" else (0.0, 0.0, 0.0)
+    return read_skeleton_origin(path) if path.suffix.lower() == ".dae" else (0.0, 0.0, 0.0)
 
 
-def skeleton_origin(path: Path) -> Vector3:
-    """Return the origin of the first joint of a COLLADA file's skeleton, in its bind pose, in m.
+def read_skeleton_origin(path: Path) -> Vector3:
+    """Return the origin in m of the first joint of a COLLADA skeleton, in its bind pose.
 
     The origin is zero if the file has no usable skeleton.
     """
@@ -168,7 +168,7 @@ def skeleton_origin(path: Path) -> Vector3:
     except LinkwrightError:
         return (0.0, 0.0, 0.0)
     skin = next((element for element in root.walk() if element.tag == "skin"), None)
-    matrix = None if skin is None else _first_matrix(skin)
+    matrix = None if skin is None else _read_first_matrix(skin)
     if matrix is None:
         return (0.0, 0.0, 0.0)
     unit = next((element for element in root.walk() if element.tag == "unit"), None)
@@ -177,7 +177,7 @@ def skeleton_origin(path: Path) -> Vector3:
     return x, y, z
 
 
-def _first_matrix(skin: Element) -> Any:
+def _read_first_matrix(skin: Element) -> Any:
     """Return the first inverse bind matrix of a skin, or None if there is no usable one."""
     source_references = (
         element.attributes.get("source", "")

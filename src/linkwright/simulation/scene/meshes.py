@@ -22,8 +22,8 @@ from linkwright.sdf.links import Visual
 from linkwright.sdf.resources import Missing, ResourceFinder
 from linkwright.sdf.shapes import Cone, Heightmap, Mesh, Plane, Polyline, Shape
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.scene.shapes import cone_corners, set_pose
-from linkwright.simulation.scene.wrapping import textured_mesh
+from linkwright.simulation.scene.shapes import compute_cone_vertices, set_pose
+from linkwright.simulation.scene.textured_shapes import create_textured_mesh
 from linkwright.xmltree import Element
 
 _MAX_PIECES = 300
@@ -81,9 +81,9 @@ class MeshLibrary:
         """
         if isinstance(shape, Heightmap):
             return self._add_heightmap(body, shape, pose, element)
-        key = ("collision", shape, _version(self._path(shape, element)), fixed)
+        key = ("collision", shape, _create_cache_key(self._find_shape_file(shape, element)), fixed)
         if key not in self._assets:
-            self._assets[key] = [self._add_hull(corners) for corners in self._pieces(shape, element, fixed=fixed)]
+            self._assets[key] = [self._add_hull(corners) for corners in self._read_pieces(shape, element, fixed=fixed)]
         return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
     def visuals(self, body: Any, shape: Shape, pose: Transform, element: Element | None) -> list[Any]:
@@ -93,13 +93,15 @@ class MeshLibrary:
         """
         if isinstance(shape, Heightmap):
             return self._add_heightmap(body, shape, pose, element)
-        path = self._path(shape, element)
-        key = ("visual", shape, _version(path))
+        path = self._find_shape_file(shape, element)
+        key = ("visual", shape, _create_cache_key(path))
         if key not in self._assets:
             if isinstance(shape, Mesh):
                 self._assets[key] = [] if path is None else list(self._add_visual_meshes(shape, path, element))
             else:
-                self._assets[key] = [self._add_hull(corners) for corners in self._pieces(shape, element, fixed=True)]
+                self._assets[key] = [
+                    self._add_hull(corners) for corners in self._read_pieces(shape, element, fixed=True)
+                ]
         return [self._add_geom(body, pose, name) for name in self._assets[key]]
 
     def _add_geom(self, body: Any, pose: Transform, mesh: str) -> Any:
@@ -110,24 +112,24 @@ class MeshLibrary:
         set_pose(geom, pose)
         return geom
 
-    def _pieces(self, shape: Shape, element: Element | None, *, fixed: bool) -> list[Array]:
+    def _read_pieces(self, shape: Shape, element: Element | None, *, fixed: bool) -> list[Array]:
         """Return the vertices of each convex piece of a shape.
 
         The list is empty if the shape cannot be used.
         """
         if isinstance(shape, Cone):
-            return [cone_corners(shape)] if min(shape.radius, shape.length) > 0 else []
+            return [compute_cone_vertices(shape)] if min(shape.radius, shape.length) > 0 else []
         if isinstance(shape, Polyline):
-            return list(_prisms(shape))
+            return list(_create_prisms(shape))
         if isinstance(shape, tuple):
-            return [corners for polyline in shape for corners in _prisms(polyline)]
-        path = self._path(shape, element)
+            return [corners for polyline in shape for corners in _create_prisms(polyline)]
+        path = self._find_shape_file(shape, element)
         if not isinstance(shape, Mesh) or path is None:
             return []
         try:
             _check_triangle_count(path, declared_triangles(path) or 0)
             if shape.submesh is not None:
-                parts = [part.triangles for part in self._parts(shape, path)]
+                parts = [part.triangles for part in self._read_parts(shape, path)]
                 vertices, faces = _join_triangles(parts)
             else:
                 mesh = read_mesh(path)
@@ -144,7 +146,7 @@ class MeshLibrary:
 
     def _add_visual_meshes(self, shape: Mesh, path: Path, element: Element | None) -> Iterator[str]:
         try:
-            parts = self._parts(shape, path)
+            parts = self._read_parts(shape, path)
         except LinkwrightError as error:
             self._warn(error.diagnostics[0], element)
             return
@@ -152,7 +154,7 @@ class MeshLibrary:
             triangles = part.triangles
             faces: NDArray[np.int64] = triangles.indices.reshape(-1, 3)
             positions = triangles.positions * np.asarray(shape.scale)
-            if _area(positions, faces) <= _MIN_AREA:
+            if _compute_area(positions, faces) <= _MIN_AREA:
                 continue
             faces = faces[:, ::-1] if np.prod(shape.scale) < 0 else faces
             name = self._add_visual_mesh(positions, faces, triangles.coordinates)
@@ -163,10 +165,10 @@ class MeshLibrary:
         """Add a mesh asset for a visual to the specification, and return the name of the asset."""
         name = f"mesh {len(self.spec.meshes)}"
         mesh = self.spec.add_mesh(name=name, inertia=load_mujoco().mjtMeshInertia.mjMESH_INERTIA_SHELL)
-        mesh.uservert = _flat_list(_pad_to_four(positions))
-        mesh.userface = _flat_list(faces, np.int32)
+        mesh.uservert = _to_flat_list(_pad_to_four(positions))
+        mesh.userface = _to_flat_list(faces, np.int32)
         if coordinates is not None:
-            mesh.usertexcoord = _flat_list(_pad_to_four(coordinates))
+            mesh.usertexcoord = _to_flat_list(_pad_to_four(coordinates))
             self._textured_meshes.add(name)
         return name
 
@@ -176,7 +178,7 @@ class MeshLibrary:
         The list is empty if the visual has no texture, or its shape cannot be textured.
         """
         shape = visual.geometry
-        triangles = textured_mesh(shape) if self.material_of(visual) else None
+        triangles = create_textured_mesh(shape) if self.find_material(visual) else None
         if triangles is None:
             return []
         key = ("wrapped", shape)
@@ -212,7 +214,7 @@ class MeshLibrary:
         """Return whether a geom is a mesh with texture coordinates."""
         return geom.meshname in self._textured_meshes
 
-    def material_of(self, visual: Visual) -> str:
+    def find_material(self, visual: Visual) -> str:
         """Return the name of a MuJoCo material with the texture of a visual.
 
         The name is empty if the visual has no texture.
@@ -224,11 +226,11 @@ class MeshLibrary:
         )
         if not workflow:
             return ""
-        path = self._image(workflow.albedo_map or workflow.emissive_map, visual.element)
+        path = self._find_image(workflow.albedo_map or workflow.emissive_map, visual.element)
         if path is None:
             return ""
         is_emissive = not workflow.albedo_map
-        key = ("image", path, modification_time(path), is_emissive)
+        key = ("image", path, get_modification_time_ns(path), is_emissive)
         if key not in self._assets:
             self._assets[key] = []
             image = read_png(path)
@@ -238,7 +240,7 @@ class MeshLibrary:
                 self._assets[key] = [material.name]
         return "".join(self._assets[key])
 
-    def _image(self, uri: str, element: Element | None) -> Path | None:
+    def _find_image(self, uri: str, element: Element | None) -> Path | None:
         source = element.source if element is not None else None
         image_file = self._finder.file(uri, Path(source.name).parent if source is not None else Path()) if uri else None
         if isinstance(image_file, Missing):
@@ -247,7 +249,7 @@ class MeshLibrary:
             return None
         return image_file
 
-    def _parts(self, shape: Mesh, path: Path) -> list[MeshPart]:
+    def _read_parts(self, shape: Mesh, path: Path) -> list[MeshPart]:
         _check_triangle_count(path, declared_triangles(path) or 0)
         try:
             parts = read_parts(path, resolver=file_resolver(str(path)))
@@ -267,14 +269,14 @@ class MeshLibrary:
     def _add_hull(self, corners: Array) -> str:
         name = f"hull {len(self.spec.meshes)}"
         mesh = self.spec.add_mesh(name=name, maxhullvert=_MAX_HULL_VERTICES)
-        mesh.uservert = _flat_list(corners)
+        mesh.uservert = _to_flat_list(corners)
         return name
 
     def _add_heightmap(self, body: Any, shape: Heightmap, pose: Transform, element: Element | None) -> list[Any]:
-        path = self._path(shape, element)
+        path = self._find_shape_file(shape, element)
         if path is None:
             return []
-        key = ("heights", shape, _version(path))
+        key = ("heights", shape, _create_cache_key(path))
         if key not in self._assets:
             try:
                 heights = read_heights(path)
@@ -288,7 +290,7 @@ class MeshLibrary:
             span = float(np.ptp(heights.values))
             height_field = self.spec.add_hfield(name=name, nrow=rows, ncol=columns)
             height_field.size = [x / 2, y / 2, max(span * z, 1e-3), 1.0]
-            height_field.userdata = _flat_list(heights.values)
+            height_field.userdata = _to_flat_list(heights.values)
             self._assets[key] = [name]
         for name in self._assets[key]:
             geom = body.add_geom(type=load_mujoco().mjtGeom.mjGEOM_HFIELD, hfieldname=name)
@@ -297,14 +299,14 @@ class MeshLibrary:
             return [geom]
         return []
 
-    def _path(self, shape: Shape, element: Element | None) -> Path | None:
+    def _find_shape_file(self, shape: Shape, element: Element | None) -> Path | None:
         """Return the file of a mesh or heightmap, and record its use.
 
         Returns None for other shapes and for a missing file, which is reported once.
         """
         path = self.file(shape.uri, element) if isinstance(shape, Mesh | Heightmap) else None
         if path is not None:
-            self.used[path] = modification_time(path)
+            self.used[path] = get_modification_time_ns(path)
         return path
 
     def file(self, uri: str, element: Element | None) -> Path | None:
@@ -353,14 +355,14 @@ def _check_triangle_count(path: Path, count: int) -> None:
         raise LinkwrightError(Diagnostic("SIM115", message, hint=hint))
 
 
-def _prisms(polyline: Polyline) -> Iterator[Array]:
+def _create_prisms(polyline: Polyline) -> Iterator[Array]:
     points = np.array(polyline.points, dtype=np.float64).reshape(-1, 2)
     for triangle in triangulate(polyline.points):
         base = points[list(triangle)]
         yield np.concatenate([np.insert(base, 2, height, axis=1) for height in (0.0, polyline.height)])
 
 
-def _area(positions: Array, faces: Any) -> float:
+def _compute_area(positions: Array, faces: Any) -> float:
     """Return the total area of triangles in m2."""
     first, second, third = (positions[faces[:, corner]] for corner in range(3))
     with np.errstate(over="ignore", invalid="ignore"):
@@ -379,20 +381,20 @@ def _join_triangles(parts: Sequence[Triangles]) -> tuple[Array, Any]:
     return vertices, np.concatenate([np.zeros((0, 3), dtype=np.int64), *faces])
 
 
-def _flat_list(values: Any, kind: Any = np.float32) -> list[Any]:
+def _to_flat_list(values: Any, kind: Any = np.float32) -> list[Any]:
     with np.errstate(over="ignore"):  # MuJoCo rejects and reports numbers that are too large.
         return list(np.asarray(values, dtype=kind).ravel().tolist())
 
 
-def _version(path: Path | None) -> tuple[Path | None, int]:
+def _create_cache_key(path: Path | None) -> tuple[Path | None, int]:
     """Return a cache key of a file.
 
     Saving the file changes the key.
     """
-    return path, 0 if path is None else modification_time(path)
+    return path, 0 if path is None else get_modification_time_ns(path)
 
 
-def modification_time(path: Path) -> int:
+def get_modification_time_ns(path: Path) -> int:
     """Return the modification time of a file in ns since the epoch, or 0 for a missing file."""
     try:
         return path.stat().st_mtime_ns

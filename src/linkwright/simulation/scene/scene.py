@@ -18,11 +18,11 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.worlds import World, gravity_of, physics_of
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.scene.bodies import SECOND_AXIS, BodyWriter, hinge_anchors
-from linkwright.simulation.scene.connections import ConnectedModel, connections_of, model_of
-from linkwright.simulation.scene.couplings import gearbox_coupling, screw_coupling
-from linkwright.simulation.scene.figures import add_figure, figures_of
-from linkwright.simulation.scene.meshes import MeshLibrary, modification_time
+from linkwright.simulation.scene.bodies import SECOND_AXIS_SUFFIX, BodyWriter, compute_hinge_anchors
+from linkwright.simulation.scene.connections import ConnectedModel, find_connections, get_model_name
+from linkwright.simulation.scene.couplings import add_gearbox_coupling, add_screw_coupling
+from linkwright.simulation.scene.figures import add_figure, create_figures
+from linkwright.simulation.scene.meshes import MeshLibrary, get_modification_time_ns
 from linkwright.simulation.scene.shapes import set_pose
 from linkwright.simulation.scene.structure import KinematicTrees, PlacedJoint, TreeLink, build_kinematic_trees
 from linkwright.simulation.scene.wheels import SKIDDING_GRIP, make_omnidirectional, make_rolling, make_sliding
@@ -43,7 +43,7 @@ The inertia of the wheel alone is so low that 5 N m change its speed by 14 rad/s
 target in alternate directions, and the wheel would slip and leave the ground. The rotor of a real geared motor has
 more effective inertia than the wheel.
 """
-SERVO = "#servo"
+SERVO_SUFFIX = "#servo"
 """The separator between the joint's name and a number in the name of a servo constraint."""
 _SERVO_TIME_CONSTANT = 0.02
 """The time constant of a servo in s."""
@@ -75,7 +75,9 @@ class SceneModel:
     @property
     def is_outdated(self) -> bool:
         """Whether a mesh file has changed since the model was added."""
-        return any(modification_time(path) != modification_time_ns for path, modification_time_ns in self.files.items())
+        return any(
+            get_modification_time_ns(path) != modification_time_ns for path, modification_time_ns in self.files.items()
+        )
 
 
 class Scene:
@@ -109,7 +111,7 @@ class Scene:
         exclusion_reasons: Mapping[str, Phrase] = MappingProxyType({}),
     ) -> None:
         self._findings: list[Diagnostic] = []
-        self.step = step or self.step_of(world)
+        self.step = step or self.choose_step(world)
         self.models: dict[str, SceneModel] = {}
         self.joints: dict[str, PlacedJoint] = {}
         self.bodies: dict[str, Any] = {}
@@ -127,7 +129,7 @@ class Scene:
         self.spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
         self._set_options(world)
         frames = Frames(world)
-        self._connections = connections_of(world)
+        self._connections = find_connections(world)
         for model in self._sort_models(world.models):
             if model.name in exclusion_reasons:
                 message = phrase(
@@ -136,7 +138,7 @@ class Scene:
                 self._warn("SIM117", message, model.element)
             elif model.name not in self.models:  # `check` reports duplicate names
                 self._add_or_report(model, frames)
-        self.figures = figures_of(world, meshes)
+        self.figures = create_figures(world, meshes)
         for figure in self.figures:
             add_figure(figure, self.spec, self._writer)
 
@@ -152,7 +154,7 @@ class Scene:
         """Return model names in an order in which each follows the models it is attached to."""
         return self._connections.sort_by_attachment(names)
 
-    def step_of(self, world: World) -> float:
+    def choose_step(self, world: World) -> float:
         """Return the time step of a world in s.
 
         If the time step is 0, report a finding and return the default.
@@ -182,7 +184,7 @@ class Scene:
 
         The models do not change.
         """
-        self._connections = connections_of(world)
+        self._connections = find_connections(world)
         self.spec.option.gravity = list(gravity_of(world))
         if step == self.step:
             return
@@ -243,17 +245,17 @@ class Scene:
                 scene_model.parts.append(body)
         scene_model.files = dict(self._meshes.used)
         for tree_link in structure.links:
-            scene_model.parts += self._mimic_constraints(tree_link.joint)
+            scene_model.parts += self._add_mimic_constraints(tree_link.joint)
             if tree_link.joint is not None and tree_link.joint.name in self.joints:
-                scene_model.parts += screw_coupling(self.spec, tree_link.joint)
+                scene_model.parts += add_screw_coupling(self.spec, tree_link.joint)
         for joint in (*structure.loops, *connected.loops):
-            scene_model.parts += self._loop_constraints(joint, poses)
+            scene_model.parts += self._add_loop_constraints(joint, poses)
             if joint.joint.type == "gearbox":
-                scene_model.parts += gearbox_coupling(
-                    self.spec, joint, self._movable_joints((name, *connected.attached_to))
+                scene_model.parts += add_gearbox_coupling(
+                    self.spec, joint, self._find_movable_joints((name, *connected.attached_to))
                 )
-        scene_model.parts += self._self_collision_exclusions(structure)
-        scene_model.parts += self._neighbor_exclusions(connected)
+        scene_model.parts += self._add_self_collision_exclusions(structure)
+        scene_model.parts += self._add_neighbor_exclusions(connected)
         return scene_model
 
     def set_initial_pose(self, name: str, pose: Transform) -> None:
@@ -284,9 +286,9 @@ class Scene:
             KeyError: there is no model with this name.
             ValueError: another model is attached to this model.
         """
-        attached_models = self.attached_models(name)
-        if attached_models:
-            raise ValueError(f"{', '.join(attached_models)} must be removed before {name}")
+        attached = self.find_attached_models(name)
+        if attached:
+            raise ValueError(f"{', '.join(attached)} must be removed before {name}")
         model = self.models.pop(name)
         self._rotor_inertias.pop(name, None)
         for part in reversed(model.parts):
@@ -296,7 +298,7 @@ class Scene:
             if tree_link.joint is not None:
                 self.joints.pop(tree_link.joint.name, None)
 
-    def attached_models(self, name: str) -> list[str]:
+    def find_attached_models(self, name: str) -> list[str]:
         """Return the models that joints of the world attach to a model, directly or indirectly.
 
         The result is in the order in which the models were added.
@@ -331,7 +333,7 @@ class Scene:
         return limit if limit > 0.0 else inf
 
     def enable_rolling(self, joint: str, rotor: float = 0.0) -> None:
-        """Make the wheel on a joint roll without slipping, as soon as `set_wheel_surfaces` is called.
+        """Make the wheel on a joint roll without slipping, after `set_wheel_surfaces` is called.
 
         Args:
             joint: the name of the joint.
@@ -349,7 +351,7 @@ class Scene:
         """
         body = self.bodies[self.joints[joint].child]
         for geom in body.geoms:
-            self._writer.grips.pop(geom.name, None)
+            self._writer.grip_by_geom.pop(geom.name, None)
         make_omnidirectional(body, self.step)
 
     def add_servo(self, joint: str) -> str:
@@ -360,7 +362,7 @@ class Scene:
         """
         self._actuator_count += 1
         equality = self.spec.add_equality(
-            type=self._mujoco.mjtEq.mjEQ_JOINT, name=f"{joint}{SERVO}{self._actuator_count}"
+            type=self._mujoco.mjtEq.mjEQ_JOINT, name=f"{joint}{SERVO_SUFFIX}{self._actuator_count}"
         )
         equality.name1 = joint
         equality.data[:5] = 0.0
@@ -377,12 +379,12 @@ class Scene:
             pose: the pose of the child link in the frame of the parent link.
             is_colliding: whether the models of the two links collide with each other meanwhile.
         """
-        name = _weld_name(parent, child)
+        name = _get_weld_name(parent, child)
         equality = self._add_equality(self._mujoco.mjtEq.mjEQ_WELD, (parent, child))
         x, y, z, qx, qy, qz, qw = pose
         equality.name = name
         equality.data[:10] = [0.0, 0.0, 0.0, x, y, z, qw, qx, qy, qz]
-        models = {model_of(parent), model_of(child)}
+        models = {get_model_name(parent), get_model_name(child)}
         if len(models) > 1 and not is_colliding:
             links_by_model = (
                 [tree_link.link for tree_link in self.models[model].structure.links] for model in sorted(models)
@@ -395,14 +397,14 @@ class Scene:
 
     def unweld(self, parent: str, child: str) -> None:
         """Remove the constraint and the contact exclusions that `weld` added for these links."""
-        name = _weld_name(parent, child)
+        name = _get_weld_name(parent, child)
         parts = (*self.spec.equalities, *self.spec.excludes)
         for part in [part for part in parts if part.name.startswith(name)]:
             self.spec.delete(part)
 
     def is_welded(self, parent: str, child: str) -> bool:
         """Return whether `weld` has fixed a child link to a parent link."""
-        return self.spec.equality(_weld_name(parent, child)) is not None
+        return self.spec.equality(_get_weld_name(parent, child)) is not None
 
     def _add_actuator(self, joint: str, limit: float) -> Any:
         self._actuator_count += 1
@@ -443,9 +445,9 @@ class Scene:
                 if tree_link.link.name in wheel_joints:
                     joint = self.spec.joint(wheel_joints[tree_link.link.name])
                     joint.armature = self._rotor_inertias[name][joint.name] * self.step
-                    make_rolling(self.spec, body, joint, self.step, self._writer.grips, max_grip)
+                    make_rolling(self.spec, body, joint, self.step, self._writer.grip_by_geom, max_grip)
                 else:
-                    make_sliding(body, self._writer.unspecified)
+                    make_sliding(body, self._writer.geoms_without_friction)
         self._unsettled_models.clear()
 
     def _add_link(self, tree_link: TreeLink, poses: dict[str, Transform]) -> Any:
@@ -472,12 +474,12 @@ class Scene:
         self._writer.add_collisions(body, link, placed_link.frames, fixed=is_fixed)
         return body
 
-    def _movable_joints(self, models: Iterable[str]) -> list[PlacedJoint]:
+    def _find_movable_joints(self, models: Iterable[str]) -> list[PlacedJoint]:
         """Return the movable joints of some models."""
         tree_links = (link for name in models for link in self.models[name].structure.links)
         return [link.joint for link in tree_links if link.joint is not None and link.joint.name in self.joints]
 
-    def _mimic_constraints(self, joint: PlacedJoint | None) -> Iterator[Any]:
+    def _add_mimic_constraints(self, joint: PlacedJoint | None) -> Iterator[Any]:
         """Add and yield an equality constraint for each mimic axis of a joint."""
         if joint is None or joint.name not in self.joints:
             return
@@ -485,22 +487,22 @@ class Scene:
             if axis.mimic is None:
                 continue
             owner, separator, _ = joint.name.rpartition(SEPARATOR)
-            leader = f"{owner}{separator}{axis.mimic.joint}{SECOND_AXIS if axis.mimic.axis == 'axis2' else ''}"
-            if leader.removesuffix(SECOND_AXIS) not in self.joints:
+            leader = f"{owner}{separator}{axis.mimic.joint}{SECOND_AXIS_SUFFIX if axis.mimic.axis == 'axis2' else ''}"
+            if leader.removesuffix(SECOND_AXIS_SUFFIX) not in self.joints:
                 continue  # `check` reports this axis.
             equality = self.spec.add_equality(type=self._mujoco.mjtEq.mjEQ_JOINT)
-            equality.name1, equality.name2 = f"{joint.name}{SECOND_AXIS if index else ''}", leader
+            equality.name1, equality.name2 = f"{joint.name}{SECOND_AXIS_SUFFIX if index else ''}", leader
             offset = axis.mimic.offset - axis.mimic.multiplier * axis.mimic.reference
             equality.data[:5] = [offset, axis.mimic.multiplier, 0.0, 0.0, 0.0]
             yield equality
 
-    def _loop_constraints(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
+    def _add_loop_constraints(self, joint: PlacedJoint, poses: dict[str, Transform]) -> Iterator[Any]:
         """Add and yield the equality constraints of a joint that closes a loop.
 
         A joint whose type cannot close a loop is reported.
         """
         kinds, link_names = self._mujoco.mjtEq, (joint.child, joint.parent)
-        points = hinge_anchors(joint, _ANCHOR_DISTANCE) if joint.axes else [joint.pose[:3]]
+        points = compute_hinge_anchors(joint, _ANCHOR_DISTANCE) if joint.axes else [joint.pose[:3]]
         if joint.joint.type == "fixed":
             yield self._add_equality(kinds.mjEQ_WELD, link_names)
         elif joint.joint.type in ("revolute", "hinge", "continuous", "ball"):
@@ -524,7 +526,7 @@ class Scene:
         equality.name1, equality.name2 = link_names[0], "" if link_names[1] == WORLD else link_names[1]
         return equality
 
-    def _self_collision_exclusions(self, structure: KinematicTrees) -> Iterator[Any]:
+    def _add_self_collision_exclusions(self, structure: KinematicTrees) -> Iterator[Any]:
         """Add and yield contact exclusions for links of a model without ``<self_collide>``.
 
         A pair of links may collide only if both have ``<self_collide>``.
@@ -541,7 +543,7 @@ class Scene:
             ):
                 yield self.spec.add_exclude(bodyname1=first.name, bodyname2=second.name)
 
-    def _neighbor_exclusions(self, connected: ConnectedModel) -> Iterator[Any]:
+    def _add_neighbor_exclusions(self, connected: ConnectedModel) -> Iterator[Any]:
         """Add and yield contact exclusions for pairs of links that joints of the world connect."""
         own_links = {tree_link.link.name for tree_link in connected.structure.links}
         parent_joints = (tree_link.joint for tree_link in connected.structure.links if tree_link.joint is not None)
@@ -551,7 +553,7 @@ class Scene:
                 yield self.spec.add_exclude(bodyname1=first, bodyname2=second)
 
 
-def _weld_name(parent: str, child: str) -> str:
+def _get_weld_name(parent: str, child: str) -> str:
     return f"{parent}#{child}#"
 
 

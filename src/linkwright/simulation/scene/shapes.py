@@ -62,7 +62,7 @@ def add_shape(body: Any, shape: Shape, pose: Transform, *, fixed: bool) -> Any |
     return geom
 
 
-def cone_corners(cone: Cone) -> np.ndarray[Any, np.dtype[np.float64]]:
+def compute_cone_vertices(cone: Cone) -> np.ndarray[Any, np.dtype[np.float64]]:
     """Return the vertices of a cone with a polygon as its base, in m, shape (n, 3)."""
     angles = [2 * pi * index / _BASE_VERTICES for index in range(_BASE_VERTICES)]
     ring = [(cone.radius * cos(angle), cone.radius * sin(angle), -cone.length / 2) for angle in angles]

@@ -76,7 +76,7 @@ def build_kinematic_trees(model: Model, name: str, pose: Transform) -> Kinematic
     frames = Frames(model)
     links = {placed_link.name: placed_link for placed_link in links_of(model, frames, pose, name)}
     joints: dict[str, PlacedJoint] = {}
-    for owner, owner_frames, owner_pose, path in _nested_models(model, frames, pose, name):
+    for owner, owner_frames, owner_pose, path in _find_nested_models(model, frames, pose, name):
         for joint in owner.joints:
             try:
                 candidate = place_joint(joint, owner_frames, owner_pose, path)
@@ -90,7 +90,7 @@ def build_kinematic_trees(model: Model, name: str, pose: Transform) -> Kinematic
     return _build_trees(links, joints.values())
 
 
-def _nested_models(
+def _find_nested_models(
     model: Model, frames: Frames, pose: Transform, path: str
 ) -> Iterator[tuple[Model, Frames, Transform, str]]:
     """Yield a model and its nested models, with their frames, poses and names.
@@ -100,7 +100,7 @@ def _nested_models(
     yield model, frames, pose, path
     for nested_model in model.models:
         nested_pose = compose(pose, frames.pose(nested_model.name))
-        yield from _nested_models(
+        yield from _find_nested_models(
             nested_model, frames.inside(nested_model.name), nested_pose, f"{path}{SEPARATOR}{nested_model.name}"
         )
 
@@ -118,14 +118,14 @@ def place_joint(joint: Joint, frames: Frames, pose: Transform, path: str) -> Pla
         FrameError: the pose of the joint, or one of its links, refers to a frame that does not exist.
     """
     link_names = [frames.link(end) for end in (joint.parent, joint.child)]
-    parent, child = (link_name if link_name == WORLD else _qualified_name(path, link_name) for link_name in link_names)
+    parent, child = (link_name if link_name == WORLD else _qualify_name(path, link_name) for link_name in link_names)
     declared_axes = [axis for axis in (joint.axis, joint.axis2) if axis is not None]
     axes = tuple((axis, _nonzero_direction(frames.axis(joint, axis))) for axis in declared_axes)
-    name = _qualified_name(path, joint.name)
+    name = _qualify_name(path, joint.name)
     return PlacedJoint(name, joint, parent, child, compose(pose, frames.pose(joint.name)), axes)
 
 
-def _qualified_name(path: str, name: str) -> str:
+def _qualify_name(path: str, name: str) -> str:
     return f"{path}{SEPARATOR}{name}" if path else name
 
 
@@ -155,13 +155,13 @@ def _build_trees(links: dict[str, PlacedLink], joints: Iterable[PlacedJoint]) ->
     return KinematicTrees(tuple(TreeLink(links[name], parent_joints.get(name)) for name in ordered), tuple(loops))
 
 
-def is_below(parent_joints: Mapping[str, PlacedJoint], link: str, other: str) -> bool:
-    """Return whether `other` is `link` or one of its descendants.
+def is_below(parent_joints: Mapping[str, PlacedJoint], link: str, descendant: str) -> bool:
+    """Return whether `descendant` is `link` or one of its descendants.
 
     `parent_joints` maps each child link to the joint that moves it.
     """
-    while other != link:
-        if other not in parent_joints:
+    while descendant != link:
+        if descendant not in parent_joints:
             return False
-        other = parent_joints[other].parent
+        descendant = parent_joints[descendant].parent
     return True

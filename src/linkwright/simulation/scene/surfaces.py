@@ -33,16 +33,16 @@ def apply_surface(geom: Any, surface: Surface) -> None:
     one of the two geoms has priority. Therefore a geom with lower friction gets a higher priority, so that its
     coefficient applies as in Gazebo.
     """
-    mu = friction_of(surface)
+    mu = get_friction(surface)
     geom.friction = [min(max(mu, _MIN_FRICTION), _MAX_FRICTION), *geom.friction[1:]]
-    geom.priority = _priority(mu)
+    geom.priority = _compute_priority(mu)
     if mu < FRICTIONLESS:
         make_slippery(geom)
     if surface.torsional is not None and surface.torsional.coefficient > 0:
         geom.condim = 4
         geom.friction = [
             geom.friction[0],
-            surface.torsional.coefficient * _contact_patch_radius(surface),
+            surface.torsional.coefficient * _get_contact_patch_radius(surface),
             geom.friction[2],
         ]
     if surface.restitution > 0:
@@ -51,7 +51,7 @@ def apply_surface(geom: Any, surface: Surface) -> None:
         geom.contype = geom.conaffinity = 0
 
 
-def friction_of(surface: Surface) -> float:
+def get_friction(surface: Surface) -> float:
     """Return the lower of a surface's two coefficients of friction, or else the default.
 
     One coefficient is enough, because MuJoCo's friction is the same in all directions.
@@ -61,7 +61,7 @@ def friction_of(surface: Surface) -> float:
     return _DEFAULT_FRICTION
 
 
-def grip_of(surface: Surface) -> float:
+def get_grip(surface: Surface) -> float:
     """Return the higher of a surface's two coefficients of friction, or else the default.
 
     This coefficient applies to driven wheels, because their lower coefficient describes side slip.
@@ -75,7 +75,7 @@ def make_slippery(geom: Any) -> None:
     """Make a geom frictionless and soft like a caster, so that other geoms bear the load."""
     geom.condim = 1
     make_soft(geom)
-    geom.priority = _priority(0.0)
+    geom.priority = _compute_priority(0.0)
 
 
 def make_frictionless(geom: Any, step: float) -> None:
@@ -87,7 +87,7 @@ def make_frictionless(geom: Any, step: float) -> None:
     """
     geom.condim = 1
     make_wheel(geom, step)
-    geom.priority = _priority(0.0)
+    geom.priority = _compute_priority(0.0)
 
 
 def make_soft(geom: Any) -> None:
@@ -107,17 +107,17 @@ def make_wheel(geom: Any, step: float, grip: float | None = None) -> None:
     """
     if grip is not None:
         geom.friction = [min(max(grip, _MIN_FRICTION), _MAX_FRICTION), *geom.friction[1:]]
-        geom.priority, geom.condim = _priority(grip), max(geom.condim, 3)
+        geom.priority, geom.condim = _compute_priority(grip), max(geom.condim, 3)
     geom.solref = [_HARD_TIME_STEPS * step, 1.0]
     geom.solimp = list(_HARD_SOLIMP)
     geom.priority += 1
 
 
-def _priority(mu: float) -> int:
+def _compute_priority(mu: float) -> int:
     return 2 * round(1e6 / (1.0 + mu))
 
 
-def _contact_patch_radius(surface: Surface) -> float:
+def _get_contact_patch_radius(surface: Surface) -> float:
     """Return the radius in m of the contact patch of a surface with torsional friction.
 
     MuJoCo's coefficient of torsional friction is a length, the product of SDF's coefficient and this radius.

@@ -10,7 +10,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of
+from linkwright.simulation.sensors.mount import GeomTable, Mount, get_part_name
 
 _COLLISION_MARK = "#collision"
 
@@ -52,10 +52,10 @@ class ContactSensor:
         self._collision_names = {
             f"{mount.link}{SEPARATOR}{collision.rpartition(SEPARATOR)[2]}" for collision in collisions
         }
-        self._is_sensed_table = GeomTable(self._simulation, self._is_sensed_by_geom)
+        self._is_sensed_table = GeomTable(self._simulation, self._mark_sensed_geoms)
 
-    def _is_sensed_by_geom(self, names: list[str]) -> list[float]:
-        return [float(self._is_sensed(part_of(name))) for name in names]
+    def _mark_sensed_geoms(self, names: list[str]) -> list[float]:
+        return [float(self._is_sensed(get_part_name(name))) for name in names]
 
     def _is_sensed(self, part: str) -> bool:
         name, mark, _ = part.partition(_COLLISION_MARK)
@@ -73,16 +73,16 @@ class ContactSensor:
         Raises:
             KeyError: the link no longer exists.
         """
-        is_sensed, origin = (
+        sensed_mask, origin = (
             self._is_sensed_table.array(),
             np.array(self._mount.simulation.link_pose(self._mount.link)[:3]),
         )
         model, data, mujoco = self._simulation.model, self._simulation.data, load_mujoco()
         count = data.ncon
         pairs = data.contact.geom[:count]
-        touching: dict[tuple[str, str], list[Array]] = {}
-        for index in np.nonzero((is_sensed[pairs[:, 0]] > 0) | (is_sensed[pairs[:, 1]] > 0))[0] if count else ():
-            is_first = is_sensed[pairs[index, 0]] > 0
+        rows_by_pair: dict[tuple[str, str], list[Array]] = {}
+        for index in np.nonzero((sensed_mask[pairs[:, 0]] > 0) | (sensed_mask[pairs[:, 1]] > 0))[0] if count else ():
+            is_first = sensed_mask[pairs[index, 0]] > 0
             own_geom, other_geom = (
                 (pairs[index, 0], pairs[index, 1]) if is_first else (pairs[index, 1], pairs[index, 0])
             )
@@ -94,12 +94,12 @@ class ContactSensor:
             force = sign * wrench[:3] @ frame
             torque = sign * wrench[3:] @ frame + np.cross(position - origin, force)
             row = np.concatenate([position, sign * frame[0], [max(-data.contact.dist[index], 0.0)], force, torque])
-            names = _collision_name(model.geom(own_geom).name), _collision_name(model.geom(other_geom).name)
-            touching.setdefault(names, []).append(row)
-        return [_create_contact(names, np.array(rows)) for names, rows in touching.items()]
+            names = _get_collision_name(model.geom(own_geom).name), _get_collision_name(model.geom(other_geom).name)
+            rows_by_pair.setdefault(names, []).append(row)
+        return [_create_contact(names, np.array(rows)) for names, rows in rows_by_pair.items()]
 
 
-def _collision_name(geom: str) -> str:
+def _get_collision_name(geom: str) -> str:
     return geom.partition(_COLLISION_MARK)[0]
 
 

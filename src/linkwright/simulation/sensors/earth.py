@@ -53,27 +53,27 @@ class Globe:
             [[cos(heading), -sin(heading), 0.0], [sin(heading), cos(heading), 0.0], [0.0, 0.0, 1.0]]
         )
 
-    def east_north_up(self, vector: Array) -> Array:
+    def to_east_north_up(self, vector: Array) -> Array:
         """Return a vector, given in the axes of the world, in the axes east, north and up."""
         rotated: Array = self._heading @ vector
         return rotated
 
-    def geodetic(self, point: Array) -> tuple[float, float, float]:
-        """Return latitude and longitude in degrees, and altitude in m, of a point in the world in m.
+    def to_geodetic(self, point: Array) -> tuple[float, float, float]:
+        """Return the latitude, longitude (degrees) and altitude (m) of a point in the world.
 
-        The altitude is measured from the ellipsoid.
+        The point is in m. The altitude is measured from the ellipsoid.
         """
-        x, y, z = self._origin + self._axes @ self.east_north_up(point)
+        x, y, z = self._origin + self._axes @ self.to_east_north_up(point)
         axis_distance = hypot(x, y)
         latitude = atan2(z, axis_distance * (1 - _SQUARED_ECCENTRICITY))
         for _ in range(_ITERATIONS):
-            normal = _EQUATORIAL_RADIUS_M / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
-            latitude = atan2(z + _SQUARED_ECCENTRICITY * normal * sin(latitude), axis_distance)
-        normal = _EQUATORIAL_RADIUS_M / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+            normal_radius = _EQUATORIAL_RADIUS_M / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+            latitude = atan2(z + _SQUARED_ECCENTRICITY * normal_radius * sin(latitude), axis_distance)
+        normal_radius = _EQUATORIAL_RADIUS_M / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
         altitude = (
             axis_distance * cos(latitude)
             + z * sin(latitude)
-            - normal * (1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+            - normal_radius * (1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
         )
         return degrees(latitude), degrees(atan2(y, x)), altitude
 
@@ -83,13 +83,13 @@ def _from_geodetic(latitude: float, longitude: float, altitude: float) -> Array:
 
     Latitude and longitude are in rad.
     """
-    normal = _EQUATORIAL_RADIUS_M / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
-    axis_distance = (normal + altitude) * cos(latitude)
+    normal_radius = _EQUATORIAL_RADIUS_M / sqrt(1 - _SQUARED_ECCENTRICITY * sin(latitude) ** 2)
+    axis_distance = (normal_radius + altitude) * cos(latitude)
     return np.array(
         [
             axis_distance * cos(longitude),
             axis_distance * sin(longitude),
-            (normal * (1 - _SQUARED_ECCENTRICITY) + altitude) * sin(latitude),
+            (normal_radius * (1 - _SQUARED_ECCENTRICITY) + altitude) * sin(latitude),
         ]
     )
 
@@ -144,8 +144,8 @@ class NavsatSensor:
             KeyError: the link no longer exists.
         """
         position = self.position_noise.apply(np.array(self._mount.pose()[:3]))
-        velocity = self._globe.east_north_up(np.array(self._mount.velocity()[0]))
-        return Fix(*self._globe.geodetic(position), self.velocity_noise.apply(velocity))
+        velocity = self._globe.to_east_north_up(np.array(self._mount.velocity()[0]))
+        return Fix(*self._globe.to_geodetic(position), self.velocity_noise.apply(velocity))
 
 
 class AltimeterSensor:

@@ -64,10 +64,10 @@ class ForceTorqueSensor:
         torque = np.array(wrench[:3]) - np.cross(np.subtract(joint[:3], reference_point), force)
         if self._settings.measure_direction != "parent_to_child":
             force, torque = -force, -torque
-        to_frame = quaternion_inverse(np.array(self._measurement_orientation(joint)))
+        to_frame = quaternion_inverse(np.array(self._compute_measurement_orientation(joint)))
         return self._force_noise.apply(rotate(to_frame, force)), self._torque_noise.apply(rotate(to_frame, torque))
 
-    def _measurement_orientation(self, joint: Transform) -> tuple[float, ...]:
+    def _compute_measurement_orientation(self, joint: Transform) -> tuple[float, ...]:
         """Return the orientation in the world of the configured measurement frame, as a quaternion.
 
         `joint` is the current pose of the joint.

@@ -24,7 +24,7 @@ _NWU_RPY = (0.0, 0.0, np.pi / 2)
 
 
 @dataclass(frozen=True, slots=True)
-class Inertial:
+class ImuMeasurement:
     """A measurement of an IMU, in its own axes.
 
     Attributes:
@@ -59,16 +59,16 @@ class ImuSensor:
         self.acceleration_noise = VectorNoise(settings.linear_acceleration, generator)
         self._mount = mount
         self._last_time = mount.simulation.time
-        self._reference = self._start(settings, initial_reference=initial_reference)
+        self._reference = self._find_reference_orientation(settings, initial_reference=initial_reference)
 
-    def _start(self, imu: Imu, *, initial_reference: bool) -> Quaternion:
+    def _find_reference_orientation(self, imu: Imu, *, initial_reference: bool) -> Quaternion:
         """Return the orientation in the world of the reference frame, as a quaternion."""
         if initial_reference:
             return self._mount.pose()[3:]
         reference_rpy = {"NED": _NED_RPY, "NWU": _NWU_RPY, "CUSTOM": imu.custom_rpy}
         return quaternion_from_rpy(reference_rpy.get(imu.localization, (0.0, 0.0, 0.0)))
 
-    def measure(self) -> Inertial:
+    def measure(self) -> ImuMeasurement:
         """Return the current orientation, angular velocity and acceleration, with noise.
 
         Raises:
@@ -78,8 +78,8 @@ class ImuSensor:
         period, self._last_time = (simulation.time - self._last_time) * 1e-9, simulation.time
         orientation = self._mount.pose()[3:]
         to_sensor = quaternion_inverse(orientation)
-        angular, acceleration = self._mount.inertial_motion()
-        return Inertial(
+        angular, acceleration = self._mount.measure_inertial_motion()
+        return ImuMeasurement(
             quaternion_multiply(quaternion_inverse(self._reference), orientation),
             self.angular_velocity_noise.apply_to_tuple(rotate(to_sensor, angular), period),
             self.acceleration_noise.apply_to_tuple(rotate(to_sensor, acceleration), period),

@@ -17,9 +17,9 @@ from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import rotation_matrix
 from linkwright.sdf.sensors import Lidar, Sweep
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.ray_casting import GROUPS, cast
+from linkwright.simulation.ray_casting import GROUP_COUNT, cast_rays
 from linkwright.simulation.scene.bodies import COLLISION_GROUP, VISUAL_GROUP
-from linkwright.simulation.sensors.mount import GeomTable, Mount, part_of, parts_of
+from linkwright.simulation.sensors.mount import GeomTable, Mount, find_visuals_and_collisions, get_part_name
 from linkwright.simulation.sensors.noise import NoiseSource
 
 _SURFACE_GAP = 1e-9
@@ -71,16 +71,16 @@ class LidarSensor:
         self._simulation = mount.simulation
         self._mujoco = load_mujoco()
         self._noise = NoiseSource(lidar.noise, generator)
-        self._groups = np.zeros(GROUPS, dtype=np.uint8)
+        self._groups = np.zeros(GROUP_COUNT, dtype=np.uint8)
         self._groups[VISUAL_GROUP if sees_visuals else COLLISION_GROUP] = 1
-        self._retro = GeomTable(self._simulation, self._retro_by_geom)
-        self._own_geoms = GeomTable(self._simulation, self._own_geom_flags)
+        self._retro = GeomTable(self._simulation, self._list_retro_values)
+        self._own_geoms = GeomTable(self._simulation, self._mark_own_geoms)
 
     @cached_property
     def directions(self) -> Array:
         """The unit vectors of the rays in the lidar's frame, shape (vertical * horizontal, 3)."""
-        up, across = np.meshgrid(sweep_angles(self.vertical), sweep_angles(self.horizontal), indexing="ij")
-        x, y, z = np.cos(up) * np.cos(across), np.cos(up) * np.sin(across), np.sin(up)
+        elevation, azimuth = np.meshgrid(sweep_angles(self.vertical), sweep_angles(self.horizontal), indexing="ij")
+        x, y, z = np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)
         rays: Array = np.stack([x, y, z], axis=-1).reshape(-1, 3)
         return rays
 
@@ -106,16 +106,16 @@ class LidarSensor:
         rays = self.directions @ np.array(rotation_matrix(pose[3:])).T
         max_distance = self.range_max if isfinite(self.range_max) else self._mujoco.mjMAXVAL
         origin, body = np.array(pose[:3]), self._mount.body
-        ranges, geoms = cast(
-            simulation.model, simulation.data, origin, rays, self._groups, apart_from=body, reach=max_distance
+        ranges, geoms = cast_rays(
+            simulation.model, simulation.data, origin, rays, self._groups, excluded_body=body, max_distance=max_distance
         )
-        is_own = self._own_geoms.array()
-        for ray in np.nonzero((geoms >= 0) & (ranges < self.range_min) & (is_own[geoms] > 0))[0]:
-            ranges[ray], geoms[ray] = self._hit_beyond_robot(origin, rays[ray], body, float(ranges[ray]), is_own)
+        own_mask = self._own_geoms.array()
+        for ray in np.nonzero((geoms >= 0) & (ranges < self.range_min) & (own_mask[geoms] > 0))[0]:
+            ranges[ray], geoms[ray] = self._hit_beyond_robot(origin, rays[ray], body, float(ranges[ray]), own_mask)
         return ranges, geoms
 
     def _hit_beyond_robot(
-        self, origin: Array, ray: Array, body: int, distance: float, is_own: Array
+        self, origin: Array, ray: Array, body: int, distance: float, own_mask: Array
     ) -> tuple[float, int]:
         """Return a ray's first hit that is not on a part of the robot within the minimum range.
 
@@ -130,14 +130,16 @@ class LidarSensor:
             if gap < 0:
                 return float("inf"), -1
             distance = start + gap
-            if distance >= self.range_min or not is_own[geom[0]]:
+            if distance >= self.range_min or not own_mask[geom[0]]:
                 break
         return distance, int(geom[0])
 
-    def _own_geom_flags(self, names: list[str]) -> list[float]:
+    def _mark_own_geoms(self, names: list[str]) -> list[float]:
         prefix = self._mount.link.partition("::")[0] + "::"
         return [float(name.startswith(prefix)) for name in names]
 
-    def _retro_by_geom(self, names: list[str]) -> list[float]:
-        retros = {name: part.laser_retro for name, part in parts_of(self._simulation) if part.laser_retro}
-        return [retros.get(part_of(name), 0.0) for name in names]
+    def _list_retro_values(self, names: list[str]) -> list[float]:
+        retros = {
+            name: part.laser_retro for name, part in find_visuals_and_collisions(self._simulation) if part.laser_retro
+        }
+        return [retros.get(get_part_name(name), 0.0) for name in names]

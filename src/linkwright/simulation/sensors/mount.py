@@ -61,18 +61,18 @@ class Mount:
         rates = _to_vector(angular)
         if self._is_at_origin:
             return _to_vector(linear), rates
-        return add_vectors(_to_vector(linear), cross(rates, self._arm())), rates
+        return add_vectors(_to_vector(linear), cross(rates, self._compute_arm())), rates
 
     @property
     def _is_at_origin(self) -> bool:
         """Whether the sensor is at the origin of its link."""
         return self.offset[:3] == IDENTITY[:3]
 
-    def _arm(self) -> Vector3:
+    def _compute_arm(self) -> Vector3:
         """Return the vector from the origin of the link to the sensor, in m and in world axes."""
         return rotate(self.simulation.link_pose(self.link)[3:], self.offset[:3])
 
-    def inertial_motion(self) -> tuple[Vector3, Vector3]:
+    def measure_inertial_motion(self) -> tuple[Vector3, Vector3]:
         """Return the angular velocity and the proper acceleration of the sensor.
 
         Both are in world axes, in rad/s and m/s2.
@@ -87,7 +87,7 @@ class Mount:
         p, q, r, x, y, z = acceleration.tolist()
         if self._is_at_origin:
             return angular, (x, y, z)
-        arm = self._arm()
+        arm = self._compute_arm()
         return angular, add_vectors(add_vectors((x, y, z), cross((p, q, r), arm)), cross(angular, cross(angular, arm)))
 
 
@@ -102,7 +102,7 @@ def update_accelerations(simulation: Simulation) -> None:
     load_mujoco().mj_rnePostConstraint(simulation.model, simulation.data)
 
 
-def part_of(geom: str) -> str:
+def get_part_name(geom: str) -> str:
     """Return the name of the visual or collision to which a MuJoCo geom belongs.
 
     The name is the beginning of the geom's name, such as ``robot::base_link::lid#visual``.
@@ -111,8 +111,8 @@ def part_of(geom: str) -> str:
     return name + separator + kind.partition("#")[0]
 
 
-def parts_of(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]:
-    """Yield the visuals and collisions of all models, with the names that `part_of` returns."""
+def find_visuals_and_collisions(simulation: Simulation) -> Iterator[tuple[str, Visual | Collision]]:
+    """Yield the visuals and collisions of all models, named as by `get_part_name`."""
     for model in simulation.scene.models.values():
         for tree_link in model.structure.links:
             link = tree_link.link

@@ -1,4 +1,4 @@
-"""The changes from one world to another: models that are removed, moved, replaced and added."""
+"""The changes between two worlds: models that are removed, moved, replaced and added."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Changes:
         return replace(self, moved=moved, replaced=(*self.replaced, *replacements))
 
 
-def changes_to(world: World, running: Mapping[str, SceneModel], world_models: Collection[str]) -> Changes:
+def find_changes(world: World, running: Mapping[str, SceneModel], world_models: Collection[str]) -> Changes:
     """Return the changes from the running models to the models of another world.
 
     Args:
@@ -174,7 +174,7 @@ def add_models(simulation: Simulation, added: Sequence[AddedModel]) -> None:
         raise _simulation_error(attempted_names[-1], error) from error
 
 
-def properties_used_by_plugins(world: World) -> tuple[object, ...]:
+def get_properties_used_by_plugins(world: World) -> tuple[object, ...]:
     """Return the properties of a world on which plugins of models depend.
 
     The server compares these properties with those of a world that replaces this one.

@@ -19,7 +19,7 @@ from linkwright.urdf import Robot
 from linkwright.xmltree import Element
 
 _SOURCE_NAME = "<the description>"
-_SHAPE_OWNERS = ("visual", "collision")
+_SHAPE_PARENTS = ("visual", "collision")
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,12 +29,12 @@ class Entity:
     Attributes:
         model: the model, with its includes resolved; links of a URDF robot are not lumped.
         diagnostics: the findings on the description.
-        unread: the errors that explain why shapes of the model are missing.
+        missing_shape_errors: the errors that explain why shapes of the model are missing.
     """
 
     model: Model
     diagnostics: tuple[Diagnostic, ...]
-    unread: tuple[Diagnostic, ...] = ()
+    missing_shape_errors: tuple[Diagnostic, ...] = ()
 
 
 def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) -> Entity:
@@ -53,18 +53,18 @@ def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
     if document.root.tag == "robot":
         reading = library.read(text)
         if reading.robot is None or not reading.robot.links:
-            raise LinkwrightError(*_errors(reading.diagnostics))
+            raise LinkwrightError(*_select_errors(reading.diagnostics))
         converted = model_from_robot(reading.robot, lump_fixed_joints=False)
-        shape_errors = _errors(reading.diagnostics) if _lacks_shapes(reading.robot) else ()
+        shape_errors = _select_errors(reading.diagnostics) if _lacks_shapes(reading.robot) else ()
         return Entity(converted.model, converted.diagnostics, tuple(shape_errors))
     sdf = read(document)
     if sdf.sdf is None:
-        raise LinkwrightError(*_errors(sdf.diagnostics))
+        raise LinkwrightError(*_select_errors(sdf.diagnostics))
     resolved = resolve_includes(sdf.sdf, Path.cwd() / _SOURCE_NAME, finder)
     findings = (*warnings, *sdf.diagnostics, *resolved.diagnostics)
     if not resolved.sdf.models:
         if has_errors(findings):
-            raise LinkwrightError(*_errors(findings))
+            raise LinkwrightError(*_select_errors(findings))
         message = phrase("the description contains no model")
         hint = (
             phrase("send URDF, or SDF with a <model>")
@@ -72,7 +72,7 @@ def read_entity(text: str, finder: ResourceFinder, library: DescriptionLibrary) 
             else phrase("send one of the models of the world: only models can be added")
         )
         raise LinkwrightError(Diagnostic("SIM142", message, hint=hint))
-    return Entity(resolved.sdf.models[0], findings, tuple(_invalid_shapes(document.root)))
+    return Entity(resolved.sdf.models[0], findings, tuple(_find_invalid_shapes(document.root)))
 
 
 def _lacks_shapes(robot: Robot) -> bool:
@@ -82,16 +82,16 @@ def _lacks_shapes(robot: Robot) -> bool:
     """
     return any(
         len(link.visuals) + len(link.collisions)
-        < sum(element.tag in _SHAPE_OWNERS for element in link.element.elements())
+        < sum(element.tag in _SHAPE_PARENTS for element in link.element.elements())
         for link in robot.links.values()
         if link.element is not None
     )
 
 
-def _invalid_shapes(root: Element) -> Iterator[Diagnostic]:
+def _find_invalid_shapes(root: Element) -> Iterator[Diagnostic]:
     """Yield an error for each element in ``<geometry>`` that is not a shape of SDF."""
     for parent in root.walk():
-        for geometry in parent.elements("geometry") if parent.tag in _SHAPE_OWNERS else ():
+        for geometry in parent.elements("geometry") if parent.tag in _SHAPE_PARENTS else ():
             for shape in geometry.elements():
                 if shape.tag not in GEOMETRY.child_rules and ":" not in shape.tag:
                     owner_name = parent.attributes.get("name", "")
@@ -105,7 +105,7 @@ def _invalid_shapes(root: Element) -> Iterator[Diagnostic]:
                     yield Diagnostic("SIM145", message, shape.span(), hint=hint, source=shape.source)
 
 
-def _errors(findings: tuple[Diagnostic, ...] | list[Diagnostic]) -> list[Diagnostic]:
+def _select_errors(findings: tuple[Diagnostic, ...] | list[Diagnostic]) -> list[Diagnostic]:
     """Return the findings that are errors, or all findings if none is an error.
 
     If there are no findings at all, the error SIM142 is returned.

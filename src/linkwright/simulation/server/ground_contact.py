@@ -27,7 +27,7 @@ def lift_onto_ground(simulation: Simulation, name: str) -> None:
     """
     if not simulation.free_links(name):
         return
-    height = _lift_height(simulation, name)
+    height = _compute_lift_height(simulation, name)
     if not _MIN_DEPTH < height < _MAX_DEPTH:
         return
     x, y, z, *rotation = simulation.model_pose(name)
@@ -35,7 +35,7 @@ def lift_onto_ground(simulation: Simulation, name: str) -> None:
     simulation.set_initial_poses({name: (x, y, z + height, qx, qy, qz, qw)})
 
 
-def collision_warnings(simulation: Simulation, name: str) -> list[Diagnostic]:
+def find_collision_warnings(simulation: Simulation, name: str) -> list[Diagnostic]:
     """Return a warning (SIM143) if a free model has no collisions, or else an empty list.
 
     Raises:
@@ -57,7 +57,7 @@ def collision_warnings(simulation: Simulation, name: str) -> list[Diagnostic]:
     return [Diagnostic("SIM143", message, span, severity=Severity.WARNING, hint=hint, source=source)]
 
 
-def _lift_height(simulation: Simulation, name: str) -> float:
+def _compute_lift_height(simulation: Simulation, name: str) -> float:
     """Return the height in m by which a model must be lifted to leave the ground.
 
     The height is 0 if the model is not inside the ground.

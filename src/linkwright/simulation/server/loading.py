@@ -14,7 +14,7 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, phrase
 from linkwright.messages import get_message
-from linkwright.simulation.plugins.entities import finding_line
+from linkwright.simulation.plugins.entities import format_finding
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.server.worlds import LoadedWorld, load_world
 from linkwright.xmltree.decoding import decode_with_encoding
@@ -24,7 +24,7 @@ _OK, _NOT_FOUND, _FAILED = 1, 2, 4
 """Result codes of simulation_interfaces/msg/Result."""
 _UNSUPPORTED_FORMAT, _NO_RESOURCE, _UNREADABLE, _MISSING_ASSETS, _UNSUPPORTED_ELEMENTS = 101, 102, 103, 104, 106
 """Result codes of simulation_interfaces/srv/LoadWorld."""
-_RESULTS = {
+_RESULTS_BY_CODE = {
     "SIM150": _NOT_FOUND,
     "SIM151": _UNSUPPORTED_FORMAT,
     "SIM102": _FAILED,
@@ -84,7 +84,7 @@ class WorldLoader:
             raise LinkwrightError(Diagnostic("SIM152", phrase("no world was specified"), hint=hint))
         loaded = load_world(uri or str(Path.cwd() / _TEXT_NAME), text or None)
         running_findings = {
-            _finding_key(diagnostic)
+            _get_finding_key(diagnostic)
             for diagnostic in (*self.loaded.diagnostics, *self._server.simulation.scene.diagnostics)
         }
 
@@ -93,7 +93,7 @@ class WorldLoader:
                 finding
                 for finding in findings
                 if (finding.severity is Severity.ERROR or finding.code in blocking_codes)
-                and _finding_key(finding) not in running_findings
+                and _get_finding_key(finding) not in running_findings
             ]
             if new_errors:
                 raise LinkwrightError(*new_errors)
@@ -114,8 +114,8 @@ class WorldLoader:
             self.load(resource.uri, resource.resource_string, blocking_codes=blocking_codes)
         except LinkwrightError as error:
             finding = error.diagnostics[0]
-            response.result.result = _result_code(finding)
-            response.result.error_message = finding_line(finding)
+            response.result.result = _to_result_code(finding)
+            response.result.error_message = format_finding(finding)
             return response
         response.result.result = _OK
         response.world.name = self.loaded.world.name
@@ -123,13 +123,13 @@ class WorldLoader:
         return response
 
 
-def _result_code(finding: Diagnostic) -> int:
+def _to_result_code(finding: Diagnostic) -> int:
     if finding.code in _MISSING_CODES:
         return _MISSING_ASSETS
     if finding.code in _UNREAD_CODES:
         return _UNSUPPORTED_ELEMENTS
-    return _RESULTS.get(finding.code, _UNREADABLE)
+    return _RESULTS_BY_CODE.get(finding.code, _UNREADABLE)
 
 
-def _finding_key(finding: Diagnostic) -> tuple[str, str]:
+def _get_finding_key(finding: Diagnostic) -> tuple[str, str]:
     return finding.code, str(finding.message)

@@ -26,7 +26,7 @@ class Motion:
     joints: dict[str, tuple[int, Array, Array]]
 
 
-def motion_of(simulation: Simulation, name: str) -> Motion:
+def record_motion(simulation: Simulation, name: str) -> Motion:
     """Return the current motion of a model.
 
     Raises:
@@ -36,7 +36,7 @@ def motion_of(simulation: Simulation, name: str) -> Motion:
     first_link = simulation.scene.models[name].structure.links[0].link.name
     linear, angular = simulation.link_velocity(first_link)
     joints = {}
-    for joint, index in _joint_indices(simulation, name).items():
+    for joint, index in _find_joint_indices(simulation, name).items():
         view = simulation.data.joint(index)
         joints[joint] = int(simulation.model.jnt_type[index]), view.qpos.copy(), view.qvel.copy()
     return Motion(pose, tuple(linear.tolist()), tuple(angular.tolist()), joints)
@@ -57,7 +57,7 @@ def restore_motion(simulation: Simulation, name: str, motion: Motion, *, keeps_p
         KeyError: there is no such model.
     """
     free_joints = {f"{link}#free": link for link in simulation.free_links(name)}
-    for joint, index in _joint_indices(simulation, name).items():
+    for joint, index in _find_joint_indices(simulation, name).items():
         kind, position, velocity = motion.joints.get(joint, (-1, None, None))
         if joint not in free_joints and kind == int(simulation.model.jnt_type[index]):
             view = simulation.data.joint(index)
@@ -88,7 +88,7 @@ def _set_state(simulation: Simulation, name: str, motion: Motion, free_joints: d
         simulation.set_model_velocity(name, motion.linear, motion.angular)
 
 
-def _joint_indices(simulation: Simulation, name: str) -> dict[str, int]:
+def _find_joint_indices(simulation: Simulation, name: str) -> dict[str, int]:
     """Return the indices of a model's joints in MuJoCo's model, by name."""
     simulation.refresh()
     model, indices = simulation.model, {}

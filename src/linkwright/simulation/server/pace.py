@@ -9,9 +9,9 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 
 _SLOW_SPEED_FRACTION = 0.8
 _NORMAL_SPEED_FRACTION = 0.9
-"""The shares of the requested real-time factor below which a world is slow, and above which it is no longer."""
+"""The fractions of the requested real-time factor below which a world becomes slow, and above which it recovers."""
 _CHANGE_DURATION_S = 10.0
-"""The real time in s for which a world must be slow or fast."""
+"""The real time in s for which the speed must differ before the state changes."""
 
 
 class PaceWatch:
@@ -24,7 +24,7 @@ class PaceWatch:
     def __init__(self, report: Callable[[Diagnostic | None], object]) -> None:
         self._report = report
         self._is_slow = False
-        self._changed_s = 0.0
+        self._differing_s = 0.0
 
     def add(self, factor: float, requested: float, elapsed_s: float) -> None:
         """Add a measurement.
@@ -34,16 +34,16 @@ class PaceWatch:
             requested: the requested real-time factor; infinite for as fast as possible.
             elapsed_s: the real time since the last measurement.
         """
-        limit = _NORMAL_SPEED_FRACTION if self._is_slow else _SLOW_SPEED_FRACTION
-        is_slow = requested < inf and factor < limit * requested
-        self._changed_s = 0.0 if is_slow == self._is_slow else self._changed_s + elapsed_s
-        if self._changed_s >= _CHANGE_DURATION_S:
-            self._changed_s = 0.0
+        fraction = _NORMAL_SPEED_FRACTION if self._is_slow else _SLOW_SPEED_FRACTION
+        is_slow = requested < inf and factor < fraction * requested
+        self._differing_s = 0.0 if is_slow == self._is_slow else self._differing_s + elapsed_s
+        if self._differing_s >= _CHANGE_DURATION_S:
+            self._differing_s = 0.0
             self._is_slow = not self._is_slow
-            self._report(_finding(factor) if self._is_slow else None)
+            self._report(_create_finding(factor) if self._is_slow else None)
 
 
-def _finding(factor: float) -> Diagnostic:
+def _create_finding(factor: float) -> Diagnostic:
     message = phrase(
         "the world runs at {factor} of real time: this computer cannot simulate it faster", factor=f"{factor:.1g}"
     )

@@ -28,7 +28,7 @@ from linkwright.simulation.server.server import SimulationServer
 T = TypeVar("T")
 _CLOCK_TYPE, _STATE_TYPE = "rosgraph_msgs/msg/Clock", "simulation_interfaces/msg/SimulationState"
 _METRICS_TYPE = "gazebo_msgs/msg/PerformanceMetrics"
-_POSES_PERIOD, _METRICS_PERIOD = 1 / 30, 0.5
+_POSES_PERIOD_S, _METRICS_PERIOD_S = 1 / 30, 0.5
 """The publishing periods of poses and performance metrics, in s of real time."""
 PLAYING, PAUSED = 1, 2
 """The values of ``state`` in simulation_interfaces/msg/SimulationState."""
@@ -83,7 +83,7 @@ class Reports:
             (id(model), name, pose): self._save_model(model, name, pose) for model, name, pose in models
         }
         world = replace(simulation.world, models=(), actors=(), roads=())
-        text = save_world(self._with_absolute_uris(world), [saved for _, saved in self._saved_models.values()])
+        text = save_world(self._make_uris_absolute(world), [saved for _, saved in self._saved_models.values()])
         self._description.publish(String(data=text))
 
     def _save_model(self, model: Model, name: str, pose: Transform) -> tuple[Model, WrittenModel]:
@@ -95,10 +95,10 @@ class Reports:
         if cached is not None:
             return cached
         placed_model = replace(model, name=name, pose=RawPose(pose_of(pose)), placement_frame="")
-        return model, save_model_of_world(self._with_absolute_uris(placed_model))
+        return model, save_model_of_world(self._make_uris_absolute(placed_model))
 
-    def _with_absolute_uris(self, part: T) -> T:
-        converted: T = with_changed_uris(part, Path.cwd(), self._absolute_uri)
+    def _make_uris_absolute(self, part: T) -> T:
+        converted: T = with_changed_uris(part, Path.cwd(), self._to_absolute_uri)
         return converted
 
     def publish_due(self, get_factor: Callable[[], float]) -> None:
@@ -107,10 +107,10 @@ class Reports:
         Poses are due at 30 Hz and the factor at 2 Hz of real time; call this at least as often.
         """
         now = time.monotonic()
-        if now - self._last_poses >= _POSES_PERIOD and self._poses.is_wanted:
+        if now - self._last_poses >= _POSES_PERIOD_S and self._poses.is_wanted:
             self._last_poses = now
             self.publish_poses()
-        if now - self._last_metrics >= _METRICS_PERIOD and self._metrics.is_wanted:
+        if now - self._last_metrics >= _METRICS_PERIOD_S and self._metrics.is_wanted:
             self._last_metrics = now
             message = get_message(_METRICS_TYPE)(
                 header=Header(stamp=Time.from_nanoseconds(self._server.simulation.time)), real_time_factor=get_factor()
@@ -134,6 +134,6 @@ class Reports:
     def _publish_time(self) -> None:
         self._clock.publish(get_message(_CLOCK_TYPE)(clock=Time.from_nanoseconds(self._server.simulation.time)))
 
-    def _absolute_uri(self, uri: str, folder: Path) -> str:
+    def _to_absolute_uri(self, uri: str, folder: Path) -> str:
         resolved = self._server.simulation.finder.file(uri, folder) if uri else Missing
         return resolved.as_uri() if isinstance(resolved, Path) and resolved.is_absolute() else uri

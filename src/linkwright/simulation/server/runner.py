@@ -14,15 +14,15 @@ from linkwright.sdf.worlds import physics_of
 from linkwright.simulation.server.pace import PaceWatch
 from linkwright.simulation.server.server import SimulationServer
 
-_CHUNK = 0.005
+_CHUNK_S = 0.005
 """The real time in s between two checks for commands."""
-_MAX_CHUNK = 0.05
+_MAX_CHUNK_S = 0.05
 """The maximum simulated time in s between two checks. All messages published in between arrive together."""
-_MAX_DELAY = 0.25
+_MAX_DELAY_S = 0.25
 """The maximum delay, in s of real time, for which a simulation makes up by running faster."""
-_PAUSED_PERIOD = 1 / 30
+_PAUSED_PERIOD_S = 1 / 30
 """The maximum real time in s between two checks while the simulation is paused."""
-_MEASUREMENT_PERIOD = 0.5
+_MEASUREMENT_PERIOD_S = 0.5
 """The real time in s over which the real-time factor is measured."""
 
 
@@ -116,36 +116,36 @@ class Runner:
         self._restart_timing()
         while not self._must_end:
             self._call_logged(exchange.run_commands)
-            wait_s = _PAUSED_PERIOD
+            wait_s = _PAUSED_PERIOD_S
             if not self.is_paused:
                 self._call_logged(self._advance)
-                wait_s = 0.0 if self.is_paused else self._lead_s()
+                wait_s = 0.0 if self.is_paused else self._compute_lead_s()
             self._measure()
             self._call_logged(self._watch)
             exchange.deliver(dispatcher)
             if wait_s > 0:
                 exchange.has_commands.wait(wait_s)
 
-    def _call_logged(self, work: Callable[[], object]) -> None:
+    def _call_logged(self, function: Callable[[], object]) -> None:
         """Call a function, and log its error and pause the simulation if it raises one.
 
         A user can then reset the simulation.
         """
-        run_logged(self._server.node.get_logger(), "the simulation", lambda: self._pause_on_error(work))
+        run_logged(self._server.node.get_logger(), "the simulation", lambda: self._pause_on_error(function))
 
-    def _pause_on_error(self, work: Callable[[], object]) -> None:
+    def _pause_on_error(self, function: Callable[[], object]) -> None:
         try:
-            work()
+            function()
         except LinkwrightError as error:
-            self._fail()
+            self._handle_failure()
             finding = error.diagnostics[0]
             hint = f" ({finding.hint})" if finding.hint else ""
             self._server.node.get_logger().error(f"{finding.message}{hint}")
         except BaseException:
-            self._fail()
+            self._handle_failure()
             raise
 
-    def _fail(self) -> None:
+    def _handle_failure(self) -> None:
         self.pause()
         if self._remaining_ns is not None:
             self._remaining_ns = None
@@ -153,10 +153,10 @@ class Runner:
 
     def _advance(self) -> None:
         simulation = self._server.simulation
-        real_s = _CHUNK * (self._factor if self._factor < inf else 1.0)
+        real_s = _CHUNK_S * (self._factor if self._factor < inf else 1.0)
         if self._factor == inf:
-            real_s = _CHUNK * max(self.real_time_factor, 1.0)
-        chunk_ns = max(round(min(real_s, _MAX_CHUNK) * NANOSECONDS_PER_SECOND), simulation.step)
+            real_s = _CHUNK_S * max(self.real_time_factor, 1.0)
+        chunk_ns = max(round(min(real_s, _MAX_CHUNK_S) * NANOSECONDS_PER_SECOND), simulation.step)
         if self._remaining_ns is not None:
             chunk_ns = min(chunk_ns, self._remaining_ns)
         start_ns = simulation.time
@@ -168,7 +168,7 @@ class Runner:
                 self.pause()
                 self._on_end(0)
 
-    def _lead_s(self) -> float:
+    def _compute_lead_s(self) -> float:
         """Return the time in s until real time reaches simulated time.
 
         The time is 0 or less if the simulation is not ahead.
@@ -184,14 +184,14 @@ class Runner:
             + (self._server.simulation.time - reference_simulated) / NANOSECONDS_PER_SECOND / self._factor
             - now
         )
-        if lead_s < -_MAX_DELAY:
+        if lead_s < -_MAX_DELAY_S:
             self._reference_times = now, self._server.simulation.time
         return lead_s
 
     def _measure(self) -> None:
         now, simulated = time.monotonic(), self._server.simulation.time
         elapsed = now - self._last_measurement[0]
-        if elapsed >= _MEASUREMENT_PERIOD:
+        if elapsed >= _MEASUREMENT_PERIOD_S:
             self.real_time_factor = max(simulated - self._last_measurement[1], 0) / NANOSECONDS_PER_SECOND / elapsed
             self._last_measurement = now, simulated
             if not self.is_paused:

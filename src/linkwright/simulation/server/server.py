@@ -22,32 +22,32 @@ from linkwright.sdf.plugins import Plugin, library_name, original_library
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.saved import with_saved_state
 from linkwright.sdf.worlds import World
-from linkwright.simulation.plugins.alternatives import alternative_to
-from linkwright.simulation.plugins.bridged import BridgedTopics
+from linkwright.simulation.plugins.alternatives import find_alternative
+from linkwright.simulation.plugins.bridged_topics import BridgedTopics
 from linkwright.simulation.plugins.contexts import model_plugins, world_plugins
 from linkwright.simulation.plugins.findings import error_findings
 from linkwright.simulation.plugins.node import PluginNode
 from linkwright.simulation.plugins.parameters import parameters_from
 from linkwright.simulation.plugins.plugin import PluginClass, PluginContext, SimulatedPlugin
 from linkwright.simulation.plugins.registry import (
+    find_plugin_class,
+    find_sensor_class,
     is_built_in,
     is_gz_library,
-    plugin_class,
-    sensor_class,
 )
-from linkwright.simulation.plugins.ros_element import node_of
+from linkwright.simulation.plugins.ros_element import read_node_description
 from linkwright.simulation.scene.scene import SceneModel
 from linkwright.simulation.server.changes import (
     AddedModel,
     add_models,
-    changes_to,
     check_models,
-    properties_used_by_plugins,
+    find_changes,
+    get_properties_used_by_plugins,
 )
-from linkwright.simulation.server.ground_contact import collision_warnings, lift_onto_ground
-from linkwright.simulation.server.motion import motion_of, restore_motion
-from linkwright.simulation.server.overlaps import overlaps
-from linkwright.simulation.server.unsimulated import unsimulated_elements, unsimulated_model_elements
+from linkwright.simulation.server.ground_contact import find_collision_warnings, lift_onto_ground
+from linkwright.simulation.server.motion import record_motion, restore_motion
+from linkwright.simulation.server.overlaps import find_overlaps
+from linkwright.simulation.server.unsimulated import find_unsimulated_elements, find_unsimulated_model_elements
 from linkwright.simulation.simulation import Simulation
 
 _WORLD_OWNER = ""
@@ -112,19 +112,19 @@ class SimulationServer:
         self._namespaces: dict[str, str] = {}
         self._world_models = set(simulation.scene.models)
         self._node_names: set[str] = set()
-        self._logged: set[str] = set()
+        self._logged_names: set[str] = set()
         self._findings: dict[str, list[Diagnostic]] = {}
 
     def start(self) -> None:
         """Start the plugins of the world and of its models."""
         self.report(self.simulation.scene.diagnostics)
-        self._warn_unsimulated(unsimulated_elements(self.simulation.world))
+        self._warn_unsimulated(find_unsimulated_elements(self.simulation.world))
         self._start_plugins(_WORLD_OWNER, world_plugins(self.simulation.world, self._options.systems), "")
         for scene_model in tuple(self.simulation.scene.models.values()):
             self._start_plugins(
                 scene_model.name, model_plugins(self.simulation.world, scene_model.model, scene_model.name), ""
             )
-        self.report(overlaps(self.simulation))  # after the plugins have attached models
+        self.report(find_overlaps(self.simulation))  # after the plugins have attached models
         self._call_on_change()
 
     @property
@@ -170,9 +170,9 @@ class SimulationServer:
             raise LinkwrightError(Diagnostic("SIM102", phrase("a model '{name}' already exists", name=name)))
         self._replace_models((), (AddedModel(model, name, pose, namespace),))
         lift_onto_ground(self.simulation, name)
-        self.report(overlaps(self.simulation, (name,)))
-        self.report(collision_warnings(self.simulation, name), name)
-        self._warn_unsimulated(unsimulated_model_elements(model))
+        self.report(find_overlaps(self.simulation, (name,)))
+        self.report(find_collision_warnings(self.simulation, name), name)
+        self._warn_unsimulated(find_unsimulated_model_elements(model))
 
     def replace_model(self, model: Model, name: str) -> None:
         """Replace a model with a changed model, and keep the pose, velocity and joint positions.
@@ -188,8 +188,8 @@ class SimulationServer:
         old_model = self._find_model(name)
         added = AddedModel(model, name, old_model.pose, self._namespaces.get(name, ""), keeps_motion=True)
         check_models(self.simulation.world, self.simulation, (added,), self.simulation.finder)
-        self._replace_models((), (replace(added, motion=motion_of(self.simulation, name)),))
-        self.report(collision_warnings(self.simulation, name), name)
+        self._replace_models((), (replace(added, motion=record_motion(self.simulation, name)),))
+        self.report(find_collision_warnings(self.simulation, name), name)
 
     def load(
         self, world: World, finder: ResourceFinder, check_findings: Callable[[Sequence[Diagnostic]], object]
@@ -210,16 +210,16 @@ class SimulationServer:
         """
         simulation, old_world = self.simulation, self.simulation.world
         new_world = with_saved_state(world)
-        changes = changes_to(new_world, simulation.scene.models, self._world_models)
-        if properties_used_by_plugins(old_world) != properties_used_by_plugins(new_world):
+        changes = find_changes(new_world, simulation.scene.models, self._world_models)
+        if get_properties_used_by_plugins(old_world) != get_properties_used_by_plugins(new_world):
             changes = changes.with_all_replaced(simulation.scene.models, self._namespaces)
         changes = changes.with_connected_replaced(simulation.scene.models, self._namespaces)
         check_findings(check_models(new_world, simulation, (*changes.replaced, *changes.added), finder))
-        replaced = tuple(replace(change, motion=motion_of(simulation, change.name)) for change in changes.replaced)
+        replaced = tuple(replace(change, motion=record_motion(simulation, change.name)) for change in changes.replaced)
         simulation.set_world(world, finder)
         simulation.set_initial_poses(changes.moved)
         self._replace_models(changes.removed_names, (*replaced, *changes.added))
-        self.report(overlaps(simulation, {*changes.moved, *(change.name for change in changes.added)}))
+        self.report(find_overlaps(simulation, {*changes.moved, *(change.name for change in changes.added)}))
         self._world_models = {model.name for model in new_world.models}
         if not have_equal_content(old_world.plugins, new_world.plugins):
             self._close_plugins(self._plugins.pop(_WORLD_OWNER, []))
@@ -243,7 +243,7 @@ class SimulationServer:
             old_plugins[name] = self._plugins.pop(name, [])
             self._close_plugins(old_plugins[name])
             simulation.delete(name)
-        self._forget_findings(removed_names)
+        self._remove_findings(removed_names)
         if added:
             add_models(simulation, added)
         for change in added:
@@ -268,10 +268,10 @@ class SimulationServer:
         for name in {
             item: None
             for removed_name in names & models.keys()
-            for item in self.simulation.scene.attached_models(removed_name)
+            for item in self.simulation.scene.find_attached_models(removed_name)
         }:
             if name not in names:
-                motion = motion_of(self.simulation, name)
+                motion = record_motion(self.simulation, name)
                 scene_model, namespace = models[name], self._namespaces.get(name, "")
                 yield AddedModel(scene_model.model, name, scene_model.pose, namespace, motion, keeps_motion=True)
 
@@ -355,18 +355,18 @@ class SimulationServer:
         unsimulated: dict[str, None] = {}
         for context in contexts:
             with self._logging_failures(context):
-                plugin_class_ = self._find_plugin_class(context)
-                if plugin_class_ is None:
-                    unsimulated |= dict.fromkeys(_unsimulated_names(context))
+                plugin_type = self._find_plugin_class(context)
+                if plugin_type is None:
+                    unsimulated |= dict.fromkeys(_find_unsimulated_names(context))
                 else:
-                    self._start_plugin(owner, plugin_class_, context, namespace, old_plugins)
-        new_names = [name for name in unsimulated if name not in self._logged]
-        self._logged.update(new_names)
+                    self._start_plugin(owner, plugin_type, context, namespace, old_plugins)
+        new_names = [name for name in unsimulated if name not in self._logged_names]
+        self._logged_names.update(new_names)
         if new_names:
             names = joined(new_names)
             self.node.get_logger().info(phrase("plugins and sensors that are not simulated: {names}", names=names))
         for name in new_names:
-            if (alternative := alternative_to(name)) is not None:
+            if (alternative := find_alternative(name)) is not None:
                 self.node.get_logger().info(
                     phrase("instead of {name}, use {alternative}", name=name, alternative=alternative)
                 )
@@ -374,11 +374,15 @@ class SimulationServer:
     def _find_plugin_class(self, context: PluginContext) -> PluginClass | None:
         if context.plugin is None:
             assert context.sensor is not None
-            return sensor_class(context.sensor.sensor.type)
+            return find_sensor_class(context.sensor.sensor.type)
         filename, original = context.plugin.filename, original_library(context.plugin.name)
-        found_class = plugin_class(library_name(filename))
-        if found_class is None and (found_class := plugin_class(original)) is not None and filename not in self._logged:
-            self._logged.add(filename)
+        found_class = find_plugin_class(library_name(filename))
+        if (
+            found_class is None
+            and (found_class := find_plugin_class(original)) is not None
+            and filename not in self._logged_names
+        ):
+            self._logged_names.add(filename)
             notice = phrase(
                 "'{copy}' is simulated as '{original}', because its plugin class belongs to '{original}'",
                 copy=filename,
@@ -390,7 +394,7 @@ class SimulationServer:
     def _start_plugin(
         self,
         owner: str,
-        plugin_class_: PluginClass,
+        plugin_type: PluginClass,
         context: PluginContext,
         namespace: str,
         old_plugins: Sequence[SimulatedPlugin[object]],
@@ -405,10 +409,10 @@ class SimulationServer:
 
         def start() -> None:
             parameters, findings = parameters_from(
-                plugin_class_.PARAMETERS, context.plugin.element if context.plugin else None, plugin_class_.IGNORED
+                plugin_type.PARAMETERS, context.plugin.element if context.plugin else None, plugin_type.IGNORED
             )
             self.report(findings)
-            plugin = plugin_class_(context, node, parameters, self)
+            plugin = plugin_type(context, node, parameters, self)
             started.append(plugin)
             self._plugins[owner].append(plugin)
             plugin.start()
@@ -453,10 +457,10 @@ class SimulationServer:
                 qos={},
                 used_conventional_topics=self._used_conventional_topics,
                 bridged=self._bridged,
-                now_ns=self._now_ns,
+                now_ns=self._get_time_ns,
                 calls=calls,
             )
-        node_description = node_of(context.name, context.element, namespace)
+        node_description = read_node_description(context.name, context.element, namespace)
         full_name = node_description.full_name
         if full_name in self._node_names:
             message = phrase(
@@ -482,16 +486,16 @@ class SimulationServer:
             owned=True,
             qos=node_description.qos,
             used_conventional_topics=None,
-            now_ns=self._now_ns,
+            now_ns=self._get_time_ns,
             calls=calls,
         )
 
-    def _now_ns(self) -> int:
+    def _get_time_ns(self) -> int:
         return self.simulation.time
 
     def _warn_unsimulated(self, elements: Iterable[str]) -> None:
-        new_names = [element for element in elements if element not in self._logged]
-        self._logged.update(new_names)
+        new_names = [element for element in elements if element not in self._logged_names]
+        self._logged_names.update(new_names)
         if new_names:
             self.node.get_logger().info(phrase("these elements are not simulated: {names}", names=joined(new_names)))
 
@@ -514,9 +518,9 @@ class SimulationServer:
             self._call_on_findings()
         for diagnostic in reported:
             text = f"{diagnostic.span}: {diagnostic.message}" if diagnostic.span else str(diagnostic.message)
-            if text in self._logged:
+            if text in self._logged_names:
                 continue
-            self._logged.add(text)
+            self._logged_names.add(text)
             logger = self.node.get_logger()
             line = f"{text} ({diagnostic.hint})" if diagnostic.hint else text
             if diagnostic.severity is Severity.ERROR:  # The logger distinguishes calls by line.
@@ -526,11 +530,11 @@ class SimulationServer:
 
     def show_pace(self, finding: Diagnostic | None) -> None:
         """Keep and log the finding that the world is slow, or remove it."""
-        self._forget_findings({_PACE_OWNER})
+        self._remove_findings({_PACE_OWNER})
         if finding is not None:
             self.report([finding], _PACE_OWNER)
 
-    def _forget_findings(self, models: Collection[str]) -> None:
+    def _remove_findings(self, models: Collection[str]) -> None:
         models_with_findings = models & self._findings.keys()
         for name in models_with_findings:
             del self._findings[name]
@@ -547,7 +551,7 @@ def is_shared(context: PluginContext) -> bool:
     return context.plugin is None or is_gz_library(context.plugin.filename)
 
 
-def _unsimulated_names(context: PluginContext) -> list[str]:
+def _find_unsimulated_names(context: PluginContext) -> list[str]:
     """Return a list with the library or sensor type of a plugin that is not simulated.
 
     The list is empty if the simulation itself does the work of the library.

@@ -18,9 +18,9 @@ from linkwright.sdf.frames import transform_of
 from linkwright.sdf.poses import WORLD
 from linkwright.simulation.plugins.entities import (
     Entities,
+    describe_refusal,
     fill_response,
-    finding_line,
-    refusal_text,
+    format_finding,
     transform_from_message,
     vector_components,
 )
@@ -149,7 +149,7 @@ class Services:
                 self._server.replace_model(entity.model, name)
                 self._server.report(entity.diagnostics, name)
             except LinkwrightError as error:
-                self._server.node.get_logger().error(finding_line(error.diagnostics[0]))
+                self._server.node.get_logger().error(format_finding(error.diagnostics[0]))
 
         self._server.exchange.post(replace_in_simulation)
 
@@ -159,8 +159,8 @@ class Services:
                 self._entities.frame_pose(request.reference_frame), transform_from_message(request.initial_pose)
             )
             entity = read_entity(request.xml, self._server.simulation.finder, self._library)
-            if entity.unread:
-                raise LinkwrightError(*entity.unread)
+            if entity.missing_shape_errors:
+                raise LinkwrightError(*entity.missing_shape_errors)
             name = self._add_model(entity, request.name, pose, request.robot_namespace)
             for function in self.on_spawned:
                 function(name, request.xml)
@@ -214,7 +214,7 @@ class Services:
         try:
             self._wrenches.clear(self._entities.link(request.link_name))
         except LinkwrightError as error:
-            self._server.node.get_logger().error(refusal_text("/clear_link_wrenches", error))
+            self._server.node.get_logger().error(describe_refusal("/clear_link_wrenches", error))
         return response
 
     # --- time ---------------------------------------------------------------------------------------------------------

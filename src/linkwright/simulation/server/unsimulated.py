@@ -18,28 +18,28 @@ _UNSIMULATED_IN = frozenset({("actor", "animation"), ("geometry", "image")})
 _PLUGINS_NOT_SIMULATED = frozenset({"actor", "visual"})
 
 
-def unsimulated_elements(world: World) -> list[str]:
+def find_unsimulated_elements(world: World) -> list[str]:
     """Return the names of the elements in a world that are not simulated, sorted.
 
     Examples are ``<projector>`` and ``libwalk.so in <actor>``.
     """
-    return _unsimulated_names(_roots(world))
+    return _collect_unsimulated_names(_find_roots(world))
 
 
-def unsimulated_model_elements(model: Model) -> list[str]:
+def find_unsimulated_model_elements(model: Model) -> list[str]:
     """Return the names of the elements in a model that are not simulated, sorted."""
-    elements = (part.element for part in (model, *_nested_models(model)))
-    return _unsimulated_names(element for element in elements if element is not None)
+    elements = (part.element for part in (model, *_find_nested_models(model)))
+    return _collect_unsimulated_names(element for element in elements if element is not None)
 
 
-def _unsimulated_names(roots: Iterable[Element]) -> list[str]:
+def _collect_unsimulated_names(roots: Iterable[Element]) -> list[str]:
     names: set[str] = set()
     for root in roots:
         pending = [root]
         while pending:
             element = pending.pop()
             for child in element.elements():
-                name = _name(element, child)
+                name = _describe_unsimulated(element, child)
                 if name:
                     names.add(name)
                 elif child.tag not in OPEN and child.tag != "state":
@@ -47,7 +47,7 @@ def _unsimulated_names(roots: Iterable[Element]) -> list[str]:
     return sorted(names)
 
 
-def _name(parent: Element, child: Element) -> str:
+def _describe_unsimulated(parent: Element, child: Element) -> str:
     """Return the name of an unsimulated child element, or an empty string if it is simulated."""
     if child.tag in _UNSIMULATED:
         return f"<{child.tag}>"
@@ -61,19 +61,19 @@ def _name(parent: Element, child: Element) -> str:
     return ""
 
 
-def _roots(world: World) -> Iterator[Element]:
+def _find_roots(world: World) -> Iterator[Element]:
     """Yield the element of the world, and the elements included from other files."""
     if world.element is not None:
         yield world.element
     world_source = None if world.element is None else world.element.source
-    models = (*world.models, *(nested_model for model in world.models for nested_model in _nested_models(model)))
+    models = (*world.models, *(nested_model for model in world.models for nested_model in _find_nested_models(model)))
     elements = [*(model.element for model in models), *(actor.element for actor in world.actors)]
     for element in elements:
         if element is not None and element.source is not world_source:
             yield element
 
 
-def _nested_models(model: Model) -> Iterator[Model]:
+def _find_nested_models(model: Model) -> Iterator[Model]:
     for nested_model in model.models:
         yield nested_model
-        yield from _nested_models(nested_model)
+        yield from _find_nested_models(nested_model)

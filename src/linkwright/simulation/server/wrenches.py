@@ -42,13 +42,13 @@ class Wrenches:
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
         self._wrenches: dict[str, list[Wrench]] = {}
-        self._scheduled = False
+        self._is_scheduled = False
 
     def add(self, link: str, wrench: Wrench) -> None:
         """Add a wrench on a link, to be applied from the next step on."""
         self._wrenches.setdefault(link, []).append(wrench)
-        if not self._scheduled:
-            self._scheduled = True
+        if not self._is_scheduled:
+            self._is_scheduled = True
             self._simulation.call_every(0, self._apply_wrenches)
         self._apply_wrenches()
 
@@ -67,10 +67,10 @@ class Wrenches:
                 if link in simulation.scene.bodies:
                     simulation.push(link, (0.0, 0.0, 0.0))
                 continue
-            force, torque = self._total_wrench(link, [wrench for wrench in remaining if wrench.start_ns <= now])
+            force, torque = self._sum_wrenches(link, [wrench for wrench in remaining if wrench.start_ns <= now])
             simulation.push(link, force.tolist(), torque.tolist())
 
-    def _total_wrench(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
+    def _sum_wrenches(self, link: str, wrenches: list[Wrench]) -> tuple[Array, Array]:
         """Return the total force in N, and the torque in N m about a link's center of mass."""
         pose = self._simulation.link_pose(link)
         rotation, mass_center = rotation_matrix(pose[3:]), self._simulation.data.body(link).xipos

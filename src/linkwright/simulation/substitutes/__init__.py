@@ -1,1 +1,4 @@
-"""Substitutes for the Gazebo packages that launch files include, installed below one prefix."""
+"""Substitutes for the Gazebo packages that launch files include.
+
+They are installed below one prefix.
+"""

@@ -19,7 +19,7 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
-from linkwright.simulation.sensors.mount import part_of
+from linkwright.simulation.sensors.mount import get_part_name
 from linkwright.simulation.simulation import Simulation
 
 _NUMBER_SUFFIX = re.compile(r"[ _-]*(?:clone)?[ _-]*\(?\d+\)?$")
@@ -173,7 +173,7 @@ def _list_geoms_by_visual(simulation: Simulation) -> dict[str, dict[str, list[st
     for geom in range(simulation.model.ngeom):
         if simulation.model.geom_group[geom] == VISUAL_GROUP:
             name = simulation.model.geom(geom).name
-            visual = part_of(name).partition("#")[0]
+            visual = get_part_name(name).partition("#")[0]
             visuals.setdefault(visual.partition(SEPARATOR)[0], {}).setdefault(visual, []).append(name)
     return visuals
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from linkwright.sdf.optics import Optics
-from linkwright.simulation.rendering.renderer import Channels, Pixels, axes_of
+from linkwright.simulation.rendering.renderer import Channels, Pixels, compute_image_axes
 from linkwright.vision.datasets.arrangement import Arrangement
 from linkwright.vision.datasets.randomized_world import MovableObject, RandomizedWorld
 
@@ -167,7 +167,9 @@ def _project_bounds(world: RandomizedWorld, arrangement: Arrangement, movable: M
     local = model.geom_aabb[movable.geoms, None, :3] + signs * model.geom_aabb[movable.geoms, None, 3:]
     rotations = data.geom_xmat[movable.geoms].reshape(-1, 3, 3)
     world_corners = np.einsum("gij,gcj->gci", rotations, local) + data.geom_xpos[movable.geoms, None, :]
-    camera_corners = (world_corners.reshape(-1, 3) - np.array(arrangement.pose[:3])) @ axes_of(arrangement.pose)
+    camera_corners = (world_corners.reshape(-1, 3) - np.array(arrangement.pose[:3])) @ compute_image_axes(
+        arrangement.pose
+    )
     margin_x, margin_y = int(_MARGIN_IMAGE_WIDTHS * optics.width), int(_MARGIN_IMAGE_WIDTHS * optics.height)
     minimum, maximum = np.array([-margin_x, -margin_y]), np.array([optics.width + margin_x, optics.height + margin_y])
     if (camera_corners[:, 2] > optics.near).all():

@@ -11,7 +11,7 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.sdf.lights import Light
 from linkwright.simulation.library import load_mujoco
-from linkwright.simulation.rendering.choice import make_renderer
+from linkwright.simulation.rendering.factory import make_renderer
 from linkwright.simulation.rendering.renderer import Renderer
 from linkwright.simulation.scene.bodies import VISUAL_GROUP
 from linkwright.simulation.simulation import Simulation

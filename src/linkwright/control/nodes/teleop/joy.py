@@ -20,7 +20,7 @@ from linkwright.graph import Clock, ClockType, Graph, Node, ParameterType
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 _RETRY_SECONDS = 1.0
 _MAX_RATE_HZ = 1000.0
 
@@ -34,8 +34,8 @@ class _Settings:
         name: a part of the device's name; empty to use the number or path.
         path: the path of the device; None to use the number or name.
         deadzone: the fraction of an axis around its center that counts as 0.
-        repeat_rate: the rate of messages while nothing changes, in Hz; 0 for none.
-        coalesce: the time for which changes of axis positions are collected, in seconds.
+        repeat_rate_hz: the rate of messages while nothing changes, in Hz; 0 for none.
+        coalesce_interval_s: the time for which changes of axis positions are collected, in seconds.
         sticky: whether a button stays pressed until it is pressed again.
     """
 
@@ -43,8 +43,8 @@ class _Settings:
     name: str
     path: Path | None
     deadzone: float
-    repeat_rate: float
-    coalesce: float
+    repeat_rate_hz: float
+    coalesce_interval_s: float
     sticky: bool
 
     def device(self) -> Path | None:
@@ -90,19 +90,21 @@ class JoyNode(SingleNode):
         number: int = node.declare_parameter("device_id", 0).value
         name: str = node.declare_parameter("device_name", "").value
         node.declare_parameter("autocenter", 0)
-        milliseconds = _number_in_range(node, "coalesce_interval_ms", 1, 0, None)
+        milliseconds = _declare_number(node, "coalesce_interval_ms", 1, 0, None)
         seconds: float | None = node.declare_parameter("coalesce_interval", ParameterType.DOUBLE).value
-        return _settings(node, number, name, None, milliseconds / 1000.0 if seconds is None else seconds)
+        return _declare_settings(node, number, name, None, milliseconds / 1000.0 if seconds is None else seconds)
 
     def _start(self) -> None:
         settings, node = self._settings, self._node
         self._message_type = get_message("sensor_msgs/msg/Joy")
-        self._publisher = node.create_publisher(self._message_type, "joy", _DEPTH)
+        self._publisher = node.create_publisher(self._message_type, "joy", _QUEUE_DEPTH)
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        self._publish_timer = node.create_timer(settings.coalesce, self._publish, clock=clock, autostart=False)
-        is_repeated = settings.repeat_rate > 0.0
+        self._publish_timer = node.create_timer(
+            settings.coalesce_interval_s, self._publish, clock=clock, autostart=False
+        )
+        is_repeated = settings.repeat_rate_hz > 0.0
         self._repeat_timer = node.create_timer(
-            1.0 / settings.repeat_rate if is_repeated else 1.0, self._publish, clock=clock, autostart=False
+            1.0 / settings.repeat_rate_hz if is_repeated else 1.0, self._publish, clock=clock, autostart=False
         )
         self._retry_timer = node.create_timer(_RETRY_SECONDS, self._open, clock=clock)
         self._open()
@@ -111,13 +113,15 @@ class JoyNode(SingleNode):
         path = self._settings.device()
         if path is None:
             device_label = self._settings.requested_device()
-            self._wait(localized(phrase("the joystick {device} is not connected; waiting for it", device=device_label)))
+            self._log_missing_joystick(
+                localized(phrase("the joystick {device} is not connected; waiting for it", device=device_label))
+            )
             return
         try:
             self._device = JoystickDevice(path, self._on_events, self._on_unplugged)
         except OSError as error:
             reason = foreign(error.strerror or error)
-            self._wait(
+            self._log_missing_joystick(
                 localized(
                     phrase(
                         "the joystick {path} cannot be read: {reason}; trying again (add your user to the "
@@ -134,14 +138,14 @@ class JoyNode(SingleNode):
         self._node.get_logger().info(
             f"Opened joystick: {self._device.name or path}.  deadzone: {self._settings.deadzone:f}"
         )
-        if self._settings.repeat_rate > 0.0:
+        if self._settings.repeat_rate_hz > 0.0:
             self._repeat_timer.reset()
 
-    def _wait(self, text: str) -> None:
+    def _log_missing_joystick(self, reason: str) -> None:
         """Log the reason why there is no joystick, unless it was logged last."""
-        if text != self._logged_reason:
-            self._logged_reason = text
-            self._node.get_logger().warning(text)
+        if reason != self._logged_reason:
+            self._logged_reason = reason
+            self._node.get_logger().warning(reason)
 
     def _on_unplugged(self) -> None:
         self._device = None
@@ -161,7 +165,7 @@ class JoyNode(SingleNode):
             elif self._update_button(event):
                 # When it is opened, the device reports all axes and buttons; one message contains all these events.
                 publish_now, publish_soon = publish_now or not event.is_initial, publish_soon or event.is_initial
-        if publish_now or (publish_soon and self._settings.coalesce == 0.0):
+        if publish_now or (publish_soon and self._settings.coalesce_interval_s == 0.0):
             self._publish()
         elif publish_soon and self._publish_timer.is_canceled():
             self._publish_timer.reset()
@@ -169,7 +173,7 @@ class JoyNode(SingleNode):
     def _update_axis(self, event: JoystickEvent) -> bool:
         axes = self._axes
         axes += [0.0] * (event.number + 1 - len(axes))
-        old_value, axes[event.number] = axes[event.number], deflection(event.value, self._settings.deadzone)
+        old_value, axes[event.number] = axes[event.number], compute_deflection(event.value, self._settings.deadzone)
         return event.is_initial or old_value != axes[event.number]
 
     def _update_button(self, event: JoystickEvent) -> bool:
@@ -186,7 +190,7 @@ class JoyNode(SingleNode):
         self._publish_timer.cancel()
         if self._device is None:
             return
-        if self._settings.repeat_rate > 0.0:
+        if self._settings.repeat_rate_hz > 0.0:
             self._repeat_timer.reset()
         self._send()
 
@@ -209,10 +213,10 @@ class JoyLinuxNode(JoyNode):
         name: str = node.declare_parameter("dev_name", "").value
         node.declare_parameter("dev_ff", "/dev/input/event0")
         node.declare_parameter("default_trig_val", False)
-        return _settings(node, 0, name, path, _number_in_range(node, "coalesce_interval", 0.001, 0.0, None))
+        return _declare_settings(node, 0, name, path, _declare_number(node, "coalesce_interval", 0.001, 0.0, None))
 
 
-def deflection(value: int, deadzone: float) -> float:
+def compute_deflection(value: int, deadzone: float) -> float:
     """Return the deflection of an axis from -1 to 1, positive forwards and to the left.
 
     Args:
@@ -226,14 +230,14 @@ def deflection(value: int, deadzone: float) -> float:
     return excess / (1.0 - deadzone) * (1.0 if raw_deflection > 0.0 else -1.0)
 
 
-def _settings(node: Node, number: int, name: str, path: Path | None, coalesce: float) -> _Settings:
-    deadzone = _number_in_range(node, "deadzone", 0.05, 0.0, 1.0)
-    repeat_rate = _number_in_range(node, "autorepeat_rate", 20.0, 0.0, _MAX_RATE_HZ)
+def _declare_settings(node: Node, number: int, name: str, path: Path | None, coalesce: float) -> _Settings:
+    deadzone = _declare_number(node, "deadzone", 0.05, 0.0, 1.0)
+    repeat_rate = _declare_number(node, "autorepeat_rate", 20.0, 0.0, _MAX_RATE_HZ)
     sticky: bool = node.declare_parameter("sticky_buttons", False).value
     return _Settings(number, name, path, deadzone, repeat_rate, coalesce, sticky)
 
 
-def _number_in_range(node: Node, name: str, default: float, minimum: float, maximum: float | None) -> float:
+def _declare_number(node: Node, name: str, default: float, minimum: float, maximum: float | None) -> float:
     """Declare a numeric parameter, and return its value after checking the range.
 
     `maximum` is None for no maximum.

@@ -14,15 +14,15 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-FOLDER = Path("/dev/input")
+DEVICE_FOLDER = Path("/dev/input")
 MAX_VALUE = 32767
 """The value of an axis at one end of its travel. The value at the other end is the negative."""
 
-_EVENT = struct.Struct("=IhBB")
-_BUTTON, _AXIS, _INITIAL = 0x01, 0x02, 0x80
-_MAX_EVENTS = 64
+_EVENT_FORMAT = struct.Struct("=IhBB")
+_BUTTON_FLAG, _AXIS_FLAG, _INITIAL_FLAG = 0x01, 0x02, 0x80
+_MAX_EVENTS_PER_READ = 64
 _NAME_BYTES = 128
-_GET_NAME = 0x80006A13 | _NAME_BYTES << 16
+_GET_NAME_REQUEST = 0x80006A13 | _NAME_BYTES << 16
 
 
 class JoystickEvent(NamedTuple):
@@ -59,7 +59,7 @@ class JoystickDevice:
         self._on_events, self._on_end = on_events, on_end
         self._incomplete_event = b""
         self._descriptor: int | None = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
-        self.name = _device_name(self._descriptor)
+        self.name = _read_device_name(self._descriptor)
         try:
             asyncio.get_running_loop().add_reader(self._descriptor, self._read)
         except OSError:  # The event loop cannot watch a folder or a file.
@@ -79,7 +79,7 @@ class JoystickDevice:
     def _read(self) -> None:
         assert self._descriptor is not None
         try:
-            data = os.read(self._descriptor, _EVENT.size * _MAX_EVENTS)
+            data = os.read(self._descriptor, _EVENT_FORMAT.size * _MAX_EVENTS_PER_READ)
         except BlockingIOError:
             return
         except OSError:  # The joystick was unplugged.
@@ -89,7 +89,7 @@ class JoystickDevice:
             self._on_end()
             return
         data = self._incomplete_event + data
-        complete_bytes = len(data) - len(data) % _EVENT.size
+        complete_bytes = len(data) - len(data) % _EVENT_FORMAT.size
         self._incomplete_event = data[complete_bytes:]
         self._on_events(list(_parse_events(data[:complete_bytes])))
 
@@ -102,13 +102,13 @@ def find_device(number: int, name: str = "") -> Path | None:
         name: a part of the name; empty to use the number.
     """
     if not name:
-        path = FOLDER / f"js{number}"
+        path = DEVICE_FOLDER / f"js{number}"
         return path if path.exists() else None
-    for path in sorted(FOLDER.glob("js*")):
+    for path in sorted(DEVICE_FOLDER.glob("js*")):
         with contextlib.suppress(OSError):
             descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0))
             try:
-                if name in _device_name(descriptor):
+                if name in _read_device_name(descriptor):
                     return path
             finally:
                 os.close(descriptor)
@@ -116,19 +116,19 @@ def find_device(number: int, name: str = "") -> Path | None:
 
 
 def _parse_events(data: bytes) -> Iterator[JoystickEvent]:
-    for _, value, kind, number in _EVENT.iter_unpack(data):
-        if kind & ~_INITIAL in (_BUTTON, _AXIS):
-            yield JoystickEvent(bool(kind & _AXIS), number, value, bool(kind & _INITIAL))
+    for _, value, kind, number in _EVENT_FORMAT.iter_unpack(data):
+        if kind & ~_INITIAL_FLAG in (_BUTTON_FLAG, _AXIS_FLAG):
+            yield JoystickEvent(bool(kind & _AXIS_FLAG), number, value, bool(kind & _INITIAL_FLAG))
 
 
-def _device_name(descriptor: int) -> str:
+def _read_device_name(descriptor: int) -> str:
     if sys.platform == "win32":
         return ""
     import fcntl
 
     buffer = bytearray(_NAME_BYTES)
     try:
-        fcntl.ioctl(descriptor, _GET_NAME, buffer)
+        fcntl.ioctl(descriptor, _GET_NAME_REQUEST, buffer)
     except OSError:  # The file is not a joystick.
         return ""
     return buffer.split(b"\0", 1)[0].decode("utf-8", "replace")

@@ -13,14 +13,14 @@ import contextlib
 from math import isfinite
 
 from linkwright.control.nodes.teleop.keys import (
+    DIRECTIONS,
     INTERRUPT,
-    MOVES,
-    SPEEDS,
+    SPEED_FACTORS,
     STILL,
     Direction,
+    format_speeds,
     help_text,
-    keys_in,
-    speeds_text,
+    split_keys,
 )
 from linkwright.control.nodes.teleop.terminal import KeyTerminal
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
@@ -29,7 +29,7 @@ from linkwright.graph import Clock, ClockType, Graph, ParameterType
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.velocity_topic import VelocityTopic
 
-_REVIEW_SECONDS = 0.5
+_TYPE_CHECK_PERIOD_S = 0.5
 _LINES_BETWEEN_HELP = 15
 
 
@@ -60,8 +60,11 @@ class TeleopTwistKeyboard(SingleNode):
         node = self._node
         is_stamped: bool | None = node.declare_parameter("stamped", ParameterType.BOOL).value
         frame_id: str = node.declare_parameter("frame_id", "").value
-        self._speed, self._turn_speed = self._number("speed", 0.5), self._number("turn", 1.0)
-        repeat_rate, self._key_timeout = self._number("repeat_rate", 0.0), self._number("key_timeout", 0.0)
+        self._speed, self._turn_speed = self._declare_number("speed", 0.5), self._declare_number("turn", 1.0)
+        repeat_rate, self._key_timeout = (
+            self._declare_number("repeat_rate", 0.0),
+            self._declare_number("key_timeout", 0.0),
+        )
         if terminal is None:
             raise _terminal_error()
         self._topic = VelocityTopic(node, "cmd_vel", is_stamped, frame_id)
@@ -71,14 +74,14 @@ class TeleopTwistKeyboard(SingleNode):
             raise _terminal_error() from error
         # The timers use the steady clock, because a stop must not wait for simulated time, which may be paused.
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        node.create_timer(_REVIEW_SECONDS, self._review, clock=clock)
+        node.create_timer(_TYPE_CHECK_PERIOD_S, self._check_subscriptions, clock=clock)
         if repeat_rate > 0.0:
             node.create_timer(1.0 / repeat_rate, self._publish, clock=clock)
         self._timeout_timer = node.create_timer(
             self._key_timeout or 1.0, self._on_key_timeout, clock=clock, autostart=False
         )
         self._print(localized(help_text()))
-        self._print(speeds_text(self._speed, self._turn_speed))
+        self._print(format_speeds(self._speed, self._turn_speed))
 
     def close(self) -> None:
         """Stop the robot, restore the terminal, and close the node."""
@@ -87,7 +90,7 @@ class TeleopTwistKeyboard(SingleNode):
         self._topic.close()
         super().close()
 
-    def _number(self, name: str, default: float) -> float:
+    def _declare_number(self, name: str, default: float) -> float:
         value: float = self._node.declare_parameter(name, default).value
         if not isfinite(value) or value < 0.0:
             message = phrase("parameter '{name}' must be 0 or more, but it is {value}", name=name, value=value)
@@ -99,7 +102,7 @@ class TeleopTwistKeyboard(SingleNode):
             self._output(text)
 
     def _on_text(self, text: str) -> None:
-        for key in keys_in(text):
+        for key in split_keys(text):
             if key == INTERRUPT:
                 self._on_end()
                 return
@@ -110,15 +113,15 @@ class TeleopTwistKeyboard(SingleNode):
         self._publish()
 
     def _apply_key(self, key: str) -> None:
-        if key in SPEEDS:
-            speed_factor, turn_factor = SPEEDS[key]
+        if key in SPEED_FACTORS:
+            speed_factor, turn_factor = SPEED_FACTORS[key]
             self._speed, self._turn_speed = self._speed * speed_factor, self._turn_speed * turn_factor
-            self._print(speeds_text(self._speed, self._turn_speed))
+            self._print(format_speeds(self._speed, self._turn_speed))
             self._speed_line_count = (self._speed_line_count + 1) % _LINES_BETWEEN_HELP
             if self._speed_line_count == 0:
                 self._print(localized(help_text()))
         else:
-            self._direction = MOVES.get(key, STILL)
+            self._direction = DIRECTIONS.get(key, STILL)
 
     def _on_key_timeout(self) -> None:
         """Stop the robot because no key was received within ``key_timeout``.
@@ -140,7 +143,7 @@ class TeleopTwistKeyboard(SingleNode):
         """Adopt the message type of the subscriptions, and return whether there are any."""
         return self._topic.update_type(may_change=self._direction == STILL or self._has_warned) > 0
 
-    def _review(self) -> None:
+    def _check_subscriptions(self) -> None:
         """Adopt the message type of the subscriptions.
 
         If there are none while the robot should move, warn once.

@@ -11,7 +11,7 @@ from linkwright.diagnostics import Phrase, phrase
 INTERRUPT = "\x03"
 """The character of Ctrl-C, if the terminal does not turn it into a signal."""
 
-_KEYS = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)?|.", re.DOTALL)
+_KEY_PATTERN = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)?|.", re.DOTALL)
 
 
 class Direction(NamedTuple):
@@ -28,7 +28,7 @@ class Direction(NamedTuple):
 
 STILL = Direction()
 
-MOVES = {
+DIRECTIONS = {
     "i": Direction(1.0),
     "o": Direction(1.0, turn=-1.0),
     "u": Direction(1.0, turn=1.0),
@@ -49,7 +49,7 @@ MOVES = {
     "b": Direction(z=-1.0),
 }
 
-SPEEDS = {
+SPEED_FACTORS = {
     "q": (1.1, 1.1),
     "z": (0.9, 0.9),
     "w": (1.1, 1.0),
@@ -60,12 +60,12 @@ SPEEDS = {
 """The factors for the linear and the angular speed, by key."""
 
 
-def keys_in(text: str) -> Iterator[str]:
+def split_keys(text: str) -> Iterator[str]:
     """Return an iterator over the keys in a terminal's input.
 
     Some keys send several characters.
     """
-    return (match[0] for match in _KEYS.finditer(text))
+    return (match[0] for match in _KEY_PATTERN.finditer(text))
 
 
 def help_text() -> Phrase:
@@ -97,6 +97,6 @@ CTRL-C to quit
 """)
 
 
-def speeds_text(speed: float, turn_speed: float) -> str:
+def format_speeds(speed: float, turn_speed: float) -> str:
     """Return the line that shows the current speeds, in m/s and rad/s."""
     return f"currently:\tspeed {speed}\tturn {turn_speed} "

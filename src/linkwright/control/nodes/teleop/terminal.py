@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 _READ_BYTES = 1024
-_POLL_SECONDS = 0.02
+_POLL_PERIOD_S = 0.02
 
 
 class KeyTerminal:
@@ -32,14 +32,14 @@ class KeyTerminal:
         if not os.isatty(descriptor):
             raise OSError(f"{descriptor} is not a terminal")
         self._on_text, self._on_end = on_text, on_end
-        self._undo = _watch_windows(self._on_data) if sys.platform == "win32" else self._watch(descriptor)
+        self._restore = _watch_windows(self._on_data) if sys.platform == "win32" else self._watch(descriptor)
 
     def close(self) -> None:
         """Restore the terminal.
 
         Further calls do nothing.
         """
-        restore, self._undo = self._undo, lambda: None
+        restore, self._restore = self._restore, lambda: None
         restore()
 
     def _on_data(self, data: bytes) -> None:
@@ -87,13 +87,13 @@ def _watch_windows(on_data: Callable[[bytes], None]) -> Callable[[], None]:
     """
     import msvcrt
 
-    console: Any = msvcrt  # mypy knows its functions on Windows only
+    console: Any = msvcrt  # mypy knows its functions only on Windows.
     loop = asyncio.get_running_loop()
     handle: asyncio.TimerHandle | None = None
 
     def poll() -> None:
         nonlocal handle
-        handle = loop.call_later(_POLL_SECONDS, poll)
+        handle = loop.call_later(_POLL_PERIOD_S, poll)
         text = ""
         while console.kbhit():
             text += console.getwch()

@@ -17,12 +17,12 @@ from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.velocity_topic import VelocityTopic
 
-_DEPTH = 10
-_REVIEW_SECONDS = 0.5
-_LINEAR, _ANGULAR = ("x", "y", "z"), ("roll", "pitch", "yaw")
-_AXES = {"linear.x": 5, "angular.yaw": 2}
-_SCALES = {"linear.x": 0.5, "angular.yaw": 0.5}
-_TURBO_SCALES = {"linear.x": 1.0, "angular.yaw": 1.0}
+_QUEUE_DEPTH = 10
+_TYPE_CHECK_PERIOD_S = 0.5
+_LINEAR_COMPONENTS, _ANGULAR_COMPONENTS = ("x", "y", "z"), ("roll", "pitch", "yaw")
+_DEFAULT_AXES = {"linear.x": 5, "angular.yaw": 2}
+_DEFAULT_SCALES = {"linear.x": 0.5, "angular.yaw": 0.5}
+_DEFAULT_TURBO_SCALES = {"linear.x": 1.0, "angular.yaw": 1.0}
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,19 +68,19 @@ class TeleopTwistJoy(SingleNode):
             ("inverted_reverse", False),
         ):
             node.declare_parameter(name, default)
-        for kind, names in (("linear", _LINEAR), ("angular", _ANGULAR)):
+        for kind, names in (("linear", _LINEAR_COMPONENTS), ("angular", _ANGULAR_COMPONENTS)):
             for name in names:
                 key = f"{kind}.{name}"
-                node.declare_parameter(f"axis_{key}", _AXES.get(key, -1))
-                node.declare_parameter(f"scale_{key}", _SCALES.get(key, 0.0))
-                node.declare_parameter(f"scale_{kind}_turbo.{name}", _TURBO_SCALES.get(key, 0.0))
+                node.declare_parameter(f"axis_{key}", _DEFAULT_AXES.get(key, -1))
+                node.declare_parameter(f"scale_{key}", _DEFAULT_SCALES.get(key, 0.0))
+                node.declare_parameter(f"scale_{kind}_turbo.{name}", _DEFAULT_TURBO_SCALES.get(key, 0.0))
         self._apply_parameters()
         node.add_post_set_parameters_callback(lambda _: self._apply_parameters())
         self._topic = VelocityTopic(node, "cmd_vel", is_stamped, frame)
         self._joy_topic = node.resolve_topic_name("joy")
-        node.create_subscription(get_message("sensor_msgs/msg/Joy"), "joy", self._receive, _DEPTH)
+        node.create_subscription(get_message("sensor_msgs/msg/Joy"), "joy", self._on_joy, _QUEUE_DEPTH)
         clock = Clock(clock_type=ClockType.STEADY_TIME, timebase=node.get_clock().timebase)
-        node.create_timer(_REVIEW_SECONDS, self._review, clock=clock)
+        node.create_timer(_TYPE_CHECK_PERIOD_S, self._check_topics, clock=clock)
         logger = node.get_logger()
         if self._needs_button:
             logger.info(f"Teleop enable button {self._enable_button}.")
@@ -100,14 +100,14 @@ class TeleopTwistJoy(SingleNode):
         self._enable_button: int = node.get_parameter("enable_button").value
         self._turbo_button: int = node.get_parameter("enable_turbo_button").value
         self._inverts_reverse: bool = node.get_parameter("inverted_reverse").value
-        self._linear = [_read_axis(node, "linear", name) for name in _LINEAR]
-        self._angular_axes = [_read_axis(node, "angular", name) for name in _ANGULAR]
+        self._linear_axes = [_read_axis(node, "linear", name) for name in _LINEAR_COMPONENTS]
+        self._angular_axes = [_read_axis(node, "angular", name) for name in _ANGULAR_COMPONENTS]
 
-    def _receive(self, message: Any) -> None:
+    def _on_joy(self, message: Any) -> None:
         buttons, axes = message.buttons, message.axes
         is_turbo = _is_pressed(buttons, self._turbo_button)
         if is_turbo or not self._needs_button or _is_pressed(buttons, self._enable_button):
-            linear = [axis.velocity(axes, turbo=is_turbo) for axis in self._linear]
+            linear = [axis.velocity(axes, turbo=is_turbo) for axis in self._linear_axes]
             angular = [axis.velocity(axes, turbo=is_turbo) for axis in self._angular_axes]
             if self._inverts_reverse and linear[0] < 0.0:
                 angular[2] = -angular[2]
@@ -122,7 +122,7 @@ class TeleopTwistJoy(SingleNode):
             self._is_driving = False
             self._topic.stop()
 
-    def _review(self) -> None:
+    def _check_topics(self) -> None:
         self._topic.update_type(may_change=not self._is_driving)
         if self._is_driving and not any(
             endpoint.name == self._joy_topic and endpoint.kind is EndpointKind.PUBLISHER

@@ -1,4 +1,6 @@
-"""twist_mux, which forwards the velocity topic with the highest priority to ``cmd_vel_out``.
+"""twist_mux, which forwards the velocity topic with the highest priority.
+
+The output topic is ``cmd_vel_out``.
 
 Parameters, rules and diagnostics are those of the ROS node. A topic is active until its ``timeout`` has passed since
 its last message. A lock that is on, or that received no message within its ``timeout``, blocks all topics of lower
@@ -24,7 +26,7 @@ from linkwright.nodes.standstill import send_stop
 from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_DEPTH = 10
+_QUEUE_DEPTH = 10
 _MAX_PRIORITY = 255
 
 
@@ -34,7 +36,7 @@ class _Source:
     def __init__(self, name: str, topic: str, timeout: float, priority: int) -> None:
         self.name, self.topic, self.timeout = name, topic, timeout
         self.priority = max(0, min(_MAX_PRIORITY, priority))
-        self.locked = False
+        self.is_locked = False
         self._latest_message_ns: int | None = None
 
     def record_message(self, now_ns: int) -> None:
@@ -58,7 +60,7 @@ class _Source:
         """Whether no message has arrived yet."""
         return self._latest_message_ns is None
 
-    def diagnostic_line(self, state: str) -> str:
+    def format_status(self, state: str) -> str:
         """Return the text about the input in the diagnostics."""
         return f" {state} (listening to {self.topic} @ {self.timeout:f}s with priority #{self.priority})"
 
@@ -91,31 +93,31 @@ class TwistMux(SingleNode):
             node.get_logger().warning(
                 localized(phrase("no parameter topics.NAME.topic is set, so nothing is forwarded"))
             )
-        self._publisher: Publisher[Any] = node.create_publisher(message_type, "cmd_vel_out", _DEPTH)
+        self._publisher: Publisher[Any] = node.create_publisher(message_type, "cmd_vel_out", _QUEUE_DEPTH)
         self._commander = Commander(partial(send_stop, node, self._publisher))
         for source in self._topics:
             velocities: Subscription[Any] = node.create_subscription(
-                message_type, source.topic, partial(self._on_velocity, source, DriverWatch.of(node)), _DEPTH
+                message_type, source.topic, partial(self._on_velocity, source, DriverWatch.of(node)), _QUEUE_DEPTH
             )
             self._commander.watch(velocities)
         for source in self._locks:
-            node.create_subscription("std_msgs/msg/Bool", source.topic, partial(self._on_lock, source), _DEPTH)
+            node.create_subscription("std_msgs/msg/Bool", source.topic, partial(self._on_lock, source), _QUEUE_DEPTH)
         for source in (*self._topics, *self._locks):
             timeout = f"{source.timeout:f}s" if source.timeout > 0.0 else "None"
             node.get_logger().info(
                 f"Topic handler '{source.name}' subscribed to topic '{source.topic}': "
                 f"timeout = {timeout} , priority = {source.priority}."
             )
-        DiagnosticUpdater(node, "Twist mux status", self._health)
+        DiagnosticUpdater(node, "Twist mux status", self._report_health)
 
-    def _now_ns(self) -> int:
+    def _get_now_ns(self) -> int:
         return self._node.get_clock().now().nanoseconds
 
     def _on_velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
         drivers.record_command(message, info)
-        now_ns = self._now_ns()
+        now_ns = self._get_now_ns()
         source.record_message(now_ns)
-        lock_priority = self._lock_priority(now_ns)
+        lock_priority = self._find_lock_priority(now_ns)
         unmasked = [
             topic for topic in self._topics if topic.priority and not self._is_masked(topic, lock_priority, now_ns)
         ]
@@ -124,26 +126,26 @@ class TwistMux(SingleNode):
             self._publisher.publish(message)
 
     def _on_lock(self, source: _Source, message: Any) -> None:
-        source.record_message(self._now_ns())
-        source.locked = message.data
+        source.record_message(self._get_now_ns())
+        source.is_locked = message.data
 
-    def _lock_priority(self, now_ns: int) -> int:
-        return max((lock.priority for lock in self._locks if lock.locked or lock.is_expired(now_ns)), default=0)
+    def _find_lock_priority(self, now_ns: int) -> int:
+        return max((lock.priority for lock in self._locks if lock.is_locked or lock.is_expired(now_ns)), default=0)
 
     def _is_masked(self, source: _Source, lock_priority: int, now_ns: int) -> bool:
         return source.has_no_messages or source.is_expired(now_ns) or source.priority < lock_priority
 
-    def _health(self) -> Health:
-        now_ns = self._now_ns()
-        lock = self._lock_priority(now_ns)
+    def _report_health(self) -> Health:
+        now_ns = self._get_now_ns()
+        lock = self._find_lock_priority(now_ns)
         values = {
-            f"velocity {topic.name}": topic.diagnostic_line(
+            f"velocity {topic.name}": topic.format_status(
                 "masked" if self._is_masked(topic, lock, now_ns) else "unmasked"
             )
             for topic in self._topics
         }
         values |= {
-            f"lock {lock.name}": lock.diagnostic_line("locked" if lock.locked or lock.is_expired(now_ns) else "free")
+            f"lock {lock.name}": lock.format_status("locked" if lock.is_locked or lock.is_expired(now_ns) else "free")
             for lock in self._locks
         }
         values["current priority"] = str(lock)

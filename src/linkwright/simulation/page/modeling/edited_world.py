@@ -60,7 +60,7 @@ class EditedWorld:
             self._byte_order_mark = content[: len(content) - len(text.encode(self._encoding))]
 
     @classmethod
-    def of_file(cls, path: Path, packages: PackageFinder) -> EditedWorld:
+    def from_file(cls, path: Path, packages: PackageFinder) -> EditedWorld:
         """Create an edited world from a file.
 
         A world that xacro generates, or that is part of Linkwright, gets no file to save to.

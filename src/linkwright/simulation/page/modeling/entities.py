@@ -34,7 +34,7 @@ from linkwright.sdf.models import Include
 from linkwright.sdf.resources import Missing, ResourceFinder, model_file
 
 
-def world_entities(world: WorldText) -> list[WorldEntity]:
+def list_entities(world: WorldText) -> list[WorldEntity]:
     """Return the models and lights of a world as messages for pages."""
     return [_to_message(entity) for entity in world.entities.values()]
 
@@ -55,7 +55,7 @@ def _to_message(entity: Entity) -> WorldEntity:
     )
 
 
-def model_choices(packages: PackageFinder) -> ModelChoices:
+def list_model_choices(packages: PackageFinder) -> ModelChoices:
     """Return the message that lists the models on the search path, sorted by name."""
     folders = ResourceFinder(packages).models()
     names = sorted(name for name, folder in folders.items() if not isinstance(model_file(folder), Missing))

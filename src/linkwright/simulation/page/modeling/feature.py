@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 
 _DESCRIPTION_TOPIC = "/world_description"
 _EMPTY_SERVICE, _LOAD_SERVICE = "std_srvs/srv/Empty", "simulation_interfaces/srv/LoadWorld"
-_TIMEOUT_SECONDS = 30.0
+_TIMEOUT_S = 30.0
 """The maximum time to wait for a response or the description of the simulation, in seconds."""
 
 
@@ -61,7 +61,7 @@ class ModelingFeature(PageFeature):
             self._is_watching = True
             self.context.graph_changes.watch(self._update_availability)
             self._can_edit = self._is_available()
-        return [self._state()]
+        return [self._build_state()]
 
     def remove_page(self, page: Page) -> None:
         """Stop watching the graph after the last page has closed, and keep the edits."""
@@ -106,14 +106,14 @@ class ModelingFeature(PageFeature):
             self._can_edit = is_available
             self._publish()
 
-    def _state(self) -> ModelingState:
+    def _build_state(self) -> ModelingState:
         edited_world = self._edited_world
         if edited_world is None:
             return ModelingState(self._can_edit, self._is_active, None, False, False, False, [])
-        from linkwright.simulation.page.modeling.entities import world_entities
+        from linkwright.simulation.page.modeling.entities import list_entities
 
         file = None if edited_world.file is None else str(edited_world.file)
-        entities = world_entities(edited_world.world)
+        entities = list_entities(edited_world.world)
         return ModelingState(
             self._can_edit,
             self._is_active,
@@ -125,7 +125,7 @@ class ModelingFeature(PageFeature):
         )
 
     def _publish(self) -> None:
-        self.context.pages.publish(self._state())
+        self.context.pages.publish(self._build_state())
 
     # --- requests of pages ------------------------------------------------------------------------------------
 
@@ -148,18 +148,18 @@ class ModelingFeature(PageFeature):
 
     async def _handle(self, page: Page, message: PageMessage) -> None:
         if isinstance(message, RequestModels):
-            from linkwright.simulation.page.modeling.entities import model_choices
+            from linkwright.simulation.page.modeling.entities import list_model_choices
 
-            page.send(await asyncio.to_thread(model_choices, self.context.finder))
+            page.send(await asyncio.to_thread(list_model_choices, self.context.finder))
         elif isinstance(message, SetModeling):
             await self._set_active(page, active=message.active)
         elif isinstance(message, SaveWorld):
-            edited_world = await self._current_world()
+            edited_world = await self._get_current_world()
             await asyncio.to_thread(edited_world.save, message.path)
             self._publish()
         else:
-            edited_world = await self._current_world()
-            await asyncio.to_thread(_edit_function(edited_world, message))
+            edited_world = await self._get_current_world()
+            await asyncio.to_thread(_create_edit(edited_world, message))
             self._publish()
             if self._requests.empty():
                 await self._load(page, edited_world)
@@ -168,7 +168,7 @@ class ModelingFeature(PageFeature):
         if active == self._is_active:
             return
         if active:
-            await self._current_world()
+            await self._get_current_world()
             await self._call_service(page, _EMPTY_SERVICE, "/pause_physics")
             await self._call_service(page, _EMPTY_SERVICE, "/reset_simulation")
         else:
@@ -176,7 +176,7 @@ class ModelingFeature(PageFeature):
         self._is_active = active
         self._publish()
 
-    async def _current_world(self) -> EditedWorld:
+    async def _get_current_world(self) -> EditedWorld:
         """Return the edited world, and read it on first use.
 
         If its file has changed and there are no unsaved edits, the world is read again.
@@ -186,15 +186,15 @@ class ModelingFeature(PageFeature):
         edited_world, packages = self._edited_world, self.context.finder
         if edited_world is not None and edited_world.file is not None:
             if not edited_world.is_unsaved and await asyncio.to_thread(lambda: edited_world.is_outdated):
-                reloaded = await asyncio.to_thread(EditedWorld.of_file, edited_world.file, packages)
+                reloaded = await asyncio.to_thread(EditedWorld.from_file, edited_world.file, packages)
                 await asyncio.to_thread(reloaded.reserve, edited_world.world.reserved)
                 self._edited_world = reloaded
         elif edited_world is None:
-            self._edited_world = await self._read()
+            self._edited_world = await self._read_world()
         assert self._edited_world is not None, "one of the branches sets it"
         return self._edited_world
 
-    async def _read(self) -> EditedWorld:
+    async def _read_world(self) -> EditedWorld:
         """Return the simulated world from its file, or else from the published description."""
         from linkwright.sdf.editing import EditError
         from linkwright.sdf.resources import ResourceFinder
@@ -206,7 +206,7 @@ class ModelingFeature(PageFeature):
         path = await asyncio.to_thread(ResourceFinder(packages).world, name) if name else None
         if path is not None:
             with suppress(EditError, LinkwrightError):  # On another machine, this path may be a different file.
-                file_world = await asyncio.to_thread(EditedWorld.of_file, path.absolute(), packages)
+                file_world = await asyncio.to_thread(EditedWorld.from_file, path.absolute(), packages)
                 if file_world.world.world.name == published_world.world.world.name:
                     await asyncio.to_thread(file_world.reserve, published_world.world.entities)
                     return file_world
@@ -223,17 +223,17 @@ class ModelingFeature(PageFeature):
             return ""
         name = f"{publishers[0].node_namespace.rstrip('/')}/{publishers[0].node_name}/get_parameters"
         client = node.create_client(get_service("rcl_interfaces/srv/GetParameters"), name)
-        reply: asyncio.Future[str] = asyncio.get_running_loop().create_future()
+        world_file: asyncio.Future[str] = asyncio.get_running_loop().create_future()
 
         def on_response(future: Any) -> None:
-            if not reply.done():
-                reply.set_result(next((value.string_value for value in future.result().values), ""))
+            if not world_file.done():
+                world_file.set_result(next((value.string_value for value in future.result().values), ""))
 
         try:
             if not client.service_is_ready():
                 return ""
             client.call_async(client.srv_type.Request(names=["world"])).add_done_callback(on_response)
-            return await asyncio.wait_for(reply, _TIMEOUT_SECONDS)
+            return await asyncio.wait_for(world_file, _TIMEOUT_S)
         except asyncio.TimeoutError:
             return ""
         finally:
@@ -258,7 +258,7 @@ class ModelingFeature(PageFeature):
             get_message("std_msgs/msg/String"), _DESCRIPTION_TOPIC, on_description, LATCHED_QOS
         )
         try:
-            return await asyncio.wait_for(text, _TIMEOUT_SECONDS if self._is_available() else 0)
+            return await asyncio.wait_for(text, _TIMEOUT_S if self._is_available() else 0)
         except asyncio.TimeoutError:
             raise EditError(
                 phrase("there is no world to edit, because no simulation publishes one; start a simulation")
@@ -285,12 +285,12 @@ class ModelingFeature(PageFeature):
 
         self._services.call_service(page, service_type, name, fields or {}, on_response)
         try:
-            await asyncio.wait_for(response_arrived, _TIMEOUT_SECONDS)
+            await asyncio.wait_for(response_arrived, _TIMEOUT_S)
         except asyncio.TimeoutError:
             refuse(page, phrase("'{name}' did not respond", name=name))
 
 
-def _edit_function(edited_world: EditedWorld, message: PageMessage) -> Callable[[], None]:
+def _create_edit(edited_world: EditedWorld, message: PageMessage) -> Callable[[], None]:
     """Return a function that applies a page's request to a world.
 
     The function is slow, so the caller runs it in a thread.

@@ -1,1 +1,1 @@
-"""Plugins that report events: touches, losses of kinetic energy, and performers in a region."""
+"""Plugins that report touches, losses of kinetic energy, and performers in a region."""

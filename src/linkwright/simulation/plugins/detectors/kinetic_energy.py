@@ -16,8 +16,8 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_FLOAT = "std_msgs/msg/Float64"
-_MAX_IMPACT_TIME = NANOSECONDS_PER_SECOND // 20
+_FLOAT_TYPE = "std_msgs/msg/Float64"
+_MAX_IMPACT_NS = NANOSECONDS_PER_SECOND // 20
 """The time after which a decrease is divided, in nanoseconds; impacts are shorter."""
 
 
@@ -45,27 +45,27 @@ class GzKineticEnergy(SimulatedPlugin[KineticEnergyParameters]):
         self._link = self.link(self.parameters.link_name)
         self.reset()
         self._output = self.node.publisher(
-            _FLOAT, self.parameters.topic or f"/model/{self.context.path}/kinetic_energy"
+            _FLOAT_TYPE, self.parameters.topic or f"/model/{self.context.path}/kinetic_energy"
         )
-        self.every(0.0, self._compare)
+        self.every(0.0, self._detect_loss)
 
     def reset(self) -> None:
-        """Forget the energy of the previous steps."""
+        """Discard the energy of the previous steps."""
         self._energy = self._peak = 0.0
         self._peak_time = 0
 
-    def _compare(self) -> None:
+    def _detect_loss(self) -> None:
         """Publish the loss of a decrease that has just ended."""
-        old_energy, self._energy, now = self._energy, self._kinetic_energy(), self.simulation.time
+        old_energy, self._energy, now = self._energy, self._compute_kinetic_energy(), self.simulation.time
         is_decreasing = self._energy < old_energy
-        if is_decreasing and now - self._peak_time < _MAX_IMPACT_TIME:
+        if is_decreasing and now - self._peak_time < _MAX_IMPACT_NS:
             return
         loss = self._peak - (self._energy if is_decreasing else old_energy)
         self._peak, self._peak_time = self._energy, now
         if loss > self.parameters.kinetic_energy_threshold:
-            self._output.publish(get_message(_FLOAT)(data=loss))
+            self._output.publish(get_message(_FLOAT_TYPE)(data=loss))
 
-    def _kinetic_energy(self) -> float:
+    def _compute_kinetic_energy(self) -> float:
         """Return the kinetic energy of the link in J, of its translation and its rotation."""
         simulation, mujoco, velocity = self.simulation, load_mujoco(), np.zeros(6)
         body = simulation.body(self._link)

@@ -62,7 +62,7 @@ class GzPerformerDetector(SimulatedPlugin[PerformerDetectorParameters]):
         self.every(0.0, self._detect)
 
     def reset(self) -> None:
-        """Forget which performers are in the region."""
+        """Clear the set of performers in the region."""
         self._detected: set[str] = set()
 
     def _read_box(self, parent: Element | None) -> Array:

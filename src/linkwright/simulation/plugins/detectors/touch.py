@@ -17,7 +17,7 @@ from linkwright.sdf.links import Link
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
-from linkwright.simulation.sensors.mount import GeomTable, part_of
+from linkwright.simulation.sensors.mount import GeomTable, get_part_name
 
 _COLLISION_MARK = "#collision"
 _WHOLE_LINK = "__default__"
@@ -49,7 +49,7 @@ class GzTouch(SimulatedPlugin[TouchParameters]):
             LinkwrightError: SIM160, no collision of the model has a contact sensor.
         """
         parameters, simulation = self.parameters, self.simulation
-        own_collisions = set(self._own_collisions())
+        own_collisions = set(self._find_own_collisions())
         if not own_collisions:
             raise self.parameter_error(
                 phrase(
@@ -61,42 +61,48 @@ class GzTouch(SimulatedPlugin[TouchParameters]):
         for name in own_collisions:
             simulation.keep_awake(name.rpartition(SEPARATOR)[0])
 
-        def is_own(geoms: list[str]) -> list[float]:
-            return [float(_collision_of(geom) in own_collisions) for geom in geoms]
+        def mark_own_geoms(geoms: list[str]) -> list[float]:
+            return [float(_get_collision(geom) in own_collisions) for geom in geoms]
 
-        def is_target(geoms: list[str]) -> list[float]:
-            return [float(self._is_target(_collision_of(geom))) for geom in geoms]
+        def mark_target_geoms(geoms: list[str]) -> list[float]:
+            return [float(self._is_target(_get_collision(geom))) for geom in geoms]
 
-        self._own_table, self._target_table = GeomTable(simulation, is_own), GeomTable(simulation, is_target)
+        self._own_table, self._target_table = (
+            GeomTable(simulation, mark_own_geoms),
+            GeomTable(simulation, mark_target_geoms),
+        )
         self.reset()
-        base = f"/{parameters.namespace.strip('/')}" if parameters.namespace else self._default_namespace()
+        base = f"/{parameters.namespace.strip('/')}" if parameters.namespace else self._build_default_namespace()
         self._output = self.node.publisher("std_msgs/msg/Bool", f"{base}/touched")
         self.node.service("std_srvs/srv/SetBool", f"{base}/enable", self._on_enable)
-        self.every(0.0, self._check)
+        self.every(0.0, self._check_contacts)
 
     def reset(self) -> None:
         """Restore the initial state, enabled or disabled."""
         self._set_enabled(is_enabled=self.parameters.enabled)
 
-    def _default_namespace(self) -> str:
+    def _build_default_namespace(self) -> str:
         return f"/model/{self.context.path.replace(SEPARATOR, '/model/')}/touch"
 
-    def _own_collisions(self) -> Iterator[str]:
+    def _find_own_collisions(self) -> Iterator[str]:
         """Yield the full names of the collisions whose contacts count."""
         parameters, model = self.parameters, self.context.model
         for link in () if model is None else model.links:
-            sensed_names = _sensed_collisions(link)
+            sensed_names = _find_sensed_collisions(link)
             for collision in link.collisions:
                 name = SEPARATOR.join((self.context.path, link.name, collision.name))
-                is_chosen = not parameters.collision or collision.name in parameters.collision
+                is_selected = not parameters.collision or collision.name in parameters.collision
                 has_sensor = parameters.create_contact_sensor_for_collision or bool(
                     sensed_names & {collision.name, _WHOLE_LINK}
                 )
-                if has_sensor and (is_chosen or name in parameters.collision):
+                if has_sensor and (is_selected or name in parameters.collision):
                     yield name
 
     def _is_target(self, collision: str) -> bool:
-        """Return whether a collision is the target; part of its name is enough, separated as in gz or in SDF."""
+        """Return whether a collision is the target.
+
+        A part of its name is enough, with the separators of gz or of SDF.
+        """
         return self.parameters.target in collision or self.parameters.target in collision.replace(SEPARATOR, "/")
 
     def _on_enable(self, request: Any, response: Any) -> Any:
@@ -108,7 +114,7 @@ class GzTouch(SimulatedPlugin[TouchParameters]):
         self._is_enabled = is_enabled
         self._touch_start: int | None = None
 
-    def _check(self) -> None:
+    def _check_contacts(self) -> None:
         if not self._is_enabled:
             return
         if not self._is_touching():
@@ -130,7 +136,7 @@ class GzTouch(SimulatedPlugin[TouchParameters]):
         return bool(((own[first] & target[second]) | (own[second] & target[first])).any())
 
 
-def _sensed_collisions(link: Link) -> set[str]:
+def _find_sensed_collisions(link: Link) -> set[str]:
     """Return the names of the collisions that the contact sensors of a link sense."""
     return {
         sensor.contact.collision.rpartition(SEPARATOR)[2] if sensor.contact is not None else _WHOLE_LINK
@@ -139,7 +145,7 @@ def _sensed_collisions(link: Link) -> set[str]:
     }
 
 
-def _collision_of(geom: str) -> str:
+def _get_collision(geom: str) -> str:
     """Return the full name of the collision to which a geom belongs, or an empty text."""
-    name, mark, _ = part_of(geom).partition(_COLLISION_MARK)
+    name, mark, _ = get_part_name(geom).partition(_COLLISION_MARK)
     return name if mark else ""

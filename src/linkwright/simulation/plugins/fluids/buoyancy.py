@@ -1,4 +1,4 @@
-"""Bodies that float: ``gz-sim-buoyancy-system``, and ``libBuoyancyPlugin.so`` of Gazebo Classic.
+"""Bodies that float: ``gz-sim-buoyancy-system`` and ``libBuoyancyPlugin.so``.
 
 The weight of the displaced fluid acts upward at the center of the displaced volume (Archimedes). gz's system belongs
 to the world and knows uniform fluids, and fluids with layers, whose boundaries cut the collisions. Classic's plugin
@@ -26,7 +26,7 @@ from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
 P = TypeVar("P")
 
-_WATER = 1000.0
+_WATER_DENSITY = 1000.0
 """The density of water in kg/m3, the default of gz."""
 
 
@@ -34,7 +34,7 @@ _WATER = 1000.0
 class GzBuoyancyParameters:
     """Parameters of ``gz-sim-buoyancy-system``."""
 
-    uniform_fluid_density: float = _WATER
+    uniform_fluid_density: float = _WATER_DENSITY
     enable: tuple[str, ...] = ()
 
 
@@ -58,12 +58,14 @@ class _Buoyancy(SimulatedPlugin[P], ABC, Generic[P]):
     """A plugin that applies the force of buoyancy to links."""
 
     @abstractmethod
-    def _solids(self) -> dict[str, Solid]:
+    def _find_solids(self) -> dict[str, Solid]:
         """Return the solids of the links that float, by the names of the links."""
 
     @abstractmethod
-    def _displaced(self, solid: Solid, rotation: Array, position: Array) -> Iterator[tuple[float, Volume]]:
-        """Yield the density and the volume of each fluid that a link displaces, from the pose of the link."""
+    def _compute_displaced_volumes(
+        self, solid: Solid, rotation: Array, position: Array
+    ) -> Iterator[tuple[float, Volume]]:
+        """Yield the density and the displaced volume of each fluid, for a pose of the link."""
 
     def start(self) -> None:
         """Find the links that float."""
@@ -76,12 +78,14 @@ class _Buoyancy(SimulatedPlugin[P], ABC, Generic[P]):
         simulation = self.simulation
         simulation.refresh()
         if self._revision != simulation.revision:
-            self._revision, self._floating = simulation.revision, self._solids()
+            self._revision, self._floating = simulation.revision, self._find_solids()
         gravity, data = simulation.model.opt.gravity, simulation.data
         for link, solid in self._floating.items():
             body = simulation.body(link)
             displaced_mass, moment = 0.0, np.zeros(3)
-            for density, volume in self._displaced(solid, data.xmat[body].reshape(3, 3), data.xpos[body]):
+            for density, volume in self._compute_displaced_volumes(
+                solid, data.xmat[body].reshape(3, 3), data.xpos[body]
+            ):
                 displaced_mass += density * volume.size
                 moment += density * volume.size * volume.center
             center = moment / displaced_mass if displaced_mass else None
@@ -107,7 +111,7 @@ class GzBuoyancy(_Buoyancy[GzBuoyancyParameters]):
         graded = None if self.context.element is None else self.context.element.first("graded_buoyancy")
         if graded is None:
             return [_Layer(-inf, inf, self.parameters.uniform_fluid_density)]
-        densities = [self.number_in(graded, "default_density", _WATER)]
+        densities = [self.number_in(graded, "default_density", _WATER_DENSITY)]
         heights = [-inf]
         for change in graded.elements("density_change"):
             densities.append(self.number_in(change, "density"))
@@ -116,12 +120,12 @@ class GzBuoyancy(_Buoyancy[GzBuoyancyParameters]):
         tops = [bottom for bottom, _ in layers[1:]] + [inf]
         return [_Layer(bottom, top, density) for (bottom, density), top in zip(layers, tops, strict=True)]
 
-    def _solids(self) -> dict[str, Solid]:
+    def _find_solids(self) -> dict[str, Solid]:
         simulation = self.simulation
         solids = {}
         for link in simulation.scene.bodies:
             is_fixed = simulation.model.body_weldid[simulation.body(link)] == 0
-            solid = None if is_fixed or not self._is_enabled(link) else Solid.of_link(simulation, link)
+            solid = None if is_fixed or not self._is_enabled(link) else Solid.from_link(simulation, link)
             if solid is not None:
                 solids[link] = solid
         return solids
@@ -130,7 +134,9 @@ class GzBuoyancy(_Buoyancy[GzBuoyancyParameters]):
         names = self.parameters.enable
         return not names or any(link == name or link.startswith(name + SEPARATOR) for name in names)
 
-    def _displaced(self, solid: Solid, rotation: Array, position: Array) -> Iterator[tuple[float, Volume]]:
+    def _compute_displaced_volumes(
+        self, solid: Solid, rotation: Array, position: Array
+    ) -> Iterator[tuple[float, Volume]]:
         lower = Volume(0.0, np.zeros(3))
         for layer in self._layers:
             upper = solid.volume_below(layer.top, rotation, position)
@@ -170,14 +176,16 @@ class ClassicBuoyancy(_Buoyancy[ClassicBuoyancyParameters]):
                 raise self.parameter_error(message)
             yield link, Volume(self.number_in(child, "volume"), np.array(coordinates))
 
-    def _solids(self) -> dict[str, Solid]:
+    def _find_solids(self) -> dict[str, Solid]:
         simulation, prefix = self.simulation, self.context.path + SEPARATOR
         solids = {link: Solid(np.empty((0, 3, 3)), volume, 0.0) for link, volume in self._stated_volumes.items()}
         for link in simulation.scene.bodies:
-            solid = Solid.of_link(simulation, link) if link.startswith(prefix) and link not in solids else None
+            solid = Solid.from_link(simulation, link) if link.startswith(prefix) and link not in solids else None
             if solid is not None:
                 solids[link] = solid
         return solids
 
-    def _displaced(self, solid: Solid, rotation: Array, position: Array) -> Iterator[tuple[float, Volume]]:
+    def _compute_displaced_volumes(
+        self, solid: Solid, rotation: Array, position: Array
+    ) -> Iterator[tuple[float, Volume]]:
         yield self.parameters.fluid_density, solid.volume_below(inf, rotation, position)

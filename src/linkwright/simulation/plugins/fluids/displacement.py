@@ -21,7 +21,7 @@ from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.scene.bodies import COLLISION_GROUP
 from linkwright.simulation.simulation import Simulation
 
-_SIDES = 16
+_SIDE_COUNT = 16
 """The number of sides of round shapes, which determines the time of a step."""
 
 
@@ -40,21 +40,23 @@ class Volume:
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """The solid that the collisions of a link fill. Where collisions overlap, the space counts for each of them.
+    """The solid that the collisions of a link fill.
+
+    Where collisions overlap, the space counts once for each collision.
 
     Attributes:
         corners: the corners of the surface's triangles in the frame of the link, in m, shape (n, 3, 3);
             counterclockwise if seen from outside.
-        whole: the whole volume, with its center in the frame of the link.
+        total: the total volume, with its center in the frame of the link.
         radius: the distance of the farthest corner from the center, in m.
     """
 
     corners: Array
-    whole: Volume
+    total: Volume
     radius: float
 
     @classmethod
-    def of_link(cls, simulation: Simulation, link: str) -> Solid | None:
+    def from_link(cls, simulation: Simulation, link: str) -> Solid | None:
         """Return the solid of a link's collisions, or None if they have no volume.
 
         Planes and heightmaps have no volume.
@@ -64,9 +66,9 @@ class Solid:
         """
         model, body = simulation.model, simulation.model.body(simulation.body(link))
         geoms = range(body.geomadr[0], body.geomadr[0] + body.geomnum[0])
-        parts = [_corners_of_geom(model, geom) for geom in geoms if model.geom_group[geom] == COLLISION_GROUP]
+        parts = [_create_geom_triangles(model, geom) for geom in geoms if model.geom_group[geom] == COLLISION_GROUP]
         corners = np.concatenate([np.empty((0, 3, 3)), *(part for part in parts if part is not None)])
-        whole = _volume_of(corners, np.zeros(3))
+        whole = _compute_volume(corners, np.zeros(3))
         if whole.size == 0.0:
             return None
         return cls(corners, whole, float(np.linalg.norm(corners - whole.center, axis=2).max()))
@@ -79,18 +81,18 @@ class Solid:
             rotation: the orientation of the link in the world, shape (3, 3).
             position: the position of the link in the world, in m, shape (3,).
         """
-        center = rotation @ self.whole.center + position
+        center = rotation @ self.total.center + position
         if center[2] + self.radius <= height:
-            return Volume(self.whole.size, center)
+            return Volume(self.total.size, center)
         if center[2] - self.radius >= height:
             return Volume(0.0, center)
         heights = self.corners @ rotation[2] + (position[2] - height)
-        corners = _corners_below(self.corners @ rotation.T + position, heights)
+        corners = _cut_triangles(self.corners @ rotation.T + position, heights)
         apex = np.array((*position[:2], height))
-        return _volume_of(corners, apex)
+        return _compute_volume(corners, apex)
 
 
-def _corners_of_geom(model: Any, geom: int) -> Array | None:
+def _create_geom_triangles(model: Any, geom: int) -> Array | None:
     """Return the triangles of a geom in the frame of its body; None for a geom without volume.
 
     The triangles of round shapes enclose the volume of the exact shape.
@@ -98,21 +100,21 @@ def _corners_of_geom(model: Any, geom: int) -> Array | None:
     kinds, kind = load_mujoco().mjtGeom, int(model.geom_type[geom])
     radius, half_length, _ = size = model.geom_size[geom].astype(float)
     if kind == kinds.mjGEOM_MESH:
-        corners = _corners_of_mesh(model, int(model.geom_dataid[geom]))
+        corners = _read_mesh_triangles(model, int(model.geom_dataid[geom]))
     elif kind == kinds.mjGEOM_BOX:
-        corners = _corners(surfaces.box(2 * size))
+        corners = _to_corner_array(surfaces.box(2 * size))
     elif kind == kinds.mjGEOM_SPHERE:
-        corners = _unit_ball() * radius
+        corners = _create_unit_ball() * radius
     elif kind == kinds.mjGEOM_ELLIPSOID:
-        corners = _unit_ball() * size
+        corners = _create_unit_ball() * size
     elif kind == kinds.mjGEOM_CYLINDER:
-        corners = _corners(surfaces.cylinder(radius, 2 * half_length, _SIDES))
-        widening = np.sqrt(2 * pi * radius**2 * half_length / _volume_of(corners, np.zeros(3)).size)
+        corners = _to_corner_array(surfaces.cylinder(radius, 2 * half_length, _SIDE_COUNT))
+        widening = np.sqrt(2 * pi * radius**2 * half_length / _compute_volume(corners, np.zeros(3)).size)
         corners = corners * (widening, widening, 1.0)
     elif kind == kinds.mjGEOM_CAPSULE:
-        corners = _corners(surfaces.capsule(radius, 2 * half_length, _SIDES))
+        corners = _to_corner_array(surfaces.capsule(radius, 2 * half_length, _SIDE_COUNT))
         exact_volume = pi * radius**2 * (2 * half_length + 4 / 3 * radius)
-        corners = corners * np.cbrt(exact_volume / _volume_of(corners, np.zeros(3)).size)
+        corners = corners * np.cbrt(exact_volume / _compute_volume(corners, np.zeros(3)).size)
     else:
         return None
     qw, qx, qy, qz = model.geom_quat[geom].tolist()
@@ -120,29 +122,29 @@ def _corners_of_geom(model: Any, geom: int) -> Array | None:
     return moved
 
 
-def _corners(triangles: Triangles) -> Array:
+def _to_corner_array(triangles: Triangles) -> Array:
     corners: Array = triangles.positions[triangles.indices].reshape(-1, 3, 3)
     return corners
 
 
-def _unit_ball() -> Array:
+def _create_unit_ball() -> Array:
     """Return triangles that enclose the volume of a sphere with the radius 1."""
-    corners = _corners(surfaces.sphere(1.0, _SIDES))
-    enlarged: Array = corners * np.cbrt(4 / 3 * pi / _volume_of(corners, np.zeros(3)).size)
+    corners = _to_corner_array(surfaces.sphere(1.0, _SIDE_COUNT))
+    enlarged: Array = corners * np.cbrt(4 / 3 * pi / _compute_volume(corners, np.zeros(3)).size)
     return enlarged
 
 
-def _corners_of_mesh(model: Any, mesh: int) -> Array:
+def _read_mesh_triangles(model: Any, mesh: int) -> Array:
     """Return the triangles of a mesh, turned so that its volume is positive."""
     first_vertex, first_face = int(model.mesh_vertadr[mesh]), int(model.mesh_faceadr[mesh])
     vertices = model.mesh_vert[first_vertex : first_vertex + int(model.mesh_vertnum[mesh])]
     faces = model.mesh_face[first_face : first_face + int(model.mesh_facenum[mesh])]
     corners: Array = vertices[faces].astype(float)
-    is_inside_out = _signed_volumes(corners, np.zeros(3)).sum() < 0.0
+    is_inside_out = _compute_signed_volumes(corners, np.zeros(3)).sum() < 0.0
     return corners[:, ::-1] if is_inside_out else corners
 
 
-def _corners_below(corners: Array, heights: Array) -> Array:
+def _cut_triangles(corners: Array, heights: Array) -> Array:
     """Return triangles cut off at a plane.
 
     Args:
@@ -150,11 +152,15 @@ def _corners_below(corners: Array, heights: Array) -> Array:
         heights: the signed distance of each corner above the plane, shape (n, 3).
     """
     counts = (heights < 0.0).sum(axis=1)
-    one, two = counts == 1, counts == 2
-    lone, second, third = _with_first(corners[one], heights[one], np.argmin(heights[one], axis=1))
-    tips = np.stack([lone[0], _cut(lone, second), _cut(lone, third)], axis=1)
-    lone, second, third = _with_first(corners[two], heights[two], np.argmax(heights[two], axis=1))
-    left, right = _cut(lone, second), _cut(lone, third)
+    has_one_below, has_two_below = counts == 1, counts == 2
+    lone, second, third = _rotate_corners(
+        corners[has_one_below], heights[has_one_below], np.argmin(heights[has_one_below], axis=1)
+    )
+    tips = np.stack([lone[0], _intersect_edges(lone, second), _intersect_edges(lone, third)], axis=1)
+    lone, second, third = _rotate_corners(
+        corners[has_two_below], heights[has_two_below], np.argmax(heights[has_two_below], axis=1)
+    )
+    left, right = _intersect_edges(lone, second), _intersect_edges(lone, third)
     halves = np.stack([left, second[0], third[0]], axis=1), np.stack([left, third[0], right], axis=1)
     return np.concatenate([corners[counts == 3], tips, *halves])
 
@@ -163,14 +169,20 @@ _Corner = tuple[Array, Array]
 """One corner of each triangle: positions of shape (n, 3), and heights of shape (n,)."""
 
 
-def _with_first(corners: Array, heights: Array, first: NDArray[np.intp]) -> tuple[_Corner, _Corner, _Corner]:
-    """Return the corners of triangles, starting with a given one and in the same direction of rotation."""
-    rows = np.arange(len(corners))
-    one, two, three = ((corners[rows, (first + turn) % 3], heights[rows, (first + turn) % 3]) for turn in range(3))
-    return one, two, three
+def _rotate_corners(corners: Array, heights: Array, first_index: NDArray[np.intp]) -> tuple[_Corner, _Corner, _Corner]:
+    """Return the corners of triangles, starting with a given corner.
+
+    The direction of rotation does not change.
+    """
+    triangle_indices = np.arange(len(corners))
+    first_corner, second_corner, third_corner = (
+        (corners[triangle_indices, (first_index + offset) % 3], heights[triangle_indices, (first_index + offset) % 3])
+        for offset in range(3)
+    )
+    return first_corner, second_corner, third_corner
 
 
-def _cut(start: _Corner, end: _Corner) -> Array:
+def _intersect_edges(start: _Corner, end: _Corner) -> Array:
     """Return the points in which edges intersect the plane."""
     (start_position, start_height), (end_position, end_height) = start, end
     fraction = start_height / (start_height - end_height)
@@ -178,15 +190,18 @@ def _cut(start: _Corner, end: _Corner) -> Array:
     return points
 
 
-def _signed_volumes(corners: Array, apex: Array) -> Array:
-    """Return the volumes of the tetrahedra between triangles and an apex, in m3; negative on the inner side."""
+def _compute_signed_volumes(corners: Array, apex: Array) -> Array:
+    """Return the signed volumes in m3 of the tetrahedra between triangles and an apex.
+
+    They are negative on the inner side of the triangles.
+    """
     (ax, bx, cx), (ay, by, cy), (az, bz, cz) = np.moveaxis(corners - apex, (2, 1), (0, 1))
     volumes: Array = (ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)) / 6.0
     return volumes
 
 
-def _volume_of(corners: Array, apex: Array) -> Volume:
-    volumes = _signed_volumes(corners, apex)
+def _compute_volume(corners: Array, apex: Array) -> Volume:
+    volumes = _compute_signed_volumes(corners, apex)
     size = float(volumes.sum())
     if size <= 0.0:
         return Volume(0.0, np.zeros(3))

@@ -29,7 +29,7 @@ _FORCES, _VELOCITIES = "xyzkmn", "UVWPQR"
 """The letters of SNAME for forces and torques, and for linear and angular velocities, each along x, y and z."""
 
 
-def _derivative_names() -> Iterator[str]:
+def _list_derivative_names() -> Iterator[str]:
     """Yield the names of all derivatives."""
     for force in _FORCES:
         for first in _VELOCITIES:
@@ -57,7 +57,7 @@ class GzHydrodynamics(SimulatedPlugin[HydrodynamicsParameters]):
     PARAMETERS = HydrodynamicsParameters
     IGNORED = (
         "water_density",  # has no effect in gz either
-        *_derivative_names(),  # read by _read_derivatives
+        *_list_derivative_names(),  # read by _read_derivatives
     )
     CARRIED = ("_current",)
 
@@ -105,7 +105,7 @@ class GzHydrodynamics(SimulatedPlugin[HydrodynamicsParameters]):
         simulation, seconds = self.simulation, self.simulation.step / NANOSECONDS_PER_SECOND
         body = simulation.body(self._link)
         if self._revision != simulation.revision:
-            self._revision, self._inertia = simulation.revision, _inertia_of(simulation.model, body)
+            self._revision, self._inertia = simulation.revision, _compute_spatial_inertia(simulation.model, body)
         rotation = simulation.data.xmat[body].reshape(3, 3)
         linear, angular = simulation.link_velocity(self._link)
         velocity = np.concatenate([(linear - self._current) @ rotation, angular @ rotation])
@@ -116,15 +116,15 @@ class GzHydrodynamics(SimulatedPlugin[HydrodynamicsParameters]):
             other_forces = self._inertia @ (velocity - previous_velocity) / seconds - previous_forces
         resistance = damping @ velocity
         if not self.parameters.disable_coriolis:
-            resistance += self._coriolis_forces(velocity)
-        inert = self._added_mass + damping * seconds
-        acceleration = np.linalg.solve(self._inertia + inert, other_forces - resistance)
-        forces: Array = -resistance - inert @ acceleration
+            resistance += self._compute_coriolis_forces(velocity)
+        implicit_inertia = self._added_mass + damping * seconds
+        acceleration = np.linalg.solve(self._inertia + implicit_inertia, other_forces - resistance)
+        forces: Array = -resistance - implicit_inertia @ acceleration
         self._previous = velocity, forces
         self.push(self._link, rotation @ forces[:3], rotation @ forces[3:], at=simulation.data.xpos[body])
 
-    def _coriolis_forces(self, velocity: Array) -> Array:
-        """Return the Coriolis and centripetal forces and torques that resist the motion of the added mass.
+    def _compute_coriolis_forces(self, velocity: Array) -> Array:
+        """Return the Coriolis and centripetal forces and torques of the added mass.
 
         gz computes them with the opposite sign.
         """
@@ -135,8 +135,8 @@ class GzHydrodynamics(SimulatedPlugin[HydrodynamicsParameters]):
         return np.array((x, y, z, k, m, n))
 
 
-def _inertia_of(model: Any, body: int) -> Array:
-    """Return a body's inertia about its origin, in its axes, for linear and angular velocities, shape (6, 6)."""
+def _compute_spatial_inertia(model: Any, body: int) -> Array:
+    """Return a body's spatial inertia about its origin, in its axes, shape (6, 6)."""
     mass, (x, y, z) = float(model.body_mass[body]), model.body_ipos[body].tolist()
     qw, qx, qy, qz = model.body_iquat[body].tolist()
     axes = rotation_matrix((qx, qy, qz, qw))

@@ -1,4 +1,4 @@
-"""Wings, fins and blades: ``gz-sim-lift-drag-system``, and ``libLiftDragPlugin.so`` of Gazebo Classic.
+"""Wings, fins and blades: ``gz-sim-lift-drag-system`` and ``libLiftDragPlugin.so``.
 
 Lift and drag act at the center of pressure of a link that moves through the air. They grow with the dynamic pressure
 and the area, and with the angle of attack until the wing stalls. A control joint changes the lift, as a flap does.
@@ -60,7 +60,7 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         parameters = self.parameters
         self._link = self.link(parameters.link_name)
         self._control_joint = self.joint(parameters.control_joint_name) if parameters.control_joint_name else ""
-        self._forward, self._upward = _unit(np.array(parameters.forward)), _unit(np.array(parameters.upward))
+        self._forward, self._upward = _normalize(np.array(parameters.forward)), _normalize(np.array(parameters.upward))
         self.simulation.keep_awake(self._link)
         self.every(0.0, self._apply_forces)
         self._apply_forces()
@@ -71,10 +71,10 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
         rotation = data.xmat[body].reshape(3, 3)
         offset = rotation @ np.array(self.parameters.cp)
         linear, angular = simulation.link_velocity(self._link)
-        force = self._force(rotation, linear + np.cross(angular, offset) - np.array(simulation.wind))
+        force = self._compute_force(rotation, linear + np.cross(angular, offset) - np.array(simulation.wind))
         self.push(self._link, force, at=data.xpos[body] + offset)
 
-    def _force(self, rotation: Array, velocity: Array) -> Array:
+    def _compute_force(self, rotation: Array, velocity: Array) -> Array:
         """Return the force in N, in the axes of the world.
 
         Args:
@@ -87,34 +87,34 @@ class LiftDrag(SimulatedPlugin[LiftDragParameters]):
             return np.zeros(3)
         upward = rotation @ self._upward
         if parameters.radial_symmetry:
-            upward = _unit(np.cross(forward, np.cross(forward, velocity)))
-        spanwise = _unit(np.cross(forward, upward))
-        sweep_factor = 1.0 - float(spanwise @ _unit(velocity)) ** 2
+            upward = _normalize(np.cross(forward, np.cross(forward, velocity)))
+        spanwise = _normalize(np.cross(forward, upward))
+        sweep_factor = 1.0 - float(spanwise @ _normalize(velocity)) ** 2
         in_plane = velocity - velocity @ spanwise * spanwise
-        lift_direction = _unit(np.cross(spanwise, in_plane))
+        lift_direction = _normalize(np.cross(spanwise, in_plane))
         angle = acos(min(max(float(lift_direction @ upward), -1.0), 1.0))
-        attack = parameters.a0 + (angle if lift_direction @ forward >= 0.0 else -angle)
-        attack = (attack + pi / 2) % pi - pi / 2
-        lift, drag = (sweep_factor * coefficient for coefficient in self._coefficients(attack))
+        angle_of_attack = parameters.a0 + (angle if lift_direction @ forward >= 0.0 else -angle)
+        angle_of_attack = (angle_of_attack + pi / 2) % pi - pi / 2
+        lift, drag = (sweep_factor * coefficient for coefficient in self._compute_coefficients(angle_of_attack))
         if self._control_joint:
             lift += parameters.control_joint_rad_to_cl * self.simulation.joint_state(self._control_joint)[0]
         pressure = 0.5 * parameters.air_density * float(in_plane @ in_plane)
-        force: Array = pressure * parameters.area * (lift * lift_direction - drag * _unit(in_plane))
+        force: Array = pressure * parameters.area * (lift * lift_direction - drag * _normalize(in_plane))
         return force
 
-    def _coefficients(self, attack: float) -> tuple[float, float]:
+    def _compute_coefficients(self, angle_of_attack: float) -> tuple[float, float]:
         """Return the coefficients of lift and drag for an angle of attack in rad."""
         parameters = self.parameters
-        size, sign = abs(attack), 1.0 if attack > 0.0 else -1.0
-        below, beyond = min(size, parameters.alpha_stall), max(size - parameters.alpha_stall, 0.0)
-        lift = parameters.cla * below + parameters.cla_stall * beyond
-        drag = parameters.cda * below + parameters.cda_stall * beyond
-        if beyond > 0.0:
+        magnitude, sign = abs(angle_of_attack), 1.0 if angle_of_attack > 0.0 else -1.0
+        before_stall, after_stall = min(magnitude, parameters.alpha_stall), max(magnitude - parameters.alpha_stall, 0.0)
+        lift = parameters.cla * before_stall + parameters.cla_stall * after_stall
+        drag = parameters.cda * before_stall + parameters.cda_stall * after_stall
+        if after_stall > 0.0:
             lift = max(lift, 0.0)
         return sign * lift, abs(drag)
 
 
-def _unit(vector: ArrayLike) -> Array:
+def _normalize(vector: ArrayLike) -> Array:
     """Return a vector's direction, or zero for a zero vector."""
     components = np.asarray(vector, np.float64)
     length = float(np.linalg.norm(components))

@@ -22,7 +22,7 @@ from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.pid import Gains, Pid
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_FLOAT = "std_msgs/msg/Float64"
+_FLOAT_TYPE = "std_msgs/msg/Float64"
 _MOTOR_GAIN = 20.0
 """The gain of the motor that holds the propeller's speed, in N m of torque per rad/s of speed error."""
 
@@ -82,10 +82,12 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         if parameters.topic:
             topic = f"/{namespace}/{parameters.topic}"
         commander = node.commander(self._stop_motion)
-        node.subscribe(_FLOAT, topic, self._on_command, commander=commander, stop_motion=self._stop_motion)
+        node.subscribe(_FLOAT_TYPE, topic, self._on_command, commander=commander, stop_motion=self._stop_motion)
         node.subscribe("std_msgs/msg/Bool", f"{base}/enable_deadband", self._on_deadband)
         feedback = "force" if parameters.use_angvel_cmd else "ang_vel"
-        self._feedback = node.publisher(_FLOAT, f"{topic}/{feedback}" if parameters.topic else f"{base}/{feedback}")
+        self._feedback = node.publisher(
+            _FLOAT_TYPE, f"{topic}/{feedback}" if parameters.topic else f"{base}/{feedback}"
+        )
         self.every(0.0, self._apply_thrust)
         self._apply_thrust()
 
@@ -101,8 +103,8 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
                 d=parameters.d_gain,
                 i_min=-1.0,
                 i_max=1.0,
-                cmd_min=self._speed_of(parameters.min_thrust_cmd, self._factor(0.0)),
-                cmd_max=self._speed_of(parameters.max_thrust_cmd, self._factor(0.0)),
+                cmd_min=self._compute_speed(parameters.min_thrust_cmd, self._compute_thrust_factor(0.0)),
+                cmd_max=self._compute_speed(parameters.max_thrust_cmd, self._compute_thrust_factor(0.0)),
                 cmd_offset=0.0,
             )
         )
@@ -118,21 +120,21 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         old_command, self._command = self._command, 0.0
         return old_command != 0.0
 
-    def _thrust_and_speed(self, water_speed: float) -> tuple[float, float]:
+    def _compute_thrust_and_speed(self, water_speed: float) -> tuple[float, float]:
         """Return the thrust in N and the speed in rad/s for the current command.
 
         `water_speed` is the propeller's speed along its axis, in m/s.
         """
         parameters = self.parameters
-        factor, thrust = self._factor(water_speed), self._command
+        factor, thrust = self._compute_thrust_factor(water_speed), self._command
         if parameters.use_angvel_cmd:
             thrust = factor * abs(self._command) * self._command
         thrust = min(max(thrust, parameters.min_thrust_cmd), parameters.max_thrust_cmd)
         if self._has_deadband and abs(thrust) < parameters.deadband:
             return 0.0, 0.0
-        return thrust, self._speed_of(thrust, factor)
+        return thrust, self._compute_speed(thrust, factor)
 
-    def _factor(self, water_speed: float) -> float:
+    def _compute_thrust_factor(self, water_speed: float) -> float:
         """Return the thrust per squared speed of the propeller, in N s2.
 
         Without a coefficient in the parameters, it depends on the advance ratio of the propeller.
@@ -147,11 +149,11 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         return coefficient * parameters.fluid_density * parameters.propeller_diameter**4
 
     @staticmethod
-    def _speed_of(thrust: float, factor: float) -> float:
+    def _compute_speed(thrust: float, factor: float) -> float:
         """Return the speed in rad/s of a propeller with a thrust in N."""
         return copysign(sqrt(abs(thrust / factor)), thrust) if factor else 0.0
 
-    def _batteries(self) -> list[GzBattery]:
+    def _find_batteries(self) -> list[GzBattery]:
         """Return the batteries of the model."""
         path = self.context.path
         return [item for item in self.model_plugins if isinstance(item, GzBattery) and item.context.path == path]
@@ -161,8 +163,8 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         pose = simulation.link_pose(self._link)
         axis = np.array(simulation.data.joint(self._joint).xaxis)
         velocity, _ = simulation.link_velocity(self._link)
-        thrust, speed = self._thrust_and_speed(float(velocity @ axis))
-        torque, batteries = 0.0, self._batteries()
+        thrust, speed = self._compute_thrust_and_speed(float(velocity @ axis))
+        torque, batteries = 0.0, self._find_batteries()
         for battery in batteries:
             if battery.parameters.battery_name == self.parameters.battery_name:
                 battery.loads[self._joint] = self.parameters.power_load
@@ -179,4 +181,4 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         self.push(self._link, thrust * axis, torque * axis, at=pose[:3])
         if self._feedback.is_wanted:
             value = thrust if self.parameters.use_angvel_cmd else simulation.joint_state(self._joint)[1]
-            self._feedback.publish(get_message(_FLOAT)(data=value))
+            self._feedback.publish(get_message(_FLOAT_TYPE)(data=value))

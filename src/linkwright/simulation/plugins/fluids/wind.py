@@ -26,7 +26,9 @@ _MIN_TIME_S = 1e-6
 
 @dataclass(slots=True)
 class _Fluctuation:
-    """A quantity of the wind: a mean that follows the world's wind with delay, a sine, and noise.
+    """A fluctuating quantity of the wind.
+
+    It is the sum of a mean that follows the world's wind with delay, a sine, and noise.
 
     Attributes:
         rise_time: the time constant of the delay, in s.
@@ -47,11 +49,11 @@ class _Fluctuation:
         """Move the mean toward a target for a time in s."""
         self.mean += (target - self.mean) * seconds / self.rise_time
 
-    def swing(self, seconds: float) -> float:
+    def compute_sine(self, seconds: float) -> float:
         """Return the sine at a simulated time in s."""
         return self.amplitude * sin(2 * pi * seconds / self.period)
 
-    def noise(self, random: np.random.Generator) -> float:
+    def draw_noise(self, random: np.random.Generator) -> float:
         """Return a value of the noise."""
         if self.noise_mean == 0.0 and self.noise_deviation == 0.0:
             return 0.0
@@ -81,15 +83,15 @@ class WindEffects(SimulatedPlugin[NoParameters]):
         horizontal = None if element is None else element.first("horizontal")
         x, y, _ = self.simulation.world.wind
         self._random = self.random
-        self._magnitude = self._read(horizontal, "magnitude", "amplitude_percent", 0.0)
-        self._direction = self._read(horizontal, "direction", "amplitude", degrees(atan2(y, x)))
-        self._vertical = self._read(element, "vertical", "amplitude", 0.0)
+        self._magnitude = self._read_fluctuation(horizontal, "magnitude", "amplitude_percent", 0.0)
+        self._direction = self._read_fluctuation(horizontal, "direction", "amplitude", degrees(atan2(y, x)))
+        self._vertical = self._read_fluctuation(element, "vertical", "amplitude", 0.0)
 
     def stop(self) -> None:
         """Restore the wind of the world."""
         self.simulation.wind = self.simulation.world.wind
 
-    def _read(self, parent: Element | None, tag: str, amplitude_tag: str, mean: float) -> _Fluctuation:
+    def _read_fluctuation(self, parent: Element | None, tag: str, amplitude_tag: str, mean: float) -> _Fluctuation:
         element = None if parent is None else parent.first(tag)
         sine = None if element is None else element.first("sin")
         noise = None if element is None else element.first("noise")
@@ -116,14 +118,14 @@ class WindEffects(SimulatedPlugin[NoParameters]):
         simulation = self.simulation
         simulation.refresh()
         if self._revision != simulation.revision:
-            self._revision, self._masses = simulation.revision, self._pushed_masses()
+            self._revision, self._masses = simulation.revision, self._find_pushed_masses()
         self._update_wind()
         wind = np.array(simulation.wind)
         for link, mass in self._masses.items():
             linear, _ = simulation.link_velocity(link)
             self.push(link, mass * self._factor * (wind - linear))
 
-    def _pushed_masses(self) -> dict[str, float]:
+    def _find_pushed_masses(self) -> dict[str, float]:
         """Return the masses in kg of the links on which the wind acts, by the names of the links."""
         simulation = self.simulation
         links = [
@@ -146,7 +148,11 @@ class WindEffects(SimulatedPlugin[NoParameters]):
         self._direction.follow(degrees(atan2(y, x)), step)
         self._vertical.follow(z, step)
         seconds = simulation.seconds
-        magnitude = self._magnitude.mean * (1.0 + self._magnitude.swing(seconds)) + self._magnitude.noise(random)
-        angle = radians(self._direction.mean + self._direction.swing(seconds) + self._direction.noise(random))
-        vertical = self._vertical.mean + self._vertical.noise(random)
+        magnitude = self._magnitude.mean * (1.0 + self._magnitude.compute_sine(seconds)) + self._magnitude.draw_noise(
+            random
+        )
+        angle = radians(
+            self._direction.mean + self._direction.compute_sine(seconds) + self._direction.draw_noise(random)
+        )
+        vertical = self._vertical.mean + self._vertical.draw_noise(random)
         simulation.wind = (magnitude * cos(angle), magnitude * sin(angle), vertical)

@@ -28,7 +28,7 @@ _MIN_FORCE = 1e-4
 """The least force in N that counts."""
 _MIN_DISTANCE = 1e-6
 """The least distance in m from the origin of an object to a contact point."""
-_MIN_RATIO = 0.3
+_MIN_FORCE_RATIO = 0.3
 """The least ratio of two opposing forces."""
 
 
@@ -46,19 +46,19 @@ class GraspFixParameters:
 
 @dataclass(frozen=True, slots=True)
 class _Touch:
-    """The contacts of a link of the gripper with an object.
+    """The contacts between a link of the gripper and an object.
 
     Attributes:
         link: the link of the gripper.
         force: the force on the object in N, in the axes of the world.
         point: the mean contact point in m, in the frame of the link.
-        from_object: the vector from the origin of the object to the contact point in m, in the frame of the object.
+        offset_from_object: the vector from the object's origin to the contact point in m, in the object's frame.
     """
 
     link: str
     force: Array
     point: Array
-    from_object: Array
+    offset_from_object: Array
 
 
 @dataclass(slots=True)
@@ -68,7 +68,7 @@ class _Gripper:
     Attributes:
         palm: the link to which objects are fixed.
         sensors: the contact sensors of the links that grasp, by the names of the links.
-        counts: how often each object was gripped, by the names of their links.
+        counts: the number of updates in which each object was gripped, by the name of its link.
         held_object: the link that is fixed to the palm; empty for none.
         touches: the touches with which `held_object` was gripped.
     """
@@ -95,7 +95,7 @@ class GraspFix(SimulatedPlugin[GraspFixParameters]):
         element = self.context.element
         arms = [] if element is None else list(element.elements("arm"))
         if not arms:
-            raise self._incomplete_arm()
+            raise self._incomplete_arm_error()
         self._grippers = [self._read_gripper(arm) for arm in arms]
         parameters = self.parameters
         self._max_cosine = cos(radians(parameters.forces_angle_tolerance))
@@ -115,7 +115,7 @@ class GraspFix(SimulatedPlugin[GraspFixParameters]):
         """Release the objects."""
         self.reset()
 
-    def _incomplete_arm(self) -> Exception:
+    def _incomplete_arm_error(self) -> Exception:
         return self.parameter_error(
             phrase(
                 "plugin '{plugin}': it needs an <arm> with a <palm_link> and with <gripper_link> elements",
@@ -126,19 +126,21 @@ class GraspFix(SimulatedPlugin[GraspFixParameters]):
     def _read_gripper(self, arm: Element) -> _Gripper:
         palm, links = self.text_in(arm, "palm_link"), [child.text().strip() for child in arm.elements("gripper_link")]
         if not palm or not links:
-            raise self._incomplete_arm()
+            raise self._incomplete_arm_error()
         names = [self.link(link) for link in links]
         return _Gripper(self.link(palm), {name: ContactSensor(Mount(self.simulation, name)) for name in names})
 
     def _update(self) -> None:
         for gripper in self._grippers:
-            touches_by_object = self._touches(gripper)
-            gripped = {name for name, touches in touches_by_object.items() if self._has_opposing_forces(touches)}
-            for name in gripped:
+            touches_by_object = self._measure_touches(gripper)
+            gripped_objects = {
+                name for name, touches in touches_by_object.items() if self._has_opposing_forces(touches)
+            }
+            for name in gripped_objects:
                 gripper.counts[name] = min(gripper.counts.get(name, 0) + 1, self.parameters.max_grip_count)
                 if gripper.counts[name] > self._threshold and not gripper.held_object:
                     self._hold(gripper, name, touches_by_object[name])
-            for name in gripper.counts.keys() - gripped:
+            for name in gripper.counts.keys() - gripped_objects:
                 gripper.counts[name] = max(gripper.counts[name] - 1, 0)
             held_object = gripper.held_object
             if held_object and held_object not in self.simulation.scene.bodies:
@@ -146,7 +148,7 @@ class GraspFix(SimulatedPlugin[GraspFixParameters]):
             elif held_object and gripper.counts[held_object] <= self._threshold and self._has_opened(gripper):
                 self._release(gripper)
 
-    def _touches(self, gripper: _Gripper) -> dict[str, list[_Touch]]:
+    def _measure_touches(self, gripper: _Gripper) -> dict[str, list[_Touch]]:
         """Return the touches of a gripper, by the links of the objects that can move."""
         simulation = self.simulation
         own_model = self.context.path.partition(SEPARATOR)[0]
@@ -163,16 +165,16 @@ class GraspFix(SimulatedPlugin[GraspFixParameters]):
                 position = contact.positions.mean(axis=0)
                 point = rotation_matrix(pose[3:]).T @ (position - pose[:3])
                 force = -contact.forces.sum(axis=0)
-                touch = _Touch(link, force, point, self._in_frame(touched_link, position))
+                touch = _Touch(link, force, point, self._to_link_frame(touched_link, position))
                 touches.setdefault(touched_link, []).append(touch)
         return touches
 
     def _has_opposing_forces(self, touches: list[_Touch]) -> bool:
-        for one, other in combinations(touches, 2):
-            sizes = sorted(float(np.linalg.norm(touch.force)) for touch in (one, other))
-            if sizes[0] < _MIN_FORCE or sizes[0] < _MIN_RATIO * sizes[1]:
+        for first, second in combinations(touches, 2):
+            magnitudes = sorted(float(np.linalg.norm(touch.force)) for touch in (first, second))
+            if magnitudes[0] < _MIN_FORCE or magnitudes[0] < _MIN_FORCE_RATIO * magnitudes[1]:
                 continue
-            if float(one.force @ other.force) < self._max_cosine * sizes[0] * sizes[1]:
+            if float(first.force @ second.force) < self._max_cosine * magnitudes[0] * magnitudes[1]:
                 return True
         return False
 
@@ -196,18 +198,18 @@ class GraspFix(SimulatedPlugin[GraspFixParameters]):
 
     def _has_opened(self, gripper: _Gripper) -> bool:
         """Return whether a link of the gripper has moved away from the object that it holds."""
-        return any(distance > self.parameters.release_tolerance for distance in self._retreats(gripper))
+        return any(distance > self.parameters.release_tolerance for distance in self._measure_retreats(gripper))
 
-    def _retreats(self, gripper: _Gripper) -> Iterator[float]:
+    def _measure_retreats(self, gripper: _Gripper) -> Iterator[float]:
         """Yield how far each touching link has moved outward from the object since the grasp, in m."""
         for touch in gripper.touches:
             pose = self.simulation.link_pose(touch.link)
             point = pose[:3] + rotation_matrix(pose[3:]) @ touch.point
-            distance = float(np.linalg.norm(touch.from_object))
-            movement = self._in_frame(gripper.held_object, point) - touch.from_object
-            yield float(movement @ touch.from_object) / max(distance, _MIN_DISTANCE)
+            distance = float(np.linalg.norm(touch.offset_from_object))
+            movement = self._to_link_frame(gripper.held_object, point) - touch.offset_from_object
+            yield float(movement @ touch.offset_from_object) / max(distance, _MIN_DISTANCE)
 
-    def _in_frame(self, link: str, point: Array) -> Array:
+    def _to_link_frame(self, link: str, point: Array) -> Array:
         """Return a point of the world in the frame of a link, in m."""
         pose = self.simulation.link_pose(link)
         coordinates: Array = rotation_matrix(pose[3:]).T @ (point - pose[:3])

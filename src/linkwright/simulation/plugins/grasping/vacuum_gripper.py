@@ -19,7 +19,7 @@ from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_BOOL = "std_msgs/msg/Bool"
+_BOOL_TYPE = "std_msgs/msg/Bool"
 _MAX_FORCE = 20.0
 """The greatest force of the plugin of ROS 1, in N."""
 
@@ -53,7 +53,7 @@ class VacuumGripper(SimulatedPlugin[VacuumGripperParameters]):
         self._link = self.link(parameters.link_name)
         self._is_old = bool(parameters.topic_name)
         self.reset()
-        self._output = node.publisher(_BOOL, parameters.topic_name or "grasping", 1)
+        self._output = node.publisher(_BOOL_TYPE, parameters.topic_name or "grasping", 1)
         if self._is_old:
             node.service("std_srvs/srv/Empty", "on", lambda _, response: self._switch(response, is_on=True))
             node.service("std_srvs/srv/Empty", "off", lambda _, response: self._switch(response, is_on=False))
@@ -78,14 +78,14 @@ class VacuumGripper(SimulatedPlugin[VacuumGripperParameters]):
         return response
 
     def _attract(self) -> None:
-        forces = dict(self._forces()) if self._is_on else {}
+        forces = dict(self._compute_forces()) if self._is_on else {}
         self.stop_pushing(except_links=forces)
         for link, force in forces.items():
             self.push(link, force)
         if self._output.is_wanted:
-            self._output.publish(get_message(_BOOL)(data=bool(forces)))
+            self._output.publish(get_message(_BOOL_TYPE)(data=bool(forces)))
 
-    def _forces(self) -> Iterator[tuple[str, Array]]:
+    def _compute_forces(self) -> Iterator[tuple[str, Array]]:
         """Yield the links that are close, with the forces on them in N, in the axes of the world."""
         simulation, parameters = self.simulation, self.parameters
         own_model = self.context.path.partition(SEPARATOR)[0]
@@ -99,13 +99,13 @@ class VacuumGripper(SimulatedPlugin[VacuumGripperParameters]):
                 distance = float(np.linalg.norm(to_gripper))
                 if tree_link.link.static or distance > parameters.max_distance:
                     continue
-                size = 1.0
+                magnitude = 1.0
                 if self._is_old:
-                    self._hold(name)
-                    size = min(1.0 / distance, _MAX_FORCE) if distance > 0.0 else 0.0
-                yield link, size * to_gripper / max(distance, 1e-9)
+                    self._match_velocity(name)
+                    magnitude = min(1.0 / distance, _MAX_FORCE) if distance > 0.0 else 0.0
+                yield link, magnitude * to_gripper / max(distance, 1e-9)
 
-    def _hold(self, model: str) -> None:
+    def _match_velocity(self, model: str) -> None:
         """Give a free model the velocity of the gripper."""
         simulation = self.simulation
         if simulation.moves_freely(model):

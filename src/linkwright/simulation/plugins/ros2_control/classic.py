@@ -21,7 +21,7 @@ from linkwright.graph import Logger, Node
 from linkwright.graph.names.rules import join
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.parameters import parameter
-from linkwright.simulation.plugins.ros2_control.classic_gains import classic_gains, gains_of_namespace
+from linkwright.simulation.plugins.ros2_control.classic_gains import parse_gains, read_gains
 from linkwright.simulation.plugins.ros2_control.hardware import SimulatedSystem
 from linkwright.simulation.plugins.ros2_control.joints import is_continuous
 from linkwright.simulation.plugins.ros2_control.plugin import ManagerParameters, SimulatedManager
@@ -57,7 +57,7 @@ class ClassicSystem(SimulatedSystem):
         gains = {}
         for joint in description.joints:
             kind = joint.commands[0].name
-            joint_gains = classic_gains(joint.name, values, logger) if kind != EFFORT else None
+            joint_gains = parse_gains(joint.name, values, logger) if kind != EFFORT else None
             if joint_gains is not None:
                 gains[joint.name, kind] = joint_gains
         return description, gains
@@ -73,14 +73,14 @@ class ClassicSystem(SimulatedSystem):
     def stop(self, *, active: bool) -> None:
         """Switch the emergency stop on or off."""
         if active and not self.is_stopped:
-            self._held = {state.component: state.value for state in self.states if state.kind == POSITION}
+            self._held_positions = {state.component: state.value for state in self.states if state.kind == POSITION}
         self.is_stopped = active
 
     def write(self, time_ns: int, period_s: float) -> None:
         """Apply the commands to the joints, or those of the emergency stop."""
         if self.is_stopped:
             for command in self.commands:
-                command.value = self._held[command.component] if command.kind == POSITION else 0.0
+                command.value = self._held_positions[command.component] if command.kind == POSITION else 0.0
         super().write(time_ns, period_s)
 
 
@@ -123,9 +123,12 @@ class ClassicControl(SimulatedManager[ClassicParameters]):
             self.node.subscribe("std_msgs/msg/Bool", parameters.e_stop_topic, self._on_emergency_stop)
 
     def _read_hardware(self, robot: Robot) -> tuple[list[HardwareDescription], list[Diagnostic]]:
-        """Return the hardware of the transmissions, in which joints that a plugin moves follow their leaders."""
+        """Return the hardware of the transmissions.
+
+        Joints that a mimic joint plugin moves follow their leaders.
+        """
         hardware, findings = hardware_from_transmissions(robot)
-        leaders = self._leaders_by_follower()
+        leaders = self._find_leaders()
         return [
             replace(
                 system,
@@ -139,8 +142,8 @@ class ClassicControl(SimulatedManager[ClassicParameters]):
             for system in hardware
         ], findings
 
-    def _leaders_by_follower(self) -> dict[str, str]:
-        """Return the joint that each joint follows by a mimic joint plugin of the model."""
+    def _find_leaders(self) -> dict[str, str]:
+        """Return the leader of each joint that a mimic joint plugin of the model moves."""
         elements = [plugin.element for plugin in self.context.model.plugins] if self.context.model is not None else []
         pairs = [(element.first("mimicJoint"), element.first("joint")) for element in elements if element is not None]
         return {
@@ -149,20 +152,23 @@ class ClassicControl(SimulatedManager[ClassicParameters]):
             if follower is not None and leader is not None
         }
 
-    def _update_rate(self, values: dict[str, Any]) -> float:
-        """Return the rate of ``<controlPeriod>``, of the manager's parameter, or of the simulation's steps."""
+    def _compute_update_rate(self, values: dict[str, Any]) -> float:
+        """Return the update rate in Hz.
+
+        It is the rate of ``<controlPeriod>``, of the manager's parameter, or of the simulation's steps.
+        """
         step_rate = NANOSECONDS_PER_SECOND / self.simulation.step
         period = self.parameters.control_period
         rate = float(values.get("update_rate", step_rate)) if period is None else 1.0 / max(period, 1.0 / step_rate)
         return min(rate, step_rate)
 
-    def _description_topics(self, node: Node) -> Iterable[str]:
-        """Return the topics named like the parameter of ROS 1, in the namespace and in those around it."""
-        return _names_outwards(node.get_namespace(), self.parameters.robot_param)
+    def _list_description_topics(self, node: Node) -> Iterable[str]:
+        """Return the topics named like ROS 1's parameter, in all enclosing namespaces."""
+        return _search_outwards(node.get_namespace(), self.parameters.robot_param)
 
-    def _system_of(self, description: HardwareDescription, logger: Logger) -> SimulatedSystem:
+    def _create_system(self, description: HardwareDescription, logger: Logger) -> SimulatedSystem:
         namespace = "/" if self.parameters.legacy_mode_ns else self._manager_node.name.rpartition("/")[0]
-        gains = gains_of_namespace(self.parameters.parameters, namespace)
+        gains = read_gains(self.parameters.parameters, namespace)
         return ClassicSystem(description, logger, self, holds_position=True, values=gains)
 
     def _on_emergency_stop(self, message: Any) -> None:
@@ -171,8 +177,11 @@ class ClassicControl(SimulatedManager[ClassicParameters]):
             system.stop(active=bool(message.data))
 
 
-def _names_outwards(namespace: str, name: str) -> Iterator[str]:
-    """Yield a name in a namespace, then in the namespaces around it, as ROS 1 searches for parameters."""
+def _search_outwards(namespace: str, name: str) -> Iterator[str]:
+    """Yield a name in a namespace, then in the enclosing namespaces.
+
+    ROS 1 searches for parameters in this order.
+    """
     if name.startswith("/"):
         yield name
         return

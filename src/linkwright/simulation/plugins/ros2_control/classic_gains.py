@@ -21,10 +21,10 @@ from linkwright.graph.log.logger import Logger
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.files import read_parameter_file
 
-_NODE, _PREFIX = "gazebo_ros_control", "pid_gains"
+_NODE_NAME, _PARAMETER_PREFIX = "gazebo_ros_control", "pid_gains"
 
 
-def gains_of_namespace(paths: Iterable[str], namespace: str) -> dict[str, Any]:
+def read_gains(paths: Iterable[str], namespace: str) -> dict[str, Any]:
     """Return the gains in parameter files for a namespace, by dotted names such as ``elbow.p``.
 
     Raises:
@@ -32,12 +32,12 @@ def gains_of_namespace(paths: Iterable[str], namespace: str) -> dict[str, Any]:
     """
     values: dict[str, Any] = {}
     for path in paths:
-        values |= read_parameter_file(path).for_node(join(namespace or "/", _NODE))
-    prefix = f"{_PREFIX}."
+        values |= read_parameter_file(path).for_node(join(namespace or "/", _NODE_NAME))
+    prefix = f"{_PARAMETER_PREFIX}."
     return {name.removeprefix(prefix): value for name, value in values.items() if name.startswith(prefix)}
 
 
-def classic_gains(joint: str, values: Mapping[str, Any], logger: Logger) -> PidGains | None:
+def parse_gains(joint: str, values: Mapping[str, Any], logger: Logger) -> PidGains | None:
     """Return the gains of a joint's PID controller, or None if the joint has no gain ``p``.
 
     Args:
@@ -48,7 +48,7 @@ def classic_gains(joint: str, values: Mapping[str, Any], logger: Logger) -> PidG
     if f"{joint}.p" not in values:
         return None
 
-    def number(name: str, default: float) -> float:
+    def read_number(name: str, default: float) -> float:
         value = values.get(f"{joint}.{name}", default)
         try:
             return float(value)
@@ -62,12 +62,12 @@ def classic_gains(joint: str, values: Mapping[str, Any], logger: Logger) -> PidG
             logger.warning(warning)
             return default
 
-    clamp = abs(number("i_clamp", 0.0))
+    clamp = abs(read_number("i_clamp", 0.0))
     return PidGains(
-        p=number("p", 0.0),
-        i=number("i", 0.0),
-        d=number("d", 0.0),
-        i_min=-abs(number("i_clamp_min", clamp)),
-        i_max=abs(number("i_clamp_max", clamp)),
+        p=read_number("p", 0.0),
+        i=read_number("i", 0.0),
+        d=read_number("d", 0.0),
+        i_min=-abs(read_number("i_clamp_min", clamp)),
+        i_max=abs(read_number("i_clamp_max", clamp)),
         antiwindup=CLAMPED if values.get(f"{joint}.antiwindup") is True else NONE,
     )

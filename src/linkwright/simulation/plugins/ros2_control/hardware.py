@@ -23,8 +23,8 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph.log.logger import Logger
 from linkwright.simulation.plugins.plugin import PluginContext
 from linkwright.simulation.plugins.ros2_control.joints import SimulatedJoint
-from linkwright.simulation.plugins.ros2_control.pids import pids_of
-from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, create_sensor, sensors_of
+from linkwright.simulation.plugins.ros2_control.pids import extract_pid_gains
+from linkwright.simulation.plugins.ros2_control.sensors import SimulatedSensor, create_sensor, find_sensors
 from linkwright.simulation.scene.structure import PlacedJoint
 from linkwright.simulation.simulation import Simulation
 
@@ -40,7 +40,7 @@ class ControlledModel(Protocol):
     def joint(self, name: str) -> str:
         """Return the full name of a movable joint of the plugin's model, as used in the simulation."""
 
-    def random_of(self, name: str) -> np.random.Generator:
+    def create_generator(self, name: str) -> np.random.Generator:
         """Return the random number generator of a sensor, determined by the seed."""
 
 
@@ -111,8 +111,8 @@ class SimulatedSystem(Hardware):
     def _split_gains(
         self, description: HardwareDescription, values: Mapping[str, Any], logger: Logger
     ) -> tuple[HardwareDescription, Mapping[tuple[str, str], PidGains]]:
-        """Return the description with the interfaces that controllers see, and the gains as `pids_of` does."""
-        return pids_of(description, values, logger)
+        """Return the description without PID interfaces, and the gains, as `extract_pid_gains` does."""
+        return extract_pid_gains(description, values, logger)
 
     def _may_hold(self, joint: ComponentDescription, placed_joint: PlacedJoint) -> bool:
         """Return whether a joint of the model can hold its position while it has no command."""
@@ -125,7 +125,7 @@ class SimulatedSystem(Hardware):
 
     def _create_sensors(self, plugin: ControlledModel) -> list[SimulatedSensor]:
         simulated_sensors = []
-        placed_sensors = sensors_of(plugin.context)
+        placed_sensors = find_sensors(plugin.context)
         for sensor in self.description.sensors:
             placed_sensor = placed_sensors.get(sensor.name)
             if placed_sensor is None:
@@ -138,7 +138,7 @@ class SimulatedSystem(Hardware):
                 continue
             states = [state for state in self.states if state.component == sensor.name]
             simulated_sensors.append(
-                create_sensor(plugin.simulation, placed_sensor, states, plugin.random_of(placed_sensor.name))
+                create_sensor(plugin.simulation, placed_sensor, states, plugin.create_generator(placed_sensor.name))
             )
         return simulated_sensors
 

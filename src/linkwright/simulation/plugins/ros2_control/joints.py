@@ -20,7 +20,10 @@ _MAX_SERVO_SPEED = 1000.0
 
 
 def is_continuous(joint: PlacedJoint) -> bool:
-    """Return whether a joint turns without limits; a URDF's continuous joint is revolute in SDF."""
+    """Return whether a joint turns without limits.
+
+    In SDF, a URDF's continuous joint is revolute.
+    """
     limit = joint.axes[0][0].limit
     return joint.joint.type == "continuous" or (
         joint.joint.type == "revolute" and limit.lower == -inf and limit.upper == inf

@@ -22,12 +22,12 @@ from linkwright.control.motion.pid import CLAMPED, NONE, PidGains
 from linkwright.diagnostics import phrase
 from linkwright.graph.log.logger import Logger
 
-_PREFIXES = {POSITION: "pos_", VELOCITY: "vel_"}
-_SUFFIX = "_pid"
+_PARAMETER_PREFIXES = {POSITION: "pos_", VELOCITY: "vel_"}
+_PID_SUFFIX = "_pid"
 _TRUE_VALUES = ("true", "True", True)
 
 
-def pids_of(
+def extract_pid_gains(
     description: HardwareDescription, values: Mapping[str, Any], logger: Logger
 ) -> tuple[HardwareDescription, dict[tuple[str, str], PidGains]]:
     """Return a description with controllers' interface names, and the declared PID gains.
@@ -45,11 +45,11 @@ def pids_of(
     for joint in description.joints:
         commands = []
         for command in joint.commands:
-            kind = command.name.removesuffix(_SUFFIX)
-            if kind in _PREFIXES:
-                declared_gains = _declared_gains(joint, kind, values, is_pid=kind != command.name)
+            kind = command.name.removesuffix(_PID_SUFFIX)
+            if kind in _PARAMETER_PREFIXES:
+                declared_gains = _find_declared_gains(joint, kind, values, is_pid=kind != command.name)
                 if declared_gains is not None:
-                    gains[joint.name, kind] = _pid_gains(joint.name, declared_gains, logger)
+                    gains[joint.name, kind] = _parse_pid_gains(joint.name, declared_gains, logger)
                 commands.append(replace(command, name=kind))
             else:
                 commands.append(command)
@@ -57,27 +57,27 @@ def pids_of(
     return replace(description, joints=tuple(joints)), gains
 
 
-def _declared_gains(
+def _find_declared_gains(
     joint: ComponentDescription, kind: str, values: Mapping[str, Any], *, is_pid: bool
 ) -> Mapping[str, Any] | None:
     """Return the gains of a joint's PID controller, by name without prefix.
 
     Returns None if the joint has no PID controller.
     """
-    prefix_of_parameters = f"pid_gains.{kind}.{joint.name}."
+    parameter_prefix = f"pid_gains.{kind}.{joint.name}."
     node_gains = {
-        name.removeprefix(prefix_of_parameters): value
+        name.removeprefix(parameter_prefix): value
         for name, value in values.items()
-        if name.startswith(prefix_of_parameters)
+        if name.startswith(parameter_prefix)
     }
     if node_gains or not is_pid:
         return node_gains or None
-    prefix = _PREFIXES[kind]
+    prefix = _PARAMETER_PREFIXES[kind]
     return {name.removeprefix(prefix): value for name, value in joint.parameters.items() if name.startswith(prefix)}
 
 
-def _pid_gains(joint: str, declared_gains: Mapping[str, Any], logger: Logger) -> PidGains:
-    def number(name: str, default: float) -> float:
+def _parse_pid_gains(joint: str, declared_gains: Mapping[str, Any], logger: Logger) -> PidGains:
+    def read_number(name: str, default: float) -> float:
         try:
             return float(declared_gains.get(name, default))
         except (TypeError, ValueError):
@@ -90,12 +90,12 @@ def _pid_gains(joint: str, declared_gains: Mapping[str, Any], logger: Logger) ->
             logger.warning(warning)
             return default
 
-    max_integral_error = number("max_integral_error", inf)
+    max_integral_error = read_number("max_integral_error", inf)
     return PidGains(
-        p=number("kp", 0.0),
-        i=number("ki", 0.0),
-        d=number("kd", 0.0),
+        p=read_number("kp", 0.0),
+        i=read_number("ki", 0.0),
+        d=read_number("kd", 0.0),
         i_max=max_integral_error,
-        i_min=number("min_integral_error", -max_integral_error),
+        i_min=read_number("min_integral_error", -max_integral_error),
         antiwindup=CLAMPED if declared_gains.get("antiwindup") in _TRUE_VALUES else NONE,
     )

@@ -18,10 +18,10 @@ from typing import Any, ClassVar, Generic, TypeVar
 from linkwright.control.hardware.component import Hardware
 from linkwright.control.hardware.description import HardwareDescription, hardware_from_robot
 from linkwright.control.hardware.resources import Resources
+from linkwright.control.manager.hardware_loading import load_hardware
 from linkwright.control.manager.manager import ControllerManager, SavedState
 from linkwright.control.manager.nodes import ProcessArguments
 from linkwright.control.manager.services import ManagerServices
-from linkwright.control.manager.starting import load_hardware
 from linkwright.descriptions import DescriptionLibrary
 from linkwright.diagnostics import Diagnostic
 from linkwright.graph import DESCRIPTION_QOS, Logger, Node
@@ -32,10 +32,10 @@ from linkwright.graph.stepped.node import SteppedNode
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.simulation.plugins.ros2_control.hardware import SimulatedSystem
-from linkwright.simulation.plugins.ros_element import node_of
+from linkwright.simulation.plugins.ros_element import read_node_description
 from linkwright.urdf import Robot
 
-_DEFAULT_RATE = 100
+_DEFAULT_RATE_HZ = 100
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,16 +70,16 @@ class SimulatedManager(SimulatedPlugin[P], Generic[P]):
         """Return the hardware in the robot's description, and findings about it."""
         return hardware_from_robot(robot)
 
-    def _update_rate(self, values: dict[str, Any]) -> float:
+    def _compute_update_rate(self, values: dict[str, Any]) -> float:
         """Return the rate of the updates in Hz, from the parameters of the manager."""
-        return float(values.get("update_rate", _DEFAULT_RATE))
+        return float(values.get("update_rate", _DEFAULT_RATE_HZ))
 
-    def _description_topics(self, node: Node) -> Iterable[str]:
+    def _list_description_topics(self, node: Node) -> Iterable[str]:
         """Return the topics of the robot's description; the first description that arrives is used."""
         return (node.handle.resolve_topic_name(name) for name in ("robot_description", "~/robot_description"))
 
     @abstractmethod
-    def _system_of(self, description: HardwareDescription, logger: Logger) -> SimulatedSystem:
+    def _create_system(self, description: HardwareDescription, logger: Logger) -> SimulatedSystem:
         """Create the hardware of a description."""
 
     def start(self) -> None:
@@ -88,7 +88,7 @@ class SimulatedManager(SimulatedPlugin[P], Generic[P]):
         parameter_rules = ParameterRules()
         for path in self.parameters.parameters:
             parameter_rules.add(read_parameter_file(path))
-        node_description = node_of(self.context.name, self.context.element, namespace)
+        node_description = read_node_description(self.context.name, self.context.element, namespace)
         self._values = {**parameter_rules.for_node(self.node.name), **node_description.parameters}
         name = self.parameters.controller_manager_name
         values = {
@@ -113,13 +113,13 @@ class SimulatedManager(SimulatedPlugin[P], Generic[P]):
             self.node.exchange,
             Resources(node.get_logger()),
             ProcessArguments(parameter_rules, node_description.remappings),
-            update_rate=self._update_rate(values),
+            update_rate=self._compute_update_rate(values),
         )
         self._systems: list[SimulatedSystem] = []
         self._last_update = self.simulation.time
         self._is_loaded = False
         node.get_logger().info("Loading controller_manager")
-        for topic in dict.fromkeys(self._description_topics(node)):
+        for topic in dict.fromkeys(self._list_description_topics(node)):
             self._manager_node.subscribe("std_msgs/msg/String", topic, self._on_description, DESCRIPTION_QOS)
 
     def reset(self) -> None:
@@ -140,7 +140,7 @@ class SimulatedManager(SimulatedPlugin[P], Generic[P]):
             self._manager.close()
             self._manager_node.close()
 
-    def random_of(self, name: str) -> Any:
+    def create_generator(self, name: str) -> Any:
         """Return the random number generator of a sensor.
 
         The generator is seeded from the simulation's seed and the sensor's name.
@@ -155,8 +155,8 @@ class SimulatedManager(SimulatedPlugin[P], Generic[P]):
             manager,
             message.data,
             DescriptionLibrary(),
-            self._create_system,
-            read=self._read_hardware,
+            self._add_system,
+            read_hardware=self._read_hardware,
             enforces_limits=self.ENFORCES_LIMITS,
         )
         if not self._is_loaded:
@@ -167,8 +167,8 @@ class SimulatedManager(SimulatedPlugin[P], Generic[P]):
         self.every(manager.update_rate, self._update)
         manager.resume(self.stored_values.pop(self._manager_node.name, SavedState()))
 
-    def _create_system(self, description: HardwareDescription, logger: Logger) -> Hardware:
-        system = self._system_of(description, logger)
+    def _add_system(self, description: HardwareDescription, logger: Logger) -> Hardware:
+        system = self._create_system(description, logger)
         self._systems.append(system)
         if system.has_pids:
             self.every(0.0, lambda: system.push(self.simulation.step / NANOSECONDS_PER_SECOND))
@@ -193,7 +193,7 @@ class SimulatedControl(SimulatedManager[Parameters]):
         "controller_manager_prefix_node_name",
     )
 
-    def _system_of(self, description: HardwareDescription, logger: Logger) -> SimulatedSystem:
+    def _create_system(self, description: HardwareDescription, logger: Logger) -> SimulatedSystem:
         gain = self._manager_values.get("position_proportional_gain", self.parameters.position_proportional_gain)
         return SimulatedSystem(
             description,

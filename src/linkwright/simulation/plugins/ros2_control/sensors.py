@@ -42,7 +42,7 @@ class SimulatedSensor:
             state.value = values.get(state.kind, state.value)
 
 
-def sensors_of(context: PluginContext) -> dict[str, PlacedSensor]:
+def find_sensors(context: PluginContext) -> dict[str, PlacedSensor]:
     """Return the IMUs and force-torque sensors of the plugin's model, by sensor name."""
     assert context.model is not None
     contexts: Iterator[PluginContext] = model_plugins(context.world, context.model, context.path)
@@ -58,11 +58,11 @@ def create_sensor(
 ) -> SimulatedSensor:
     """Create an IMU or force-torque sensor that updates the given state interfaces."""
     if placed.sensor.type == "imu":
-        return SimulatedSensor(_imu_reader(simulation, placed, generator), states)
-    return SimulatedSensor(_wrench_reader(simulation, placed, generator), states)
+        return SimulatedSensor(_create_imu_reader(simulation, placed, generator), states)
+    return SimulatedSensor(_create_wrench_reader(simulation, placed, generator), states)
 
 
-def _imu_reader(
+def _create_imu_reader(
     simulation: Simulation, placed: PlacedSensor, generator: np.random.Generator
 ) -> Callable[[], dict[str, float]]:
     mount = Mount(simulation, placed.link, placed.pose)
@@ -71,15 +71,15 @@ def _imu_reader(
     def measure() -> dict[str, float]:
         measurement = sensor.measure()
         return {
-            **_by_interface("orientation", "xyzw", measurement.orientation),
-            **_by_interface("angular_velocity", "xyz", measurement.angular_velocity),
-            **_by_interface("linear_acceleration", "xyz", measurement.linear_acceleration),
+            **_name_by_interface("orientation", "xyzw", measurement.orientation),
+            **_name_by_interface("angular_velocity", "xyz", measurement.angular_velocity),
+            **_name_by_interface("linear_acceleration", "xyz", measurement.linear_acceleration),
         }
 
     return measure
 
 
-def _wrench_reader(
+def _create_wrench_reader(
     simulation: Simulation, placed: PlacedSensor, generator: np.random.Generator
 ) -> Callable[[], dict[str, float]]:
     simulation.keep_awake(placed.link)
@@ -87,10 +87,13 @@ def _wrench_reader(
 
     def measure() -> dict[str, float]:
         force, torque = sensor.measure()
-        return {**_by_interface("force", "xyz", force.tolist()), **_by_interface("torque", "xyz", torque.tolist())}
+        return {
+            **_name_by_interface("force", "xyz", force.tolist()),
+            **_name_by_interface("torque", "xyz", torque.tolist()),
+        }
 
     return measure
 
 
-def _by_interface(name: str, axes: str, values: Sequence[float]) -> dict[str, float]:
+def _name_by_interface(name: str, axes: str, values: Sequence[float]) -> dict[str, float]:
     return {f"{name}.{axis}": float(value) for axis, value in zip(axes, values, strict=True)}

@@ -92,7 +92,7 @@ class SensorPlugin(SimulatedPlugin[P], ABC, Generic[P]):
         parent_topic = f"/world/{self.context.world.name}/model/{model}/{entity_type}/{'/'.join(nested_names[:-1])}"
         return f"{parent_topic}/sensor/{nested_names[-1]}/{leaf}"
 
-    def gz_output(self, message_type: str, leaf: str, conventional_topic: str = "") -> Output:
+    def create_gz_output(self, message_type: str, leaf: str, conventional_topic: str = "") -> Output:
         """Create the publisher of a gz sensor, on its declared topic or on gz's default topic.
 
         Args:
@@ -130,7 +130,7 @@ class SingleTopicSensor(SensorPlugin[P], Generic[P]):
         return self.output.is_wanted
 
 
-def vector_message(values: Array) -> Vector3:
+def vector_to_message(values: Array) -> Vector3:
     """Return three numbers as a ``geometry_msgs/msg/Vector3``."""
     x, y, z = values.tolist()
     return Vector3(x=x, y=y, z=z)

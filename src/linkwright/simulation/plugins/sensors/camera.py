@@ -34,10 +34,14 @@ from linkwright.simulation.plugins.sensors.images import (
     fill_image,
 )
 from linkwright.simulation.rendering.renderer import Channels, RenderedImage
-from linkwright.simulation.rendering.sharing import share_renderer
+from linkwright.simulation.rendering.shared_renderer import share_renderer
 
 P = TypeVar("P")
-IMAGE, INFO, CLOUD = "sensor_msgs/msg/Image", "sensor_msgs/msg/CameraInfo", "sensor_msgs/msg/PointCloud2"
+IMAGE_TYPE, CAMERA_INFO_TYPE, CLOUD_TYPE = (
+    "sensor_msgs/msg/Image",
+    "sensor_msgs/msg/CameraInfo",
+    "sensor_msgs/msg/PointCloud2",
+)
 _DEPTH_TYPES = ("depth", "depth_camera", "rgbd_camera", "rgbd")
 
 
@@ -70,24 +74,24 @@ class CameraPlugin(SensorPlugin[P], Generic[P]):
 
     def start(self) -> None:
         """Acquire the shared renderer, and create the cameras and the topics."""
-        self._shared = share_renderer(self.simulation)
+        self._shared_renderer = share_renderer(self.simulation)
         super().start()
 
     def stop(self) -> None:
         """Release the shared renderer."""
-        self._shared.release()
+        self._shared_renderer.release()
 
     def render(self, camera: MountedCamera, channels: Channels) -> RenderedImage:
         """Render the requested channels of one of the sensor's cameras, with noise on the colors."""
         pose = compose(self.simulation.link_pose(self.sensor.link), camera.pose)
-        rendered = self._shared.render(camera.optics, pose, channels, self._log_renderer)
+        rendered = self._shared_renderer.render(camera.optics, pose, channels, self._log_renderer)
         if rendered.color is None:
             return rendered
         return RenderedImage(camera.noise.apply(rendered.color), rendered.depth, rendered.geoms)
 
     def publish_image(self, output: Output, camera: MountedCamera, rendered: RenderedImage, frame: str) -> None:
         """Publish the colors of a rendered image in the camera's encoding."""
-        message = self.message(IMAGE, frame)
+        message = self.message(IMAGE_TYPE, frame)
         fill_image(message, rendered.color, camera.encoding)  # type: ignore[arg-type]  # requested
         output.publish(message)
 
@@ -166,24 +170,24 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
         self._frame = self.classic_frame()
         is_multicamera = sensor.type == "multicamera"
         bases = [f"{name}/{camera.description.name}" if is_multicamera else name for camera in self.cameras]
-        self._images = [self._create_output(IMAGE, base, parameters.image_topic_name) for base in bases]
-        self._infos = [self._create_output(INFO, base, parameters.camera_info_topic_name) for base in bases]
+        self._images = [self._create_output(IMAGE_TYPE, base, parameters.image_topic_name) for base in bases]
+        self._infos = [self._create_output(CAMERA_INFO_TYPE, base, parameters.camera_info_topic_name) for base in bases]
         self._depths: list[Output] = []
         if sensor.type in _DEPTH_TYPES:
             self._depths = [
-                self._create_output(IMAGE, name, parameters.depth_image_topic_name),
-                self._create_output(INFO, name, parameters.depth_info_topic_name),
-                self._create_output(CLOUD, name, parameters.point_cloud_topic_name),
+                self._create_output(IMAGE_TYPE, name, parameters.depth_image_topic_name),
+                self._create_output(CAMERA_INFO_TYPE, name, parameters.depth_info_topic_name),
+                self._create_output(CLOUD_TYPE, name, parameters.point_cloud_topic_name),
             ]
         self._is_image_requested = not parameters.triggered
         if parameters.triggered:
             trigger_class = get_message("std_msgs/msg/Empty")
-            self.node.subscribe(trigger_class, f"{name}/image_trigger", self._trigger)
+            self.node.subscribe(trigger_class, f"{name}/image_trigger", self._on_trigger)
 
     def _create_output(self, message_type: str, base: str, topic: str) -> Output:
         return self.node.publisher(message_type, topic if topic.startswith("/") else f"{base}/{topic}", SENSOR_QOS)
 
-    def _trigger(self, _message: Any) -> None:
+    def _on_trigger(self, _message: Any) -> None:
         self._is_image_requested = True
 
     @property
@@ -225,12 +229,12 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
     def _publish_depth(self, depth: Output, cloud: Output, camera: MountedCamera, rendered: RenderedImage) -> None:
         nearest, farthest = self.parameters.min_depth, self.parameters.max_depth
         if depth.is_wanted and rendered.depth is not None:
-            message = self.message(IMAGE, self._frame)
+            message = self.message(IMAGE_TYPE, self._frame)
             fill_depth(message, rendered.depth, nearest, farthest)
             depth.publish(message)
         if cloud.is_wanted and rendered.depth is not None and rendered.color is not None:
-            message = self.message(CLOUD, self._frame)
-            points = points_of(camera.optics, clip_depth(rendered.depth, nearest, farthest))
+            message = self.message(CLOUD_TYPE, self._frame)
+            points = compute_points(camera.optics, clip_depth(rendered.depth, nearest, farthest))
             fill_camera_cloud(message, points, rendered.color, swap_red_blue=self.gazebo_mistakes)
             cloud.publish(message)
 
@@ -239,15 +243,15 @@ class ClassicCamera(CameraPlugin[CameraParameters]):
             return
         parameters, optics = self.parameters, camera.optics
         center = parameters.cx or (optics.width + 1) / 2, parameters.cy or (optics.height + 1) / 2
-        message = self.message(INFO, self._frame)
+        message = self.message(CAMERA_INFO_TYPE, self._frame)
         fill_camera_info(
-            message, optics, camera.description.distortion, center=center, focal=parameters.focal_length,
+            message, optics, camera.description.distortion, center=center, focal_length=parameters.focal_length,
             baseline=parameters.hack_baseline,
         )  # fmt: skip
         output.publish(message)
 
 
-def points_of(optics: Optics, depth: Any) -> Any:
+def compute_points(optics: Optics, depth: Any) -> Any:
     """Return the points of a depth image in m, shape (height, width, 3).
 
     The axes are x to the right, y down and z forwards.
@@ -271,18 +275,18 @@ class GzCamera(CameraPlugin[NoParameters]):
         self._optical = camera.optical_frame_id or self._frame
         self._image = self._depth = self._cloud = None
         if kind in ("rgbd_camera", "rgbd"):
-            self._image = self._create_leaf_output(IMAGE, "image")
-            self._depth = self._create_leaf_output(IMAGE, "depth_image")
-            self._cloud = self._create_leaf_output(CLOUD, "points")
+            self._image = self._create_leaf_output(IMAGE_TYPE, "image")
+            self._depth = self._create_leaf_output(IMAGE_TYPE, "depth_image")
+            self._cloud = self._create_leaf_output(CLOUD_TYPE, "points")
         elif kind in _DEPTH_TYPES:
-            self._depth = self.gz_output(IMAGE, "depth_image")
+            self._depth = self.create_gz_output(IMAGE_TYPE, "depth_image")
             topic = self.sensor.sensor.topic or self.gz_topic("depth_image")
-            self._cloud = self.node.publisher(CLOUD, f"{topic}/points")
+            self._cloud = self.node.publisher(CLOUD_TYPE, f"{topic}/points")
         else:
-            self._image = self.gz_output(IMAGE, "image")
-        topic = camera.camera_info_topic or self._info_topic()
+            self._image = self.create_gz_output(IMAGE_TYPE, "image")
+        topic = camera.camera_info_topic or self._choose_info_topic()
         self._info = self.node.publisher(
-            INFO, topic, conventional_topic="" if self.sensor.sensor.topic else "/camera_info"
+            CAMERA_INFO_TYPE, topic, conventional_topic="" if self.sensor.sensor.topic else "/camera_info"
         )
 
     def _create_leaf_output(self, message_type: str, leaf: str) -> Output:
@@ -293,7 +297,7 @@ class GzCamera(CameraPlugin[NoParameters]):
             conventional_topic="" if topic else f"/{leaf}",
         )
 
-    def _info_topic(self) -> str:
+    def _choose_info_topic(self) -> str:
         topic = self.sensor.sensor.topic
         if not topic:
             return self.gz_topic("camera_info")
@@ -322,16 +326,16 @@ class GzCamera(CameraPlugin[NoParameters]):
             self.publish_image(self._image, camera, rendered, self._optical)
         clip = camera.description.depth_clip or camera.description.clip
         if self._depth is not None and self._depth.is_wanted:
-            message = self.message(IMAGE, self._optical)
+            message = self.message(IMAGE_TYPE, self._optical)
             fill_depth(message, rendered.depth, clip.near, clip.far)  # type: ignore[arg-type]  # requested
             self._depth.publish(message)
         if self._cloud is not None and self._cloud.is_wanted:
-            message = self.message(CLOUD, self._frame)
-            points = points_of(camera.optics, clip_depth(rendered.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
+            message = self.message(CLOUD_TYPE, self._frame)
+            points = compute_points(camera.optics, clip_depth(rendered.depth, clip.near, clip.far))  # type: ignore[arg-type]  # see above
             forward_points = np.stack([points[:, :, 2], -points[:, :, 0], -points[:, :, 1]], axis=-1)
             fill_camera_cloud(message, forward_points, rendered.color)  # type: ignore[arg-type]  # requested
             self._cloud.publish(message)
         if self._info.is_wanted:
-            message = self.message(INFO, self._optical)
+            message = self.message(CAMERA_INFO_TYPE, self._optical)
             fill_camera_info(message, camera.optics, camera.description.distortion)
             self._info.publish(message)

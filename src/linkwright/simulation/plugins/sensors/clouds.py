@@ -14,22 +14,22 @@ _FIELD_TYPES = {np.dtype(np.uint16): 4, np.dtype(np.float32): 7}
 AnyArray = np.ndarray[Any, np.dtype[Any]]
 
 
-def _layout(size: int, **offsets: int) -> np.dtype[Any]:
+def _create_layout(size: int, **offsets: int) -> np.dtype[Any]:
     formats = [np.uint16 if name == "ring" else np.float32 for name in offsets]
     return np.dtype({"names": [*offsets], "formats": formats, "offsets": [*offsets.values()], "itemsize": size})
 
 
-CLASSIC = _layout(16, x=0, y=4, z=8, intensity=12)
+CLASSIC_LAYOUT = _create_layout(16, x=0, y=4, z=8, intensity=12)
 """The layout of a point of ``gazebo_ros_ray_sensor``."""
-VELODYNE = _layout(22, x=0, y=4, z=8, intensity=12, ring=16, time=18)
+VELODYNE_LAYOUT = _create_layout(22, x=0, y=4, z=8, intensity=12, ring=16, time=18)
 """The layout of a point of velodyne_simulator, as in velodyne_pointcloud. All points of a revolution have time 0."""
-GZ = _layout(32, x=0, y=4, z=8, intensity=16, ring=24)
+GZ_LAYOUT = _create_layout(32, x=0, y=4, z=8, intensity=16, ring=24)
 """The layout of a point of gz-sensors. The fields after x, y and z start at multiples of 8 bytes."""
-_COLORED = _layout(32, x=0, y=4, z=8, rgb=16)
+_COLORED_LAYOUT = _create_layout(32, x=0, y=4, z=8, rgb=16)
 
 
 @cache
-def _fields(layout: np.dtype[Any]) -> tuple[Any, ...]:
+def _create_fields(layout: np.dtype[Any]) -> tuple[Any, ...]:
     field_class = get_message("sensor_msgs/msg/PointField")
     layout_fields = {name: layout.fields[name] for name in layout.names or ()} if layout.fields else {}
     return tuple(
@@ -44,7 +44,7 @@ def fill_lidar_cloud(
     intensities: AnyArray,
     rings: AnyArray | None = None,
     *,
-    layout: np.dtype[Any] = CLASSIC,
+    layout: np.dtype[Any] = CLASSIC_LAYOUT,
     height: int = 1,
 ) -> None:
     """Fill a PointCloud2 with a lidar's measurement.
@@ -63,7 +63,7 @@ def fill_lidar_cloud(
     records["intensity"] = intensities
     if rings is not None:
         records["ring"] = rings
-    _fill(message, records, height)
+    _fill_cloud(message, records, height)
     message.is_dense = bool(np.isfinite(points).all() and np.isfinite(intensities).all())
 
 
@@ -82,16 +82,16 @@ def fill_camera_cloud(message: Any, points: AnyArray, color: AnyArray, *, swap_r
     record_bytes = records.view(np.uint8).reshape(height * width, 32)
     # PCL stores blue in the lowest byte.
     record_bytes[:, 16:19] = color.reshape(-1, 3)[:, :: 1 if swap_red_blue else -1]
-    _fill(message, records.view(_COLORED).reshape(-1), height)
+    _fill_cloud(message, records.view(_COLORED_LAYOUT).reshape(-1), height)
     message.is_dense = False
 
 
-def _fill(message: Any, rows: AnyArray, height: int) -> None:
+def _fill_cloud(message: Any, rows: AnyArray, height: int) -> None:
     """Fill a PointCloud2 with points of a structured NumPy type, in `height` rows.
 
     The points have shape (n,).
     """
-    message.fields = list(_fields(rows.dtype))
+    message.fields = list(_create_fields(rows.dtype))
     message.height, message.width = height, len(rows) // max(height, 1)
     message.point_step = rows.dtype.itemsize
     message.row_step = message.point_step * message.width

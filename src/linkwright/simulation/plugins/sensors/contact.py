@@ -13,7 +13,7 @@ from linkwright.geometry.arrays import Array
 from linkwright.messages import get_message
 from linkwright.sdf.poses import WORLD
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, SingleTopicSensor, vector_message
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, SingleTopicSensor, vector_to_message
 from linkwright.simulation.sensors.contact import Contact, ContactSensor
 
 P = TypeVar("P")
@@ -29,7 +29,7 @@ class BumperParameters:
     topic_name: str = parameter("bumper_states", aliases=("bumperTopicName", "bumper_topic_name"))
 
 
-class _Contacts(SingleTopicSensor[P], Generic[P]):
+class _ContactPlugin(SingleTopicSensor[P], Generic[P]):
     """A sensor that measures the contacts of one collision, or of all collisions of its link."""
 
     def create_sensor(self) -> None:
@@ -42,7 +42,7 @@ class _Contacts(SingleTopicSensor[P], Generic[P]):
         self.contacts = ContactSensor(self.mount, collision_names)
 
 
-class ClassicBumper(_Contacts[BumperParameters]):
+class ClassicBumper(_ContactPlugin[BumperParameters]):
     """The substitute for ``libgazebo_ros_bumper.so``.
 
     Positions and forces are in the world frame, regardless of the frame in the message's header.
@@ -57,15 +57,15 @@ class ClassicBumper(_Contacts[BumperParameters]):
     def measure(self) -> None:
         """Measure and publish, even if there are no contacts."""
         message = self.message(_STATE_TYPE, self.parameters.frame_name)
-        message.states = [_contact_state(contact) for contact in self.contacts.measure()]
+        message.states = [_to_contact_state(contact) for contact in self.contacts.measure()]
         self.output.publish(message)
 
 
-class GzContact(_Contacts[NoParameters]):
+class GzContact(_ContactPlugin[NoParameters]):
     """The sensor ``contact`` of gz, which publishes nothing while there is no contact."""
 
     def create_publishers(self) -> None:
-        """Create the publisher on the topic that ``<contact>`` names, or on the default topic of gz."""
+        """Create the publisher on the topic in ``<contact>``, or on gz's default topic."""
         contact = self.sensor.sensor.contact
         declared_topic = "" if contact is None or contact.topic == _DEFAULT_TOPIC else contact.topic
         conventional_topic = "" if declared_topic else "/contacts"
@@ -78,11 +78,11 @@ class GzContact(_Contacts[NoParameters]):
         contacts = self.contacts.measure()
         if contacts:
             message = self.message(_CONTACTS_TYPE, "")
-            message.contacts = [_contact_message(contact) for contact in contacts]
+            message.contacts = [_to_contact_message(contact) for contact in contacts]
             self.output.publish(message)
 
 
-def _contact_message(contact: Contact) -> Any:
+def _to_contact_message(contact: Contact) -> Any:
     """Return the ``ros_gz_interfaces/msg/Contact`` of a contact.
 
     Positions, normals and forces are in world axes.
@@ -90,31 +90,31 @@ def _contact_message(contact: Contact) -> Any:
     message = get_message("ros_gz_interfaces/msg/Contact")()
     for entity, name in ((message.collision1, contact.collision1), (message.collision2, contact.collision2)):
         entity.name, entity.type = name, entity.COLLISION
-    message.positions = [vector_message(position) for position in contact.positions]
-    message.normals = [vector_message(normal) for normal in contact.normals]
+    message.positions = [vector_to_message(position) for position in contact.positions]
+    message.normals = [vector_to_message(normal) for normal in contact.normals]
     message.depths = [float(depth) for depth in contact.depths]
     for force, torque in zip(contact.forces, contact.torques, strict=True):
         joint_wrench = get_message("ros_gz_interfaces/msg/JointWrench")()
         joint_wrench.body_1_name.data, joint_wrench.body_2_name.data = contact.collision1, contact.collision2
         joint_wrench.body_1_wrench, joint_wrench.body_2_wrench = (
-            wrench_message(force, torque),
-            wrench_message(-force, -torque),
+            wrench_to_message(force, torque),
+            wrench_to_message(-force, -torque),
         )
         message.wrenches.append(joint_wrench)
     return message
 
 
-def _contact_state(contact: Contact) -> Any:
+def _to_contact_state(contact: Contact) -> Any:
     state = get_message("gazebo_msgs/msg/ContactState")()
     state.collision1_name, state.collision2_name = contact.collision1, contact.collision2
-    state.wrenches = [wrench_message(*pair) for pair in zip(contact.forces, contact.torques, strict=True)]
-    state.total_wrench = wrench_message(contact.forces.sum(axis=0), contact.torques.sum(axis=0))
-    state.contact_positions = [vector_message(position) for position in contact.positions]
-    state.contact_normals = [vector_message(normal) for normal in contact.normals]
+    state.wrenches = [wrench_to_message(*pair) for pair in zip(contact.forces, contact.torques, strict=True)]
+    state.total_wrench = wrench_to_message(contact.forces.sum(axis=0), contact.torques.sum(axis=0))
+    state.contact_positions = [vector_to_message(position) for position in contact.positions]
+    state.contact_normals = [vector_to_message(normal) for normal in contact.normals]
     state.depths = [float(depth) for depth in contact.depths]
     return state
 
 
-def wrench_message(force: Array, torque: Array) -> Any:
+def wrench_to_message(force: Array, torque: Array) -> Any:
     """Return a force in N and a torque in N m as a ``geometry_msgs/msg/Wrench``."""
-    return get_message("geometry_msgs/msg/Wrench")(force=vector_message(force), torque=vector_message(torque))
+    return get_message("geometry_msgs/msg/Wrench")(force=vector_to_message(force), torque=vector_to_message(torque))

@@ -15,7 +15,7 @@ from linkwright.simulation.plugins.sensors.base import (
     FrameNameParameter,
     SensorPlugin,
     SingleTopicSensor,
-    vector_message,
+    vector_to_message,
 )
 from linkwright.simulation.sensors.earth import AltimeterSensor, Barometer, Fix, MagnetometerSensor, NavsatSensor
 
@@ -24,29 +24,30 @@ _FIX_TYPE = "sensor_msgs/msg/NavSatFix"
 _MAGNETIC_FIELD_TYPE = "sensor_msgs/msg/MagneticField"
 _ALTIMETER_TYPE = "ros_gz_interfaces/msg/Altimeter"
 _PRESSURE_TYPE = "sensor_msgs/msg/FluidPressure"
-_COVARIANCE_TYPE_DIAGONAL = 2
+_COVARIANCE_TYPE_DIAGONAL_KNOWN, _STATUS_FIX, _SERVICE_GPS = 2, 0, 1
+"""Constants of ``sensor_msgs/msg/NavSatFix`` and ``NavSatStatus``."""
 
 
-class _Receiver(SensorPlugin[P], Generic[P]):
+class _NavsatPlugin(SensorPlugin[P], Generic[P]):
     """A satellite navigation receiver that publishes ``sensor_msgs/msg/NavSatFix``."""
 
     def create_sensor(self) -> None:
         """Create the receiver for the geographic position of the world's origin."""
         coordinates = self.context.world.spherical_coordinates
-        self._receiver = NavsatSensor(self.mount, self.sensor.sensor.navsat, coordinates, self.random)
+        self._sensor = NavsatSensor(self.mount, self.sensor.sensor.navsat, coordinates, self.random)
 
     def measure_fix(self, frame: str) -> tuple[Fix, Any]:
         """Measure, and return the fix and its NavSatFix message."""
-        fix = self._receiver.measure()
+        fix = self._sensor.measure()
         message = self.message(_FIX_TYPE, frame)
         message.latitude, message.longitude, message.altitude = fix.latitude, fix.longitude, fix.altitude
-        message.status.status, message.status.service = 0, 1
-        message.position_covariance = self._receiver.position_noise.covariance.copy()
-        message.position_covariance_type = _COVARIANCE_TYPE_DIAGONAL
+        message.status.status, message.status.service = _STATUS_FIX, _SERVICE_GPS
+        message.position_covariance = self._sensor.position_noise.covariance.copy()
+        message.position_covariance_type = _COVARIANCE_TYPE_DIAGONAL_KNOWN
         return fix, message
 
 
-class ClassicGps(_Receiver[FrameNameParameter]):
+class ClassicGps(_NavsatPlugin[FrameNameParameter]):
     """The substitute for ``libgazebo_ros_gps_sensor.so``.
 
     The plugin publishes the geographic position, and the velocity in m/s towards east, north and up.
@@ -56,28 +57,28 @@ class ClassicGps(_Receiver[FrameNameParameter]):
 
     def create_publishers(self) -> None:
         """Create the publishers of the position and the velocity."""
-        self._fixes = self.node.publisher(_FIX_TYPE, "~/out", SENSOR_QOS)
-        self._velocities = self.node.publisher("geometry_msgs/msg/Vector3Stamped", "~/vel", SENSOR_QOS)
+        self._fix_output = self.node.publisher(_FIX_TYPE, "~/out", SENSOR_QOS)
+        self._velocity_output = self.node.publisher("geometry_msgs/msg/Vector3Stamped", "~/vel", SENSOR_QOS)
 
     def is_wanted(self) -> bool:
         """Return whether a topic has a subscription."""
-        return self._fixes.is_wanted or self._velocities.is_wanted
+        return self._fix_output.is_wanted or self._velocity_output.is_wanted
 
     def measure(self) -> None:
         """Measure, and publish the position and the velocity."""
         fix, message = self.measure_fix(self.classic_frame())
-        self._fixes.publish(message)
+        self._fix_output.publish(message)
         velocity = self.message("geometry_msgs/msg/Vector3Stamped", self.classic_frame())
-        velocity.vector = vector_message(fix.velocity)
-        self._velocities.publish(velocity)
+        velocity.vector = vector_to_message(fix.velocity)
+        self._velocity_output.publish(velocity)
 
 
-class GzNavsat(_Receiver[NoParameters], SingleTopicSensor[NoParameters]):
+class GzNavsat(_NavsatPlugin[NoParameters], SingleTopicSensor[NoParameters]):
     """The sensors ``navsat`` and ``gps`` of gz."""
 
     def create_publishers(self) -> None:
         """Create the publisher of ``sensor_msgs/msg/NavSatFix``."""
-        self.output = self.gz_output(_FIX_TYPE, "navsat")
+        self.output = self.create_gz_output(_FIX_TYPE, "navsat")
 
     def measure(self) -> None:
         """Measure, and publish the position."""
@@ -97,12 +98,12 @@ class GzMagnetometer(SingleTopicSensor[NoParameters]):
 
     def create_publishers(self) -> None:
         """Create the publisher of ``sensor_msgs/msg/MagneticField``."""
-        self.output = self.gz_output(_MAGNETIC_FIELD_TYPE, "magnetometer")
+        self.output = self.create_gz_output(_MAGNETIC_FIELD_TYPE, "magnetometer")
 
     def measure(self) -> None:
         """Measure, and publish the magnetic field."""
         message = self.message(_MAGNETIC_FIELD_TYPE, self.gz_frame())
-        message.magnetic_field = vector_message(self._sensor.measure())
+        message.magnetic_field = vector_to_message(self._sensor.measure())
         message.magnetic_field_covariance = self._sensor.noise.covariance.copy()
         self.output.publish(message)
 
@@ -116,7 +117,7 @@ class GzAltimeter(SingleTopicSensor[NoParameters]):
 
     def create_publishers(self) -> None:
         """Create the publisher of ``ros_gz_interfaces/msg/Altimeter``."""
-        self.output = self.gz_output(_ALTIMETER_TYPE, "altimeter")
+        self.output = self.create_gz_output(_ALTIMETER_TYPE, "altimeter")
 
     def measure(self) -> None:
         """Measure, and publish the height and the vertical velocity."""
@@ -135,7 +136,7 @@ class GzAirPressure(SingleTopicSensor[NoParameters]):
 
     def create_publishers(self) -> None:
         """Create the publisher of ``sensor_msgs/msg/FluidPressure``."""
-        self.output = self.gz_output(_PRESSURE_TYPE, "air_pressure")
+        self.output = self.create_gz_output(_PRESSURE_TYPE, "air_pressure")
 
     def measure(self) -> None:
         """Measure, and publish the air pressure."""

@@ -12,7 +12,7 @@ from linkwright.geometry.single import compose, invert
 from linkwright.sdf.sensors import ForceTorque
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameNameParameter, SingleTopicSensor
-from linkwright.simulation.plugins.sensors.contact import wrench_message
+from linkwright.simulation.plugins.sensors.contact import wrench_to_message
 from linkwright.simulation.sensors.force_torque import ForceTorqueSensor
 
 P = TypeVar("P")
@@ -38,7 +38,7 @@ class _ForceTorque(SingleTopicSensor[P], Generic[P]):
     def measure(self) -> None:
         """Measure, and publish the wrench."""
         message = self.message(_MESSAGE_TYPE, self._frame)
-        message.wrench = wrench_message(*self._sensor.measure())
+        message.wrench = wrench_to_message(*self._sensor.measure())
         self.output.publish(message)
 
 
@@ -80,6 +80,6 @@ class GzForceTorque(_ForceTorque[NoParameters]):
         self._sensor = ForceTorqueSensor(self.simulation, joint, self.sensor.sensor.force_torque, self.random, offset)
 
     def create_publishers(self) -> None:
-        """Create the publisher on the topic that the sensor declares, or on the default topic of gz."""
+        """Create the publisher on the sensor's topic, or on gz's default topic."""
         self._frame = self.gz_frame()
-        self.output = self.gz_output(_MESSAGE_TYPE, "forcetorque", "/force_torque")
+        self.output = self.create_gz_output(_MESSAGE_TYPE, "forcetorque", "/force_torque")

@@ -22,14 +22,18 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.sdf.sensors import Imu
 from linkwright.simulation.plugins.parameters import parameter
-from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, SensorPlugin, SingleTopicSensor, vector_message
+from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, SensorPlugin, SingleTopicSensor, vector_to_message
 from linkwright.simulation.plugins.sensors.hector_errors import ErrorModel, error_names
 from linkwright.simulation.plugins.sensors.lidar import LaserParameters, OldLaser
 from linkwright.simulation.sensors.imu import ImuSensor
 from linkwright.simulation.sensors.lidar import Scan
 from linkwright.simulation.sensors.mount import Mount
 
-_VECTOR, _FIX, _IMU = "geometry_msgs/msg/Vector3Stamped", "sensor_msgs/msg/NavSatFix", "sensor_msgs/msg/Imu"
+_VECTOR_TYPE, _FIX_TYPE, _IMU_TYPE = (
+    "geometry_msgs/msg/Vector3Stamped",
+    "sensor_msgs/msg/NavSatFix",
+    "sensor_msgs/msg/Imu",
+)
 _EQUATORIAL_RADIUS_M = 6378137.0
 _SQUARED_ECCENTRICITY = (2.0 - 1.0 / 298.257223563) / 298.257223563
 _COVARIANCE_TYPE_DIAGONAL_KNOWN = 2
@@ -71,7 +75,7 @@ class _HectorSensor(SensorPlugin[P], Generic[P]):
         """The time between two measurements, in s."""
         return 1.0 / self.rate if self.rate > 0.0 else self.simulation.step / NANOSECONDS_PER_SECOND
 
-    def error_model(self, prefix: str = "") -> ErrorModel:
+    def create_error_model(self, prefix: str = "") -> ErrorModel:
         """Return the model of the errors whose parameters have a prefix."""
         return ErrorModel(self.context.element, prefix, self._generator)
 
@@ -114,7 +118,9 @@ class HectorImu(_HectorSensor[HectorImuParameters]):
         mount = self.mount
         offset: Transform = (0.0, 0.0, 0.0, *quaternion_from_rpy(self.parameters.rpy_offset))
         self._imu = ImuSensor(Mount(mount.simulation, mount.link, offset), Imu(), generator=self._generator)
-        self._acceleration, self._rates, self._yaw = (self.error_model(prefix) for prefix in ("accel", "rate", "yaw"))
+        self._acceleration, self._rates, self._yaw = (
+            self.create_error_model(prefix) for prefix in ("accel", "rate", "yaw")
+        )
         noise = self.parameters.gaussian_noise
         if noise:
             self._acceleration.gaussian_noise = self._rates.gaussian_noise = np.full(3, noise)
@@ -123,13 +129,13 @@ class HectorImu(_HectorSensor[HectorImuParameters]):
         """Create the publishers of the measurements and the biases, and the service."""
         parameters, node = self.parameters, self.node
         topic = parameters.topic_name
-        self._output = node.publisher(_IMU, topic, SENSOR_QOS)
-        self._biases = node.publisher(_IMU, parameters.bias_topic_name or f"{topic}/bias", SENSOR_QOS)
+        self._output = node.publisher(_IMU_TYPE, topic, SENSOR_QOS)
+        self._bias_output = node.publisher(_IMU_TYPE, parameters.bias_topic_name or f"{topic}/bias", SENSOR_QOS)
         node.service("std_srvs/srv/Empty", parameters.service_name or f"{topic}/calibrate", self._calibrate)
 
     def is_wanted(self) -> bool:
         """Return whether a topic has a subscription."""
-        return self._output.is_wanted or self._biases.is_wanted
+        return self._output.is_wanted or self._bias_output.is_wanted
 
     def _calibrate(self, _: Any, response: Any) -> Any:
         self._rates.drift = np.zeros(3)
@@ -141,7 +147,7 @@ class HectorImu(_HectorSensor[HectorImuParameters]):
         acceleration = self._acceleration.apply(np.array(measurement.linear_acceleration), period)
         rates = self._rates.apply(np.array(measurement.angular_velocity), period)
         self._yaw.advance(period)
-        message = self.message(_IMU, self.frame)
+        message = self.message(_IMU_TYPE, self.frame)
         gravity = float(np.linalg.norm(self.simulation.model.opt.gravity))
         orientation = measurement.orientation
         if gravity > 0.0:
@@ -152,18 +158,21 @@ class HectorImu(_HectorSensor[HectorImuParameters]):
             error = compose(yaw_error, (0.0, 0.0, 0.0, *tilt_error))
             orientation = compose(error, (0.0, 0.0, 0.0, *orientation))[3:]
         message.orientation = from_values(Quaternion, orientation)
-        message.angular_velocity, message.linear_acceleration = vector_message(rates), vector_message(acceleration)
+        message.angular_velocity, message.linear_acceleration = (
+            vector_to_message(rates),
+            vector_to_message(acceleration),
+        )
         message.angular_velocity_covariance = self._rates.covariance
         message.linear_acceleration_covariance = self._acceleration.covariance
-        message.orientation_covariance = self._orientation_covariance(gravity)
+        message.orientation_covariance = self._compute_orientation_covariance(gravity)
         self._output.publish(message)
-        biases = self.message(_IMU, self.frame)
+        biases = self.message(_IMU_TYPE, self.frame)
         biases.orientation.w = 1.0
-        biases.angular_velocity = vector_message(self._rates.bias)
-        biases.linear_acceleration = vector_message(self._acceleration.bias)
-        self._biases.publish(biases)
+        biases.angular_velocity = vector_to_message(self._rates.bias)
+        biases.linear_acceleration = vector_to_message(self._acceleration.bias)
+        self._bias_output.publish(biases)
 
-    def _orientation_covariance(self, gravity: float) -> Array:
+    def _compute_orientation_covariance(self, gravity: float) -> Array:
         """Return the covariance of the orientation, of which gravity gives roll and pitch."""
         if gravity <= 0.0:
             return np.diag((-1.0, -1.0, self._yaw.covariance[0])).ravel()
@@ -207,7 +216,7 @@ class HectorGps(_HectorSensor[HectorGpsParameters]):
         if parameters.use_world_spherical_coordinates and coordinates is not None:
             latitude, longitude = coordinates.latitude_deg, coordinates.longitude_deg
             heading, altitude = 90.0 - coordinates.heading_deg, coordinates.elevation
-        given = (
+        requested = (
             parameters.reference_latitude,
             parameters.reference_longitude,
             parameters.reference_heading,
@@ -215,43 +224,43 @@ class HectorGps(_HectorSensor[HectorGpsParameters]):
         )
         defaults = (latitude, longitude, heading, altitude)
         self._latitude, self._longitude, degrees, self._altitude = (
-            default if value is None else value for value, default in zip(given, defaults, strict=True)
+            default if value is None else value for value, default in zip(requested, defaults, strict=True)
         )
         self._heading = radians(degrees)
         curvature = 1.0 / (1.0 - _SQUARED_ECCENTRICITY * sin(radians(self._latitude)) ** 2)
         radius = _EQUATORIAL_RADIUS_M * sqrt(curvature)
         self._radius_north = radius * (1.0 - _SQUARED_ECCENTRICITY) * curvature
         self._radius_east = radius * cos(radians(self._latitude))
-        self._position, self._velocity = self.error_model(), self.error_model("velocity")
+        self._position, self._velocity = self.create_error_model(), self.create_error_model("velocity")
 
     def create_publishers(self) -> None:
         """Create the publishers of the position and the velocity."""
-        self._fixes = self.node.publisher(_FIX, self.parameters.topic_name, SENSOR_QOS)
-        self._velocities = self.node.publisher(_VECTOR, self.parameters.velocity_topic_name, SENSOR_QOS)
+        self._fix_output = self.node.publisher(_FIX_TYPE, self.parameters.topic_name, SENSOR_QOS)
+        self._velocity_output = self.node.publisher(_VECTOR_TYPE, self.parameters.velocity_topic_name, SENSOR_QOS)
 
     def is_wanted(self) -> bool:
         """Return whether a topic has a subscription."""
-        return self._fixes.is_wanted or self._velocities.is_wanted
+        return self._fix_output.is_wanted or self._velocity_output.is_wanted
 
     def measure(self) -> None:
         """Measure, and publish the position and the velocity."""
         simulation, link, period = self.simulation, self.mount.link, self.period
-        velocity = self._north_west_up(self._velocity.apply(simulation.link_velocity(link)[0], period))
-        position = self._north_west_up(self._position.apply(np.array(simulation.link_pose(link)[:3]), period))
+        velocity = self._to_north_west_up(self._velocity.apply(simulation.link_velocity(link)[0], period))
+        position = self._to_north_west_up(self._position.apply(np.array(simulation.link_pose(link)[:3]), period))
         self._position.drift = self._position.drift + period * self._velocity.drift
-        fix = self.message(_FIX, self.frame)
+        fix = self.message(_FIX_TYPE, self.frame)
         fix.status.status, fix.status.service = self.parameters.status, self.parameters.service
         fix.latitude = self._latitude + float(position[0]) / self._radius_north * 180.0 / pi
         fix.longitude = self._longitude - float(position[1]) / self._radius_east * 180.0 / pi
         fix.altitude = self._altitude + float(position[2])
         fix.position_covariance = self._position.total_covariance
         fix.position_covariance_type = _COVARIANCE_TYPE_DIAGONAL_KNOWN
-        self._fixes.publish(fix)
-        message = self.message(_VECTOR, self.frame)
-        message.vector = vector_message(velocity)
-        self._velocities.publish(message)
+        self._fix_output.publish(fix)
+        message = self.message(_VECTOR_TYPE, self.frame)
+        message.vector = vector_to_message(velocity)
+        self._velocity_output.publish(message)
 
-    def _north_west_up(self, vector: Array) -> Array:
+    def _to_north_west_up(self, vector: Array) -> Array:
         """Return a vector in the axes of the world in the axes north, west and up."""
         x, y, z = vector
         cosine, sine = cos(self._heading), sin(self._heading)
@@ -293,20 +302,22 @@ class HectorMagnetic(_HectorSensor[HectorMagneticParameters], SingleTopicSensor[
         self._field = parameters.magnitude * np.array(
             (horizontal * cos(azimuth), horizontal * sin(azimuth), -sin(inclination))
         )
-        self._errors = self.error_model()
+        self._errors = self.create_error_model()
 
     def create_publishers(self) -> None:
         """Create the publisher of a MagneticField or a Vector3Stamped."""
-        self._type = "sensor_msgs/msg/MagneticField" if self.parameters.use_magnetic_field_msgs else _VECTOR
-        self.output = self.node.publisher(self._type, self.parameters.topic_name, SENSOR_QOS)
+        self._message_type = (
+            "sensor_msgs/msg/MagneticField" if self.parameters.use_magnetic_field_msgs else _VECTOR_TYPE
+        )
+        self.output = self.node.publisher(self._message_type, self.parameters.topic_name, SENSOR_QOS)
 
     def measure(self) -> None:
         """Measure, and publish the magnetic field in the frame of the link."""
         rotation = np.array(self.simulation.link_pose(self.mount.link)[3:])
         field = self._errors.apply(rotate(quaternion_inverse(rotation), self._field), self.period)
-        message = self.message(self._type, self.frame)
+        message = self.message(self._message_type, self.frame)
         setattr(
-            message, "magnetic_field" if self.parameters.use_magnetic_field_msgs else "vector", vector_message(field)
+            message, "magnetic_field" if self.parameters.use_magnetic_field_msgs else "vector", vector_to_message(field)
         )
         self.output.publish(message)
 
@@ -333,7 +344,7 @@ class HectorBaro(_HectorSensor[HectorBaroParameters], SingleTopicSensor[HectorBa
 
     def create_sensor(self) -> None:
         """Create the model of the errors."""
-        self._errors = self.error_model()
+        self._errors = self.create_error_model()
 
     def create_publishers(self) -> None:
         """Create the publisher of the height."""
@@ -364,7 +375,7 @@ class HectorSonar(OldLaser):
 
     PARAMETERS = HectorSonarParameters
     IGNORED = error_names("")
-    KIND = "sensor_msgs/msg/Range"
+    MESSAGE_TYPE = "sensor_msgs/msg/Range"
 
     def create_sensor(self) -> None:
         """Create the lidar, and the model of the errors."""
@@ -376,9 +387,9 @@ class HectorSonar(OldLaser):
         """The number of measurements per simulated second, from the plugin's parameters."""
         return self.parameters.update_rate
 
-    def output_message(self, frame: str, scan: Scan) -> Any:
-        """Return the minimum distance of a scan as a Range, with errors, within the limits of the sensor."""
-        message = self.range_message(frame, scan, "ultrasound")
+    def create_output_message(self, frame: str, scan: Scan) -> Any:
+        """Return the minimum distance of a scan as a Range, with errors and the sensor's limits."""
+        message = self.create_range_message(frame, scan, "ultrasound")
         if message.range < message.max_range:
             period = 1.0 / self.rate if self.rate > 0.0 else self.simulation.step / NANOSECONDS_PER_SECOND
             distance = float(self._errors.apply(np.full(3, message.range), period)[0])

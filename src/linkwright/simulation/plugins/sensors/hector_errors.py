@@ -1,4 +1,4 @@
-"""The errors of the sensors of hector_gazebo_plugins: an offset, a slow drift, white noise and a scale.
+"""Sensor errors of hector_gazebo_plugins: offset, slow drift, white noise and scale.
 
 Source: hector_gazebo_plugins (parameters, defaults, formulas).
 """
@@ -12,14 +12,14 @@ import numpy as np
 from linkwright.geometry.arrays import Array
 from linkwright.xmltree import Element
 
-_NAMES = ("offset", "drift", "driftFrequency", "gaussianNoise", "scaleError")
-_DRIFT_FREQUENCY = 1.0 / 3600.0
+_PARAMETER_NAMES = ("offset", "drift", "driftFrequency", "gaussianNoise", "scaleError")
+_DEFAULT_DRIFT_FREQUENCY_HZ = 1.0 / 3600.0
 """The default of the frequency of the drift, in 1/s."""
 
 
 def error_names(prefix: str) -> tuple[str, ...]:
-    """Return the names of the parameters of an error model with a prefix, such as ``rateDrift``."""
-    return tuple(f"{prefix}{name[0].upper()}{name[1:]}" if prefix else name for name in _NAMES)
+    """Return the names of an error model's parameters with a prefix, such as ``rateDrift``."""
+    return tuple(f"{prefix}{name[0].upper()}{name[1:]}" if prefix else name for name in _PARAMETER_NAMES)
 
 
 class ErrorModel:
@@ -38,11 +38,11 @@ class ErrorModel:
     def __init__(self, element: Element | None, prefix: str, generator: np.random.Generator) -> None:
         self._generator = generator
         offset, drift, frequency, noise, scale = error_names(prefix)
-        self._offset = _vector(element, offset, 0.0)
-        self._drift_deviation = _vector(element, drift, 0.0)
-        self._frequency = _vector(element, frequency, _DRIFT_FREQUENCY)
-        self.gaussian_noise = _vector(element, noise, 0.0)
-        self._scale = _vector(element, scale, 1.0)
+        self._offset = _read_vector(element, offset, 0.0)
+        self._drift_deviation = _read_vector(element, drift, 0.0)
+        self._frequency = _read_vector(element, frequency, _DEFAULT_DRIFT_FREQUENCY_HZ)
+        self.gaussian_noise = _read_vector(element, noise, 0.0)
+        self._scale = _read_vector(element, scale, 1.0)
         self.drift = self._drift_deviation * generator.standard_normal(3)
 
     @property
@@ -73,8 +73,11 @@ class ErrorModel:
         return noisy
 
 
-def _vector(element: Element | None, tag: str, default: float) -> Array:
-    """Return the numbers of a parameter, shape (3,); a text without one or three numbers means the default."""
+def _read_vector(element: Element | None, tag: str, default: float) -> Array:
+    """Return the numbers of a parameter, shape (3,).
+
+    A text without one or three numbers means the default.
+    """
     child = None if element is None else element.first(tag)
     try:
         numbers = np.array([float(word) for word in ("" if child is None else child.text()).split()])

@@ -86,10 +86,10 @@ def fill_image(message: Any, color: Pixels, encoding: str) -> None:
         for channel in range(3):  # takes an eighth of the time of reversing all channels at once
             pixels[:, :, channel] = color[:, :, 2 - channel]
     elif encoding.startswith("bayer"):
-        pixels = _bayer_mosaic(color, encoding.removeprefix("bayer_")[:4])
+        pixels = _create_bayer_mosaic(color, encoding.removeprefix("bayer_")[:4])
     if encoding.endswith("16"):
         pixels = pixels.astype("<u2") * 257
-    _fill(message, pixels, encoding)
+    _fill_pixels(message, pixels, encoding)
 
 
 def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> None:
@@ -97,7 +97,7 @@ def fill_depth(message: Any, depth: Pixels, nearest: float, farthest: float) -> 
 
     Depths of at most `nearest` become -inf, and depths of at least `farthest` become inf.
     """
-    _fill(message, clip_depth(depth, nearest, farthest), "32FC1")
+    _fill_pixels(message, clip_depth(depth, nearest, farthest), "32FC1")
 
 
 def clip_depth(depth: Pixels, nearest: float, farthest: float) -> Pixels:
@@ -108,7 +108,7 @@ def clip_depth(depth: Pixels, nearest: float, farthest: float) -> Pixels:
     return result
 
 
-def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
+def _fill_pixels(message: Any, pixels: Pixels, encoding: str) -> None:
     data = np.ascontiguousarray(pixels)
     message.height, message.width = data.shape[:2]
     message.encoding = encoding
@@ -117,7 +117,7 @@ def _fill(message: Any, pixels: Pixels, encoding: str) -> None:
     message.data = data.reshape(-1).view(np.uint8)
 
 
-def _bayer_mosaic(color: Pixels, order: str) -> Pixels:
+def _create_bayer_mosaic(color: Pixels, order: str) -> Pixels:
     """Return a Bayer mosaic with one color per pixel.
 
     `order` names the colors of each square of 2 x 2 pixels.
@@ -135,7 +135,7 @@ def fill_camera_info(
     lens: Distortion | None,
     *,
     center: tuple[float, float] | None = None,
-    focal: float = 0.0,
+    focal_length: float = 0.0,
     baseline: float = 0.0,
 ) -> None:
     """Fill a CameraInfo with the projection and the distortion of a camera.
@@ -145,12 +145,12 @@ def fill_camera_info(
         optics: the projection of the camera.
         lens: the distortion of the lens; None for a camera without distortion.
         center: the principal point to publish, in pixels; None to use `optics`.
-        focal: the focal length to publish, in pixels; 0 to use `optics`.
+        focal_length: the focal length to publish, in pixels; 0 to use `optics`.
         baseline: the distance from the left camera of a stereo pair to this one, in m.
     """
     lens = lens or Distortion()
     cx, cy = center if center is not None else (optics.cx, optics.cy)
-    fx, fy = (focal, focal) if focal > 0 else (optics.fx, optics.fy)
+    fx, fy = (focal_length, focal_length) if focal_length > 0 else (optics.fx, optics.fy)
     message.height, message.width = optics.height, optics.width
     message.distortion_model = "plumb_bob"
     message.d = [lens.k1, lens.k2, lens.p1, lens.p2, lens.k3]

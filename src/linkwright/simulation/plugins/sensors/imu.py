@@ -24,7 +24,7 @@ _MESSAGE_TYPE = "sensor_msgs/msg/Imu"
 
 
 @cache
-def _message_class() -> Any:
+def _get_message_class() -> Any:
     return get_message(_MESSAGE_TYPE)
 
 
@@ -40,7 +40,7 @@ class _ImuPlugin(SingleTopicSensor[P], Generic[P]):
     def measure(self) -> None:
         """Measure, and publish orientation, angular velocity and linear acceleration."""
         measurement = self.imu.measure()
-        message = _message_class()(
+        message = _get_message_class()(
             header=Header(stamp=self.stamp(), frame_id=self.frame),
             orientation=from_values(Quaternion, measurement.orientation),
             angular_velocity=from_values(Vector3, measurement.angular_velocity),
@@ -132,6 +132,6 @@ class GzImu(_ImuPlugin[NoParameters]):
     """The sensor ``imu`` of gz."""
 
     def create_publishers(self) -> None:
-        """Create the publisher on the topic that the sensor declares, or on the default topic of gz."""
+        """Create the publisher on the sensor's topic, or on gz's default topic."""
         self.frame = self.gz_frame()
-        self.output = self.gz_output(_MESSAGE_TYPE, "imu")
+        self.output = self.create_gz_output(_MESSAGE_TYPE, "imu")

@@ -18,10 +18,10 @@ from linkwright.sdf.models import Model
 from linkwright.sdf.plugins import Plugin, library_name
 from linkwright.sdf.poses import SEPARATOR
 from linkwright.simulation.plugins.parameters import NoParameters
-from linkwright.simulation.plugins.sensors.camera import IMAGE, INFO, CameraPlugin, MountedCamera
+from linkwright.simulation.plugins.sensors.camera import CAMERA_INFO_TYPE, IMAGE_TYPE, CameraPlugin, MountedCamera
 from linkwright.simulation.plugins.sensors.images import Pixels, fill_camera_info, fill_image
 from linkwright.simulation.rendering.renderer import Channels
-from linkwright.simulation.sensors.mount import GeomTable, part_of
+from linkwright.simulation.sensors.mount import GeomTable, get_part_name
 from linkwright.simulation.simulation import Simulation
 
 _LABEL_SYSTEM = "gz-sim-label-system"
@@ -30,7 +30,7 @@ _BOX_COLOR = (0, 255, 0)
 _LABEL_COUNT = 256
 
 
-class Labels:
+class LabelTable:
     """The labels of all geoms in a simulation.
 
     Args:
@@ -39,15 +39,15 @@ class Labels:
 
     def __init__(self, simulation: Simulation) -> None:
         self._simulation = simulation
-        self._labels = GeomTable(simulation, self._geom_labels)
-        self._instances = GeomTable(simulation, self._geom_instances)
+        self._labels = GeomTable(simulation, self._compute_geom_labels)
+        self._instances = GeomTable(simulation, self._compute_geom_instances)
 
     def labels(self, geoms: Pixels) -> Pixels:
         """Return the labels of geoms, in an array of the shape of `geoms`."""
         labels: Pixels = self._labels.array()[geoms].astype(np.uint8)
         return labels
 
-    def instances(self, geoms: Pixels) -> Pixels:
+    def get_instances(self, geoms: Pixels) -> Pixels:
         """Return the instance number of each geom's model, in an array of the shape of `geoms`.
 
         Numbers start at 1; geoms without a label have the number 0.
@@ -55,12 +55,12 @@ class Labels:
         instances: Pixels = self._instances.array()[geoms].astype(np.uint16)
         return instances
 
-    def _geom_labels(self, names: list[str]) -> list[float]:
+    def _compute_geom_labels(self, names: list[str]) -> list[float]:
         labels = dict(self._labeled_parts())
-        return [float(_label_of(labels, part_of(name))) for name in names]
+        return [float(_find_label(labels, get_part_name(name))) for name in names]
 
-    def _geom_instances(self, names: list[str]) -> list[float]:
-        labels = self._geom_labels(names)
+    def _compute_geom_instances(self, names: list[str]) -> list[float]:
+        labels = self._compute_geom_labels(names)
         models = [name.partition(SEPARATOR)[0] for name in names]
         instance_numbers: dict[str, int] = {}
         for model, label in zip(models, labels, strict=True):
@@ -71,28 +71,28 @@ class Labels:
     def _labeled_parts(self) -> Iterator[tuple[str, int]]:
         """Yield the name and the label of each labeled model and visual."""
         for model in self._simulation.scene.models.values():
-            yield from _labels_of_model(model.model, model.name)
+            yield from _find_model_labels(model.model, model.name)
 
 
-def _labels_of_model(model: Model, path: str) -> Iterator[tuple[str, int]]:
-    for label in _declared_labels(model.plugins):
+def _find_model_labels(model: Model, path: str) -> Iterator[tuple[str, int]]:
+    for label in _read_labels(model.plugins):
         yield path, label
     for link in model.links:
         for visual in link.visuals:
-            for label in _declared_labels(visual.plugins):
+            for label in _read_labels(visual.plugins):
                 yield f"{path}{SEPARATOR}{link.name}{SEPARATOR}{visual.name}#visual", label
     for nested_model in model.models:
-        yield from _labels_of_model(nested_model, f"{path}{SEPARATOR}{nested_model.name}")
+        yield from _find_model_labels(nested_model, f"{path}{SEPARATOR}{nested_model.name}")
 
 
-def _declared_labels(plugins: tuple[Plugin, ...]) -> Iterator[int]:
+def _read_labels(plugins: tuple[Plugin, ...]) -> Iterator[int]:
     for plugin in plugins:
         element = plugin.element.first("label") if plugin.element is not None else None
         if element is not None and library_name(plugin.filename) == _LABEL_SYSTEM and element.text().strip().isdigit():
             yield int(element.text()) % _LABEL_COUNT
 
 
-def _label_of(labels: dict[str, int], part: str) -> int:
+def _find_label(labels: dict[str, int], part: str) -> int:
     """Return the label of a visual, or else of the closest enclosing model with a label.
 
     Returns 0 if there is no label.
@@ -111,19 +111,19 @@ class _LabelingCamera(CameraPlugin[NoParameters]):
     def create_sensor(self) -> None:
         """Create the camera and the table of labels."""
         super().create_sensor()
-        self.labels = Labels(self.simulation)
+        self.labels = LabelTable(self.simulation)
         self.frame = self.cameras[0].description.optical_frame_id or self.gz_frame()
 
     def publish_colors(self, output: Output, color: Pixels) -> None:
         """Publish an RGB image."""
-        message = self.message(IMAGE, self.frame)
+        message = self.message(IMAGE_TYPE, self.frame)
         fill_image(message, color, "rgb8")
         output.publish(message)
 
     def publish_info(self, output: Output, camera: MountedCamera) -> None:
         """Publish the ``CameraInfo`` if its topic has a subscription."""
         if output.is_wanted:
-            message = self.message(INFO, self.frame)
+            message = self.message(CAMERA_INFO_TYPE, self.frame)
             fill_camera_info(message, camera.optics, camera.description.distortion)
             output.publish(message)
 
@@ -139,9 +139,11 @@ class GzSegmentation(_LabelingCamera):
             leaf: f"{conventional_topic}/{leaf}" if conventional_topic else ""
             for leaf in ("labels_map", "colored_map", "camera_info")
         }
-        self._maps = self.node.publisher(IMAGE, f"{base}/labels_map", conventional_topic=names["labels_map"])
-        self._colored = self.node.publisher(IMAGE, f"{base}/colored_map", conventional_topic=names["colored_map"])
-        self._info = self.node.publisher(INFO, f"{base}/camera_info", conventional_topic=names["camera_info"])
+        self._maps = self.node.publisher(IMAGE_TYPE, f"{base}/labels_map", conventional_topic=names["labels_map"])
+        self._colored = self.node.publisher(IMAGE_TYPE, f"{base}/colored_map", conventional_topic=names["colored_map"])
+        self._info = self.node.publisher(
+            CAMERA_INFO_TYPE, f"{base}/camera_info", conventional_topic=names["camera_info"]
+        )
         self._colors = np.random.default_rng(0).integers(40, 256, (_LABEL_COUNT, 3), dtype=np.uint8)
         self._colors[0] = 0
 
@@ -156,7 +158,7 @@ class GzSegmentation(_LabelingCamera):
         if not (self._maps.is_wanted or self._colored.is_wanted):
             return
         geoms = self.render(camera, Channels.GEOMS).geoms
-        labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)  # type: ignore[arg-type]  # asked for
+        labels, instances = self.labels.labels(geoms), self.labels.get_instances(geoms)  # type: ignore[arg-type]  # asked for
         if camera.description.segmentation_type in ("instance", "panoptic"):
             high, low = (instances >> 8).astype(np.uint8), (instances & 0xFF).astype(np.uint8)
             label_map, colored = (
@@ -185,10 +187,10 @@ class GzBoxes(_LabelingCamera):
         conventional_topic = "" if self.sensor.sensor.topic else "/boundingbox"
         self._boxes = self.node.publisher(_DETECTIONS_TYPE, topic, conventional_topic=conventional_topic)
         self._images = self.node.publisher(
-            IMAGE, f"{topic}_image", conventional_topic=f"{conventional_topic}_image" if conventional_topic else ""
+            IMAGE_TYPE, f"{topic}_image", conventional_topic=f"{conventional_topic}_image" if conventional_topic else ""
         )
         parent_topic, slash, _ = topic.rpartition("/")
-        self._info = self.node.publisher(INFO, f"{parent_topic}{slash}camera_info")
+        self._info = self.node.publisher(CAMERA_INFO_TYPE, f"{parent_topic}{slash}camera_info")
 
     def is_wanted(self) -> bool:
         """Return whether a topic has a subscription."""
@@ -202,10 +204,10 @@ class GzBoxes(_LabelingCamera):
             return
         channels = Channels.GEOMS | (Channels.COLOR if self._images.is_wanted else Channels(0))
         rendered = self.render(camera, channels)
-        boxes = list(self._boxes_of(rendered.geoms))
+        boxes = list(self._find_boxes(rendered.geoms))
         if self._boxes.is_wanted:
             message = self.message(_DETECTIONS_TYPE, self.frame)
-            message.detections = [self._detection(message.header, *box) for box in boxes]
+            message.detections = [self._create_detection(message.header, *box) for box in boxes]
             self._boxes.publish(message)
         if rendered.color is not None:
             color = rendered.color.copy()
@@ -214,18 +216,18 @@ class GzBoxes(_LabelingCamera):
                 color[top : bottom + 1, [left, right]] = _BOX_COLOR
             self.publish_colors(self._images, color)
 
-    def _boxes_of(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
+    def _find_boxes(self, geoms: Any) -> Iterator[tuple[int, int, int, int, int]]:
         """Yield the label, left, top, right and bottom of each box, in pixels.
 
         The box includes all four edges.
         """
-        labels, instances = self.labels.labels(geoms), self.labels.instances(geoms)
+        labels, instances = self.labels.labels(geoms), self.labels.get_instances(geoms)
         for instance in np.unique(instances[instances > 0]):
             for label in np.unique(labels[(instances == instance) & (labels > 0)]):
                 rows, columns = np.nonzero((instances == instance) & (labels == label))
                 yield int(label), int(columns.min()), int(rows.min()), int(columns.max()), int(rows.max())
 
-    def _detection(self, header: Any, label: int, left: int, top: int, right: int, bottom: int) -> Any:
+    def _create_detection(self, header: Any, label: int, left: int, top: int, right: int, bottom: int) -> Any:
         detection = get_message("vision_msgs/msg/Detection2D")(header=header)
         result = get_message("vision_msgs/msg/ObjectHypothesisWithPose")()
         result.hypothesis.class_id, result.hypothesis.score = str(label), 1.0

@@ -22,12 +22,12 @@ from linkwright.messages import get_message
 from linkwright.sdf.sensors import Lidar
 from linkwright.simulation.plugins.parameters import NoParameters, parameter
 from linkwright.simulation.plugins.sensors.base import SENSOR_QOS, FrameNameParameter, SensorPlugin, SingleTopicSensor
-from linkwright.simulation.plugins.sensors.clouds import GZ, VELODYNE, fill_lidar_cloud
+from linkwright.simulation.plugins.sensors.clouds import GZ_LAYOUT, VELODYNE_LAYOUT, fill_lidar_cloud
 from linkwright.simulation.sensors.lidar import LidarSensor, Scan
 
 P = TypeVar("P")
 _SCAN_TYPE, _CLOUD_TYPE = "sensor_msgs/msg/LaserScan", "sensor_msgs/msg/PointCloud2"
-RAYS, OTHER_RAYS = "/world_rays", "/world_rays/others"
+RAYS_TOPIC, OTHER_RAYS_TOPIC = "/world_rays", "/world_rays/others"
 """The topics for the rays of lidars with ``<visualize>true</visualize>``, and of other lidars."""
 _RADIATION_TYPES = {"ultrasound": 0, "infrared": 1}
 
@@ -38,18 +38,20 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
     def start(self) -> None:
         """Create the lidar and the publishers of measurements and rays."""
         visualize = self.sensor.sensor.visualize
-        self._rays = self.node.publisher(_SCAN_TYPE, RAYS if visualize else OTHER_RAYS, SENSOR_DATA_QOS)
+        self._rays_output = self.node.publisher(
+            _SCAN_TYPE, RAYS_TOPIC if visualize else OTHER_RAYS_TOPIC, SENSOR_DATA_QOS
+        )
         super().start()
 
     def should_measure(self) -> bool:
         """Return whether the topics for measurements or rays have a subscription."""
-        return self.is_wanted() or self._rays.is_wanted
+        return self.is_wanted() or self._rays_output.is_wanted
 
     def measure(self) -> None:
         """Measure, and publish to the topics that have subscriptions."""
         scan = self.lidar.measure()
-        if self._rays.is_wanted:
-            self._rays.publish(self._rays_message(scan))
+        if self._rays_output.is_wanted:
+            self._rays_output.publish(self._create_rays_message(scan))
         if self.is_wanted():
             self.publish(scan)
 
@@ -57,12 +59,12 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
     def publish(self, scan: Scan) -> None:
         """Publish the measurements of a scan."""
 
-    def _rays_message(self, scan: Scan) -> Any:
+    def _create_rays_message(self, scan: Scan) -> Any:
         """Return a LaserScan with all rows of a scan, lowest row first.
 
         The frame of the message is the sensor's name.
         """
-        message = self._empty_scan(self.sensor.name)
+        message = self._create_empty_scan(self.sensor.name)
         message.ranges = scan.ranges.ravel().astype(np.float32)
         return message
 
@@ -74,17 +76,17 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
             self.mount, lidar, sees_visuals=sensor.type not in ("ray", "sonar"), generator=self.random
         )
 
-    def scan_message(self, frame: str, scan: Scan, min_intensity: float = 0.0) -> Any:
+    def create_scan_message(self, frame: str, scan: Scan, min_intensity: float = 0.0) -> Any:
         """Return a LaserScan of the middle row of a scan.
 
         Intensities are at least `min_intensity`.
         """
-        message, row = self._empty_scan(frame), self.lidar.vertical.count // 2
+        message, row = self._create_empty_scan(frame), self.lidar.vertical.count // 2
         message.ranges = scan.ranges[row].astype(np.float32)
         message.intensities = np.maximum(scan.intensities[row], min_intensity).astype(np.float32)
         return message
 
-    def _empty_scan(self, frame: str) -> Any:
+    def _create_empty_scan(self, frame: str) -> Any:
         """Return a LaserScan with the angles and range limits of the lidar, but without ranges."""
         lidar, message = self.lidar, self.message(_SCAN_TYPE, frame)
         message.angle_min, message.angle_max = float(lidar.horizontal.min_angle), float(lidar.horizontal.max_angle)
@@ -100,25 +102,25 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         with np.errstate(invalid="ignore"):  # A ray without a hit has an infinite range, and 0 times infinity is NaN.
             return self.lidar.directions * scan.ranges.reshape(-1, 1)
 
-    def hit_points(self, scan: Scan, min_intensity: float = 0.0) -> tuple[Any, Any]:
+    def compute_hit_points(self, scan: Scan, min_intensity: float = 0.0) -> tuple[Any, Any]:
         """Return the points and the intensities of the rays of a scan with a hit.
 
         The points are in m, and have shape (n, 3).
         """
         points, intensities = self.points(scan), scan.intensities.ravel()
-        is_hit = np.isfinite(scan.ranges.ravel())
-        return points[is_hit], np.maximum(intensities[is_hit], min_intensity)
+        hit_mask = np.isfinite(scan.ranges.ravel())
+        return points[hit_mask], np.maximum(intensities[hit_mask], min_intensity)
 
-    def point_cloud_message(self, frame: str, scan: Scan, min_intensity: float = 0.0) -> Any:
+    def create_point_cloud_message(self, frame: str, scan: Scan, min_intensity: float = 0.0) -> Any:
         """Return the hits of a scan as ``sensor_msgs/msg/PointCloud``."""
         message = self.message("sensor_msgs/msg/PointCloud", frame)
-        points, intensities = self.hit_points(scan, min_intensity)
+        points, intensities = self.compute_hit_points(scan, min_intensity)
         point, channel = get_message("geometry_msgs/msg/Point32"), get_message("sensor_msgs/msg/ChannelFloat32")
         message.points = [point(x=float(x), y=float(y), z=float(z)) for x, y, z in points]
         message.channels = [channel(name="intensity", values=intensities.astype(np.float32))]
         return message
 
-    def range_message(self, frame: str, scan: Scan, radiation: str) -> Any:
+    def create_range_message(self, frame: str, scan: Scan, radiation: str) -> Any:
         """Return a ``sensor_msgs/msg/Range`` with the minimum distance of a scan."""
         message = self.message("sensor_msgs/msg/Range", frame)
         lidar = self.lidar
@@ -130,7 +132,7 @@ class _LidarPlugin(SensorPlugin[P], Generic[P]):
         return message
 
 
-class _OneLidar(_LidarPlugin[P], SingleTopicSensor[P], Generic[P]):
+class _SingleTopicLidar(_LidarPlugin[P], SingleTopicSensor[P], Generic[P]):
     """A lidar with one topic."""
 
 
@@ -143,7 +145,7 @@ class RayParameters(FrameNameParameter):
     radiation_type: str = "infrared"
 
 
-class ClassicRaySensor(_OneLidar[RayParameters]):
+class ClassicRaySensor(_SingleTopicLidar[RayParameters]):
     """The substitute for ``libgazebo_ros_ray_sensor.so``."""
 
     PARAMETERS = RayParameters
@@ -176,18 +178,18 @@ class ClassicRaySensor(_OneLidar[RayParameters]):
         self.output.publish(self._publish(scan))
 
     def _to_scan(self, scan: Scan) -> Any:
-        return self.scan_message(self._frame, scan, self.parameters.min_intensity)
+        return self.create_scan_message(self._frame, scan, self.parameters.min_intensity)
 
     def _to_cloud(self, scan: Scan) -> Any:
         message = self.message(_CLOUD_TYPE, self._frame)
-        fill_lidar_cloud(message, *self.hit_points(scan, self.parameters.min_intensity))
+        fill_lidar_cloud(message, *self.compute_hit_points(scan, self.parameters.min_intensity))
         return message
 
     def _to_old_cloud(self, scan: Scan) -> Any:
-        return self.point_cloud_message(self._frame, scan, self.parameters.min_intensity)
+        return self.create_point_cloud_message(self._frame, scan, self.parameters.min_intensity)
 
     def _to_range(self, scan: Scan) -> Any:
-        return self.range_message(self._frame, scan, self.parameters.radiation_type)
+        return self.create_range_message(self._frame, scan, self.parameters.radiation_type)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -198,16 +200,16 @@ class LaserParameters(FrameNameParameter):
     update_rate: float = parameter(0.0, aliases=("updateRate", "updateRateHZ"))
 
 
-class OldLaser(_OneLidar[LaserParameters]):
-    """The substitute for ``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so`` of ROS 1."""
+class OldLaser(_SingleTopicLidar[LaserParameters]):
+    """The substitute for ROS 1's ``libgazebo_ros_laser.so`` and ``libgazebo_ros_gpu_laser.so``."""
 
     PARAMETERS = LaserParameters
     IGNORED: ClassVar[Collection[str]] = ("gaussianNoise", "hokuyoMinIntensity")
-    KIND: ClassVar[str] = _SCAN_TYPE
+    MESSAGE_TYPE: ClassVar[str] = _SCAN_TYPE
 
     def create_publishers(self) -> None:
-        """Create the publisher on the topic that the parameters name, for messages of type `KIND`."""
-        self.output = self.node.publisher(self.KIND, self.parameters.topic_name, SENSOR_DATA_QOS.depth)
+        """Create the publisher of the type `MESSAGE_TYPE` on the topic in the parameters."""
+        self.output = self.node.publisher(self.MESSAGE_TYPE, self.parameters.topic_name, SENSOR_DATA_QOS.depth)
 
     @property
     def rate(self) -> float:
@@ -218,22 +220,22 @@ class OldLaser(_OneLidar[LaserParameters]):
         return self.sensor.sensor.update_rate or self.parameters.update_rate
 
     def publish(self, scan: Scan) -> None:
-        """Publish a scan as a message of type `KIND`."""
-        self.output.publish(self.output_message(self.classic_frame(), scan))
+        """Publish a scan as a message of type `MESSAGE_TYPE`."""
+        self.output.publish(self.create_output_message(self.classic_frame(), scan))
 
-    def output_message(self, frame: str, scan: Scan) -> Any:
-        """Return a scan as a message of type `KIND`, by default a LaserScan."""
-        return self.scan_message(frame, scan)
+    def create_output_message(self, frame: str, scan: Scan) -> Any:
+        """Return a scan as a message of type `MESSAGE_TYPE`, by default a LaserScan."""
+        return self.create_scan_message(frame, scan)
 
 
 class OldBlockLaser(OldLaser):
     """The substitute for ``libgazebo_ros_block_laser.so`` of ROS 1: it publishes a PointCloud."""
 
-    KIND = "sensor_msgs/msg/PointCloud"
+    MESSAGE_TYPE = "sensor_msgs/msg/PointCloud"
 
-    def output_message(self, frame: str, scan: Scan) -> Any:
+    def create_output_message(self, frame: str, scan: Scan) -> Any:
         """Return a scan as a PointCloud."""
-        return self.point_cloud_message(frame, scan)
+        return self.create_point_cloud_message(frame, scan)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -249,11 +251,11 @@ class OldRange(OldLaser):
 
     PARAMETERS = RangeParameters
     IGNORED = ("gaussianNoise", "fov")
-    KIND = "sensor_msgs/msg/Range"
+    MESSAGE_TYPE = "sensor_msgs/msg/Range"
 
-    def output_message(self, frame: str, scan: Scan) -> Any:
+    def create_output_message(self, frame: str, scan: Scan) -> Any:
         """Return the minimum distance of a scan as a Range."""
-        return self.range_message(frame, scan, getattr(self.parameters, "radiation", ""))
+        return self.create_range_message(frame, scan, getattr(self.parameters, "radiation", ""))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -267,7 +269,7 @@ class VelodyneParameters(LaserParameters):
     organize_cloud: bool = False
 
 
-class Velodyne(_OneLidar[VelodyneParameters]):
+class Velodyne(_SingleTopicLidar[VelodyneParameters]):
     """The substitute for ``libgazebo_ros_velodyne_laser.so`` of velodyne_simulator.
 
     Points have an intensity, a ring and a time. They are ordered by firing; all lasers measure in each firing. In an
@@ -290,21 +292,21 @@ class Velodyne(_OneLidar[VelodyneParameters]):
         ranges: Array = scan.ranges.T.ravel()
         intensities: Array = scan.intensities.T.ravel()
         rings = np.tile(np.arange(shape[0], dtype=np.uint16), shape[1])
-        is_within_limits = (
+        limit_mask = (
             (ranges > parameters.min_range)
             & (ranges < parameters.max_range)
             & (intensities >= parameters.min_intensity)
         )
         if parameters.organize_cloud:
-            points[~is_within_limits], intensities[~is_within_limits] = np.nan, np.nan
+            points[~limit_mask], intensities[~limit_mask] = np.nan, np.nan
         else:
             points, intensities, rings = (
-                points[is_within_limits],
-                intensities[is_within_limits],
-                rings[is_within_limits],
+                points[limit_mask],
+                intensities[limit_mask],
+                rings[limit_mask],
             )
         height = shape[1] if parameters.organize_cloud else 1
-        fill_lidar_cloud(message, points, intensities, rings, layout=VELODYNE, height=height)
+        fill_lidar_cloud(message, points, intensities, rings, layout=VELODYNE_LAYOUT, height=height)
         self.output.publish(message)
 
 
@@ -317,7 +319,7 @@ class GzLidar(_LidarPlugin[NoParameters]):
     def create_publishers(self) -> None:
         """Create the publishers of scans and points."""
         self._frame = self.gz_frame()
-        self._scans = self.gz_output(_SCAN_TYPE, "scan")
+        self._scans = self.create_gz_output(_SCAN_TYPE, "scan")
         topic = self.sensor.sensor.topic or self.gz_topic("scan")
         self._clouds = self.node.publisher(
             _CLOUD_TYPE, f"{topic}/points", conventional_topic="" if self.sensor.sensor.topic else "/scan/points"
@@ -329,11 +331,11 @@ class GzLidar(_LidarPlugin[NoParameters]):
 
     def publish(self, scan: Scan) -> None:
         """Publish the scan and the points."""
-        self._scans.publish(self.scan_message(self._frame, scan))
+        self._scans.publish(self.create_scan_message(self._frame, scan))
         if self._clouds.is_wanted:
             message = self.message(_CLOUD_TYPE, self._frame)
             height, width = scan.ranges.shape
             rings = np.repeat(np.arange(height, dtype=np.uint16), width)
             points, intensities = self.points(scan), scan.intensities.ravel()
-            fill_lidar_cloud(message, points, intensities, rings, layout=GZ, height=height)
+            fill_lidar_cloud(message, points, intensities, rings, layout=GZ_LAYOUT, height=height)
             self._clouds.publish(message)

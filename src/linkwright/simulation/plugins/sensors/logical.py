@@ -10,7 +10,7 @@ from math import tan
 from linkwright.geometry.single import Transform, compose, invert
 from linkwright.messages import get_message
 from linkwright.sdf.sensors import LogicalCamera
-from linkwright.simulation.plugins.entities import pose_message
+from linkwright.simulation.plugins.entities import pose_to_message
 from linkwright.simulation.plugins.parameters import NoParameters
 from linkwright.simulation.plugins.sensors.base import SingleTopicSensor
 
@@ -26,18 +26,18 @@ class GzLogicalCamera(SingleTopicSensor[NoParameters]):
 
     def create_publishers(self) -> None:
         """Create the publisher of ``ros_gz_interfaces/msg/LogicalCameraImage``."""
-        self.output = self.gz_output(_IMAGE_TYPE, "logical_camera")
+        self.output = self.create_gz_output(_IMAGE_TYPE, "logical_camera")
 
     def measure(self) -> None:
         """Publish the names and poses of the models in view."""
         camera = compose(self.simulation.link_pose(self.sensor.link), self.sensor.pose)
         message = self.message(_IMAGE_TYPE, self.gz_frame())
-        message.pose = pose_message(camera)
+        message.pose = pose_to_message(camera)
         world_to_camera = invert(camera)
         for name in self.simulation.scene.models:
             pose = compose(world_to_camera, self.simulation.model_pose(name))
             if is_in_view(self._view, pose):
-                message.model.append(get_message(_MODEL_TYPE)(name=name, pose=pose_message(pose)))
+                message.model.append(get_message(_MODEL_TYPE)(name=name, pose=pose_to_message(pose)))
         self.output.publish(message)
 
 

@@ -26,7 +26,7 @@ from linkwright.simulation.plugins.entities import vector_components
 from linkwright.simulation.plugins.parameters import parameter
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 
-_ODOMETRY = "nav_msgs/msg/Odometry"
+_ODOMETRY_TYPE = "nav_msgs/msg/Odometry"
 _MIN_LENGTH = 1e-9
 
 
@@ -82,7 +82,7 @@ class GzTrackController(SimulatedPlugin[TrackControllerParameters]):
         )
         center_topic = parameters.center_of_rotation_topic or f"{base}/track_cmd_center_of_rotation"
         node.subscribe("geometry_msgs/msg/Vector3", center_topic, self._on_center)
-        self._output = node.publisher(_ODOMETRY, parameters.odometry_topic or f"{base}/odometry")
+        self._output = node.publisher(_ODOMETRY_TYPE, parameters.odometry_topic or f"{base}/odometry")
         self.every(0.0, self._move)
         self.every(parameters.odometry_publish_frequency, self._publish)
 
@@ -126,7 +126,7 @@ class GzTrackController(SimulatedPlugin[TrackControllerParameters]):
         model, data = simulation.model, simulation.data
         for geom in self._normals:
             rotation = data.geom_xmat[geom].reshape(3, 3)
-            linear, angular = self._surface_motion(geom)
+            linear, angular = self._compute_surface_motion(geom)
             model.geom_surfacevel[geom, :3], model.geom_surfacevel[geom, 3:] = linear @ rotation, angular @ rotation
         if self._speed != 0.0:
             model.flg_surfacevel = True
@@ -149,30 +149,34 @@ class GzTrackController(SimulatedPlugin[TrackControllerParameters]):
             geom: normal for geom, name in enumerate(names) if name.startswith(prefix) and "#collision" in name
         }
 
-    def _surface_motion(self, geom: int) -> tuple[Array, Array]:
-        """Return the linear and the angular velocity of a geom's surface in world axes, in m/s and rad/s."""
-        simulation, still = self.simulation, np.zeros(3)
+    def _compute_surface_motion(self, geom: int) -> tuple[Array, Array]:
+        """Return the linear and the angular velocity of a geom's surface.
+
+        Both are in world axes, in m/s and rad/s.
+        """
+        simulation, zero = self.simulation, np.zeros(3)
         axis = rotation_matrix(simulation.link_pose(self._link)[3:]) @ self._axis
-        points, normals = self._contacts(geom)
-        belt = np.cross(normals, axis).mean(axis=0)
-        length = float(np.linalg.norm(belt))
+        points, normals = self._find_contacts(geom)
+        belt_direction = np.cross(normals, axis).mean(axis=0)
+        length = float(np.linalg.norm(belt_direction))
         if length < _MIN_LENGTH:
-            return still, still
+            return zero, zero
         if self._center is None:
-            return self._speed * belt / length, still
+            return self._speed * belt_direction / length, zero
         arms = points - self._center
         tangents = np.cross(normals, arms)
         distance = float(np.linalg.norm(tangents, axis=1).mean())
         if distance < _MIN_LENGTH:
-            return still, still
-        along = float((tangents @ belt).sum())
-        angular = normals.mean(axis=0) * (self._speed if along >= 0.0 else -self._speed) / distance
+            return zero, zero
+        alignment = float((tangents @ belt_direction).sum())
+        angular = normals.mean(axis=0) * (self._speed if alignment >= 0.0 else -self._speed) / distance
         return np.cross(angular, simulation.data.geom_xpos[geom] - self._center), angular
 
-    def _contacts(self, geom: int) -> tuple[Array, Array]:
-        """Return the contact points of a geom, and the normals into it, shapes (n, 3), in world axes.
+    def _find_contacts(self, geom: int) -> tuple[Array, Array]:
+        """Return the contact points of a geom, and the normals into it.
 
-        Without a contact, the only point is the center of the geom, with the last normal.
+        Both have the shape (n, 3), in world axes. Without a contact, the only point is the center of the geom, with
+        the last normal.
         """
         data = self.simulation.data
         pairs = data.contact.geom[: data.ncon]
@@ -186,6 +190,6 @@ class GzTrackController(SimulatedPlugin[TrackControllerParameters]):
 
     def _publish(self) -> None:
         if self._output.is_wanted:
-            message = get_message(_ODOMETRY)(header=Header(stamp=self.stamp()))
+            message = get_message(_ODOMETRY_TYPE)(header=Header(stamp=self.stamp()))
             message.pose.pose.position.x, message.twist.twist.linear.x = self._position, self._speed
             self._output.publish(message)

@@ -20,11 +20,11 @@ from linkwright.geometry.single import rotate
 from linkwright.graph.stepped.node import Output
 from linkwright.kinematics.planar import PlanarPose
 from linkwright.messages import Vector3, from_values, get_message
-from linkwright.simulation.plugins.gz_drive import GZ_RATE, DriveCommands, GzDriveParameters, connect_drive
+from linkwright.simulation.plugins.gz_drive import GZ_RATE_HZ, DriveCommands, GzDriveParameters, connect_drive
 from linkwright.simulation.plugins.plugin import SimulatedPlugin
 from linkwright.xmltree import Element
 
-_FLOAT = "std_msgs/msg/Float64"
+_FLOAT_TYPE = "std_msgs/msg/Float64"
 _LIMITS = tuple(f"{side}_{item}" for side in ("min", "max") for item in ("velocity", "acceleration", "jerk"))
 _MIN_SPEED = 1e-6
 """The least speed in m/s or rad/s that counts as motion."""
@@ -45,8 +45,8 @@ class _Track:
     """The topics of a track, and the side on which it is: 1 for the left, -1 for the right."""
 
     side: float
-    speeds: Output
-    centers: Output
+    speed_output: Output
+    center_output: Output
 
 
 class GzTrackedVehicle(SimulatedPlugin[TrackedVehicleParameters]):
@@ -76,12 +76,12 @@ class GzTrackedVehicle(SimulatedPlugin[TrackedVehicleParameters]):
             )
         self._body = self.link(parameters.body_link) if parameters.body_link else self.first_link
         self._tracks = [*self._find_tracks("left_track", 1.0), *self._find_tracks("right_track", -1.0)]
-        self._commands = DriveCommands(replace(parameters, **self._limits()))
+        self._commands = DriveCommands(replace(parameters, **self._read_limits()))
         self._topics = connect_drive(self, parameters, self._commands)
         topic = parameters.steering_efficiency_topic or f"/model/{self.context.path}/steering_efficiency"
-        self.node.subscribe(_FLOAT, topic, self._on_efficiency)
+        self.node.subscribe(_FLOAT_TYPE, topic, self._on_efficiency)
         self.reset()
-        self.every(GZ_RATE, self._drive)
+        self.every(GZ_RATE_HZ, self._drive)
         self.every(parameters.odom_publish_frequency, self._publish)
 
     def reset(self) -> None:
@@ -109,9 +109,9 @@ class GzTrackedVehicle(SimulatedPlugin[TrackedVehicleParameters]):
             speed_topic = self.text_in(element, "velocity_topic") or f"{base}/track_cmd_vel"
             center_topic = self.text_in(element, "center_of_rotation_topic") or f"{base}/track_cmd_center_of_rotation"
             centers = self.node.publisher("geometry_msgs/msg/Vector3", center_topic)
-            yield _Track(side, self.node.publisher(_FLOAT, speed_topic), centers)
+            yield _Track(side, self.node.publisher(_FLOAT_TYPE, speed_topic), centers)
 
-    def _limits(self) -> dict[str, Any]:
+    def _read_limits(self) -> dict[str, Any]:
         """Return the limits of the nested elements, by the names of the parameters of other drives."""
         limits = {}
         for kind in ("linear", "angular"):
@@ -131,23 +131,26 @@ class GzTrackedVehicle(SimulatedPlugin[TrackedVehicleParameters]):
 
     def _drive(self) -> None:
         forward, _, turning = self._commands.next_velocity()
-        self._pose.advance(forward / GZ_RATE, 0.0, turning / GZ_RATE)
+        self._pose.advance(forward / GZ_RATE_HZ, 0.0, turning / GZ_RATE_HZ)
         if np.abs(np.subtract((forward, turning), self._velocity)).max() > _MIN_SPEED or turning:
             self._command_tracks(forward, turning)
         self._velocity = (forward, turning)
 
     def _command_tracks(self, forward: float, turning: float) -> None:
-        """Publish the speeds of the tracks, and their center of rotation, which is infinitely far on a straight way."""
+        """Publish the speeds of the tracks, and their center of rotation.
+
+        On a straight path, the center is infinitely far away.
+        """
         center = (inf, inf, inf)
         if abs(turning) >= _MIN_SPEED:
             radius = 0.0 if abs(forward) < _MIN_SPEED else forward / turning
             pose = self.simulation.link_pose(self._body)
             x, y, z = rotate(pose[3:], (0.0, radius, 0.0))
             center = (pose[0] + x, pose[1] + y, pose[2] + z)
-        lead = turning * self.parameters.tracks_separation / (2.0 * self._efficiency)
+        speed_difference = turning * self.parameters.tracks_separation / (2.0 * self._efficiency)
         for track in self._tracks:
-            track.centers.publish(from_values(Vector3, center))
-            track.speeds.publish(get_message(_FLOAT)(data=forward - track.side * lead))
+            track.center_output.publish(from_values(Vector3, center))
+            track.speed_output.publish(get_message(_FLOAT_TYPE)(data=forward - track.side * speed_difference))
 
     def _publish(self) -> None:
         forward, turning = self._velocity

@@ -10,7 +10,7 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 from launch import LaunchDescription
-from linkwright.simulation.nodes.command_line import classic_server
+from linkwright.simulation.nodes.command_line import parse_classic_server_command
 
 IGNORED = {
     "factory": "true",
@@ -46,7 +46,7 @@ def start_server(context):
     arguments = [value("world")] if value("world") else []
     arguments += ["-u"] if value("pause").lower() in ("true", "1") else []
     arguments += ["--seed", value("seed")] if value("seed") else []
-    command = classic_server([*arguments, *shlex.split(value("extra_gazebo_args"))])
+    command = parse_classic_server_command([*arguments, *shlex.split(value("extra_gazebo_args"))])
     required = IfCondition(LaunchConfiguration("server_required")).evaluate(context)
     return [
         Node(

@@ -12,7 +12,7 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 
 from launch import LaunchDescription
-from linkwright.simulation.nodes.command_line import gz_server
+from linkwright.simulation.nodes.command_line import parse_gz_server_command
 
 ARGUMENTS = {
     "gz_args": ("", "The command line of gz sim"),
@@ -27,7 +27,7 @@ ARGUMENTS = {
 def start(context):
     """Return the node of the server, or of the window's substitute if only that is requested."""
     arguments = LaunchConfiguration("gz_args").perform(context) or LaunchConfiguration("ign_args").perform(context)
-    command = gz_server(shlex.split(arguments))
+    command = parse_gz_server_command(shlex.split(arguments))
     required = IfCondition(LaunchConfiguration("on_exit_shutdown")).evaluate(context)
     return [
         Node(

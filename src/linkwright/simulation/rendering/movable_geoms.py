@@ -56,7 +56,7 @@ class MovableGeoms:
         self.resting: list[int] = []
         self._simulation = simulation
         self._geoms = np.array(list(meshes), dtype=np.int64)
-        self._corners = np.array([_corners(points) for points, _ in meshes.values()]).reshape(count, 8, 3)
+        self._corners = np.array([_compute_box_corners(points) for points, _ in meshes.values()]).reshape(count, 8, 3)
         geom_types = simulation.model.geom_type[self._geoms]
         self._is_box: Any = geom_types == load_mujoco().mjtGeom.mjGEOM_BOX
         self._poses: Any = np.full((count, 12), np.nan)
@@ -76,7 +76,7 @@ class MovableGeoms:
         has_moved = (poses != self._poses).any(axis=1) | (self._last_motion > now)  # or the time was reset
         self._poses = poses
         self._last_motion[has_moved] = now
-        self._has_contained_camera |= self._contain_point(origin)
+        self._has_contained_camera |= self._find_boxes_around(origin)
         is_resting = (now - self._last_motion >= _REST_NS) & ~self._has_contained_camera
         if (is_resting == self._is_resting).all():
             return False
@@ -84,13 +84,18 @@ class MovableGeoms:
         self.resting = self._geoms[is_resting].tolist()
         return True
 
-    def visible_geoms(self, view: CameraView) -> dict[int, Array]:
-        """Return the moving geoms that may appear in an image, except boxes that contain the camera.
+    def find_visible_geoms(self, view: CameraView) -> dict[int, Array]:
+        """Return the moving geoms that may appear in an image.
+
+        Boxes that contain the camera are left out.
 
         Returns:
             By geom index, the corners of the geom's bounding box in the axes of the image in m, shape (8, 3).
         """
-        data, candidates = self._simulation.data, np.flatnonzero(~(self._is_resting | self._contain_point(view.origin)))
+        data, candidates = (
+            self._simulation.data,
+            np.flatnonzero(~(self._is_resting | self._find_boxes_around(view.origin))),
+        )
         geoms = self._geoms[candidates]
         rotated = np.einsum("gij,gcj->gci", data.geom_xmat[geoms].reshape(-1, 3, 3), self._corners[candidates])
         view_corners = (rotated + (data.geom_xpos[geoms] - view.origin)[:, None, :]) @ view.axes
@@ -102,14 +107,14 @@ class MovableGeoms:
             ).all(axis=1)
         return {int(geoms[index]): view_corners[index] for index in np.flatnonzero(~is_outside)}
 
-    def _contain_point(self, origin: Array) -> Any:
+    def _find_boxes_around(self, origin: Array) -> Any:
         """Return whether each geom is a box that contains a point, shape (geoms,)."""
         model, data, geoms = self._simulation.model, self._simulation.data, self._geoms
         local_points = np.einsum("ijk,ij->ik", data.geom_xmat[geoms].reshape(-1, 3, 3), data.geom_xpos[geoms] - origin)
         return (np.abs(local_points) < model.geom_size[geoms] + _SURFACE_TOLERANCE).all(axis=1) & self._is_box
 
 
-def pixels_towards(optics: Optics, boxes: list[Array]) -> Any:
+def find_covered_pixels(optics: Optics, boxes: list[Array]) -> Any:
     """Return the indices of the pixels in which bounding boxes may appear, or None for all.
 
     The result is None if there are many boxes, or if a box is too close to the camera.
@@ -131,7 +136,7 @@ def pixels_towards(optics: Optics, boxes: list[Array]) -> Any:
     return np.flatnonzero(is_covered)
 
 
-def _corners(points: Array) -> Array:
+def _compute_box_corners(points: Array) -> Array:
     """Return the corners of the axis-aligned bounding box of points, shape (8, 3)."""
     bounds = np.stack([points.min(axis=0), points.max(axis=0)])
     corners: Array = np.array(

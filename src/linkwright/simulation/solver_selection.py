@@ -1,4 +1,4 @@
-"""Select MuJoCo's solver of forces: one for each island of bodies in contact, or one for all bodies.
+"""Select how MuJoCo solves forces: by islands of bodies in contact, or all together.
 
 Separate groups, called "islands", may fall asleep, so bodies at rest cost nothing. With the discrete integrator,
 however, MuJoCo processes all motors for each island, which doubles the time of a step with a hundred robots. The forces
@@ -22,11 +22,11 @@ Measured with 4 to 100 mbots: an island costs 2.5 us, and 0.03 us for each motor
 """
 _CHECK_STEPS = 20
 """The number of steps between two checks. Resting bodies may fall asleep within half as many."""
-_CHECKS_TOGETHER = 50
+_CHECKS_WITHOUT_ISLANDS = 50
 """The number of checks during which all bodies are solved together, before islands are tried again."""
 
 
-class Solving:
+class SolverSelector:
     """A selector of the solver of a simulation.
 
     The selection depends only on the state of the simulation, so the same calls give exactly the same results.
@@ -55,31 +55,31 @@ class Solving:
         """
         self._model, self._data, self._remaining_checks = model, data, 0
         if self._task is not None:
-            self._task.cancelled, self._task = True, None
+            self._task.is_cancelled, self._task = True, None
         if model.nu >= _MIN_MOTORS and model.ntree >= _MIN_TREES:
             self._task = self._schedule.add(_CHECK_STEPS * step, self._update_solver, now)
 
     def restart(self) -> None:
         """Return to solving by islands, because the simulation restarts."""
         if self._remaining_checks:
-            self._select(together=False)
+            self._select(without_islands=False)
 
     def _update_solver(self) -> None:
         if self._remaining_checks:
             self._remaining_checks -= 1
             if not self._remaining_checks:
-                self._select(together=False)
+                self._select(without_islands=False)
             return
         model, data = self._model, self._data
-        asleep = model.ntree - data.ntree_awake
-        if (model.nu + _ISLAND_COST) * data.nisland > _AWAKE_COST * asleep:
-            self._select(together=True)
+        sleeping_tree_count = model.ntree - data.ntree_awake
+        if (model.nu + _ISLAND_COST) * data.nisland > _AWAKE_COST * sleeping_tree_count:
+            self._select(without_islands=True)
 
-    def _select(self, *, together: bool) -> None:
+    def _select(self, *, without_islands: bool) -> None:
         mujoco, option = load_mujoco(), self._model.opt
         sleep, islands = mujoco.mjtEnableBit.mjENBL_SLEEP.value, mujoco.mjtDisableBit.mjDSBL_ISLAND.value
-        if together:
-            self._remaining_checks = _CHECKS_TOGETHER
+        if without_islands:
+            self._remaining_checks = _CHECKS_WITHOUT_ISLANDS
             option.enableflags &= ~sleep
             option.disableflags |= islands
         else:

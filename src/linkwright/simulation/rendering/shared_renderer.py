@@ -9,7 +9,7 @@ from weakref import WeakKeyDictionary
 from linkwright.diagnostics import Phrase
 from linkwright.geometry.single import Transform
 from linkwright.sdf.optics import Optics
-from linkwright.simulation.rendering.choice import make_renderer
+from linkwright.simulation.rendering.factory import make_renderer
 from linkwright.simulation.rendering.renderer import Channels, RenderedImage, Renderer
 from linkwright.simulation.simulation import Simulation
 
@@ -27,7 +27,7 @@ class SharedRenderer:
         self._renderer: Renderer | None = None
         self._thread = 0
         self._camera_count = 0
-        self._reported = False
+        self._has_reported = False
 
     def render(
         self, optics: Optics, pose: Transform, channels: Channels, report: Callable[[Phrase], object]
@@ -38,8 +38,8 @@ class SharedRenderer:
         """
         if self._renderer is None or self._thread != threading.get_ident():
             self._renderer, self._thread = make_renderer(self._simulation), threading.get_ident()
-        if not self._reported:
-            self._reported = True
+        if not self._has_reported:
+            self._has_reported = True
             report(self._renderer.method)
         return self._renderer.render(optics, pose, channels)
 
@@ -52,7 +52,7 @@ class SharedRenderer:
             self._renderer = None
             _renderers.pop(self._simulation, None)
 
-    def use(self) -> SharedRenderer:
+    def register(self) -> SharedRenderer:
         """Register a camera, and return this object.
 
         The camera must call `release` when it stops.
@@ -65,4 +65,4 @@ def share_renderer(simulation: Simulation) -> SharedRenderer:
     """Register a camera, and return the shared renderer of its simulation."""
     if simulation not in _renderers:
         _renderers[simulation] = SharedRenderer(simulation)
-    return _renderers[simulation].use()
+    return _renderers[simulation].register()

@@ -37,7 +37,7 @@ _MIN_AREA = 1e-15
 """The minimum area of a triangle in m2. Smaller triangles, at the poles, are omitted."""
 
 
-def textured_mesh(shape: Shape) -> Triangles | None:
+def create_textured_mesh(shape: Shape) -> Triangles | None:
     """Return a shape as a mesh with texture coordinates.
 
     Returns None for an unsupported or empty shape.
@@ -48,27 +48,34 @@ def textured_mesh(shape: Shape) -> Triangles | None:
         case Box(size) if min(size) > 0:
             half_size = np.array(size) / 2
             return _join_meshes(
-                [_rectangle_mesh(np.array(side, dtype=np.float64) * half_size, _BOX_DIVISIONS) for side in _SIDES]
+                [
+                    _create_rectangle_mesh(np.array(side, dtype=np.float64) * half_size, _BOX_DIVISIONS)
+                    for side in _SIDES
+                ]
             )
         case Plane(_, (x, y)) if min(x, y) > 0:
-            return _rectangle_mesh(np.array([[0.0, 0.0, 0.0], [x / 2, 0.0, 0.0], [0.0, y / 2, 0.0]]), _PLANE_DIVISIONS)
+            return _create_rectangle_mesh(
+                np.array([[0.0, 0.0, 0.0], [x / 2, 0.0, 0.0], [0.0, y / 2, 0.0]]), _PLANE_DIVISIONS
+            )
         case Cylinder(radius, length) if radius > 0 and length > 0:
             end = length / 2
-            tube = _revolution_mesh([(radius, -end, 0.0), (radius, end, 1.0)])
+            tube = _create_revolution_mesh([(radius, -end, 0.0), (radius, end, 1.0)])
             caps = (
-                _revolution_mesh([(radius, end, 1.0), (0.0, end, 0.0)]),
-                _revolution_mesh([(0.0, -end, 0.0), (radius, -end, 0.0)]),
+                _create_revolution_mesh([(radius, end, 1.0), (0.0, end, 0.0)]),
+                _create_revolution_mesh([(0.0, -end, 0.0), (radius, -end, 0.0)]),
             )
             return _join_meshes([tube, *caps])
         case Sphere(radius) if radius > 0:
             rows = [down / _RINGS for down in reversed(range(_RINGS + 1))]
-            upright = _revolution_mesh([(radius * sin(down * pi), radius * cos(down * pi), down) for down in rows])
+            upright = _create_revolution_mesh(
+                [(radius * sin(down * pi), radius * cos(down * pi), down) for down in rows]
+            )
             faces = upright.indices.reshape(-1, 3)[:, ::-1]  # Exchanging two axes reverses the winding.
             return replace(upright, positions=upright.positions[:, [0, 2, 1]], indices=faces.ravel())
     return None
 
 
-def _rectangle_mesh(side: Array, count: int) -> Triangles:
+def _create_rectangle_mesh(side: Array, count: int) -> Triangles:
     """Return a rectangle as a mesh.
 
     Args:
@@ -79,10 +86,10 @@ def _rectangle_mesh(side: Array, count: int) -> Triangles:
     down, right = (array.reshape(-1, 1) for array in np.meshgrid(fractions, fractions, indexing="ij"))
     center, to_right, upwards = side
     positions = center + (2 * right - 1) * to_right + (1 - 2 * down) * upwards
-    return _grid_mesh(positions, np.hstack([right, down]), count)
+    return _create_grid_mesh(positions, np.hstack([right, down]), count)
 
 
-def _revolution_mesh(rings: Sequence[tuple[float, float, float]]) -> Triangles:
+def _create_revolution_mesh(rings: Sequence[tuple[float, float, float]]) -> Triangles:
     """Return a solid of revolution about z as a mesh.
 
     `rings` has the radius, height and texture row of each ring, from the top.
@@ -91,10 +98,10 @@ def _revolution_mesh(rings: Sequence[tuple[float, float, float]]) -> Triangles:
     radius, height, row = (np.repeat(item, _SEGMENTS + 1) for item in np.array(rings).T)
     angle = np.tile(angles, len(rings))
     positions = np.stack([radius * np.sin(angle), radius * np.cos(angle), height], axis=1)
-    return _grid_mesh(positions, np.stack([angle / (2 * pi), row], axis=1), _SEGMENTS)
+    return _create_grid_mesh(positions, np.stack([angle / (2 * pi), row], axis=1), _SEGMENTS)
 
 
-def _grid_mesh(positions: Array, coordinates: Array, columns: int) -> Triangles:
+def _create_grid_mesh(positions: Array, coordinates: Array, columns: int) -> Triangles:
     """Return the mesh of the triangles between rows of vertices, without degenerate triangles."""
     upper = np.arange(len(positions) - columns - 1).reshape(-1, columns + 1)[:, :-1].ravel()
     lower = upper + columns + 1

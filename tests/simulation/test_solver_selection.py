@@ -8,7 +8,7 @@ import pytest
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.simulation.library import load_mujoco
 from linkwright.simulation.simulation import Simulation
-from linkwright.simulation.solving import Solving
+from linkwright.simulation.solver_selection import SolverSelector
 from tests.simulation.worlds import GROUND, box, make_simulation, mbot
 
 ROBOT_COUNT = 9
@@ -50,7 +50,7 @@ def test_joint_solving_of_many_robots_gives_same_motion(monkeypatch):
     assert is_solved_jointly(together)
     together.advance(NANOSECONDS_PER_SECOND)
     with monkeypatch.context() as patch:
-        patch.setattr(Solving, "_update_solver", lambda _: None)
+        patch.setattr(SolverSelector, "_update_solver", lambda _: None)
         reference = make_driving_robots()
         reference.advance(5 * CHECK_PERIOD + NANOSECONDS_PER_SECOND)
         assert not is_solved_jointly(reference)
