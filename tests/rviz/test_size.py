@@ -3,7 +3,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.packages import PackageFinder
-from linkwright.rviz import has_visuals, size_of
+from linkwright.rviz import estimate_size, has_visuals
 from linkwright.urdf import read
 from linkwright.xmltree import parse
 
@@ -11,7 +11,7 @@ from linkwright.xmltree import parse
 def measured(text: str):
     reading = read(parse(f'<robot name="r">{text}</robot>', "<text>"))
     assert reading.robot is not None, reading.diagnostics
-    return size_of(reading.robot)
+    return estimate_size(reading.robot)
 
 
 def joint(parent: str, child: str, xyz: str) -> str:

@@ -205,7 +205,7 @@ class SimulatedView(ModelView):
         config = world_config(str(self._world.path), *self._world.pose[:2])
 
         def add(cls: str, topic: str, *, checked: bool = True) -> None:
-            display = config.new_display(cls, cls.rpartition("/")[2])
+            display = config.make_display(cls, cls.rpartition("/")[2])
             display.section.put(("Topic", "Value"), topic, string=True)
             display.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
             config.insert(display)

@@ -17,13 +17,13 @@ def filled(count: int, period_ns: int, size: int = 100, **options) -> TrafficWin
 
 def test_single_message_has_no_traffic():
     window = TrafficWindow(10)
-    assert window.traffic(0) is None
+    assert window.measure(0) is None
     window.add(0, 5)
-    assert window.traffic(SECOND) is None
+    assert window.measure(SECOND) is None
 
 
 def test_steady_topic_has_expected_traffic():
-    traffic = filled(11, 100 * MS).traffic(SECOND)
+    traffic = filled(11, 100 * MS).measure(SECOND)
     assert traffic is not None
     assert traffic.messages_per_second == pytest.approx(10)
     assert traffic.bytes_per_second == pytest.approx(sum(range(100, 111)))
@@ -33,24 +33,24 @@ def test_steady_topic_has_expected_traffic():
 
 def test_message_rate_stays_between_messages():
     window = filled(11, 100 * MS)
-    assert window.traffic(SECOND + 150 * MS).messages_per_second == pytest.approx(10)
+    assert window.measure(SECOND + 150 * MS).messages_per_second == pytest.approx(10)
 
 
 def test_traffic_rates_fall_in_silence():
     window = filled(11, 100 * MS)
-    traffic = window.traffic(10 * SECOND)
+    traffic = window.measure(10 * SECOND)
     assert traffic.messages_per_second == pytest.approx(1)
     assert traffic.bytes_per_second < 120
 
 
 def test_old_messages_are_dropped_except_last_two():
     window = filled(101, 100 * MS, max_age_ns=2 * SECOND)
-    assert window.traffic(10 * SECOND).count == 21
-    assert window.traffic(1000 * SECOND).count == 2
+    assert window.measure(10 * SECOND).count == 21
+    assert window.measure(1000 * SECOND).count == 2
 
 
 def test_clock_jump_back_resets_window():
     window = filled(11, 100 * MS)
     window.add(-5 * SECOND, 1)
-    assert window.traffic(-5 * SECOND) is None
-    assert window.traffic(SECOND) is None
+    assert window.measure(-5 * SECOND) is None
+    assert window.measure(SECOND) is None

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.rviz.config.schema import MAX_TEXT_LENGTH, PropertySpec, accept, from_text, to_text
+from linkwright.rviz.config.schema import MAX_TEXT_LENGTH, PropertySpec, accept_value, value_from_text, value_to_text
 
 ALPHA = PropertySpec("Alpha", "float", 1.0, minimum=0.0, maximum=1.0)
 LENGTH = PropertySpec("Length", "float", 0.0)
@@ -37,7 +37,7 @@ TEXT = PropertySpec("Text", "string", "")
     ],
 )
 def test_valid_values_are_accepted_and_clamped(spec, value, expected):
-    accepted = accept(spec, value)
+    accepted = accept_value(spec, value)
     assert accepted == expected
     assert type(accepted) is type(expected)
 
@@ -69,7 +69,7 @@ def test_valid_values_are_accepted_and_clamped(spec, value, expected):
 )
 def test_invalid_values_are_rejected(spec, value):
     with pytest.raises(ValueError, match="expected"):
-        accept(spec, value)
+        accept_value(spec, value)
 
 
 @pytest.mark.parametrize(
@@ -98,7 +98,7 @@ def test_invalid_values_are_rejected(spec, value):
     ],
 )
 def test_spellings_in_files_are_parsed(spec, text, value):
-    assert from_text(spec, text) == value
+    assert value_from_text(spec, text) == value
 
 
 SPELLINGS_OF_NOTHING = [
@@ -119,15 +119,15 @@ SPELLINGS_OF_NOTHING = [
 @pytest.mark.parametrize(("spec", "text"), SPELLINGS_OF_NOTHING)
 def test_invalid_spellings_are_rejected(spec, text):
     with pytest.raises(ValueError, match="expected"):
-        from_text(spec, text)
+        value_from_text(spec, text)
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_floats_survive_round_trip(value):
     spec = PropertySpec("x", "float", 0.0)
-    assert from_text(spec, to_text(spec, value)) == value
+    assert value_from_text(spec, value_to_text(spec, value)) == value
 
 
 @given(st.from_regex(r"#[0-9a-f]{6}", fullmatch=True))
 def test_colors_survive_round_trip(color):
-    assert from_text(COLOR, to_text(COLOR, color)) == color
+    assert value_from_text(COLOR, value_to_text(COLOR, color)) == color

@@ -120,7 +120,7 @@ class BandwidthWindow(TrafficWindow):
 
     def text(self, now_ns: int) -> str | None:
         """Return the output of ``topic bw``, or None if fewer than two messages have arrived."""
-        traffic = self.traffic(now_ns)
+        traffic = self.measure(now_ns)
         if traffic is None:
             return None
         size_text = _size_formatter(traffic.bytes_per_second)
