@@ -52,13 +52,13 @@ def installed_display(request, tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(tmp_path / "street_displays"))
     monkeypatch.chdir(tmp_path)
     extensions._read_all_groups.cache_clear()
-    catalog._display_class.cache_clear()
+    catalog._load_display_class.cache_clear()
     yield
     monkeypatch.undo()
     sys.modules.pop("street_displays", None)
     sys.modules.pop("object_points", None)
     extensions._read_all_groups.cache_clear()
-    catalog._display_class.cache_clear()
+    catalog._load_display_class.cache_clear()
 
 
 def make_car(number: int, x: float, *, label: str = "car", speed: float = 3.0, path: int = 0) -> Any:
@@ -146,5 +146,5 @@ async def test_the_objects_are_drawn_as_points_with_a_channel(installed_display)
         await world.settle()
         (display,) = world.viewer.displays
         assert display.row().drawing == "rviz_default_plugins/PointCloud2"
-        assert display.fields_of("", 0) == {"speed": 3.0}
+        assert display.get_fields("", 0) == {"speed": 3.0}
         assert world.status("ObjectPoints")["Points"][0] == "ok"

@@ -85,11 +85,11 @@ class ComparisonViewer:
 
     def pose(self, frame: str) -> np.ndarray | None:
         """Return the pose of a frame in `base`: x y z qx qy qz qw."""
-        names, poses = self.world.viewer.manager.opening_state()[1].names, None
+        names, poses = self.world.viewer.manager.make_opening_state()[1].names, None
         if frame in names:
             from linkwright.page.protocol.message import unpack_transforms
 
-            frames = self.world.viewer.manager.opening_state()[2]
+            frames = self.world.viewer.manager.make_opening_state()[2]
             poses = unpack_transforms(next(frame for frame in frames if isinstance(frame, bytes)))[1][
                 names.index(frame)
             ]

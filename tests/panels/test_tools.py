@@ -10,7 +10,7 @@ import yaml
 from linkwright.graph import ActionServer
 from linkwright.messages import get_action
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.config.tools import DEFAULT_TOOLS, TOOL_KINDS, tool_name
+from linkwright.rviz.config.tools import DEFAULT_TOOLS, TOOL_KINDS, get_tool_name
 from tests.viewer.scene import open_world, page, rows_by_id
 from tests.waiting import eventually
 
@@ -51,7 +51,7 @@ def test_tool_names_match_rviz():
         "Publish Point",
         "Nav2 Goal",
     ]
-    assert tool_name("other_plugins/GoalTool") == "Goal Tool"
+    assert get_tool_name("other_plugins/GoalTool") == "Goal Tool"
 
 
 def test_tools_of_file_keep_order_classes_and_unknown_entries():

@@ -7,7 +7,7 @@ import yaml
 
 from linkwright.page.protocol.views_and_tools import View
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.config.views import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, view_classes
+from linkwright.rviz.config.views import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, make_view_classes
 from tests.viewer.scene import open_world, page
 
 FLYING = """\
@@ -50,7 +50,7 @@ def default_view(cls: str = ORBIT) -> View:
     """Return the default view of a class, as a page creates it."""
     return next(
         View(view_class.cls, CURRENT_NAME, view_class.defaults)
-        for view_class in view_classes()
+        for view_class in make_view_classes()
         if view_class.cls == cls
     )
 
@@ -63,7 +63,7 @@ def test_negative_scale_is_kept():
 
 
 def test_view_classes_and_properties_match_rviz():
-    classes = {view_class.cls.rpartition("/")[2]: view_class for view_class in view_classes()}
+    classes = {view_class.cls.rpartition("/")[2]: view_class for view_class in make_view_classes()}
     assert list(classes) == ["FPS", "Orbit", "ThirdPersonFollower", "TopDownOrtho", "XYOrbit"]
     rows = [row.name for row in classes["Orbit"].properties]
     assert rows[:3] == ["Near Clip Distance", "Invert Z Axis", "Target Frame"]

@@ -186,7 +186,7 @@ def test_malformed_color_image_is_rejected_with_reason():
 def test_image_with_too_many_pixels_is_not_compressed():
     data = np.frombuffer(png(MILLIMETERS, says=(9000, 9000)), np.uint8)
     frame = ImageFrame(0, 0, 0, 0, "file", data, None)
-    assert ImageCompressor().compressed(frame, 10) is frame
+    assert ImageCompressor().compress(frame, 10) is frame
 
 
 # --- displays --------------------------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.packages import PackageFinder
 from linkwright.page.files import MeshIndex
-from linkwright.rviz.robot import SceneBuilder, frame_of
+from linkwright.rviz.robot import SceneBuilder, get_frame_name
 from linkwright.urdf import read
 from linkwright.xacro import expand
 from linkwright.xmltree import parse
@@ -87,7 +87,7 @@ def test_links_have_frame_joint_and_source_location():
 </robot>"""
     links, _ = build_scene_of(text, prefix="one", name="/some/r.urdf")
     assert (links["base"].parent_joint, links["tip"].parent_joint) == (None, "j")
-    assert (links["tip"].frame, frame_of("tip", "")) == ("one/tip", "tip")
+    assert (links["tip"].frame, get_frame_name("tip", "")) == ("one/tip", "tip")
     place = links["tip"].place
     assert (place.file, place.line, place.column, place.trail) == ("/some/r.urdf", 3, 3, [])
 

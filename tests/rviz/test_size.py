@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.packages import PackageFinder
-from linkwright.rviz import has_visuals, size_of
+from linkwright.rviz import estimate_size, has_visuals
 from linkwright.urdf import read
 from linkwright.xmltree import parse
 
@@ -13,7 +13,7 @@ from linkwright.xmltree import parse
 def measure_robot(text: str):
     reading = read(parse(f'<robot name="r">{text}</robot>', "<text>"))
     assert reading.robot is not None, reading.diagnostics
-    return size_of(reading.robot)
+    return estimate_size(reading.robot)
 
 
 def joint_element(parent: str, child: str, xyz: str) -> str:

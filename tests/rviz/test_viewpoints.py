@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from linkwright.rviz.viewpoints import camera_of, robots_of
+from linkwright.rviz.viewpoints import find_camera, find_robots
 from linkwright.sdf.reader import read
 from linkwright.sdf.text import parse_as_gazebo
 
@@ -30,13 +30,13 @@ def read_world(inside: str):
 )
 def test_gui_camera_pose_is_read_like_gazebo(gui):
     half = math.sqrt(0.5)
-    assert camera_of(read_world(f"<gui>{gui}</gui>")) == pytest.approx([1, 2, 3, 0, 0, half, half], abs=1e-5)
+    assert find_camera(read_world(f"<gui>{gui}</gui>")) == pytest.approx([1, 2, 3, 0, 0, half, half], abs=1e-5)
 
 
 @pytest.mark.parametrize("pose", ["", "1 2 3", "1 2 3 0 0 x", "1 2 3 0 0 inf"])
 def test_invalid_camera_pose_is_none(pose):
-    assert camera_of(read_world(f"<gui><camera name='user'><pose>{pose}</pose></camera></gui>")) is None
-    assert camera_of(read_world("")) is None
+    assert find_camera(read_world(f"<gui><camera name='user'><pose>{pose}</pose></camera></gui>")) is None
+    assert find_camera(read_world("")) is None
 
 
 @pytest.mark.parametrize(
@@ -52,4 +52,4 @@ def test_invalid_camera_pose_is_none(pose):
     ],
 )
 def test_robots_of_world_are_movable_models_with_plugins_sensors_or_joints(inside, is_robot):
-    assert robots_of(read_world(f"<model name='m'>{inside}</model>")) == (["m"] if is_robot else [])
+    assert find_robots(read_world(f"<model name='m'>{inside}</model>")) == (["m"] if is_robot else [])

@@ -75,8 +75,8 @@ class _Failing(SimulatedPlugin[_Parameters]):
         self.every(
             100.0, lambda: output.publish(3 if self.parameters.failing_point == PUBLISHING else get_message(STRING)())
         )
-        commander = self.node.commander(lambda: fail_at(LOST) or False)
-        self.node.subscribe(STRING, "/told", lambda _: fail_at(CALLBACK), commander=commander)
+        command_guard = self.node.command_guard(lambda: fail_at(LOST) or False)
+        self.node.subscribe(STRING, "/told", lambda _: fail_at(CALLBACK), command_guard=command_guard)
         self.node.service(TRIGGER, "/asked", lambda _, response: fail_at(SERVICE) or response)
 
     def reset(self) -> None:

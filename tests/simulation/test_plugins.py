@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity
 from linkwright.graph import Graph, LogLevel, LogRecord
-from linkwright.graph.stepped.calls import logged_calls
+from linkwright.graph.stepped.calls import create_logged_calls
 from linkwright.graph.stepped.exchange import Exchange
 from linkwright.graph.stepped.node import Output
 from linkwright.loading.extensions import extensions
@@ -187,7 +187,7 @@ async def test_deferred_message_is_created_once_on_delivery():
     output = Output(
         exchange,
         [node.create_publisher("std_msgs/msg/String", topic, 10) for topic in topics],
-        logged_calls(node.get_logger(), "robot"),
+        create_logged_calls(node.get_logger(), "robot"),
     )
     recordings = [Recording(graph, node, topic) for topic in topics]
 

@@ -71,7 +71,7 @@ def extension_package(tmp_path, monkeypatch):
 
 def config_with(cls: str) -> RvizConfig:
     config = RvizConfig.for_model("base")
-    config.insert(config.new_display(cls, "Brought"))
+    config.insert(config.make_display(cls, "Brought"))
     return config
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 from linkwright.graph.endpoints.base import EndpointInfo
-from linkwright.graph.qos.compatibility import incompatible_policies
+from linkwright.graph.qos.compatibility import find_incompatible_policies
 from linkwright.graph.qos.profile import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -93,7 +93,7 @@ def can_receive(subscription: EndpointInfo, publisher: EndpointInfo, *, is_keyed
         return False
     if is_keyed:
         return len({endpoint_hash(subscription), endpoint_hash(publisher)} - {""}) <= 1
-    return not incompatible_policies(offered_profile(publisher.qos), subscription.qos)
+    return not find_incompatible_policies(offered_profile(publisher.qos), subscription.qos)
 
 
 def endpoint_hash(endpoint: EndpointInfo) -> str:

@@ -258,13 +258,13 @@ def run_dump(arguments: argparse.Namespace) -> int:
     """Print the parameters of a node as a parameter file, or write the file."""
 
     async def job(session: Session) -> int:
-        from linkwright.graph.parameters.files import parameter_file_text, plain_value
+        from linkwright.graph.parameters.files import format_parameter_file, plain_value
 
         parameters = await RemoteParameters.of(session, arguments)
         names = await parameters.names()
         values = await parameters.values(names) if names else []
         plain_values = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
-        text = parameter_file_text(parameters.node, plain_values)
+        text = format_parameter_file(parameters.node, plain_values)
         if arguments.output_dir is None:
             print(text)
             return 0

@@ -111,13 +111,13 @@ def create_fitting_profile(node: Node, topic: str, arguments: argparse.Namespace
     publishers are, so that it also receives a message that was published before. The default queue is longer than in
     ros2, so that bursts of messages are not dropped.
     """
-    from linkwright.graph.qos.compatibility import fit
+    from linkwright.graph.qos.compatibility import fit_profile
 
     requested_profile = create_profile(arguments)
     if any(getattr(arguments, name) is not None for name in (*_POLICY_OPTIONS, _LEASE_OPTION)):
         return requested_profile
     requested_profile.depth = max(requested_profile.depth, _MIN_QUEUE_DEPTH)
-    fitted = fit(requested_profile, [info.qos_profile for info in node.get_publishers_info_by_topic(topic)])
+    fitted = fit_profile(requested_profile, [info.qos_profile for info in node.get_publishers_info_by_topic(topic)])
     for offered_policies, chosen_policy in fitted.mixed:
         print(
             f"Some, but not all, publishers are offering {offered_policies}. Falling back to "

@@ -108,10 +108,10 @@ class RemoteParameters:
             raise LinkwrightError(*missing)
 
     async def _call(self, service: str, **fields: Any) -> Any:
-        from linkwright.graph.parameters.parameter import service_type
+        from linkwright.graph.parameters.parameter import get_service_type
         from linkwright.messages import get_service
 
-        name = service_type(service)
+        name = get_service_type(service)
         request = get_service(name).Request(**fields)
         return await call(self._session, name, f"{self.node}/{service}", request, timeout=self._timeout)
 

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, nearest, phrase
 from linkwright.doctor.record import TWIST, TWIST_STAMPED, Observation, listed, node_of, nodes_of
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind
-from linkwright.graph.qos.compatibility import incompatible_policies
+from linkwright.graph.qos.compatibility import find_incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind
 
 _COMMAND_TOPIC = "cmd_vel"
@@ -145,7 +145,7 @@ def _examine_qos(observation: Observation) -> Iterator[Diagnostic]:
         for publisher in publishers:
             if publisher.name != subscription.name or publisher.type_name != subscription.type_name:
                 continue
-            policies = tuple(incompatible_policies(publisher.qos, subscription.qos))
+            policies = tuple(find_incompatible_policies(publisher.qos, subscription.qos))
             key = (publisher.name, node_of(publisher), node_of(subscription), policies)
             if policies and key not in reported:
                 reported.add(key)

@@ -26,7 +26,7 @@ from linkwright.doctor.record import (
     node_of,
 )
 from linkwright.graph.endpoints.base import EndpointInfo, EndpointKind, MessageInfo
-from linkwright.graph.endpoints.drivers import DisputeDetector, find_drivers, find_publishers
+from linkwright.graph.endpoints.command_disputes import DisputeDetector, find_node_names, find_publishers
 from linkwright.graph.names.rules import join
 from linkwright.graph.qos.profile import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
@@ -354,7 +354,7 @@ class _Watcher:
         """Return the nodes that published contradictory velocities, by topic."""
         drivers_by_topic = []
         for topic, dispute in sorted(self._disputes.items()):
-            drivers = find_drivers(self._graph, find_publishers(self._graph, dispute.parties))
+            drivers = find_node_names(self._graph, find_publishers(self._graph, dispute.parties))
             if len(drivers) > 1:
                 drivers_by_topic.append(ObservedDrivers(topic, tuple(drivers)))
         return tuple(drivers_by_topic)

@@ -8,7 +8,7 @@ from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.faults import InterruptedWaitError, InvalidHandleError, NodeNotFoundError
-from linkwright.graph.log.console import console_line, print_to_console
+from linkwright.graph.log.console import format_console_line, print_to_console
 from linkwright.graph.log.logger import Logger, LogLevel, LogRecord, LogSink, log_failure, run_logged
 from linkwright.graph.loop.dispatcher import Entity, GuardCondition
 from linkwright.graph.loop.future import Future
@@ -182,7 +182,7 @@ __all__ = [
     "TransformException",
     "TransformListener",
     "Transport",
-    "console_line",
+    "format_console_line",
     "log_failure",
     "print_to_console",
     "qos_check_compatible",

@@ -32,16 +32,16 @@ class LoggerServices:
             )
 
     def _get(self, request: Any, response: Any) -> Any:
-        from linkwright.graph.parameters.parameter import message_class
+        from linkwright.graph.parameters.parameter import get_message_class
 
-        level_class = message_class("LoggerLevel")
+        level_class = get_message_class("LoggerLevel")
         response.levels = [level_class(name=name, level=int(self._levels.own_level(name))) for name in request.names]
         return response
 
     def _set(self, request: Any, response: Any) -> Any:
-        from linkwright.graph.parameters.parameter import message_class
+        from linkwright.graph.parameters.parameter import get_message_class
 
-        result_class = message_class("SetLoggerLevelsResult")
+        result_class = get_message_class("SetLoggerLevelsResult")
         results = [self._set_one(level.name, level.level) for level in request.levels]
         response.results = [result_class(successful=not reason, reason=reason) for reason in results]
         return response

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import EVENT_TOPIC_SUFFIX, Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
-from linkwright.graph.introspection.node_queries import PARAMETER as TYPE_DESCRIPTIONS
+from linkwright.graph.introspection.node_queries import TYPE_DESCRIPTION_PARAMETER as TYPE_DESCRIPTIONS
 from linkwright.graph.introspection.node_queries import NodeQueries, TypeDescriptions, has_type_descriptions_by_default
 from linkwright.graph.local_graph import LocalGraph
 from linkwright.graph.log.console import LOG_TYPE, ROSOUT_TOPIC, Rosout
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.loop.dispatcher import GuardCondition
-from linkwright.graph.loop.future import STRICT
+from linkwright.graph.loop.future import STRICT_GROUPS_PARAMETER
 from linkwright.graph.loop.node_handle import FREE_GROUP, CallbackGroup, NodeHandle
 from linkwright.graph.loop.timer import Rate, Timer
 from linkwright.graph.names.rules import NodeIdentity, Remappings, absolute_namespace, check_node_name
@@ -29,7 +29,7 @@ from linkwright.graph.parameters.node_parameters import (
 from linkwright.graph.parameters.parameter import Parameter, ParameterDescriptor
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions, override_qos
 from linkwright.graph.parameters.store import ParameterStore
-from linkwright.graph.qos.compatibility import best_available
+from linkwright.graph.qos.compatibility import resolve_best_available
 from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, ROSOUT_QOS, SERVICES_QOS, QoSProfile
 from linkwright.graph.simulated_time import SimulatedTime
 from linkwright.graph.time.clock import Clock, ROSClock
@@ -126,9 +126,9 @@ class Node(NodeParameters, NodeQueries):
                 NodeParameters.declare_parameters_from_overrides(self)
             if start_parameter_services:
                 ParameterServices(self, name, partial(Node.create_service, self))
-            if STRICT in store.overrides:
+            if STRICT_GROUPS_PARAMETER in store.overrides:
                 description = "Let responses wait for the callback group of their client, as rclpy does."
-                handle.strict_callback_groups = self.__node_flag(STRICT, False, description)
+                handle.strict_callback_groups = self.__node_flag(STRICT_GROUPS_PARAMETER, False, description)
             if self.__describes_types(store):
                 TypeDescriptions(handle, partial(Node.create_service, self))
             SimulatedTime(handle, self, self.__clock)
@@ -249,7 +249,7 @@ class Node(NodeParameters, NodeQueries):
         name = self.__handle.resolve_topic_name(topic)
         qos = override_qos(self, "publisher", name, QoSProfile.of(qos_profile), qos_overriding_options)
         peer_profiles = _endpoint_profiles(self.get_subscriptions_info_by_topic, name)
-        qos = best_available(qos, peer_profiles, publisher=True)
+        qos = resolve_best_available(qos, peer_profiles, is_publisher=True)
         publisher: Publisher[M] = publisher_class(
             self.__handle, msg_type, name, qos, callback_group, event_callbacks=event_callbacks
         )
@@ -291,7 +291,7 @@ class Node(NodeParameters, NodeQueries):
         name = self.__handle.resolve_topic_name(topic)
         qos = override_qos(self, "subscription", name, QoSProfile.of(qos_profile), qos_overriding_options)
         peer_profiles = _endpoint_profiles(self.get_publishers_info_by_topic, name)
-        qos = best_available(qos, peer_profiles, publisher=False)
+        qos = resolve_best_available(qos, peer_profiles, is_publisher=False)
         subscription: Subscription[M] = Subscription(
             self.__handle, msg_type, name, qos, callback, callback_group, raw=raw, event_callbacks=event_callbacks
         )

@@ -72,7 +72,7 @@ class SimulatedTime:
 
 
 class _ClockSubscription(Subscription[Any]):
-    """A subscription that sets a clock from ``/clock``, in the thread that receives the messages."""
+    """A subscription that sets a clock in the thread that receives the messages of ``/clock``."""
 
     def __init__(self, node: NodeHandle, clock: ROSClock) -> None:
         super().__init__(node, "rosgraph_msgs/msg/Clock", node.resolve_topic_name(CLOCK_TOPIC), CLOCK_QOS, self._move)
@@ -94,4 +94,4 @@ class _ClockSubscription(Subscription[Any]):
         if isinstance(message, QueuedMessage):
             message = message.message
         stamp = message.clock
-        self._ros_clock.override(stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec)
+        self._ros_clock.set_simulated_time(stamp.sec * NANOSECONDS_PER_SECOND + stamp.nanosec)

@@ -145,9 +145,9 @@ class LaunchLog:
 
         The line consists of the process name and the record in rcutils' format.
         """
-        from linkwright.graph import console_line
+        from linkwright.graph import format_console_line
 
-        line = f"[{process}] {console_line(record)}"
+        line = f"[{process}] {format_console_line(record)}"
         if SCREEN in destinations:
             color = {"WARN": "33", "ERROR": "31", "FATAL": "31"}.get(record.level.name)
             self._print(2, self._colorize(line, color))

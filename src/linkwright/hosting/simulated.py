@@ -205,7 +205,7 @@ class SimulatedView(ModelView):
         config = create_world_config(str(self._world.path), *self._world.pose[:2])
 
         def add_display(display_class: str, topic: str, *, checked: bool = True) -> None:
-            display = config.new_display(display_class, display_class.rpartition("/")[2])
+            display = config.make_display(display_class, display_class.rpartition("/")[2])
             display.section.put(("Topic", "Value"), topic, string=True)
             display.section.put(("Topic", "Reliability Policy"), "Best Effort", string=True)
             config.insert(display)

@@ -318,12 +318,12 @@ class ModelView:
 
         TF is enabled only if the robot has no visuals.
         """
-        from linkwright.rviz import RvizConfig, has_visuals, size_of
+        from linkwright.rviz import RvizConfig, estimate_size, has_visuals
 
         library = self.descriptions.library
         robot = None if self._text is None else library.read(self._text).robot
         frame = robot.root if robot is not None else _find_first_link(self._call.path)
-        size = size_of(robot) if robot is not None else None
+        size = estimate_size(robot) if robot is not None else None
         finder = library.packages(self._text or "") or self.finder
         shows_frames = robot is not None and not has_visuals(robot, finder)
         return RvizConfig.for_model(frame, size=size, frames=shows_frames, name=self._config_name)

@@ -39,7 +39,7 @@ def show_world(config: RvizConfig) -> None:
     If the configuration shows a map, the display is disabled, because both cover the same area.
     """
     if not shows_world(config):
-        world = config.new_display(_WORLD_DISPLAY, "World")
+        world = config.make_display(_WORLD_DISPLAY, "World")
         world.checked = not any(display.cls == _MAP_DISPLAY and display.checked for display in config.walk())
         config.insert(world)
 

@@ -28,8 +28,8 @@ from linkwright.language.rviz_owners import (
 from linkwright.language.yaml_outline import YamlCursor, YamlOutline, YamlPosition
 from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text, yaml_symbols
 from linkwright.loading.extensions import extensions
-from linkwright.rviz.config.former_names import modern_class
-from linkwright.rviz.config.schema import FIXED_FRAME, PropertySpec, to_text
+from linkwright.rviz.config.former_names import to_modern_class
+from linkwright.rviz.config.schema import FIXED_FRAME, PropertySpec, value_to_text
 from linkwright.rviz.config.tools import TOOL_KINDS
 from linkwright.rviz.config.views import ORBIT, VIEW_SCHEMAS
 
@@ -104,7 +104,7 @@ def _make_property_completion(spec: PropertySpec, start: int, *, has_value: bool
 
 
 def _default_text(spec: PropertySpec) -> str:
-    return "" if spec.default is None or spec.default == "" else to_text(spec, spec.default)
+    return "" if spec.default is None or spec.default == "" else value_to_text(spec, spec.default)
 
 
 def _describe_property(spec: PropertySpec) -> str:
@@ -223,7 +223,7 @@ def explain_rviz(document: Document, offset: int) -> Explanation | None:
         spec = owner.spec(key)
         text = ""
         if key == "Class":
-            text = _explain_class(modern_class(word))
+            text = _explain_class(to_modern_class(word))
         elif spec is not None and spec.kind == "frame":
             text = part_explanation(document, word, (NameKind.LINK,))
         text = text or _explain_property(owner, key)

@@ -8,7 +8,7 @@ from typing import Any
 
 from linkwright.language.yaml_outline import YamlEntry
 from linkwright.loading.extensions import EntryPoint, extensions
-from linkwright.rviz.config.former_names import modern_class
+from linkwright.rviz.config.former_names import to_modern_class
 from linkwright.rviz.config.rviz_config import GLOBAL_OPTIONS
 from linkwright.rviz.config.schema import PropertySpec, Schema
 from linkwright.rviz.config.tools import TOOL_KINDS
@@ -90,7 +90,7 @@ class ConfigOwner:
     def class_name(self) -> str:
         """The class name in RViz 2, or empty if it is missing."""
         class_entry = self.entry.child("Class")
-        return "" if class_entry is None else modern_class(class_entry.scalar)
+        return "" if class_entry is None else to_modern_class(class_entry.scalar)
 
     @property
     def schema(self) -> Schema:

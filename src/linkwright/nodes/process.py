@@ -20,7 +20,7 @@ from linkwright.process.standard_streams import accept_any_text
 
 if TYPE_CHECKING:
     from linkwright.graph import Graph
-    from linkwright.graph.command_line.log_setup import Logging
+    from linkwright.graph.command_line.log_setup import LoggingSetup
     from linkwright.nodes.options import Factory
 
 _GRAPHLESS_PROGRAMS = {("rmw_zenoh_cpp", "rmw_zenohd")}
@@ -43,7 +43,7 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
     Returns:
         The exit status: 0, the status of the node, or 1 if the node could not start.
     """
-    from linkwright.graph.command_line.log_setup import set_up
+    from linkwright.graph.command_line.log_setup import set_up_logging
     from linkwright.graph.command_line.ros_arguments import parse
 
     accept_any_text()
@@ -51,7 +51,7 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
         factory = _find_factory(package, executable)
         ros_arguments = parse(arguments)
         print_diagnostics([finding for _, finding in ros_arguments.parameters.skipped_findings], sys.stderr)
-        logging = set_up(ros_arguments, executable)
+        logging = set_up_logging(ros_arguments, executable)
     except LinkwrightError as error:
         print_diagnostics(error.diagnostics, sys.stderr)
         return 1
@@ -67,7 +67,7 @@ def main(package: str, executable: str, arguments: Sequence[str]) -> int:
         logging.close()
 
 
-async def _run(factory: Factory, arguments: list[str], logging: Logging, *, joins: bool) -> int:
+async def _run(factory: Factory, arguments: list[str], logging: LoggingSetup, *, joins: bool) -> int:
     from linkwright.graph import Graph
     from linkwright.nodes.options import FinishingNode, NodeOptions
 

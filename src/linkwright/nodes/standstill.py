@@ -1,6 +1,6 @@
 """Stop a robot when the publisher of its forwarded velocities disappears.
 
-See `linkwright.graph.endpoints.commander.Commander`.
+See `linkwright.graph.endpoints.command_guard.CommandGuard`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import Any
 from linkwright.diagnostics import phrase
 from linkwright.graph import Node, Publisher
 from linkwright.graph.endpoints.base import EndpointInfo
-from linkwright.graph.endpoints.commander import describe_lost_publisher
+from linkwright.graph.endpoints.command_guard import describe_lost_publisher
 from linkwright.nodes.velocity_topic import TWIST, TWIST_STAMPED
 
 VELOCITIES = (TWIST, TWIST_STAMPED)

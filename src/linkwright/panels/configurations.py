@@ -38,7 +38,7 @@ from linkwright.page.protocol.configuration import (
 from linkwright.page.protocol.message import ServerMessage
 from linkwright.panels.page_feature import FeatureHost, PageFeature
 from linkwright.rviz.config import file as configuration_file
-from linkwright.rviz.config.locations import RecentFiles, configuration_path, list_folder, remove_recovery_files
+from linkwright.rviz.config.locations import RecentFiles, list_folder, remove_recovery_files, resolve_configuration_path
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.config.schema import MAX_TEXT_LENGTH
 from linkwright.rviz.displays.catalog import has_display
@@ -124,7 +124,7 @@ class ConfigurationFeature(PageFeature):
         message, manager = request.message, request.manager
         if not has_display(message.cls):
             raise ValueError(f"there are no displays of the class '{message.cls[:100]}'")
-        entry = manager.config.new_display(message.cls, _checked_name(message.name))
+        entry = manager.config.make_display(message.cls, _checked_name(message.name))
         group = manager.display(message.group) if message.group is not None else None
         topic = message.topic
         prepare: Callable[[ViewerDisplay], None] | None = None
@@ -185,7 +185,7 @@ class ConfigurationFeature(PageFeature):
             self._open_config(request.manager, RvizConfig.default())
 
     def _open(self, request: Request[OpenConfiguration]) -> None:
-        path = configuration_path(request.message.path, _base_folder(request.manager))
+        path = resolve_configuration_path(request.message.path, _base_folder(request.manager))
         config = RvizConfig.load(path)
         if request.message.discard or self._may_discard(request.page, request.manager, str(path)):
             self._open_config(request.manager, config)
@@ -203,7 +203,9 @@ class ConfigurationFeature(PageFeature):
     def _save(self, request: Request[SaveConfiguration]) -> None:
         config, requested_path = request.manager.config, request.message.path
         path = (
-            config.path if requested_path is None else configuration_path(requested_path, _base_folder(request.manager))
+            config.path
+            if requested_path is None
+            else resolve_configuration_path(requested_path, _base_folder(request.manager))
         )
         if path is None:
             raise ValueError("the configuration has no file yet")
@@ -213,7 +215,7 @@ class ConfigurationFeature(PageFeature):
                     request.page, "changed_on_disk", f"'{path}' was changed by another program", str(path)
                 )
                 return
-            if path != config.path and configuration_file.state_of(path) is not None:
+            if path != config.path and configuration_file.get_file_state(path) is not None:
                 self._send_question(request.page, "exists", f"'{path}' already exists", str(path))
                 return
         previous_path = config.path

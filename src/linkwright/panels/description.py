@@ -265,7 +265,7 @@ class DescriptionFeature(PageFeature):
                 return description.details
             if isinstance(request, RequestInertia):
                 return description.findings(self.context.finder)
-            return display.provenance(request.link) if display is not None else None
+            return display.find_provenance(request.link) if display is not None else None
 
         async with self._answer_lock:
             response = await asyncio.to_thread(answer)

@@ -26,7 +26,7 @@ from linkwright.page.protocol.description import (
     SourceRange,
     Written,
 )
-from linkwright.rviz.robot import frame_of, link_inertia
+from linkwright.rviz.robot import get_frame_name, make_link_inertia
 from linkwright.urdf import Joint, Link, Mimic, Robot
 from linkwright.urdf.plaintext import parse_as_urdfdom
 from linkwright.xacro.faults import Frame, frames
@@ -123,9 +123,9 @@ def describe(robot: Robot, text: str, files: list[str], *, display: str, revisio
 def _link(link: Link, parent_joint: str | None, prefix: str, positions: SourcePositions) -> LinkDetails:
     return LinkDetails(
         name=link.name,
-        frame=frame_of(link.name, prefix),
+        frame=get_frame_name(link.name, prefix),
         parent_joint=parent_joint,
-        inertia=link_inertia(link.inertial),
+        inertia=make_link_inertia(link.inertial),
         written=positions.of("link", link.name, link.element),
     )
 

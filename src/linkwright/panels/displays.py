@@ -70,7 +70,7 @@ class PointsFeature(PageFeature):
         display = self.managers.of(page).display(message.display)
         if not isinstance(display, CloudDisplay):
             return
-        fields = display.fields_of(message.key, message.index)
+        fields = display.get_fields(message.key, message.index)
         if fields is not None:
             page.send(PointFields(message.display, message.key, message.index, fields))
 
@@ -83,10 +83,10 @@ def choices(node: Node) -> DisplayChoices:
     displays = sorted(display_classes(), key=lambda display: (display.CLASS == GROUP, display.CLASS))
     classes_by_message: dict[str, list[str]] = {}
     for display in displays:
-        for message in display.messages_shown():
+        for message in display.shown_message_types():
             classes_by_message.setdefault(message, []).append(display.CLASS)
     return DisplayChoices(
-        classes=[DisplayClass(display.CLASS, list(display.messages_shown())) for display in displays],
+        classes=[DisplayClass(display.CLASS, list(display.shown_message_types())) for display in displays],
         topics=[
             TopicChoice(topic, message, sorted(classes_by_message.get(message, [])))
             for topic, messages in sorted(node.get_topic_names_and_types())

@@ -95,7 +95,7 @@ class RequestedPanelsFeature(PageFeature):
         )
         if display is None:
             name = request.display_class.rpartition("/")[2]
-            entry = manager.config.new_display(request.display_class, name)
+            entry = manager.config.make_display(request.display_class, name)
             display = manager.tree.add(entry, prepare=partial(_set_topic, topic=request.topic))
         elif not display.config.checked:
             manager.tree.check(display, True)

@@ -33,9 +33,9 @@ from linkwright.page.protocol.views_and_tools import (
     ViewState,
 )
 from linkwright.panels.page_feature import FeatureHost, PageFeature
-from linkwright.rviz.config.property_store import qos_of
-from linkwright.rviz.config.tools import TOOL_KINDS, ToolEntry, ToolsConfig, tool_name
-from linkwright.rviz.config.views import view_classes
+from linkwright.rviz.config.property_store import qos_from_properties
+from linkwright.rviz.config.tools import TOOL_KINDS, ToolEntry, ToolsConfig, get_tool_name
+from linkwright.rviz.config.views import make_view_classes
 
 if TYPE_CHECKING:
     from linkwright.panels.goals import GoalSender
@@ -52,7 +52,7 @@ class ViewsFeature(PageFeature):
 
     def __init__(self, viewer: FeatureHost) -> None:
         super().__init__(viewer)
-        self._classes = ViewClasses(view_classes())
+        self._classes = ViewClasses(make_view_classes())
 
     def opening_messages(self) -> list[ServerMessage]:
         """Return the view classes and their properties."""
@@ -183,7 +183,7 @@ class ToolsFeature(PageFeature):
         try:
             self._create_outputs(tool_set, entry)
         except InvalidTopicNameError as error:
-            self.context.node.get_logger().error(f"{tool_name(entry.cls)}: {error}")
+            self.context.node.get_logger().error(f"{get_tool_name(entry.cls)}: {error}")
 
     def _destroy_all(self, tool_set: _ToolSet) -> None:
         for identity in [*tool_set.publishers, *tool_set.goals]:
@@ -219,7 +219,7 @@ class ToolsFeature(PageFeature):
             if path[0] == _TOPIC:
                 self._create_outputs(tool_set, entry)
         except (ValueError, InvalidTopicNameError) as error:
-            self.context.node.get_logger().warning(f"{tool_name(entry.cls)}: {error}")
+            self.context.node.get_logger().warning(f"{get_tool_name(entry.cls)}: {error}")
             entry.properties.set(path, previous_value)
             page.send(ToolPropertyChanged(message.id, previous_value))
             return
@@ -245,7 +245,7 @@ class ToolsFeature(PageFeature):
             self._destroy_outputs(tool_set, entry.id)
             return
         publisher: Publisher[Any] = self.context.node.create_publisher(
-            tool_kind.publishes, topic, qos_of(entry.properties)
+            tool_kind.publishes, topic, qos_from_properties(entry.properties)
         )
         self._destroy_outputs(tool_set, entry.id)
         tool_set.publishers[entry.id] = publisher
@@ -320,7 +320,7 @@ class ToolsFeature(PageFeature):
         """
         assert message_type is not None
         message = get_message(message_type)()
-        message.header.frame_id, header_pose = self.context.transforms.in_known_frame(manager.fixed_frame, pose)
+        message.header.frame_id, header_pose = self.context.transforms.to_known_frame(manager.fixed_frame, pose)
         message.header.stamp = self.context.node.get_clock().now().to_msg()
         return message, header_pose.tolist()
 
@@ -339,7 +339,7 @@ def _angle(pose: list[float]) -> float:
 def _tools_message(tool_set: _ToolSet) -> Tools:
     return Tools(
         [
-            Tool(entry.id, entry.cls, tool_name(entry.cls), entry.cls in TOOL_KINDS, entry.properties.rows())
+            Tool(entry.id, entry.cls, get_tool_name(entry.cls), entry.cls in TOOL_KINDS, entry.properties.rows())
             for entry in tool_set.config.entries
         ],
         [ToolClass(cls, kind.name) for cls, kind in TOOL_KINDS.items()],

@@ -49,10 +49,10 @@ class PublishedTopics:
         self._update_if_needed()
         return self._publishers.get(name, [])
 
-    def topics_of_type(self, message: str) -> list[str]:
+    def topics_of_type(self, message_type: str) -> list[str]:
         """Return the names of the topics that are published with a message type, sorted."""
         self._update_if_needed()
-        return self._topics.get(message, [])
+        return self._topics.get(message_type, [])
 
     def close(self) -> None:
         """Stop watching the graph."""
@@ -82,7 +82,7 @@ class PublishedTopics:
         self._topics = {message: sorted(names) for message, names in topics.items()}
 
 
-_COLLECTION_S = 0.1
+_COLLECTION_PERIOD_S = 0.1
 """Seconds for which changes are collected before callbacks are called. A starting node creates dozens of endpoints."""
 
 
@@ -122,7 +122,7 @@ class GraphChanges:
 
     def _wait(self) -> None:
         if self._notify_timer is None and self._listeners:
-            self._notify_timer = self._loop.call_later(_COLLECTION_S, self._notify)
+            self._notify_timer = self._loop.call_later(_COLLECTION_PERIOD_S, self._notify)
 
     def _notify(self) -> None:
         self._notify_timer = None
@@ -149,7 +149,7 @@ class HeldTime:
         """
         if clock.ros_time_is_active and not self._is_held:
             return False
-        clock.override(now_ns)
+        clock.set_simulated_time(now_ns)
         self._is_held = True
         self._switch(clock, held=True)
         return True

@@ -30,7 +30,7 @@ class ImageCompressor:
     def __init__(self) -> None:
         self._steps: dict[int, int] = {}
 
-    def compressed(self, frame: ImageFrame, max_size: int) -> ImageFrame:
+    def compress(self, frame: ImageFrame, max_size: int) -> ImageFrame:
         """Return the image as a WebP file of at most `max_size` bytes, if possible.
 
         An image that cannot be read is returned unchanged, because the page reports the error. A file that is already
@@ -42,11 +42,11 @@ class ImageCompressor:
             return frame
 
     def _compress(self, frame: ImageFrame, max_size: int) -> ImageFrame:
-        image = _pillow_image(frame)
+        image = _to_pillow_image(frame)
         width, height = frame.width or image.width, frame.height or image.height
         step = self._steps.get(max_size, 0)
         for _ in range(_MAX_ATTEMPTS):
-            data, columns, rows = _webp_file(image, *_STEPS[step])
+            data, columns, rows = _encode_webp(image, *_STEPS[step])
             if len(data) <= max_size or step == len(_STEPS) - 1:
                 break
             step = min(len(_STEPS) - 1, step + (1 if len(data) < 1.6 * max_size else 3))
@@ -60,7 +60,7 @@ class ImageCompressor:
         )
 
 
-def _pillow_image(frame: ImageFrame) -> Any:
+def _to_pillow_image(frame: ImageFrame) -> Any:
     from PIL import Image
 
     if frame.encoding == "file":
@@ -73,7 +73,7 @@ def _pillow_image(frame: ImageFrame) -> Any:
     return image.convert("RGB") if frame.encoding == "rgba" else image
 
 
-def _webp_file(image: Any, reduction: int, quality: int) -> tuple[bytes, int, int]:
+def _encode_webp(image: Any, reduction: int, quality: int) -> tuple[bytes, int, int]:
     """Return a WebP file, and its width and height in pixels."""
     reduced = image.reduce(reduction) if reduction > 1 else image
     file = BytesIO()

@@ -13,7 +13,7 @@ from linkwright.sdf.worlds import World
 _DOWN = (0.0, 0.0, -1.0)
 
 
-def lights_of(world: World) -> list[LightScene]:
+def convert_lights(world: World) -> list[LightScene]:
     """Return the lights of a world and of its links that are on.
 
     A light of the world is omitted if its pose is unknown. If the pose of any link is unknown, the lights of all links
@@ -22,17 +22,17 @@ def lights_of(world: World) -> list[LightScene]:
     Args:
         world: the world, with its includes resolved.
     """
-    return [*_world_lights(world), *_link_lights(world)]
+    return [*_convert_world_lights(world), *_convert_link_lights(world)]
 
 
-def _world_lights(world: World) -> Iterator[LightScene]:
+def _convert_world_lights(world: World) -> Iterator[LightScene]:
     frames = Frames(world)
     for light in world.lights:
         if light.light_on and (not light.pose.relative_to or light.pose.relative_to in frames):
-            yield _light(light, None, frames.placed(light.pose))
+            yield _convert_light(light, None, frames.placed(light.pose))
 
 
-def _link_lights(world: World) -> Iterator[LightScene]:
+def _convert_link_lights(world: World) -> Iterator[LightScene]:
     try:
         links = list(placed_links(world))
     except FrameError:
@@ -40,10 +40,12 @@ def _link_lights(world: World) -> Iterator[LightScene]:
     for placed_link in links:
         for light in placed_link.link.lights:
             if light.light_on:
-                yield _light(light, placed_link.name, placed_link.frames.in_link(light.pose, placed_link.link.name))
+                yield _convert_light(
+                    light, placed_link.name, placed_link.frames.in_link(light.pose, placed_link.link.name)
+                )
 
 
-def _light(light: Light, link: str | None, pose: Transform) -> LightScene:
+def _convert_light(light: Light, link: str | None, pose: Transform) -> LightScene:
     x, y, z = rotate(pose[3:], light.direction)
     length = (x * x + y * y + z * z) ** 0.5
     scene = LightScene(

@@ -31,7 +31,7 @@ from linkwright.page.files import IMAGE_TYPES, MESH_TYPES, MeshIndex
 from linkwright.page.protocol.configuration import Place
 from linkwright.page.protocol.description import LinkInertia
 from linkwright.page.protocol.robot import JointScene, LinkScene, Shape
-from linkwright.rviz.config.property_store import PropertyStore, qos_of
+from linkwright.rviz.config.property_store import PropertyStore, qos_from_properties
 from linkwright.rviz.config.schema import PropertySpec, topic_spec
 from linkwright.rviz.config.views import ModelSize
 from linkwright.rviz.context import ViewerContext
@@ -43,7 +43,7 @@ _MIN_DISTANCE = 1e-6
 """Frames that are closer than this have the same position, in m."""
 
 
-def size_of(robot: Robot) -> ModelSize | None:
+def estimate_size(robot: Robot) -> ModelSize | None:
     """Return the size of a robot whose joints are at zero, or None if it has no extent.
 
     The size is computed from the frames of the links, and from visuals and collisions with simple shapes. A page
@@ -52,7 +52,7 @@ def size_of(robot: Robot) -> ModelSize | None:
     tree = KinematicTree(robot)
     frames = dict(zip(tree.link_names, map(_placement_from_matrix, tree.forward({})), strict=True))
     boxes = [Bounds(frame.position, frame.position) for frame in frames.values()]
-    boxes += [box.moved(frames[name]) for name in frames for box in _simple_shape_bounds(robot, name)]
+    boxes += [box.moved(frames[name]) for name in frames for box in _find_simple_shape_bounds(robot, name)]
     bounds = union(boxes)
     if bounds is None or not isfinite(bounds.diagonal) or bounds.diagonal < _MIN_DISTANCE:
         return None
@@ -65,7 +65,7 @@ def size_of(robot: Robot) -> ModelSize | None:
     return ModelSize(bounds.diagonal, float(np.median(nonzero_distances)) if nonzero_distances else bounds.diagonal)
 
 
-def _simple_shape_bounds(robot: Robot, link: str) -> Iterator[Bounds]:
+def _find_simple_shape_bounds(robot: Robot, link: str) -> Iterator[Bounds]:
     """Yield the bounding boxes of a link's shapes other than meshes, in the link's frame."""
     shapes: tuple[Visual | Collision, ...] = (*robot.links[link].visuals, *robot.links[link].collisions)
     for shape in shapes:
@@ -157,9 +157,9 @@ class DescriptionSource:
     def _subscribe(self, topic: str) -> Phrase | None:
         if not topic:
             return phrase("Error subscribing: Empty topic name")
-        requested_qos = qos_of(self._properties, TOPIC)
+        requested_qos = qos_from_properties(self._properties, TOPIC)
         # A second subscription uses the durability of the file, for publishers that do not offer transient local.
-        profiles = [qos_of(self._properties, TOPIC, transient_local=True)]
+        profiles = [qos_from_properties(self._properties, TOPIC, transient_local=True)]
         if requested_qos.durability is not DurabilityPolicy.TRANSIENT_LOCAL:
             profiles.append(requested_qos)
         try:
@@ -178,14 +178,14 @@ class DescriptionSource:
         """
         if not self._publishers:
             return {}
-        gids = set(map(self.current, self._publishers))
+        gids = set(map(self.find_current_gid, self._publishers))
         return {
-            endpoint.gid: _node_text(endpoint)
+            endpoint.gid: _describe_node(endpoint)
             for endpoint in self._context.node.graph.endpoints()
             if endpoint.gid in gids
         }
 
-    def current(self, gid: bytes) -> bytes:
+    def find_current_gid(self, gid: bytes) -> bytes:
         """Return the current GID of a publisher, given a GID that it has or had.
 
         The GIDs of this process's publishers change when the process joins a network.
@@ -232,12 +232,12 @@ class DescriptionSource:
         self._on_text(self._context.library.store(description))
 
 
-def _node_text(publisher: EndpointInfo) -> str:
+def _describe_node(publisher: EndpointInfo) -> str:
     name = (publisher.node or UNKNOWN_NODE).full_name
     return f"{name} on {publisher.host}" if publisher.host else name
 
 
-def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
+def make_link_inertia(inertial: Inertial | None) -> LinkInertia | None:
     """Return a link's mass, center of mass and equivalent box, or None if not computable."""
     if inertial is None or not inertial.is_computable:
         return None
@@ -253,7 +253,7 @@ def link_inertia(inertial: Inertial | None) -> LinkInertia | None:
     )
 
 
-def place_of(element: Element | None) -> Place | None:
+def find_place(element: Element | None) -> Place | None:
     """Return the source position of an element, or None if a program generated the element.
 
     The position includes the macro calls and includes that led to the element.
@@ -271,7 +271,7 @@ def place_of(element: Element | None) -> Place | None:
     )
 
 
-def folder_of(element: Element | None) -> Path | None:
+def find_folder(element: Element | None) -> Path | None:
     """Return the folder of the file that contains an element, or None if there is no file.
 
     Relative paths in the element are relative to this folder.
@@ -281,7 +281,7 @@ def folder_of(element: Element | None) -> Path | None:
     return Path(element.source.name).parent
 
 
-def frame_of(link: str, prefix: str) -> str:
+def get_frame_name(link: str, prefix: str) -> str:
     """Return the tf frame of a link: its name, preceded by the TF Prefix and a slash if set."""
     return f"{prefix}/{link}" if prefix else link
 
@@ -314,7 +314,7 @@ class SceneBuilder:
     def links(self, robot: Robot, prefix: str) -> list[LinkScene]:
         """Return the links in file order, with frame names that include the display's TF Prefix."""
         parents = {joint.child: joint.name for joint in robot.joints.values()}
-        return [self._link(link, prefix, parents.get(link.name)) for link in robot.links.values()]
+        return [self._make_link(link, prefix, parents.get(link.name)) for link in robot.links.values()]
 
     def joints(self, robot: Robot) -> list[JointScene]:
         """Return the joints in file order."""
@@ -333,16 +333,16 @@ class SceneBuilder:
             for joint in robot.joints.values()
         ]
 
-    def _link(self, link: Link, prefix: str, parent_joint: str | None) -> LinkScene:
+    def _make_link(self, link: Link, prefix: str, parent_joint: str | None) -> LinkScene:
         first_material = link.visuals[0].material if link.visuals else None
         return LinkScene(
             name=link.name,
-            frame=frame_of(link.name, prefix),
+            frame=get_frame_name(link.name, prefix),
             parent_joint=parent_joint,
             visuals=self._make_shapes(link, link.visuals),
             collisions=self._make_shapes(link, link.collisions, first_material),
-            place=place_of(link.element),
-            inertia=link_inertia(link.inertial),
+            place=find_place(link.element),
+            inertia=make_link_inertia(link.inertial),
         )
 
     def _make_shapes(
@@ -362,7 +362,7 @@ class SceneBuilder:
             position=list(element.origin.xyz),
             quaternion=list(pose_quaternion(element.origin)),
             color=list(material.rgba) if material and material.rgba else None,
-            texture=self._texture(link, material),
+            texture=self._find_texture(link, material),
             name=element.name,
         )
         if isinstance(geometry, Box):
@@ -374,11 +374,11 @@ class SceneBuilder:
         elif isinstance(geometry, Sphere):
             shape.kind, shape.size = "sphere", [geometry.radius]
         else:
-            return self._mesh(link, element, geometry, shape)
+            return self._set_mesh(link, element, geometry, shape)
         return shape
 
-    def _mesh(self, link: Link, element: Visual | Collision, mesh: Mesh, shape: Shape) -> Shape | None:
-        located = self.index.locate(mesh.filename, folder_of(element.element), MESH_TYPES)
+    def _set_mesh(self, link: Link, element: Visual | Collision, mesh: Mesh, shape: Shape) -> Shape | None:
+        located = self.index.locate(mesh.filename, find_folder(element.element), MESH_TYPES)
         if located.url is None:
             self._add_problem(
                 link,
@@ -390,10 +390,10 @@ class SceneBuilder:
         shape.format = mesh.filename.rpartition(".")[2].lower()
         return shape
 
-    def _texture(self, link: Link, material: Material | None) -> str | None:
+    def _find_texture(self, link: Link, material: Material | None) -> str | None:
         if material is None or not material.texture:
             return None
-        located = self.index.locate(material.texture, folder_of(material.element), IMAGE_TYPES)
+        located = self.index.locate(material.texture, find_folder(material.element), IMAGE_TYPES)
         if located.url is None:
             self._add_problem(
                 link, phrase("Could not load texture '{name}': {reason}", name=material.texture, reason=located.problem)

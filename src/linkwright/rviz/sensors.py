@@ -38,7 +38,7 @@ class DisplayedLidar:
     strides: tuple[int, int]
 
 
-def sensors_of(world: World) -> tuple[list[DisplayedLidar], list[CameraScene]]:
+def convert_sensors(world: World) -> tuple[list[DisplayedLidar], list[CameraScene]]:
     """Return the lidars and the cameras of a world, in file order.
 
     Both lists are empty if the pose of any link or sensor is unknown.
@@ -54,14 +54,14 @@ def sensors_of(world: World) -> tuple[list[DisplayedLidar], list[CameraScene]]:
             for sensor in placed_link.link.sensors:
                 pose = placed_link.frames.in_link(sensor.pose, placed_link.link.name)
                 if sensor.lidar is not None:
-                    lidars.append(_displayed_lidar(placed_link, sensor, sensor.lidar, pose))
-                cameras.extend(_camera_scene(placed_link, sensor, camera, pose) for camera in sensor.cameras)
+                    lidars.append(_convert_lidar(placed_link, sensor, sensor.lidar, pose))
+                cameras.extend(_convert_camera(placed_link, sensor, camera, pose) for camera in sensor.cameras)
     except FrameError:
         return [], []
     return lidars, cameras
 
 
-def _displayed_lidar(placed_link: PlacedLink, sensor: Sensor, lidar: Lidar, pose: Transform) -> DisplayedLidar:
+def _convert_lidar(placed_link: PlacedLink, sensor: Sensor, lidar: Lidar, pose: Transform) -> DisplayedLidar:
     horizontal, vertical = lidar.horizontal, lidar.vertical
     row_step = ceil(vertical.count / _MAX_ROWS)
     rows = ceil(vertical.count / row_step)
@@ -82,7 +82,7 @@ def _displayed_lidar(placed_link: PlacedLink, sensor: Sensor, lidar: Lidar, pose
     return DisplayedLidar(scene, (vertical.count, horizontal.count), (row_step, column_step))
 
 
-def _camera_scene(placed_link: PlacedLink, sensor: Sensor, camera: Camera, pose: Transform) -> CameraScene:
+def _convert_camera(placed_link: PlacedLink, sensor: Sensor, camera: Camera, pose: Transform) -> CameraScene:
     optics = optics_of(camera)
     camera_pose = compose(pose, transform_of(camera.pose.pose))
     return CameraScene(

@@ -11,7 +11,7 @@ _TWILIGHT_HOURS = 1.0
 """The duration of dawn and of dusk, in hours."""
 
 
-def daylight(sky: Sky | None) -> float | None:
+def compute_daylight(sky: Sky | None) -> float | None:
     """Return the brightness of a sky, from 0 at night to 1, or None if there is no sky."""
     if sky is None:
         return None
@@ -20,7 +20,7 @@ def daylight(sky: Sky | None) -> float | None:
     return max(0.0, min(1.0, hours_since_sunrise + 0.5, hours_to_sunset + 0.5))
 
 
-def fog_of(fog: Fog | None) -> FogScene | None:
+def convert_fog(fog: Fog | None) -> FogScene | None:
     """Return the fog in the page's form, or None if there is no fog."""
     if fog is None or fog.type.strip() in ("", "none") or not all(map(isfinite, (fog.start, fog.end, fog.density))):
         return None

@@ -15,7 +15,7 @@ _MIN_MOVING_JOINTS = 2
 _POSE_LENGTH = 6
 
 
-def camera_of(world: World) -> Transform | None:
+def find_camera(world: World) -> Transform | None:
     """Return the pose of the camera that a world's file sets, in the world frame, or None.
 
     The camera looks along its x axis. Gazebo classic reads ``<gui><camera><pose>``; gz reads the ``<camera_pose>`` of
@@ -27,10 +27,10 @@ def camera_of(world: World) -> Transform | None:
         return None
     poses = [pose for camera in gui.elements("camera") for pose in camera.elements("pose")]
     poses += [pose for plugin in gui.elements("plugin") for pose in plugin.elements("camera_pose")]
-    return _pose(poses[0]) if poses else None
+    return _parse_pose(poses[0]) if poses else None
 
 
-def robots_of(world: World) -> list[str]:
+def find_robots(world: World) -> list[str]:
     """Return the names of the models that count as robots.
 
     These models are not static, and have sensors, plugins or at least two moving joints.
@@ -38,7 +38,7 @@ def robots_of(world: World) -> list[str]:
     return [model.name for model in world.models if not model.static and _is_robot(model)]
 
 
-def _pose(element: Element) -> Transform | None:
+def _parse_pose(element: Element) -> Transform | None:
     try:
         numbers = [float(token) for token in element.text().split()]
     except ValueError:

@@ -57,7 +57,7 @@ class WorldContent:
     problems: dict[str, list[str]] = field(default_factory=dict)
 
 
-def content_of(world: World, index: MeshIndex) -> WorldContent:
+def make_content(world: World, index: MeshIndex) -> WorldContent:
     """Return the content drawn for a world.
 
     Args:
@@ -80,10 +80,10 @@ class _Builder:
         for model in world.models:
             model_frames = frames.inside(model.name)
             for placed_link in links_of(model, model_frames, frames.pose(model.name), model.name):
-                self._link(placed_link)
+                self._add_link(placed_link)
         return self._content
 
-    def _link(self, placed_link: PlacedLink) -> None:
+    def _add_link(self, placed_link: PlacedLink) -> None:
         link, frames, content = placed_link.link, placed_link.frames, self._content
 
         def pose(raw: RawPose) -> Transform:
@@ -119,7 +119,7 @@ class _Builder:
         return shape if shape.size else None
 
     def _set_geometry(self, link: str, shape: Shape, geometry: SdfShape) -> Transform | None:
-        """Set the kind and the size of a shape, and return the shape's pose in the geometry's frame.
+        """Set the kind and the size of a shape, and return its pose in the geometry's frame.
 
         None means the identity.
         """
@@ -156,7 +156,7 @@ class _Builder:
         shape.outlines = [[number for point in polygon.points for number in point] for polygon in polygons]
 
     def _set_mesh(self, link: str, shape: Shape, mesh: Mesh) -> None:
-        shape.url = self._url_of(link, mesh.uri, MESH_TYPES)
+        shape.url = self._find_url(link, mesh.uri, MESH_TYPES)
         if shape.url is None:
             return
         shape.size = list(mesh.scale)
@@ -165,7 +165,7 @@ class _Builder:
             shape.submesh = Submesh(mesh.submesh.name, mesh.submesh.center)
 
     def _set_terrain(self, link: str, shape: Shape, terrain: Heightmap) -> None:
-        heights = self._heights(link, terrain.uri)
+        heights = self._read_heights(link, terrain.uri)
         if heights is None:
             return
         shape.heights, shape.columns = heights.ravel(), heights.shape[1]
@@ -173,14 +173,14 @@ class _Builder:
         shape.kind = "heightmap"
         shape.size = [*terrain.size, *terrain.position, texture.size if texture else 1.0]
         if texture is not None and texture.diffuse:
-            shape.texture = self._url_of(link, texture.diffuse, IMAGE_TYPES)
+            shape.texture = self._find_url(link, texture.diffuse, IMAGE_TYPES)
 
-    def _heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
+    def _read_heights(self, link: str, uri: str) -> NDArray[np.float32] | None:
         """Return the heights of a heightmap as in the simulation, or None if it cannot be read.
 
         The image is decoded here, because browsers decode neither TIFF nor 16-bit gray.
         """
-        if self._url_of(link, uri, IMAGE_TYPES) is None:
+        if self._find_url(link, uri, IMAGE_TYPES) is None:
             return None
         try:
             values = read_heights(self._index.finder.resolve(uri)).values
@@ -200,13 +200,13 @@ class _Builder:
         red, green, blue, alpha = color
         shape.color = [red, green, blue, alpha * (1.0 - visual.transparency)]
         if image:
-            shape.texture = self._url_of(link, image, IMAGE_TYPES)
+            shape.texture = self._find_url(link, image, IMAGE_TYPES)
         workflow = material.pbr.metal if material and material.pbr else None
         if workflow and _has_surface(workflow):
-            urls = [self._url_of(link, file, IMAGE_TYPES) if file else None for file in _maps(workflow)]
+            urls = [self._find_url(link, file, IMAGE_TYPES) if file else None for file in _list_maps(workflow)]
             shape.surface = Surface(workflow.roughness, workflow.metalness, *urls)
 
-    def _url_of(self, link: str, uri: str, types: dict[str, str]) -> str | None:
+    def _find_url(self, link: str, uri: str, types: dict[str, str]) -> str | None:
         located = self._index.locate(uri, None, types)
         if located.url is None:
             self._add_problem(link, f"Could not load '{uri}': {located.problem}")
@@ -218,7 +218,7 @@ class _Builder:
             problems.append(text)
 
 
-def _maps(workflow: Workflow) -> tuple[str, ...]:
+def _list_maps(workflow: Workflow) -> tuple[str, ...]:
     """Return the texture files of a material except the albedo map, in the order of `Surface`."""
     surface_maps = (workflow.normal_map, workflow.roughness_map, workflow.metalness_map)
     return (*surface_maps, workflow.emissive_map, workflow.ambient_occlusion_map)
@@ -227,4 +227,7 @@ def _maps(workflow: Workflow) -> tuple[str, ...]:
 def _has_surface(workflow: Workflow) -> bool:
     """Return whether a material has images other than the color image, roughness or metalness."""
     default = Workflow()
-    return any(_maps(workflow)) or (workflow.roughness, workflow.metalness) != (default.roughness, default.metalness)
+    return any(_list_maps(workflow)) or (workflow.roughness, workflow.metalness) != (
+        default.roughness,
+        default.metalness,
+    )

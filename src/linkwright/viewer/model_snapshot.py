@@ -16,7 +16,7 @@ from linkwright.panels.comparison.feature import add_old_robot
 from linkwright.panels.export.snapshot import Snapshot, snapshot_of
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 from linkwright.rviz.config.rviz_config import RvizConfig
-from linkwright.rviz.robot import has_visuals, size_of
+from linkwright.rviz.robot import estimate_size, has_visuals
 from linkwright.urdf import Robot
 from linkwright.viewer.viewer import Viewer
 
@@ -61,7 +61,7 @@ async def _take_snapshot(
     text: str, robot: Robot, library: DescriptionLibrary, finder: PackageFinder, old: OldDescription | None
 ) -> Snapshot:
     graph = Graph(clock=JumpClock(_SNAPSHOT_TIME_NS), on_log=lambda _: None)
-    config = RvizConfig.for_model(robot.root, size=size_of(robot), frames=not has_visuals(robot, finder))
+    config = RvizConfig.for_model(robot.root, size=estimate_size(robot), frames=not has_visuals(robot, finder))
     if old is not None:
         add_old_robot(config, old.pair.old.title)
     viewer = Viewer(graph, library=library, finder=finder, config=config, title=robot.name)

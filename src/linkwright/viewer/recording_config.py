@@ -10,7 +10,7 @@ from linkwright.graph import DurabilityPolicy, ReliabilityPolicy
 from linkwright.messages import TFMessage, deserialize, get_message
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC, WORLD_DISPLAY
-from linkwright.rviz.robot import size_of
+from linkwright.rviz.robot import estimate_size
 from linkwright.sdf.poses import WORLD
 from linkwright.urdf import Robot
 from linkwright.viewer.recorded_robot import find_description_topic, find_transform_namespace
@@ -58,7 +58,7 @@ def create_recording_config(bag: BagReader, robot: Robot | None = None) -> RvizC
     config = RvizConfig.for_model(fixed_frame, frames=description_topic_name is None, name=str(bag.path))
     base_frame = next((name for name in _list_base_frames(robot) if name in children), None)
     if base_frame is not None and root in _WORLD_FIXED_FRAMES and not has_world:
-        size = None if robot is None else size_of(robot)
+        size = None if robot is None else estimate_size(robot)
         config.follow_frame(
             base_frame, _MIN_DISTANCE if size is None else max(_MIN_DISTANCE, _DISTANCE_FACTOR * size.distance)
         )
@@ -73,7 +73,7 @@ def create_recording_config(bag: BagReader, robot: Robot | None = None) -> RvizC
         if has_world and display_kind in ("RobotModel", "TF"):
             display.checked = False
     if has_world:
-        world_display = config.new_display(WORLD_DISPLAY, "World")
+        world_display = config.make_display(WORLD_DISPLAY, "World")
         config.insert(world_display)
         world_display.checked = True
     enabled_counts: Counter[str] = Counter()
@@ -98,7 +98,7 @@ def _has_world(bag: BagReader) -> bool:
 
 
 def _add_display(config: RvizConfig, display_class: str, topic: BagTopic, *, checked: bool) -> None:
-    display = config.new_display(f"rviz_default_plugins/{display_class}", topic.name.strip("/"))
+    display = config.make_display(f"rviz_default_plugins/{display_class}", topic.name.strip("/"))
     offered_profiles = topic.offered_qos
     display.section.put(("Topic", "Value"), topic.name, string=True)
     if any(offer.reliability is ReliabilityPolicy.BEST_EFFORT for offer in offered_profiles):

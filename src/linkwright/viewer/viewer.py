@@ -287,7 +287,7 @@ class Viewer:
         The frame table is the last message.
         """
         messages: list[ServerMessage] = [Hello(PROTOCOL_VERSION, __version__, self._title, self._run)]
-        tree_messages, table, frames = manager.opening_state()
+        tree_messages, table, frames = manager.make_opening_state()
         messages += self._create_feature_openings(before_displays=True)
         messages += tree_messages
         messages += self._create_feature_openings(before_displays=False)

@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.graph import EndpointKind, MessageInfo, NodeIdentity, QoSProfile
 from linkwright.graph.endpoints.base import EndpointInfo
-from linkwright.graph.endpoints.drivers import DisputeDetector, DriverWatch
+from linkwright.graph.endpoints.command_disputes import DisputeDetector, DisputeMonitor
 from linkwright.graph.log.logger import Logger
 from linkwright.messages import get_message
 
@@ -130,7 +130,7 @@ def find_warnings(graph: KnownPublishers, message_type: type = Twist) -> list[st
     """Return the warnings about publishers that drive for five seconds."""
     log: list[str] = []
     now = 0
-    watch = DriverWatch(Logger("drive", lambda record: log.append(record.text), lambda: 0), graph, lambda: now)
+    watch = DisputeMonitor(Logger("drive", lambda record: log.append(record.text), lambda: 0), graph, lambda: now)
     for tick in range(50):
         for number, endpoint in enumerate(graph.endpoints()):
             now = tick * 100_000_000 + number

@@ -89,7 +89,7 @@ class CallingScene:
 @pytest.fixture
 def make_scene(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Return a function that creates a `CallingScene`."""
-    monkeypatch.setattr(self_waits, "_reported", set())
+    monkeypatch.setattr(self_waits, "_reported_waits", set())
     scenes: list[CallingScene] = []
 
     def make(**options: Any) -> CallingScene:
@@ -147,7 +147,7 @@ def test_waits_outside_callbacks_and_completed_futures_are_not_reported(make_sce
 
 
 def test_strict_parameter_makes_call_block_until_timeout(make_scene) -> None:
-    asks = make_scene(parameters={self_waits.STRICT: True})
+    asks = make_scene(parameters={self_waits.STRICT_GROUPS_PARAMETER: True})
     answers: list[Any] = []
     assert asks.run(lambda: answers.append(asks.client.call(TRIGGER.Request(), timeout_sec=0.2)))
     assert answers == [None]

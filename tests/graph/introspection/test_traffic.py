@@ -19,13 +19,13 @@ def filled_window(count: int, period_ns: int, size: int = 100, **options) -> Tra
 
 def test_single_message_has_no_traffic():
     window = TrafficWindow(10)
-    assert window.traffic(0) is None
+    assert window.measure(0) is None
     window.add(0, 5)
-    assert window.traffic(SECOND_NS) is None
+    assert window.measure(SECOND_NS) is None
 
 
 def test_steady_topic_has_expected_traffic():
-    traffic = filled_window(11, 100 * MILLISECOND_NS).traffic(SECOND_NS)
+    traffic = filled_window(11, 100 * MILLISECOND_NS).measure(SECOND_NS)
     assert traffic is not None
     assert traffic.messages_per_second == pytest.approx(10)
     assert traffic.bytes_per_second == pytest.approx(sum(range(100, 111)))
@@ -35,24 +35,24 @@ def test_steady_topic_has_expected_traffic():
 
 def test_message_rate_stays_between_messages():
     window = filled_window(11, 100 * MILLISECOND_NS)
-    assert window.traffic(SECOND_NS + 150 * MILLISECOND_NS).messages_per_second == pytest.approx(10)
+    assert window.measure(SECOND_NS + 150 * MILLISECOND_NS).messages_per_second == pytest.approx(10)
 
 
 def test_traffic_rates_fall_in_silence():
     window = filled_window(11, 100 * MILLISECOND_NS)
-    traffic = window.traffic(10 * SECOND_NS)
+    traffic = window.measure(10 * SECOND_NS)
     assert traffic.messages_per_second == pytest.approx(1)
     assert traffic.bytes_per_second < 120
 
 
 def test_old_messages_are_dropped_except_last_two():
     window = filled_window(101, 100 * MILLISECOND_NS, max_age_ns=2 * SECOND_NS)
-    assert window.traffic(10 * SECOND_NS).count == 21
-    assert window.traffic(1000 * SECOND_NS).count == 2
+    assert window.measure(10 * SECOND_NS).count == 21
+    assert window.measure(1000 * SECOND_NS).count == 2
 
 
 def test_clock_jump_back_resets_window():
     window = filled_window(11, 100 * MILLISECOND_NS)
     window.add(-5 * SECOND_NS, 1)
-    assert window.traffic(-5 * SECOND_NS) is None
-    assert window.traffic(SECOND_NS) is None
+    assert window.measure(-5 * SECOND_NS) is None
+    assert window.measure(SECOND_NS) is None

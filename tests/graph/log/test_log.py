@@ -8,10 +8,10 @@ import re
 
 import pytest
 
-from linkwright.graph import Graph, JumpClock, LogLevel, LogRecord, console_line
-from linkwright.graph.command_line.log_setup import set_up
+from linkwright.graph import Graph, JumpClock, LogLevel, LogRecord, format_console_line
+from linkwright.graph.command_line.log_setup import set_up_logging
 from linkwright.graph.command_line.ros_arguments import parse
-from linkwright.graph.log.file import LogFile, log_folder
+from linkwright.graph.log.file import LogFile, find_log_folder
 from linkwright.graph.logger_services import LoggerServices
 from linkwright.graph.qos.profile import ROSOUT_QOS
 from linkwright.messages import get_message, get_service
@@ -52,12 +52,12 @@ async def test_console_format_matches_rcutils(capsys):
 )
 def test_console_format_is_read_from_environment(monkeypatch, form, line):
     monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", form)
-    assert console_line(LOG_RECORD) == line
+    assert format_console_line(LOG_RECORD) == line
 
 
 def test_newer_format_tokens_are_supported(monkeypatch):
     monkeypatch.setenv("RCUTILS_CONSOLE_OUTPUT_FORMAT", "{date_time_with_ms} {thread_id}")
-    assert re.fullmatch(r"2023-11-1\d \d\d:\d\d:20\.123 \d+", console_line(LOG_RECORD))
+    assert re.fullmatch(r"2023-11-1\d \d\d:\d\d:20\.123 \d+", format_console_line(LOG_RECORD))
 
 
 async def test_terminal_output_is_colored_unless_disabled(capsys, monkeypatch):
@@ -196,10 +196,10 @@ async def test_node_can_disable_rosout(graph):
 
 
 def test_log_folder_is_read_from_environment(monkeypatch, tmp_path):
-    assert log_folder({"ROS_LOG_DIR": str(tmp_path), "ROS_HOME": "/x"}) == tmp_path
-    assert log_folder({"ROS_HOME": "/x"}).as_posix() == "/x/log"
+    assert find_log_folder({"ROS_LOG_DIR": str(tmp_path), "ROS_HOME": "/x"}) == tmp_path
+    assert find_log_folder({"ROS_HOME": "/x"}).as_posix() == "/x/log"
     monkeypatch.setenv("HOME", str(tmp_path))
-    assert log_folder({}) == tmp_path / ".ros" / "log"
+    assert find_log_folder({}) == tmp_path / ".ros" / "log"
 
 
 def test_log_files_are_named_like_spdlog(tmp_path):
@@ -217,7 +217,7 @@ def test_log_files_are_named_like_spdlog(tmp_path):
 
 def test_ros_arguments_select_log_outputs_and_levels(monkeypatch, tmp_path, capsys):
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path))
-    silent = set_up(parse(["--ros-args", "--disable-stdout-logs", "--log-level", "a.b:=error"]), "talker")
+    silent = set_up_logging(parse(["--ros-args", "--disable-stdout-logs", "--log-level", "a.b:=error"]), "talker")
     silent.sink(LOG_RECORD)
     silent.close()
     assert capsys.readouterr().err == ""
@@ -226,7 +226,7 @@ def test_ros_arguments_select_log_outputs_and_levels(monkeypatch, tmp_path, caps
         LogLevel.ERROR,
         LogLevel.INFO,
     )
-    debug_log = set_up(
+    debug_log = set_up_logging(
         parse(["--ros-args", "--disable-external-lib-logs", "--disable-rosout-logs", "--log-level", "debug"]), "talker"
     )
     debug_log.sink(LOG_RECORD)

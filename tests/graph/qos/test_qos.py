@@ -19,7 +19,7 @@ from linkwright.graph import (
     ReliabilityPolicy,
     qos_check_compatible,
 )
-from linkwright.graph.qos.compatibility import best_available, incompatible_policies, resolve_defaults
+from linkwright.graph.qos.compatibility import find_incompatible_policies, resolve_best_available, resolve_defaults
 from linkwright.graph.qos.profile import BEST_AVAILABLE_QOS, SYSTEM_DEFAULT_QOS, qos_policy_name_from_kind
 from linkwright.graph.time.values import INFINITE
 
@@ -149,9 +149,9 @@ MISMATCHES = [
 class TestCompatibility:
     @pytest.mark.parametrize(("offered", "requested", "policy", "reason"), MISMATCHES)
     def test_offering_less_than_requested_is_incompatible(self, offered, requested, policy, reason):
-        assert incompatible_policies(offered, requested) == [QoSPolicyKind[policy]]
+        assert find_incompatible_policies(offered, requested) == [QoSPolicyKind[policy]]
         assert qos_check_compatible(offered, requested) == (QoSCompatibility.ERROR, f"ERROR: {reason};")
-        assert incompatible_policies(requested, offered) == []
+        assert find_incompatible_policies(requested, offered) == []
 
     def test_all_incompatible_policies_are_reported(self):
         verdict, reason = qos_check_compatible(
@@ -172,8 +172,8 @@ class TestCompatibility:
     )
     def test_best_available_profile_is_compatible(self, reliability, durability):
         remote_profile = make_profile(reliability=reliability, durability=durability, deadline=seconds(3))
-        chosen = best_available(BEST_AVAILABLE_QOS, [remote_profile], publisher=False)
+        chosen = resolve_best_available(BEST_AVAILABLE_QOS, [remote_profile], is_publisher=False)
         assert (chosen.reliability, chosen.durability, chosen.deadline) == (reliability, durability, seconds(3))
-        assert incompatible_policies(remote_profile, chosen) == []
-        offered = best_available(BEST_AVAILABLE_QOS, [remote_profile], publisher=True)
-        assert incompatible_policies(offered, remote_profile) == []
+        assert find_incompatible_policies(remote_profile, chosen) == []
+        offered = resolve_best_available(BEST_AVAILABLE_QOS, [remote_profile], is_publisher=True)
+        assert find_incompatible_policies(offered, remote_profile) == []

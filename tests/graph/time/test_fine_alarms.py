@@ -11,14 +11,14 @@ import weakref
 import pytest
 
 from linkwright.graph import SystemClock
-from linkwright.graph.time.fine_alarms import FineAlarms, fine_alarms
+from linkwright.graph.time.fine_alarms import FineAlarms, get_fine_alarms
 from tests.waiting import eventually
 
 MILLISECOND_NS = 1_000_000
 
 
 async def alarms() -> FineAlarms:
-    fine = fine_alarms(asyncio.get_running_loop())
+    fine = get_fine_alarms(asyncio.get_running_loop())
     if fine is None:
         pytest.skip("this system's event loops wait with a resolution of microseconds")
     return fine
@@ -106,7 +106,7 @@ def test_event_loop_without_readers_uses_its_own_timers():
 
     loop, calls = Blind(), []
     try:
-        assert fine_alarms(loop) is None
+        assert get_fine_alarms(loop) is None
         clock = SystemClock()
         clock.call_at(loop, clock.steady_ns(), lambda: (calls.append("called"), loop.stop()))
         loop.run_forever()
@@ -125,7 +125,7 @@ def test_timer_file_is_closed_with_event_loop(monkeypatch):
             super().add_reader(file, *call)
 
     loop = Watching()
-    loop_reference, is_fine = weakref.ref(loop), fine_alarms(loop) is not None
+    loop_reference, is_fine = weakref.ref(loop), get_fine_alarms(loop) is not None
     loop.close()
     del loop
     if not is_fine:

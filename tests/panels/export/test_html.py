@@ -147,7 +147,7 @@ def test_export_format_is_recognized_by_suffix(name, has_known_suffix):
 async def test_html_contains_markers():
     """Markers and similar displays have their current state."""
     config = RvizConfig.for_model("base")
-    config.insert(config.new_display("rviz_default_plugins/Marker", "Marker"))
+    config.insert(config.make_display("rviz_default_plugins/Marker", "Marker"))
     async with open_world(config) as world:
         world.describe(ARM)
         world.move_arm()

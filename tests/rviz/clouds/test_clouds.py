@@ -16,10 +16,10 @@ from linkwright.rviz.clouds import (
     DepthCloudBuilder,
     Points,
     ScanProjector,
-    colored,
+    compute_colors,
     deskew,
-    points_of_cloud,
-    supported_transformers,
+    find_supported_transformers,
+    points_from_cloud,
 )
 from tests.work import lines_run
 
@@ -56,7 +56,7 @@ def xyz_array(points, *extra: tuple[str, str]) -> np.ndarray:
 
 
 def point_colors(points: Points, pose=None, **settings) -> list[tuple[int, ...]]:
-    color_values, _ = colored(points, ColorSettings(**settings), pose)
+    color_values, _ = compute_colors(points, ColorSettings(**settings), pose)
     return [tuple(int(part) for part in row) for row in color_values]
 
 
@@ -66,7 +66,7 @@ def point_colors(points: Points, pose=None, **settings) -> list[tuple[int, ...]]
 def test_coordinates_and_channels_are_read():
     array = xyz_array([(1, 2, 3), (4, 5, 6)], ("intensity", "f8"), ("ring", "u2"))
     array["intensity"], array["ring"] = [0.25, 0.75], [7, 8]
-    points = points_of_cloud(make_cloud(array))
+    points = points_from_cloud(make_cloud(array))
     assert points.positions.tolist() == [[1, 2, 3], [4, 5, 6]]
     assert {name: values.tolist() for name, values in points.channels.items()} == {
         "intensity": [0.25, 0.75],
@@ -77,13 +77,13 @@ def test_coordinates_and_channels_are_read():
 def test_coordinate_fields_may_have_any_offset():
     array = np.zeros(2, np.dtype([("z", "f4"), ("pad", "u1"), ("x", "f4"), ("y", "f4")]))
     array["x"], array["y"], array["z"] = [1, 2], [3, 4], [5, 6]
-    assert points_of_cloud(make_cloud(array)).positions.tolist() == [[1, 3, 5], [2, 4, 6]]
+    assert points_from_cloud(make_cloud(array)).positions.tolist() == [[1, 3, 5], [2, 4, 6]]
 
 
 def test_big_endian_clouds_are_read():
     array = np.zeros(1, np.dtype([("x", ">f4"), ("y", ">f4"), ("z", ">f4"), ("intensity", ">u2")]))
     array[0] = (1, 2, 3, 513)
-    points = points_of_cloud(make_cloud(array))
+    points = points_from_cloud(make_cloud(array))
     assert points.positions.tolist() == [[1, 2, 3]]
     assert points.channels["intensity"].tolist() == [513]
 
@@ -92,20 +92,20 @@ def test_big_endian_clouds_are_read():
 def test_points_without_finite_coordinates_are_left_out(invalid_value):
     array = xyz_array([(1, 2, 3), (4, invalid_value, 6), (7, 8, 9)], ("intensity", "f4"))
     array["intensity"] = [1, 2, 3]
-    points = points_of_cloud(make_cloud(array))
+    points = points_from_cloud(make_cloud(array))
     assert points.positions.tolist() == [[1, 2, 3], [7, 8, 9]]
     assert points.channels["intensity"].tolist() == [1, 3]
 
 
 def test_empty_cloud_is_accepted():
-    assert len(points_of_cloud(make_cloud(xyz_array([])))) == 0
+    assert len(points_from_cloud(make_cloud(xyz_array([])))) == 0
 
 
 def test_size_mismatch_is_rejected_with_message_of_rviz():
     message = make_cloud(xyz_array([(1, 2, 3)]))
     message.width = 2
     with pytest.raises(BadCloudError) as refused:
-        points_of_cloud(message)
+        points_from_cloud(message)
     assert str(refused.value) == (
         "Data size (12 bytes) does not match width (2) times height (1) times point_step (12).  Dropping message."
     )
@@ -115,7 +115,7 @@ def test_field_outside_of_point_is_rejected():
     message = make_cloud(xyz_array([(1, 2, 3)]))
     message.fields[2].offset = 9
     with pytest.raises(BadCloudError, match="Field 'z' ends at byte 13, but a point has only 12 bytes"):
-        points_of_cloud(message)
+        points_from_cloud(message)
 
 
 @pytest.mark.parametrize("change", ["no z", "z is a double", "z has a type that is none"])
@@ -126,7 +126,7 @@ def test_position_transformer_requires_float32_coordinates(change):
     else:
         message.fields[2].datatype = 8 if change == "z is a double" else 99
     with pytest.raises(BadCloudError, match="No position transformer available for cloud"):
-        points_of_cloud(message)
+        points_from_cloud(message)
 
 
 # --- colors ---------------------------------------------------------------------------------------------------------
@@ -135,7 +135,7 @@ def test_position_transformer_requires_float32_coordinates(change):
 def test_rainbow_goes_from_red_to_magenta():
     array = xyz_array([(0, 0, 0)] * 6, ("intensity", "f4"))
     array["intensity"] = [0, 1, 2, 3, 4, 5]
-    points = points_of_cloud(make_cloud(array))
+    points = points_from_cloud(make_cloud(array))
     yellow, cyan = (255, 255, 0, 255), (0, 255, 255, 255)
     assert point_colors(points) == [RED, yellow, GREEN, cyan, BLUE, MAGENTA]
     assert point_colors(points, inverted=True) == [MAGENTA, BLUE, cyan, GREEN, yellow, RED]
@@ -143,10 +143,10 @@ def test_rainbow_goes_from_red_to_magenta():
 
 def test_intensity_bounds_are_computed_or_given():
     points = Points(np.zeros((3, 3), np.float32), {"intensity": np.array([10.0, 20.0, 30.0])})
-    _, bounds = colored(points, ColorSettings())
+    _, bounds = compute_colors(points, ColorSettings())
     assert bounds == (10.0, 30.0)
     assert point_colors(points, intensities=(20.0, 40.0))[:2] == [RED, RED]
-    assert colored(points, ColorSettings(intensities=(0.0, 1.0)))[1] is None
+    assert compute_colors(points, ColorSettings(intensities=(0.0, 1.0)))[1] is None
 
 
 def test_intensity_interpolates_between_two_colors():
@@ -166,7 +166,7 @@ def test_equal_and_missing_intensities_give_one_color():
 def test_nonfinite_intensities_are_ignored():
     values = np.array([np.nan, 0.0, np.inf, 2.0])
     points = Points(np.zeros((4, 3), np.float32), {"intensity": values})
-    color_values, bounds = colored(points, ColorSettings())
+    color_values, bounds = compute_colors(points, ColorSettings())
     assert bounds == (0.0, 2.0)
     assert [tuple(row) for row in color_values.tolist()] == [RED, RED, MAGENTA, MAGENTA]
 
@@ -174,7 +174,7 @@ def test_nonfinite_intensities_are_ignored():
 def test_axis_color_uses_fixed_frame_or_cloud_frame():
     points = Points(np.array([[0, 0, 0], [1, 0, 0]], np.float32))
     upright = np.array([0, 0, 10, 0, -math.sqrt(0.5), 0, math.sqrt(0.5)])  # x points up
-    color_values, bounds = colored(points, ColorSettings("AxisColor"), upright)
+    color_values, bounds = compute_colors(points, ColorSettings("AxisColor"), upright)
     np.testing.assert_allclose(bounds, (10.0, 11.0), atol=1e-5)
     assert [tuple(row) for row in color_values.tolist()] == [RED, MAGENTA]
     assert point_colors(points, upright, transformer="AxisColor", in_fixed_frame=False) == [RED, RED]
@@ -184,25 +184,25 @@ def test_axis_color_uses_fixed_frame_or_cloud_frame():
 def test_packed_rgb_is_unpacked():
     array = xyz_array([(0, 0, 0)], ("rgb", "f4"))
     array["rgb"] = np.array([0x40102030], "<u4").view("<f4")
-    points = points_of_cloud(make_cloud(array))
-    assert supported_transformers(points)[0] == "RGB8"
+    points = points_from_cloud(make_cloud(array))
+    assert find_supported_transformers(points)[0] == "RGB8"
     assert point_colors(points, transformer="RGB8") == [(0x10, 0x20, 0x30, 255)]
     with_alpha = xyz_array([(0, 0, 0)], ("rgba", "u4"))
     with_alpha["rgba"] = 0x40102030
-    assert point_colors(points_of_cloud(make_cloud(with_alpha)), transformer="RGB8") == [(0x10, 0x20, 0x30, 0x40)]
+    assert point_colors(points_from_cloud(make_cloud(with_alpha)), transformer="RGB8") == [(0x10, 0x20, 0x30, 0x40)]
 
 
 def test_float_colors_are_converted():
     array = xyz_array([(0, 0, 0)], ("r", "f4"), ("g", "f4"), ("b", "f4"))
     array["r"], array["g"], array["b"] = 1.0, 0.5, 7.0
-    points = points_of_cloud(make_cloud(array))
-    assert "RGBF32" in supported_transformers(points)
+    points = points_from_cloud(make_cloud(array))
+    assert "RGBF32" in find_supported_transformers(points)
     assert point_colors(points, transformer="RGBF32") == [(255, 127, 255, 255)]
 
 
 def test_transformers_without_fields_are_not_offered():
-    points = points_of_cloud(make_cloud(xyz_array([(0, 0, 0)])))
-    assert supported_transformers(points) == ("Intensity", "AxisColor", "FlatColor")
+    points = points_from_cloud(make_cloud(xyz_array([(0, 0, 0)])))
+    assert find_supported_transformers(points) == ("Intensity", "AxisColor", "FlatColor")
     assert point_colors(points, transformer="FlatColor") == []
 
 
@@ -214,7 +214,7 @@ def test_coloring_effort_is_independent_of_cloud_size():
         for name in array.dtype.names:
             array[name] = rng.random(array.size)
         message = make_cloud(array)
-        return lines_run(lambda: colored(points_of_cloud(message), ColorSettings()))
+        return lines_run(lambda: compute_colors(points_from_cloud(message), ColorSettings()))
 
     work(10)  # fills caches
     assert work(100) == work(100_000)
@@ -288,7 +288,7 @@ def test_depths_become_points_along_camera_rays():
     points = DepthCloudBuilder().points(make_depth_image([[2.0, 4.0]]), make_camera_info(), None)
     assert points.positions.tolist() == [[0, 0, 2], [2, 0, 4]]
     assert points.channels["rgb"].tolist() == [0xFFFFFF, 0xFFFFFF]
-    assert make_camera_info().pixel == 0.5
+    assert make_camera_info().pixel_width == 0.5
 
 
 def test_millimeters_become_meters_and_zero_depth_is_omitted():
@@ -325,13 +325,13 @@ def test_occluded_points_remain_for_a_while_at_half_color():
     view = make_camera_info(1)
 
     def depths(depth: float, now: float) -> list[float]:
-        points = builder.points(make_depth_image([[depth]]), view, color, keep_covered=10.0, now=now)
+        points = builder.points(make_depth_image([[depth]]), view, color, covered_timeout_s=10.0, now=now)
         return points.positions[:, 2].tolist()
 
     assert depths(4.0, 0.0) == [4.0]
     assert depths(2.0, 1.0) == [2.0, 4.0]
     assert depths(math.nan, 2.0) == [4.0]
-    shown = builder.points(make_depth_image([[2.0]]), view, color, keep_covered=10.0, now=3.0)
+    shown = builder.points(make_depth_image([[2.0]]), view, color, covered_timeout_s=10.0, now=3.0)
     assert shown.channels["rgb"].tolist() == [0xC8C8C8, 0x646464]
     assert depths(2.0, 20.0) == [2.0]
 

@@ -6,7 +6,7 @@ import pytest
 import yaml
 
 from linkwright.rviz.config import yaml_tree
-from linkwright.rviz.config.former_names import former_keys, modern_class
+from linkwright.rviz.config.former_names import get_former_keys, to_modern_class
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.schema import PropertySpec, topic_spec
 
@@ -25,12 +25,12 @@ from linkwright.rviz.config.schema import PropertySpec, topic_spec
     ],
 )
 def test_rviz_1_classes_have_modern_names(written, modern):
-    assert modern_class(written) == modern
+    assert to_modern_class(written) == modern
 
 
 def make_store(cls: str, text: str, *specs: PropertySpec) -> tuple[PropertyStore, yaml_tree.Section]:
     section = yaml_tree.parse(text, "x")
-    return PropertyStore("d", section, lambda: specs, lambda _: None, former=former_keys(cls)), section
+    return PropertyStore("d", section, lambda: specs, lambda _: None, former=get_former_keys(cls)), section
 
 
 def test_rviz_1_topic_reads_qos_from_sibling_keys():

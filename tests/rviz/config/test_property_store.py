@@ -131,7 +131,7 @@ def test_created_base_section_is_removed_by_undo(text):
     for _ in range(2):
         after = store.current_entries(before)
         store.restore(before)
-        assert yaml_tree.same(document, yaml_tree.parse(text, "x"))
+        assert yaml_tree.are_same(document, yaml_tree.parse(text, "x"))
         store.restore(after)
         assert (yaml_tree.write(document), store.get("Alpha")) == (written, 0.1)
 

@@ -237,7 +237,7 @@ def test_line_endings_and_byte_order_mark_survive_edit(tmp_path):
 def test_configuration_without_displays_is_valid(tmp_path):
     config = RvizConfig.parse("Panels: []\n")
     assert (config.displays, config.text()) == ([], "Panels: []\n")
-    config.insert(config.new_display("rviz_default_plugins/Grid", "Grid"))
+    config.insert(config.make_display("rviz_default_plugins/Grid", "Grid"))
     assert yaml.safe_load(config.text()) == {
         "Panels": [],
         "Visualization Manager": {
@@ -285,7 +285,7 @@ def test_displays_are_added_removed_and_moved():
 def test_undo_of_first_display_restores_file(text):
     config = RvizConfig.parse(text)
     before, count = config.arrangement(), len(list(config.walk()))
-    config.insert(config.new_display("rviz_default_plugins/Axes", "Axes"), config.displays[0] if count else None)
+    config.insert(config.make_display("rviz_default_plugins/Axes", "Axes"), config.displays[0] if count else None)
     after, changed = config.arrangement(), config.text()
     assert len(list(RvizConfig.parse(changed).walk())) == count + 1
     for _ in range(2):

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.rviz.config.schema import MAX_TEXT_LENGTH, PropertySpec, accept, from_text, to_text
+from linkwright.rviz.config.schema import MAX_TEXT_LENGTH, PropertySpec, accept_value, value_from_text, value_to_text
 
 ALPHA = PropertySpec("Alpha", "float", 1.0, minimum=0.0, maximum=1.0)
 LENGTH = PropertySpec("Length", "float", 0.0)
@@ -39,7 +39,7 @@ TEXT = PropertySpec("Text", "string", "")
     ],
 )
 def test_valid_values_are_accepted_and_clamped(spec, value, expected):
-    accepted = accept(spec, value)
+    accepted = accept_value(spec, value)
     assert accepted == expected
     assert type(accepted) is type(expected)
 
@@ -71,7 +71,7 @@ def test_valid_values_are_accepted_and_clamped(spec, value, expected):
 )
 def test_invalid_values_are_rejected(spec, value):
     with pytest.raises(ValueError, match="expected"):
-        accept(spec, value)
+        accept_value(spec, value)
 
 
 @pytest.mark.parametrize(
@@ -100,7 +100,7 @@ def test_invalid_values_are_rejected(spec, value):
     ],
 )
 def test_spellings_in_files_are_parsed(spec, text, value):
-    assert from_text(spec, text) == value
+    assert value_from_text(spec, text) == value
 
 
 INVALID_SPELLINGS = [
@@ -121,15 +121,15 @@ INVALID_SPELLINGS = [
 @pytest.mark.parametrize(("spec", "text"), INVALID_SPELLINGS)
 def test_invalid_spellings_are_rejected(spec, text):
     with pytest.raises(ValueError, match="expected"):
-        from_text(spec, text)
+        value_from_text(spec, text)
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_floats_survive_round_trip(value):
     spec = PropertySpec("x", "float", 0.0)
-    assert from_text(spec, to_text(spec, value)) == value
+    assert value_from_text(spec, value_to_text(spec, value)) == value
 
 
 @given(st.from_regex(r"#[0-9a-f]{6}", fullmatch=True))
 def test_colors_survive_round_trip(color):
-    assert from_text(COLOR, to_text(COLOR, color)) == color
+    assert value_from_text(COLOR, value_to_text(COLOR, color)) == color

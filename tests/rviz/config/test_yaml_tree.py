@@ -66,7 +66,7 @@ def test_alias_is_a_copy_of_its_anchor():
     ],
 )
 def test_alias_bombs_and_loops_are_rejected(text, word, monkeypatch):
-    monkeypatch.setattr(yaml_tree, "MAXIMUM_NODES", 50_000)  # low, because so many nodes are created
+    monkeypatch.setattr(yaml_tree, "MAX_NODES", 50_000)  # low, because so many nodes are created
     with pytest.raises(LinkwrightError) as caught:
         yaml_tree.parse(text, "x")
     assert (caught.value.diagnostics[0].code, word in caught.value.diagnostics[0].message) == ("RVIZ102", True)

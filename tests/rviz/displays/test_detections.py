@@ -9,7 +9,7 @@ from linkwright.graph import SetParametersResult
 from linkwright.images.color_words import RGB_BY_COLOR_WORD
 from linkwright.messages import Time, get_message
 from linkwright.rviz import RvizConfig
-from linkwright.rviz.displays.class_colors import class_color, read_class_colors
+from linkwright.rviz.displays.class_colors import choose_class_color, read_class_colors
 from tests.viewer.contents import contents
 from tests.viewer.scene import open_world
 from tests.waiting import eventually
@@ -121,16 +121,16 @@ async def test_file_without_colors_is_reported(tmp_path, text):
 
 
 def test_class_color_is_stable():
-    assert class_color("ball", {}) == class_color("ball", {})
-    assert class_color("Person", {}) == (0, 0, 255)
-    assert len({class_color(name, {}) for name in ("ball", "crate", "cone", "can")}) > 2
+    assert choose_class_color("ball", {}) == choose_class_color("ball", {})
+    assert choose_class_color("Person", {}) == (0, 0, 255)
+    assert len({choose_class_color(name, {}) for name in ("ball", "crate", "cone", "can")}) > 2
 
 
 def test_class_named_after_color_has_it_unless_overridden():
-    assert class_color("red", {}) == class_color("Red_cube", {}) == RGB_BY_COLOR_WORD["red"]
-    assert class_color("ball-gray", {}) == RGB_BY_COLOR_WORD["grey"]
-    assert class_color("infrared lamp", {}) != RGB_BY_COLOR_WORD["red"]
-    assert class_color("red", {"red": (1, 2, 3)}) == (1, 2, 3)
+    assert choose_class_color("red", {}) == choose_class_color("Red_cube", {}) == RGB_BY_COLOR_WORD["red"]
+    assert choose_class_color("ball-gray", {}) == RGB_BY_COLOR_WORD["grey"]
+    assert choose_class_color("infrared lamp", {}) != RGB_BY_COLOR_WORD["red"]
+    assert choose_class_color("red", {"red": (1, 2, 3)}) == (1, 2, 3)
 
 
 # --- over images -------------------------------------------------------------------------------------------------
@@ -179,7 +179,7 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
         ]
         assert boxes.fields["boxes"].tolist() == [10, 20, 4, 6, 0]
         assert (boxes.fields["names"], boxes.fields["scores"].tolist()) == (["ball"], [0.5])
-        assert np.array_equal(boxes.fields["colors"], class_color("ball", {}))
+        assert np.array_equal(boxes.fields["colors"], choose_class_color("ball", {}))
 
 
 async def test_images_are_shown_without_waiting_if_detector_is_silent(monkeypatch):

@@ -55,7 +55,7 @@ class Gauge(MessageMarkersDisplay):
 def installed(monkeypatch):
     """Register the display under its name."""
     monkeypatch.setattr(catalog, "has_display", lambda cls: cls == Gauge.CLASS)
-    monkeypatch.setattr(catalog, "_display_class", lambda cls: Gauge)
+    monkeypatch.setattr(catalog, "_load_display_class", lambda cls: Gauge)
 
 
 async def publish_level(world: Any) -> Any:

@@ -173,7 +173,7 @@ async def test_tf_frames_are_placed_in_world_as_fixed_frame():
         await eventually(lambda: transforms.placed_frame("world").parent == "odom")
         assert transforms.pose("world", "base", 0) == pytest.approx([1, 2, 0.5, 0, 0, 0, 1])
         assert transforms.pose("world", "odom", 0) == pytest.approx([-2, 2, 0, 0, 0, 0, 1])
-        frame, is_known = transforms.in_known_frame("world", IDENTITY)
+        frame, is_known = transforms.to_known_frame("world", IDENTITY)
         assert (frame, is_known) == ("odom", pytest.approx([2, -2, 0, 0, 0, 0, 1]))
         await eventually(lambda: "base" in world.viewer.manager.frames.placed)
 

@@ -243,7 +243,7 @@ async def test_unknown_fixed_frame_gives_nan_poses(recorder):
     _, transforms, frames = recorder.said
     assert np.isnan(transforms.poses).all()
     assert frames.placed == {"map"}
-    assert frames.problem("tip") == "No transform from [tip] to [map]"
+    assert frames.find_problem("tip") == "No transform from [tip] to [map]"
 
 
 @run_with_recorder

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from linkwright.page.protocol.configuration import EditName
-from linkwright.rviz.visualization.display_tree import MAX_EDITS, MERGE_INTERVAL, Edit, History
+from linkwright.rviz.visualization.display_tree import MAX_EDITS, MERGE_INTERVAL_S, Edit, History
 
 
 class EditedValue:
@@ -54,9 +54,9 @@ def test_edits_are_undone_and_redone():
 def test_edits_of_one_drag_are_merged():
     value = EditedValue()
     for number in (1, 2, 3):
-        value.now += MERGE_INTERVAL / 2
+        value.now += MERGE_INTERVAL_S / 2
         value.set(number)
-    value.now += MERGE_INTERVAL * 2
+    value.now += MERGE_INTERVAL_S * 2
     value.set(4)
     value.history.undo()
     assert value.number == 3

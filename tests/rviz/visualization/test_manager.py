@@ -297,7 +297,7 @@ async def test_displays_are_grouped():
 
 async def test_group_nesting_depth_is_limited():
     async with opened() as (world, client):
-        for depth in range(display_tree.MAXIMUM_NESTING):
+        for depth in range(display_tree.MAX_NESTING):
             await edit(client, "group_displays", displays=["display-1"], name=f"Group {depth}")
         await client.send("group_displays", displays=["display-1"], name="Too deep")
         assert "nested" in (await client.until("configuration_refused"))["message"]
@@ -310,7 +310,7 @@ async def test_group_nesting_depth_is_limited():
 
 
 async def test_number_of_displays_is_limited(monkeypatch):
-    monkeypatch.setattr(display_tree, "MAXIMUM_DISPLAYS", 6)
+    monkeypatch.setattr(display_tree, "MAX_DISPLAYS", 6)
     async with opened() as (world, client):
         await edit(client, "duplicate_displays", displays=["display-2"])  # a group and its display
         for kind, fields in (

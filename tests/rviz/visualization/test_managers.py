@@ -30,7 +30,7 @@ async def test_pages_share_displays():
 
 
 async def test_page_may_have_own_displays(monkeypatch):
-    monkeypatch.setattr(manager, "LINGERING", 0.05)
+    monkeypatch.setattr(manager, "LINGERING_S", 0.05)
     async with opened() as (world, shared):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         async with open_own_page(world) as own_client:

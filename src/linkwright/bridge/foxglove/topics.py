@@ -11,7 +11,7 @@ from linkwright.bridge.foxglove.names import NameFilter
 from linkwright.bridge.foxglove.protocol import ENCODING, SCHEMA_ENCODING, message_data
 from linkwright.diagnostics import LinkwrightError
 from linkwright.graph import EndpointKind, MessageInfo, Node, Publisher, QoSProfile, Subscription
-from linkwright.graph.qos.compatibility import fit
+from linkwright.graph.qos.compatibility import fit_profile
 from linkwright.graph.qos.profile import QoSPresetProfiles
 from linkwright.messages import deserialize, get_message
 from linkwright.messages.schema_text import schema_of
@@ -121,7 +121,7 @@ class Forwarding:
             for endpoint in self._node.graph.endpoints()
             if endpoint.name == self.channel.topic and endpoint.kind is EndpointKind.PUBLISHER
         ]
-        profile = fit(QoSPresetProfiles.get_from_short_key("sensor_data"), offers).profile
+        profile = fit_profile(QoSPresetProfiles.get_from_short_key("sensor_data"), offers).profile
         profile.depth = _DEPTH
         return profile
 

@@ -120,7 +120,7 @@ class BandwidthWindow(TrafficWindow):
 
     def format_report(self, now_ns: int) -> str | None:
         """Return the output of ``topic bw``, or None if fewer than two messages have arrived."""
-        traffic = self.traffic(now_ns)
+        traffic = self.measure(now_ns)
         if traffic is None:
             return None
         size_text = _create_size_formatter(traffic.bytes_per_second)

@@ -61,8 +61,10 @@ class _ForwardingController(Controller[P], Generic[P]):
         """Subscribe to the commands."""
         self._list_interface_names()
         self._command: Sequence[float] | None = None
-        commander = self.node.commander(self._stop_velocities)
-        self.node.subscribe("std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, commander=commander)
+        command_guard = self.node.command_guard(self._stop_velocities)
+        self.node.subscribe(
+            "std_msgs/msg/Float64MultiArray", "~/commands", self._on_command, command_guard=command_guard
+        )
 
     def on_activate(self) -> None:
         """Discard earlier commands."""

@@ -77,8 +77,8 @@ class _SingleJointController(Controller[P], Generic[P]):
     def on_configure(self) -> None:
         """Subscribe to the commands."""
         self._target = nan
-        commander = self.node.commander(self._stop_motion)
-        self.node.subscribe("std_msgs/msg/Float64", "~/command", self._on_command, commander=commander)
+        command_guard = self.node.command_guard(self._stop_motion)
+        self.node.subscribe("std_msgs/msg/Float64", "~/command", self._on_command, command_guard=command_guard)
 
     def on_activate(self) -> None:
         """Start at the current position, or at 0."""

@@ -49,11 +49,11 @@ class VelocityInput:
         self._timeout_ns = round(timeout_s * NANOSECONDS_PER_SECOND)
         self._is_open = False
         self.discard_command()
-        commander = node.commander(self._on_publisher_lost)
+        command_guard = node.command_guard(self._on_publisher_lost)
         if topic != unstamped_topic:
-            node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._on_stamped, qos, commander=commander)
+            node.subscribe("geometry_msgs/msg/TwistStamped", topic, self._on_stamped, qos, command_guard=command_guard)
         if unstamped_topic:
-            node.subscribe("geometry_msgs/msg/Twist", unstamped_topic, self._on_twist, qos, commander=commander)
+            node.subscribe("geometry_msgs/msg/Twist", unstamped_topic, self._on_twist, qos, command_guard=command_guard)
 
     def open(self) -> None:
         """Discard the last command, and start accepting commands."""

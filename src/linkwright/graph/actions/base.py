@@ -62,5 +62,8 @@ class ActionEndpoint(ABC):
         self.destroy()
 
     def _full_name(self, name: str) -> str:
-        """Return the absolute name of one of the action's services or topics (``NAME/_action/...``)."""
+        """Return the absolute name of one of the action's services or topics.
+
+        It has the form ``NAME/_action/...``.
+        """
         return f"{self._action_name}/_action/{name}"

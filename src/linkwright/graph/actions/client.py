@@ -11,7 +11,7 @@ from types import GenericAlias
 from typing import Any
 
 from linkwright.graph.actions.base import ActionEndpoint
-from linkwright.graph.actions.goal import ACTIVE, GoalStatus
+from linkwright.graph.actions.goal import ACTIVE_STATES, GoalStatus
 from linkwright.graph.endpoints.service import Client
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import CallbackGroup
@@ -130,14 +130,14 @@ class ActionClient(ActionEndpoint):
         self._uuid = get_message("unique_identifier_msgs/msg/UUID")
         impl = self._action_type.Impl
 
-        def client(service_class: Any, name: str, qos: QoSProfile) -> Client[Any, Any]:
+        def create_client(service_class: Any, name: str, qos: QoSProfile) -> Client[Any, Any]:
             return node.create_client(
                 service_class, self._full_name(name), qos_profile=qos, callback_group=callback_group
             )
 
-        self._goal_client = client(impl.SendGoalService, "send_goal", goal_service_qos_profile)
-        self._cancel_client = client(impl.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
-        self._result_client = client(impl.GetResultService, "get_result", result_service_qos_profile)
+        self._goal_client = create_client(impl.SendGoalService, "send_goal", goal_service_qos_profile)
+        self._cancel_client = create_client(impl.CancelGoalService, "cancel_goal", cancel_service_qos_profile)
+        self._result_client = create_client(impl.GetResultService, "get_result", result_service_qos_profile)
         self._feedback_subscription = node.create_subscription(
             impl.FeedbackMessage,
             self._full_name("feedback"),
@@ -299,7 +299,7 @@ class ActionClient(ActionEndpoint):
             handle = reference()
             if handle is not None:
                 handle.status = status.status
-            if handle is None or GoalStatus(status.status) not in ACTIVE:
+            if handle is None or GoalStatus(status.status) not in ACTIVE_STATES:
                 del self._goal_handles[key]
 
 

@@ -47,10 +47,10 @@ class CancelResponse(Enum):
     ACCEPT = 2
 
 
-ACTIVE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING})
+ACTIVE_STATES = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING})
 """The states of a goal that has not ended."""
 
-CANCELABLE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING})
+CANCELABLE_STATES = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING})
 """The states in which a goal can be canceled."""
 
 _TRANSITIONS = {
@@ -81,7 +81,7 @@ class GoalOwner(Protocol):
     def on_goal_state_change(self, goal: ServerGoalHandle) -> None:
         """Publish the states of all goals after the state of one has changed."""
 
-    def forget(self, goal: ServerGoalHandle) -> None:
+    def remove_goal(self, goal: ServerGoalHandle) -> None:
         """Remove a goal from the server."""
 
 
@@ -128,7 +128,7 @@ class ServerGoalHandle:
     @property
     def is_active(self) -> bool:
         """Whether the goal has not ended."""
-        return not self._destroyed and self._status in ACTIVE
+        return not self._destroyed and self._status in ACTIVE_STATES
 
     @property
     def is_cancel_requested(self) -> bool:
@@ -202,7 +202,7 @@ class ServerGoalHandle:
     def destroy(self) -> None:
         """Deactivate the handle, and remove the goal from its server."""
         self._destroyed = True
-        self._server.forget(self)
+        self._server.remove_goal(self)
 
     def retire(self) -> None:
         """Deactivate the handle after the server itself has removed the goal."""

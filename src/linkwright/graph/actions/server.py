@@ -11,8 +11,8 @@ from typing import Any
 
 from linkwright.graph.actions.base import ActionEndpoint
 from linkwright.graph.actions.goal import (
-    ACTIVE,
-    CANCELABLE,
+    ACTIVE_STATES,
+    CANCELABLE_STATES,
     CancelResponse,
     GoalEvent,
     GoalResponse,
@@ -111,7 +111,7 @@ class ActionServer(ActionEndpoint):
         self._goal_info = get_message("action_msgs/msg/GoalInfo")
         self._goal_status = get_message("action_msgs/msg/GoalStatus")
         self._expiry_timer: Timer | None = None
-        self._executions = self._handle.add(_Executions(self._handle))
+        self._execution_queue = self._handle.add(_ExecutionQueue(self._handle))
         impl = self._action_type.Impl
         self._services = [
             node.create_service(
@@ -175,7 +175,7 @@ class ActionServer(ActionEndpoint):
             self._goal_handles.clear()
         for goal in goals:
             goal.retire()
-        for entity in (*self._services, self._feedback_publisher, self._status, self._executions):
+        for entity in (*self._services, self._feedback_publisher, self._status, self._execution_queue):
             entity.destroy()
         if self._expiry_timer is not None:
             self._expiry_timer.destroy()
@@ -186,7 +186,7 @@ class ActionServer(ActionEndpoint):
     def start_execution(self, goal: ServerGoalHandle, callback: Callable[[ServerGoalHandle], Any] | None) -> None:
         """Schedule the execution of a goal."""
         if not self._destroyed:
-            self._executions.add(partial(self._execute, callback or self._execute_callback, goal))
+            self._execution_queue.add(partial(self._execute, callback or self._execute_callback, goal))
 
     def publish_feedback(self, goal_id: Any, feedback: Any) -> None:
         """Publish the feedback of a goal."""
@@ -201,12 +201,12 @@ class ActionServer(ActionEndpoint):
 
         If the goal has ended, start the timeout of its result.
         """
-        if GoalStatus(goal.status) not in ACTIVE:
+        if GoalStatus(goal.status) not in ACTIVE_STATES:
             goal.ended_ns = self._node.get_clock().now_ns()
-            self._watch_expiry()
+            self._start_expiry_timer()
         self._publish_status()
 
-    def forget(self, goal: ServerGoalHandle) -> None:
+    def remove_goal(self, goal: ServerGoalHandle) -> None:
         """Remove a goal from the server."""
         with self._lock:
             self._goal_handles.pop(bytes(goal.goal_id.uuid), None)
@@ -246,11 +246,11 @@ class ActionServer(ActionEndpoint):
 
     async def _on_cancel(self, request: Any, reply: Callable[[Any], None]) -> None:
         response = self._action_type.Impl.CancelGoalService.Response()
-        response.return_code, goals = self._goals_to_cancel(request.goal_info)
+        response.return_code, goals = self._find_goals_to_cancel(request.goal_info)
         canceling = []
         for goal in goals:
             decision = await await_result(self._cancel_callback(goal))
-            if decision is CancelResponse.ACCEPT and GoalStatus(goal.status) in CANCELABLE:
+            if decision is CancelResponse.ACCEPT and GoalStatus(goal.status) in CANCELABLE_STATES:
                 goal.update(GoalEvent.CANCEL_GOAL)
                 canceling.append(goal.goal_info)
         if goals and not canceling:
@@ -258,7 +258,7 @@ class ActionServer(ActionEndpoint):
         response.goals_canceling = canceling
         reply(response)
 
-    def _goals_to_cancel(self, info: Any) -> tuple[int, list[ServerGoalHandle]]:
+    def _find_goals_to_cancel(self, info: Any) -> tuple[int, list[ServerGoalHandle]]:
         """Return the preliminary return code of a cancel request, and the goals that it may cancel.
 
         As in rcl_action's ``process_cancel_request``:
@@ -277,13 +277,13 @@ class ActionServer(ActionEndpoint):
         if has_id and not stamp_ns:
             if requested_goal is None:
                 return ERROR_UNKNOWN_GOAL_ID, []
-            if GoalStatus(requested_goal.status) not in CANCELABLE:
+            if GoalStatus(requested_goal.status) not in CANCELABLE_STATES:
                 return ERROR_GOAL_TERMINATED, []
             return ERROR_NONE, [requested_goal]
         return ERROR_NONE, [
             goal
             for goal in goals
-            if GoalStatus(goal.status) in CANCELABLE
+            if GoalStatus(goal.status) in CANCELABLE_STATES
             and (goal is requested_goal or not stamp_ns or Time.from_msg(goal.goal_info.stamp).nanoseconds <= stamp_ns)
         ]
 
@@ -304,7 +304,7 @@ class ActionServer(ActionEndpoint):
         try:
             result = await await_result(callback(goal))
         except Exception as error:  # noqa: BLE001  # the client of the goal must learn that it failed
-            self._executions.report(error)
+            self._execution_queue.report(error)
         result_class = self._action_type.Result
         if self._destroyed:
             return
@@ -342,17 +342,19 @@ class ActionServer(ActionEndpoint):
 
     # --- expiry of results -------------------------------------------------------------------------------------------
 
-    def _watch_expiry(self) -> None:
+    def _start_expiry_timer(self) -> None:
         with self._lock:
             if self._result_timeout_ns < 0 or self._destroyed:
                 return
             if self._expiry_timer is None:
-                self._expiry_timer = self._node.create_timer(0.0, self._expire, FREE_GROUP, autostart=False)
+                self._expiry_timer = self._node.create_timer(
+                    0.0, self._remove_expired_goals, FREE_GROUP, autostart=False
+                )
             if self._expiry_timer.is_canceled():
                 self._expiry_timer.timer_period_ns = self._result_timeout_ns
                 self._expiry_timer.reset()
 
-    def _expire(self) -> None:
+    def _remove_expired_goals(self) -> None:
         assert self._expiry_timer is not None
         self._expiry_timer.cancel()
         now_ns = self._node.get_clock().now_ns()
@@ -371,7 +373,7 @@ class ActionServer(ActionEndpoint):
             self._expiry_timer.reset()
 
 
-class _Executions(Entity):
+class _ExecutionQueue(Entity):
     """The queue of accepted goals whose execution has not started."""
 
     def __init__(self, node: NodeHandle) -> None:

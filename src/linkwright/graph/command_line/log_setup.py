@@ -12,7 +12,7 @@ from linkwright.graph.log.logger import LogLevels, LogRecord, LogSink
 
 
 @dataclass(slots=True)
-class Logging:
+class LoggingSetup:
     """The logging setup of a process.
 
     Attributes:
@@ -41,7 +41,7 @@ def set_levels(levels: LogLevels, arguments: RosArguments) -> None:
         levels.set(name, level)
 
 
-def set_up(arguments: RosArguments, executable: str, levels: LogLevels | None = None) -> Logging:
+def set_up_logging(arguments: RosArguments, executable: str, levels: LogLevels | None = None) -> LoggingSetup:
     """Set up the logging of a process as its ROS arguments specify.
 
     Args:
@@ -62,4 +62,4 @@ def set_up(arguments: RosArguments, executable: str, levels: LogLevels | None = 
         for write in sinks:
             write(record)
 
-    return Logging(sink, levels, rosout=arguments.rosout_logs is not False, file=file)
+    return LoggingSetup(sink, levels, rosout=arguments.rosout_logs is not False, file=file)

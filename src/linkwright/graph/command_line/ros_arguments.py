@@ -12,8 +12,8 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_
 from linkwright.graph.log.logger import LogLevel, level_from_name
 from linkwright.graph.parameters.parameter import ANY_NODE, ParameterRules
 
-BEGIN = "--ros-args"
-END = "--"
+ROS_ARGUMENTS_START = "--ros-args"
+ROS_ARGUMENTS_END = "--"
 _NODE_PREFIX = re.compile(r"(?!ros(?:topic|service)://)(/?[A-Za-z_*][\w/*]*):(.+)", re.DOTALL)
 
 
@@ -62,7 +62,7 @@ class RosArguments:
     non_ros_arguments: list[str] = field(default_factory=list)
 
     def remappings_for(self, node_name: str) -> list[tuple[str, str]]:
-        """Return the remappings ``(from, to)`` for a node, in order, including those for every node.
+        """Return the remappings ``(from, to)`` that apply to a node, in order.
 
         Args:
             node_name: the node's name in the source code, before remapping.
@@ -85,29 +85,29 @@ def parse(arguments: Sequence[str]) -> RosArguments:
         LinkwrightError: GRAPH221, a ROS argument is unknown, has no value or a malformed value; or the code of an error
             in a parameter file.
     """
-    ros = RosArguments()
+    ros_arguments = RosArguments()
     in_ros_arguments = False
     remaining = iter(arguments)
     for argument in remaining:
-        if argument == BEGIN:
+        if argument == ROS_ARGUMENTS_START:
             in_ros_arguments = True
         elif not in_ros_arguments:
-            ros.non_ros_arguments.append(argument)
-        elif argument == END:
+            ros_arguments.non_ros_arguments.append(argument)
+        elif argument == ROS_ARGUMENTS_END:
             in_ros_arguments = False
         elif argument in _FLAGS:
-            setattr(ros, *_FLAGS[argument])
+            setattr(ros_arguments, *_FLAGS[argument])
         elif argument in _OPTIONS:
             value = next(remaining, None)
-            if value is None or value in (BEGIN, END):
-                raise _error(
+            if value is None or value in (ROS_ARGUMENTS_START, ROS_ARGUMENTS_END):
+                raise _argument_error(
                     phrase("ROS argument '{argument}' needs a value", argument=argument),
-                    phrase("write {argument} {form}", argument=argument, form=_FORMS[argument]),
+                    phrase("write {argument} {form}", argument=argument, form=_VALUE_FORMS[argument]),
                 )
-            _OPTIONS[argument](ros, value)
+            _OPTIONS[argument](ros_arguments, value)
         else:
             raise _unknown_argument_error(argument)
-    return ros
+    return ros_arguments
 
 
 def remove_ros_arguments(arguments: Sequence[str]) -> list[str]:
@@ -115,25 +115,25 @@ def remove_ros_arguments(arguments: Sequence[str]) -> list[str]:
     other_arguments: list[str] = []
     in_ros_arguments = False
     for argument in arguments:
-        if argument == BEGIN:
+        if argument == ROS_ARGUMENTS_START:
             in_ros_arguments = True
         elif in_ros_arguments:
-            in_ros_arguments = argument != END
+            in_ros_arguments = argument != ROS_ARGUMENTS_END
         else:
             other_arguments.append(argument)
     return other_arguments
 
 
-def _read_remapping(ros: RosArguments, rule: str) -> None:
+def _read_remapping(ros_arguments: RosArguments, rule: str) -> None:
     source, target = _split_assignment(rule, phrase("a remapping rule"), phrase("from:=to"))
     node = None
     match = _NODE_PREFIX.fullmatch(source)
     if match:
         node, source = match[1], match[2]
-    ros.remap_rules.append(RemapRule(node, source, target))
+    ros_arguments.remap_rules.append(RemapRule(node, source, target))
 
 
-def _read_parameter(ros: RosArguments, rule: str) -> None:
+def _read_parameter(ros_arguments: RosArguments, rule: str) -> None:
     from linkwright.graph.parameters.files import parse_value  # Imported here because few nodes receive parameters.
 
     name, text = _split_assignment(rule, phrase("a parameter"), phrase("name:=value"))
@@ -141,41 +141,41 @@ def _read_parameter(ros: RosArguments, rule: str) -> None:
     match = _NODE_PREFIX.fullmatch(name)
     if match:
         pattern, name = match[1], match[2]
-    ros.parameters.set(pattern, name, parse_value(text, name))
+    ros_arguments.parameters.set(pattern, name, parse_value(text, name))
 
 
-def _read_parameter_file(ros: RosArguments, path: str) -> None:
+def _read_parameter_file(ros_arguments: RosArguments, path: str) -> None:
     from linkwright.graph.parameters.files import read_parameter_file
 
-    ros.parameters.add(read_parameter_file(Path(path)))
+    ros_arguments.parameters.add(read_parameter_file(Path(path)))
 
 
-def _read_log_level(ros: RosArguments, rule: str) -> None:
+def _read_log_level(ros_arguments: RosArguments, rule: str) -> None:
     name, separator, level_name = rule.rpartition(":=")
     level = level_from_name(level_name)
     if level is None or (separator and not name):
         levels = [log_level.name.lower() for log_level in LogLevel]
-        raise _error(
+        raise _argument_error(
             phrase("unknown log level '{level}'", level=level_name),
             did_you_mean(level_name.lower(), levels) or phrase("the levels are {levels}", levels=joined(levels)),
         )
     if separator:
-        ros.log_levels[name] = level
+        ros_arguments.log_levels[name] = level
     else:
-        ros.log_level = level
+        ros_arguments.log_level = level
 
 
-def _read_log_config_file(ros: RosArguments, path: str) -> None:
-    ros.log_config_file = path
+def _read_log_config_file(ros_arguments: RosArguments, path: str) -> None:
+    ros_arguments.log_config_file = path
 
 
-def _read_enclave(ros: RosArguments, enclave: str) -> None:
+def _read_enclave(ros_arguments: RosArguments, enclave: str) -> None:
     if not re.fullmatch(r"(/|(/[A-Za-z_]\w*)+)", enclave):
-        raise _error(
+        raise _argument_error(
             phrase("'{enclave}' is not a valid enclave", enclave=enclave),
             phrase("write a name that begins with a slash, such as /robot/talker"),
         )
-    ros.enclave = enclave
+    ros_arguments.enclave = enclave
 
 
 _OPTIONS: dict[str, Callable[[RosArguments, str], None]] = {
@@ -190,7 +190,7 @@ _OPTIONS: dict[str, Callable[[RosArguments, str], None]] = {
     "-e": _read_enclave,
     "--enclave": _read_enclave,
 }
-_FORMS = {
+_VALUE_FORMS = {
     "-r": phrase("from:=to"),
     "--remap": phrase("from:=to"),
     "-p": phrase("name:=value"),
@@ -212,7 +212,7 @@ _FLAGS = {
 def _split_assignment(rule: str, description: Phrase, form: Phrase) -> tuple[str, str]:
     name, separator, value = rule.partition(":=")
     if not separator or not name:
-        raise _error(
+        raise _argument_error(
             phrase("'{rule}' is not {expected}", rule=rule, expected=description), phrase("write {form}", form=form)
         )
     return name, value
@@ -227,8 +227,8 @@ def _unknown_argument_error(argument: str) -> LinkwrightError:
             if option == "-r"
             else phrase("write -p {argument} or -r {argument}", argument=argument)
         )
-    return _error(phrase("unknown ROS argument '{argument}'", argument=argument), hint)
+    return _argument_error(phrase("unknown ROS argument '{argument}'", argument=argument), hint)
 
 
-def _error(message: Phrase, hint: Phrase | None = None) -> LinkwrightError:
+def _argument_error(message: Phrase, hint: Phrase | None = None) -> LinkwrightError:
     return LinkwrightError(Diagnostic("GRAPH221", message, hint=hint))

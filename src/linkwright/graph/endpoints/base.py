@@ -78,18 +78,18 @@ class MessageInfo(Mapping[str, Any]):
     reception_sequence_number: int | None = None
 
     def __getitem__(self, name: str) -> Any:
-        if name not in _INFO_NAMES:
+        if name not in _INFO_FIELD_NAMES:
             raise KeyError(name)
         return getattr(self, name)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(_INFO_NAMES)
+        return iter(_INFO_FIELD_NAMES)
 
     def __len__(self) -> int:
-        return len(_INFO_NAMES)
+        return len(_INFO_FIELD_NAMES)
 
 
-_INFO_NAMES = tuple(field.name for field in fields(MessageInfo))
+_INFO_FIELD_NAMES = tuple(field.name for field in fields(MessageInfo))
 
 
 MsgType = TypeVar("MsgType")
@@ -141,7 +141,7 @@ def check_is_valid_srv_type(srv_type: Any) -> None:
 
 M = TypeVar("M")
 
-_GID_START = os.urandom(10)
+_GID_PREFIX = os.urandom(10)
 _gid_numbers = itertools.count(1)
 
 
@@ -192,7 +192,7 @@ class Endpoint(Part):
         A transport sets this to the GID of its own reader or writer.
         """
         if not self._gid:
-            self._gid = _GID_START + next(_gid_numbers).to_bytes(6, "big")
+            self._gid = _GID_PREFIX + next(_gid_numbers).to_bytes(6, "big")
         return self._gid
 
     @gid.setter

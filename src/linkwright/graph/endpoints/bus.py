@@ -19,7 +19,7 @@ from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.service import Client, Service
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.names.rules import NodeIdentity
-from linkwright.graph.qos.compatibility import incompatible_policies
+from linkwright.graph.qos.compatibility import find_incompatible_policies
 from linkwright.graph.qos.profile import QoSPolicyKind, QoSProfile
 
 
@@ -118,7 +118,7 @@ class Transport(Protocol):
 E = TypeVar("E", bound=Endpoint)
 
 
-class _Directory(Generic[E]):
+class _EndpointsByName(Generic[E]):
     """The endpoints of one kind by name.
 
     Endpoints that share a name are in order of creation.
@@ -139,7 +139,7 @@ class _Directory(Generic[E]):
             del self._by_name[endpoint.name]
         return True
 
-    def of(self, name: str) -> tuple[E, ...]:
+    def find(self, name: str) -> tuple[E, ...]:
         return tuple(self._by_name.get(name, ()))
 
     def __iter__(self) -> Iterator[E]:
@@ -154,41 +154,41 @@ class Bus:
 
     def __init__(self) -> None:
         self._lock = threading.RLock()
-        self._publishers: _Directory[Publisher[Any]] = _Directory()
-        self._subscriptions: _Directory[Subscription[Any]] = _Directory()
-        self._services: _Directory[Service[Any, Any]] = _Directory()
-        self._clients: _Directory[Client[Any, Any]] = _Directory()
+        self._publishers: _EndpointsByName[Publisher[Any]] = _EndpointsByName()
+        self._subscriptions: _EndpointsByName[Subscription[Any]] = _EndpointsByName()
+        self._services: _EndpointsByName[Service[Any, Any]] = _EndpointsByName()
+        self._clients: _EndpointsByName[Client[Any, Any]] = _EndpointsByName()
 
     def add(self, endpoint: Endpoint) -> None:
         """Connect a new endpoint to the matching endpoints with the same name."""
         with self._lock:
             if isinstance(endpoint, Publisher):
                 self._publishers.add(endpoint)
-                for subscription in self._subscriptions.of(endpoint.name):
-                    self._match(endpoint, subscription)
+                for subscription in self._subscriptions.find(endpoint.name):
+                    self._connect(endpoint, subscription)
             elif isinstance(endpoint, Subscription):
                 self._subscriptions.add(endpoint)
-                for publisher in self._publishers.of(endpoint.name):
-                    self._match(publisher, endpoint)
+                for publisher in self._publishers.find(endpoint.name):
+                    self._connect(publisher, endpoint)
             elif isinstance(endpoint, Service):
                 self._services.add(endpoint)
-                self._find_servers(endpoint.name)
+                self._update_servers(endpoint.name)
             elif isinstance(endpoint, Client):
                 self._clients.add(endpoint)
-                self._find_servers(endpoint.name)
+                self._update_servers(endpoint.name)
 
-    def _match(self, publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
+    def _connect(self, publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
         """Connect a publisher and a subscription, or warn of incompatible QoS.
 
         Nothing happens if their types differ and another subscription of the same node has the publisher's type.
         """
         type_name = publisher.type_name
-        other_subscriptions = () if subscription.type_name == type_name else self._subscriptions.of(subscription.name)
+        other_subscriptions = () if subscription.type_name == type_name else self._subscriptions.find(subscription.name)
         if not any(
             other_subscription.node is subscription.node and other_subscription.type_name == type_name
             for other_subscription in other_subscriptions
         ):
-            match(publisher, subscription)
+            connect_if_compatible(publisher, subscription)
 
     def remove(self, endpoint: Endpoint) -> None:
         """Remove an endpoint.
@@ -200,36 +200,36 @@ class Bus:
                 self._publishers.remove(endpoint)
             elif isinstance(endpoint, Subscription):
                 self._subscriptions.remove(endpoint)
-                for publisher in self._publishers.of(endpoint.name):
+                for publisher in self._publishers.find(endpoint.name):
                     publisher.disconnect(endpoint)
             elif isinstance(endpoint, Service):
                 self._services.remove(endpoint)
-                self._find_servers(endpoint.name)
+                self._update_servers(endpoint.name)
             elif isinstance(endpoint, Client):
                 self._clients.remove(endpoint)
 
     def publishers(self, topic: str | None = None) -> tuple[Publisher[Any], ...]:
         """Return the publishers of a topic, or of all topics if `topic` is None."""
         with self._lock:
-            return tuple(self._publishers) if topic is None else self._publishers.of(topic)
+            return tuple(self._publishers) if topic is None else self._publishers.find(topic)
 
     def subscriptions(self, topic: str | None = None) -> tuple[Subscription[Any], ...]:
         """Return the subscriptions to a topic, or to all topics if `topic` is None."""
         with self._lock:
-            return tuple(self._subscriptions) if topic is None else self._subscriptions.of(topic)
+            return tuple(self._subscriptions) if topic is None else self._subscriptions.find(topic)
 
     def endpoints(self) -> tuple[Endpoint, ...]:
         """Return all endpoints."""
         with self._lock:
             return (*self._publishers, *self._subscriptions, *self._services, *self._clients)
 
-    def _find_servers(self, name: str) -> None:
-        servers = self._services.of(name)
-        for client in self._clients.of(name):
+    def _update_servers(self, name: str) -> None:
+        servers = self._services.find(name)
+        for client in self._clients.find(name):
             client.set_server(next((server for server in servers if server.type_name == client.type_name), None))
 
 
-def match(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
+def connect_if_compatible(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
     """Connect a publisher and a subscription, or warn of different types or incompatible QoS."""
     if publisher.type_name != subscription.type_name:
         subscription.node.logger.warning(
@@ -239,16 +239,16 @@ def match(publisher: Publisher[Any], subscription: Subscription[Any]) -> None:
         )
         return
     offered, requested = publisher.qos_profile, subscription.qos_profile
-    policies = incompatible_policies(offered, requested)
+    policies = find_incompatible_policies(offered, requested)
     if not policies:
         publisher.connect(subscription)
         return
-    sides = describe_mismatch(publisher.node_name, offered, subscription.node_name, requested, policies)
-    report_to_subscription(subscription, policies[-1].name, sides)
-    report_to_publisher(publisher, policies[-1].name, sides)
+    mismatch = describe_mismatch(publisher.node_name, offered, subscription.node_name, requested, policies)
+    report_to_subscription(subscription, policies[-1].name, mismatch)
+    report_to_publisher(publisher, policies[-1].name, mismatch)
 
 
-def report_to_subscription(subscription: Subscription[Any], policy: str, sides: str) -> None:
+def report_to_subscription(subscription: Subscription[Any], policy: str, mismatch: str) -> None:
     """Report incompatible QoS to a subscription that requests more than a publisher offers.
 
     The subscription's event callback receives the report; without such a callback, the report is logged.
@@ -256,17 +256,17 @@ def report_to_subscription(subscription: Subscription[Any], policy: str, sides: 
     Args:
         subscription: the subscription.
         policy: the name of the incompatible policy.
-        sides: the values that the two nodes offer and request; see `describe_mismatch`.
+        mismatch: the values that the two nodes offer and request; see `describe_mismatch`.
     """
     if subscription.events is not None and subscription.events.report_incompatible(policy):
         return
     subscription.node.logger.warning(
         f"New publisher discovered on topic '{subscription.name}', offering incompatible QoS. "
-        f"No messages will be received from it. Last incompatible policy: {policy}_QOS_POLICY ({sides})"
+        f"No messages will be received from it. Last incompatible policy: {policy}_QOS_POLICY ({mismatch})"
     )
 
 
-def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> None:
+def report_to_publisher(publisher: Publisher[Any], policy: str, mismatch: str) -> None:
     """Report incompatible QoS to a publisher that offers less than a subscription requests.
 
     See `report_to_subscription`.
@@ -275,7 +275,7 @@ def report_to_publisher(publisher: Publisher[Any], policy: str, sides: str) -> N
         return
     publisher.node.logger.warning(
         f"New subscription discovered on topic '{publisher.name}', requesting incompatible QoS. "
-        f"No messages will be sent to it. Last incompatible policy: {policy}_QOS_POLICY ({sides})"
+        f"No messages will be sent to it. Last incompatible policy: {policy}_QOS_POLICY ({mismatch})"
     )
 
 
@@ -295,13 +295,13 @@ def _format_policies(qos: QoSProfile, policies: list[QoSPolicyKind]) -> str:
 
 def _format_policy(qos: QoSProfile, policy: QoSPolicyKind) -> str:
     if policy is QoSPolicyKind.RELIABILITY:
-        return _plain_name(qos.reliability.name)
+        return _format_value_name(qos.reliability.name)
     if policy is QoSPolicyKind.DURABILITY:
-        return _plain_name(qos.durability.name)
+        return _format_value_name(qos.durability.name)
     if policy is QoSPolicyKind.DEADLINE:
         return f"a deadline of {qos.deadline}"
-    return f"{_plain_name(qos.liveliness.name)} liveliness with a lease of {qos.liveliness_lease_duration}"
+    return f"{_format_value_name(qos.liveliness.name)} liveliness with a lease of {qos.liveliness_lease_duration}"
 
 
-def _plain_name(name: str) -> str:
+def _format_value_name(name: str) -> str:
     return name.lower().replace("_", " ")

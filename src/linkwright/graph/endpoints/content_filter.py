@@ -85,7 +85,7 @@ class _Token:
     text: str
 
     @property
-    def word(self) -> str:
+    def keyword(self) -> str:
         """The keyword in upper case, or an empty string for any other token."""
         return self.text.upper() if self.kind == "name" and self.text.upper() in _KEYWORDS else ""
 
@@ -127,7 +127,7 @@ class _Parser:
 
     def _accept(self, symbol: str) -> bool:
         token = self._tokens[0]
-        if symbol in (token.word, token.text if token.kind == "sign" else None):
+        if symbol in (token.keyword, token.text if token.kind == "sign" else None):
             self._next_token()
             return True
         return False
@@ -177,8 +177,8 @@ class _Parser:
         if self._accept("BETWEEN"):
             return self._parse_between(operand)
         token = self._next_token()
-        if token.word in ("LIKE", "MATCH"):
-            return self._parse_like(operand, regular=token.word == "MATCH")
+        if token.keyword in ("LIKE", "MATCH"):
+            return self._parse_like(operand, regular=token.keyword == "MATCH")
         relation = _RELATIONS.get(token.text)
         if relation is None:
             raise self._make_error(f"a comparison is missing before '{token.text or 'its end'}'")
@@ -209,9 +209,9 @@ class _Parser:
             if number >= len(self._parameters):
                 raise self._make_error(f"there is no parameter {token.text}")
             return _make_constant(_parse_literal(self._parameters[number]))
-        if token.kind in ("number", "text") or token.word in ("TRUE", "FALSE"):
+        if token.kind in ("number", "text") or token.keyword in ("TRUE", "FALSE"):
             return _make_constant(_parse_literal(token.text))
-        if token.kind == "name" and not token.word:
+        if token.kind == "name" and not token.keyword:
             return self._parse_field(token.text)
         raise self._make_error(f"a field or value is missing before '{token.text or 'its end'}'")
 

@@ -147,12 +147,12 @@ class PublisherEventCallbacks(EndpointEventCallbacks):
     def handlers(self) -> list[EventHandler]:
         """Return one handler for each kind of event that is monitored."""
         kinds = QoSPublisherEventType
-        return _handlers(
+        return _make_handlers(
             (kinds.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED, self.deadline),
             (kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS, self.incompatible_qos),
             (kinds.RCL_PUBLISHER_LIVELINESS_LOST, self.liveliness),
             (kinds.RCL_PUBLISHER_MATCHED, self.matched),
-            logged=kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS if self.use_default_callbacks else None,
+            logged_event=kinds.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS if self.use_default_callbacks else None,
         )
 
 
@@ -169,22 +169,22 @@ class SubscriptionEventCallbacks(EndpointEventCallbacks):
     def handlers(self) -> list[EventHandler]:
         """Return one handler for each kind of event that is monitored."""
         kinds = QoSSubscriptionEventType
-        return _handlers(
+        return _make_handlers(
             (kinds.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED, self.deadline),
             (kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS, self.incompatible_qos),
             (kinds.RCL_SUBSCRIPTION_LIVELINESS_CHANGED, self.liveliness),
             (kinds.RCL_SUBSCRIPTION_MESSAGE_LOST, self.message_lost),
             (kinds.RCL_SUBSCRIPTION_MATCHED, self.matched),
-            logged=kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS if self.use_default_callbacks else None,
+            logged_event=kinds.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS if self.use_default_callbacks else None,
         )
 
 
-def _handlers(
+def _make_handlers(
     *candidates: tuple[QoSPublisherEventType | QoSSubscriptionEventType, EventCallback | None],
-    logged: QoSPublisherEventType | QoSSubscriptionEventType | None,
+    logged_event: QoSPublisherEventType | QoSSubscriptionEventType | None,
 ) -> list[EventHandler]:
     return [
         EventHandler(event_type, callback)
         for event_type, callback in candidates
-        if callback is not None or event_type is logged
+        if callback is not None or event_type is logged_event
     ]

@@ -145,10 +145,10 @@ class Publisher(TopicEndpoint[M]):
 
         A transient local subscription first receives the messages stored for late joiners.
         """
-        receive = subscription.receiver(self, self.lifespan_ns)
+        receive = subscription.make_receiver(self, self.lifespan_ns)
         with self._lock:
             if self._late_joiner_messages and subscription.qos_profile.durability is DurabilityPolicy.TRANSIENT_LOCAL:
-                for message in self._unexpired_messages():
+                for message in self._remove_expired_messages():
                     receive(message)
             self._receivers_by_subscription[subscription] = receive
             self._receivers = tuple(self._receivers_by_subscription.values())
@@ -223,7 +223,7 @@ class Publisher(TopicEndpoint[M]):
         with self._lock:
             held_messages, self._held_messages = self._held_messages, None
             if send is not None and (self.send_remote is None or held_messages is not None):
-                for message in self._unexpired_messages() if held_messages is None else held_messages:
+                for message in self._remove_expired_messages() if held_messages is None else held_messages:
                     operation = f"sending the messages of topic '{self.name}'"
                     run_logged(self.node.logger, operation, partial(send, message))  # `publish` has returned: just log
             self.send_remote = send
@@ -256,7 +256,7 @@ class Publisher(TopicEndpoint[M]):
             if subscription.events is not None:
                 subscription.events.on_liveliness_change(change, -change)
 
-    def _unexpired_messages(self) -> list[Any]:
+    def _remove_expired_messages(self) -> list[Any]:
         """Remove the expired messages that are stored for late joiners, and return the others."""
         if not self._late_joiner_messages:
             return []

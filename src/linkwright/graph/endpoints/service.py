@@ -20,7 +20,7 @@ from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.loop.dispatcher import Entity
 from linkwright.graph.loop.future import Future
 from linkwright.graph.loop.node_handle import CallbackGroup, NodeHandle
-from linkwright.graph.qos.compatibility import best_available
+from linkwright.graph.qos.compatibility import resolve_best_available
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.time.clock import Clock
 from linkwright.messages import deserialize, get_message, serialize
@@ -78,7 +78,7 @@ class ServiceEvents:
         self._info_class: Any = get_message("service_msgs/msg/ServiceEventInfo")
         node = endpoint.node
         name = node.resolve_topic_name(endpoint.name + EVENT_TOPIC_SUFFIX)
-        qos = best_available(QoSProfile.of(qos_profile), (), publisher=True)
+        qos = resolve_best_available(QoSProfile.of(qos_profile), (), is_publisher=True)
         self._publisher: Publisher[Any] = node.add(Publisher(node, self._event_class, name, qos))
 
     def publish_event(
@@ -468,7 +468,7 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
             try:
                 was_sent = self._send(future, request)
             except LinkwrightError as error:  # the caller has returned, so the future gets the error
-                self._end(future, partial(future.fail, error, self.dispatcher))
+                self._queue_completion(future, partial(future.fail, error, self.dispatcher))
                 continue
             if not was_sent:
                 with self._lock:
@@ -491,10 +491,13 @@ class Client(IntrospectedEndpoint, Entity, Generic[Request, Response]):
         return True
 
     def _receive(self, future: Future[Response], request_id: RequestId, response: Response) -> None:
-        self._end(future, partial(self._hand_over, future, request_id, response))
+        self._queue_completion(future, partial(self._hand_over, future, request_id, response))
 
-    def _end(self, future: Future[Response], complete: Callable[[], None]) -> None:
-        """Queue the function `complete`, which completes a future, unless the request was cancelled."""
+    def _queue_completion(self, future: Future[Response], complete: Callable[[], None]) -> None:
+        """Queue the function `complete`, which completes a future.
+
+        A cancelled request is ignored.
+        """
         if self._pending.pop(future, None) is not None:
             self._completions.append(complete)
             self.announce()

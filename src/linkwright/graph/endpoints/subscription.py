@@ -233,7 +233,7 @@ class Subscription(TopicEndpoint[M], Entity):
                 self._announced = True
                 dispatcher.ready(self)
 
-    def receiver(self, publisher: TopicEndpoint[Any], lifespan_ns: int | None) -> Callable[[Any], None]:
+    def make_receiver(self, publisher: TopicEndpoint[Any], lifespan_ns: int | None) -> Callable[[Any], None]:
         """Return the function that a publisher of this process calls with each message.
 
         Args:
@@ -336,7 +336,7 @@ class Subscription(TopicEndpoint[M], Entity):
         Returns None if there is nothing to call, for example because the message has expired.
         """
         if type(item) is bytes and not self._wants_info and not self.raw:
-            message = self._read(item)
+            message = self._decode(item)
             return None if message is None else partial(self._callback, message)
         queued_message = item if type(item) is QueuedMessage else QueuedMessage(item)
         if queued_message.expires_ns is not None and self.node.timebase.steady_ns() > queued_message.expires_ns:
@@ -345,7 +345,7 @@ class Subscription(TopicEndpoint[M], Entity):
         if self.raw:
             message = self._serialize(message)
         elif isinstance(message, (bytes, bytearray, memoryview)):
-            message = self._read(message)
+            message = self._decode(message)
             if message is None:
                 return None
         elif item is message and not self._wants_info:
@@ -372,7 +372,7 @@ class Subscription(TopicEndpoint[M], Entity):
                 return True
         return content_filter.accepts(payload)
 
-    def _read(self, data: bytes | bytearray | memoryview) -> Any:
+    def _decode(self, data: bytes | bytearray | memoryview) -> Any:
         """Decode a message.
 
         If that fails, log the error once and return None.
@@ -380,10 +380,10 @@ class Subscription(TopicEndpoint[M], Entity):
         try:
             return deserialize(data, self.msg_type)
         except LinkwrightError as error:
-            self._refuse(error)
+            self._log_decoding_error(error)
             return None
 
-    def _refuse(self, error: LinkwrightError) -> None:
+    def _log_decoding_error(self, error: LinkwrightError) -> None:
         self.malformed_count += 1
         if self.malformed_count == 1:
             self.node.logger.warning(f"Dropped a malformed message of topic '{self.name}': {error}")

@@ -131,7 +131,7 @@ class Executor:
             return list(self._nodes.values())
 
     def wake(self) -> None:
-        """End the current wait for work, so that the ready work and the condition are checked again."""
+        """End the current wait, so that the ready work and the condition are checked again."""
         self._release_blocked()
         self._work.wake()
 
@@ -283,10 +283,10 @@ class Executor:
             deadline_ns = deadline_after(timeout_sec)
             skipped_items: list[Any] = []
             try:
-                item = self._next(deadline_ns, condition, begin=False)
+                item = self._wait_for_next(deadline_ns, condition, begin=False)
                 while requested_handles is not None and isinstance(item, Entity) and item.node not in requested_handles:
                     skipped_items.append(item)
-                    item = self._next(deadline_ns, condition, begin=False)
+                    item = self._wait_for_next(deadline_ns, condition, begin=False)
             finally:
                 self._work.add_first(skipped_items)
             if isinstance(item, Task):
@@ -294,7 +294,9 @@ class Executor:
             else:
                 yield self._make_task(item), item, self._nodes.get(item.node)
 
-    def _next(self, deadline_ns: int | None, condition: Callable[[], bool] | None, *, begin: bool = True) -> Any:
+    def _wait_for_next(
+        self, deadline_ns: int | None, condition: Callable[[], bool] | None, *, begin: bool = True
+    ) -> Any:
         """Wait for the next task, or the next entity that its callback group allows to run.
 
         If `begin` is true, the group is notified that the entity begins to run. Raises the same errors as
@@ -357,17 +359,17 @@ class Executor:
             item()
             _raise_fault(item)
             return
-        callback_of = item  # `linkwright.graph.loop.future` looks for this local name
+        running_entity = item  # `linkwright.graph.loop.future` looks for this local name
         result = None
         try:
-            call = callback_of.take()
+            call = running_entity.take()
             if call is not None:
                 result = call()
         finally:
             if type(result) is not CoroutineType:
-                self._end_execution(callback_of)
+                self._end_execution(running_entity)
         if type(result) is CoroutineType:
-            task: Task[Any] = Task(result, executor=self, on_end=partial(self._end_execution, callback_of))
+            task: Task[Any] = Task(result, executor=self, on_end=partial(self._end_execution, running_entity))
             task()
             _raise_fault(task)
 
@@ -376,12 +378,12 @@ class Executor:
 
         def run() -> object:
             nonlocal begun
-            callback_of = entity  # `linkwright.graph.loop.future` looks for this local name
-            if not (callback_of.unblockable or callback_of.callback_group.beginning_execution(callback_of)):
-                self._block(callback_of)
+            running_entity = entity  # `linkwright.graph.loop.future` looks for this local name
+            if not (running_entity.unblockable or running_entity.callback_group.beginning_execution(running_entity)):
+                self._block(running_entity)
                 return None
             begun = True
-            call = callback_of.take()
+            call = running_entity.take()
             return None if call is None else call()
 
         def on_end() -> None:
@@ -450,12 +452,15 @@ class SpinningExecutor(Executor):
         self._begin_spinning()
         try:
             while not self._is_shutdown and self._is_context_ok():
-                self._turn(None, None)
+                self._run_next(None, None)
         finally:
             self._end_spinning()
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Wait for a callback, then run it in this thread or in another. See ``Executor.spin_once``."""
+        """Wait for a callback, then run it in this thread or in another.
+
+        See ``Executor.spin_once``.
+        """
         self._spin_single(timeout_sec, None)
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
@@ -466,12 +471,12 @@ class SpinningExecutor(Executor):
     def _spin_single(self, timeout_sec: float | None, condition: Callable[[], bool] | None) -> None:
         self._begin_spinning()
         try:
-            self._turn(deadline_after(timeout_sec), condition)
+            self._run_next(deadline_after(timeout_sec), condition)
         finally:
             self._end_spinning()
 
     @abstractmethod
-    def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
+    def _run_next(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         """Wait for a callback, then run it in this thread or in another.
 
         Args:

@@ -23,7 +23,9 @@ from linkwright.process.processors import usable_processors
 
 
 class MultiThreadedExecutor(SpinningExecutor):
-    """An executor that runs callbacks in a thread pool, as their groups allow (rclpy ``MultiThreadedExecutor``).
+    """An executor that runs callbacks in a thread pool, as their callback groups allow.
+
+    It corresponds to rclpy's ``MultiThreadedExecutor``.
 
     The spinning thread hands work to at most as many threads as the pool has. Other work stays queued in its entities,
     subject to their QoS. `spin_once` does not wait for the work that it handed out to end. If a callback raises an
@@ -76,7 +78,7 @@ class MultiThreadedExecutor(SpinningExecutor):
         )
         return self._workers.close(remaining_s) and callbacks_ended
 
-    def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
+    def _run_next(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         while not self._workers.has_room and not self._faults:
             if self._is_shutdown or not self._is_context_ok() or (condition is not None and condition()):
                 return
@@ -85,7 +87,7 @@ class MultiThreadedExecutor(SpinningExecutor):
             self._work.wait_for_wake(deadline_ns)
         self._raise_faults()
         try:
-            item = self._next(deadline_ns, partial(self._should_end_wait, condition))
+            item = self._wait_for_next(deadline_ns, partial(self._should_end_wait, condition))
         except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
             pass
         else:

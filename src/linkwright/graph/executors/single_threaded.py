@@ -23,9 +23,9 @@ class SingleThreadedExecutor(SpinningExecutor):
         """
         return set(self._spinners) == {threading.get_ident()}
 
-    def _turn(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
+    def _run_next(self, deadline_ns: int | None, condition: Callable[[], bool] | None) -> None:
         try:
-            item = self._next(deadline_ns, condition)
+            item = self._wait_for_next(deadline_ns, condition)
         except (ShutdownException, TimeoutException, ConditionReachedException):
             return
         self._execute(item)

@@ -66,8 +66,8 @@ NamesAndTypes = list[tuple[str, list[str]]]
 UNKNOWN_NODE = NodeIdentity("_NODE_NAME_UNKNOWN_", "_NODE_NAMESPACE_UNKNOWN_")
 """The owner of an endpoint that discovery has not named yet."""
 
-_ACTION = "/_action/"
-_FEEDBACK = "_FeedbackMessage"
+_ACTION_INFIX = "/_action/"
+_FEEDBACK_SUFFIX = "_FeedbackMessage"
 
 
 class TopicEndpointTypeEnum(IntEnum):
@@ -146,7 +146,7 @@ class TopicEndpointInfo:
         )
 
 
-def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
+def collect_names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
     """Return the sorted names of the endpoints of the given kinds, each with its type names."""
     types: dict[str, set[str]] = {}
     for endpoint in endpoints:
@@ -155,16 +155,16 @@ def names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> 
     return [(name, sorted(types[name])) for name in sorted(types)]
 
 
-def action_names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
+def collect_action_names_and_types(endpoints: Iterable[EndpointInfo], *kinds: EndpointKind) -> NamesAndTypes:
     """Return the actions, with types, whose feedback topic has endpoints of the given kinds.
 
     This is how rcl_action finds actions: an action server publishes feedback, an action client subscribes to it.
     """
     types: dict[str, set[str]] = {}
     for endpoint in endpoints:
-        action, _, suffix = endpoint.name.rpartition(_ACTION)
+        action, _, suffix = endpoint.name.rpartition(_ACTION_INFIX)
         if suffix == "feedback" and endpoint.kind in kinds:
-            types.setdefault(action, set()).add(endpoint.type_name.removesuffix(_FEEDBACK))
+            types.setdefault(action, set()).add(endpoint.type_name.removesuffix(_FEEDBACK_SUFFIX))
     return [(name, sorted(types[name])) for name in sorted(types)]
 
 
@@ -196,11 +196,11 @@ class GraphQueries:
 
     def endpoints(self) -> list[EndpointInfo]:
         """Return the endpoints of this process, and those discovered so far in other processes."""
-        return self._matching_endpoints(lambda _: True)
+        return self._find_endpoints(lambda _: True)
 
     def publishers(self) -> list[EndpointInfo]:
         """Return the publishers of all topics, in this process and others."""
-        return self._matching_endpoints(lambda endpoint: endpoint.kind is _PUBLISHER)
+        return self._find_endpoints(lambda endpoint: endpoint.kind is _PUBLISHER)
 
     def remote_endpoints(self) -> Sequence[EndpointInfo]:
         """Return the endpoints of other processes that have been discovered so far."""
@@ -231,23 +231,23 @@ class GraphQueries:
         Args:
             no_demangle: whether to return names and types as they are on the wire.
         """
-        return _mangle(names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION), no_demangle)
+        return _mangle(collect_names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION), no_demangle)
 
     def get_service_names_and_types(self) -> NamesAndTypes:
         """Return the sorted service names, each with the names of its types."""
-        return names_and_types(self.endpoints(), _SERVICE, _CLIENT)
+        return collect_names_and_types(self.endpoints(), _SERVICE, _CLIENT)
 
     def get_action_names_and_types(self) -> NamesAndTypes:
         """Return the sorted action names, each with the names of its types."""
-        return action_names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION)
+        return collect_action_names_and_types(self.endpoints(), _PUBLISHER, _SUBSCRIPTION)
 
     def get_action_server_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Return the actions that a node serves. See `get_publisher_names_and_types_by_node`."""
-        return action_names_and_types(self._endpoints_of_node(node_name, node_namespace), _PUBLISHER)
+        return collect_action_names_and_types(self._find_endpoints_of_node(node_name, node_namespace), _PUBLISHER)
 
     def get_action_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Return the actions of a node's clients. See `get_publisher_names_and_types_by_node`."""
-        return action_names_and_types(self._endpoints_of_node(node_name, node_namespace), _SUBSCRIPTION)
+        return collect_action_names_and_types(self._find_endpoints_of_node(node_name, node_namespace), _SUBSCRIPTION)
 
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
@@ -262,7 +262,9 @@ class GraphQueries:
         Raises:
             NodeNotFoundError: there is no such node.
         """
-        return _mangle(names_and_types(self._endpoints_of_node(node_name, node_namespace), _PUBLISHER), no_demangle)
+        return _mangle(
+            collect_names_and_types(self._find_endpoints_of_node(node_name, node_namespace), _PUBLISHER), no_demangle
+        )
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
@@ -271,43 +273,47 @@ class GraphQueries:
 
         See `get_publisher_names_and_types_by_node`.
         """
-        return _mangle(names_and_types(self._endpoints_of_node(node_name, node_namespace), _SUBSCRIPTION), no_demangle)
+        return _mangle(
+            collect_names_and_types(self._find_endpoints_of_node(node_name, node_namespace), _SUBSCRIPTION), no_demangle
+        )
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Return the services that a node serves. See `get_publisher_names_and_types_by_node`."""
-        return names_and_types(self._endpoints_of_node(node_name, node_namespace), _SERVICE)
+        return collect_names_and_types(self._find_endpoints_of_node(node_name, node_namespace), _SERVICE)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """Return the services of a node's clients. See `get_publisher_names_and_types_by_node`."""
-        return names_and_types(self._endpoints_of_node(node_name, node_namespace), _CLIENT)
+        return collect_names_and_types(self._find_endpoints_of_node(node_name, node_namespace), _CLIENT)
 
     def get_publishers_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
         """Return the publishers of a topic, given by its absolute name."""
         return [
-            TopicEndpointInfo.of(_add_type_hash(endpoint)) for endpoint in self._endpoints_by_name(topic, _PUBLISHER)
+            TopicEndpointInfo.of(_add_type_hash(endpoint))
+            for endpoint in self._find_endpoints_by_name(topic, _PUBLISHER)
         ]
 
     def get_subscriptions_info_by_topic(self, topic: str) -> list[TopicEndpointInfo]:
         """Return the subscriptions to a topic, given by its absolute name."""
         return [
-            TopicEndpointInfo.of(_add_type_hash(endpoint)) for endpoint in self._endpoints_by_name(topic, _SUBSCRIPTION)
+            TopicEndpointInfo.of(_add_type_hash(endpoint))
+            for endpoint in self._find_endpoints_by_name(topic, _SUBSCRIPTION)
         ]
 
     def count_publishers(self, topic: str) -> int:
         """Return the number of publishers of a topic, given by its absolute name."""
-        return len(self._endpoints_by_name(topic, _PUBLISHER))
+        return len(self._find_endpoints_by_name(topic, _PUBLISHER))
 
     def count_subscribers(self, topic: str) -> int:
         """Return the number of subscriptions to a topic, given by its absolute name."""
-        return len(self._endpoints_by_name(topic, _SUBSCRIPTION))
+        return len(self._find_endpoints_by_name(topic, _SUBSCRIPTION))
 
     def count_services(self, service: str) -> int:
         """Return the number of servers of a service, given by its absolute name."""
-        return len(self._endpoints_by_name(service, _SERVICE))
+        return len(self._find_endpoints_by_name(service, _SERVICE))
 
     def count_clients(self, service: str) -> int:
         """Return the number of clients of a service, given by its absolute name."""
-        return len(self._endpoints_by_name(service, _CLIENT))
+        return len(self._find_endpoints_by_name(service, _CLIENT))
 
     # --- waiting -----------------------------------------------------------------------------------------------------
 
@@ -363,7 +369,7 @@ class GraphQueries:
         full_name = "/" + fully_qualified_node_name.removeprefix("/")
         return self.wait_until(lambda: any(identity.full_name == full_name for identity in self.identities()), timeout)
 
-    def _endpoints_of_node(self, name: str, namespace: str) -> list[EndpointInfo]:
+    def _find_endpoints_of_node(self, name: str, namespace: str) -> list[EndpointInfo]:
         if not any((identity.name, identity.namespace) == (name, namespace) for identity in self.identities()):
             raise NodeNotFoundError(name, namespace)
         return [
@@ -372,10 +378,10 @@ class GraphQueries:
             if endpoint.node is not None and (endpoint.node.name, endpoint.node.namespace) == (name, namespace)
         ]
 
-    def _endpoints_by_name(self, name: str, kind: EndpointKind) -> list[EndpointInfo]:
-        return self._matching_endpoints(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
+    def _find_endpoints_by_name(self, name: str, kind: EndpointKind) -> list[EndpointInfo]:
+        return self._find_endpoints(lambda endpoint: endpoint.kind is kind and endpoint.name == name)
 
-    def _matching_endpoints(self, is_match: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
+    def _find_endpoints(self, is_match: Callable[[Endpoint | EndpointInfo], bool]) -> list[EndpointInfo]:
         """Return the endpoints that meet a condition, in this process and others.
 
         Only the matching endpoints are described, because describing an endpoint takes time.
@@ -402,9 +408,9 @@ def _add_type_hash(endpoint: EndpointInfo) -> EndpointInfo:
 def _mangle(entries: NamesAndTypes, no_demangle: bool) -> NamesAndTypes:
     if not no_demangle:
         return entries
-    return [(f"rt{name}", [_wire_type_name(type_name) for type_name in types]) for name, types in entries]
+    return [(f"rt{name}", [_to_wire_type_name(type_name) for type_name in types]) for name, types in entries]
 
 
-def _wire_type_name(type_name: str) -> str:
+def _to_wire_type_name(type_name: str) -> str:
     namespace, name = split(type_name)
     return f"{namespace.replace('/', '::')}::dds_::{name}_"

@@ -1,4 +1,4 @@
-"""A node's graph query methods, as in ``rclpy.node.Node``, and its type description service."""
+"""A node's graph queries, as in ``rclpy.node.Node``, and its type description service."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from linkwright.graph.loop.node_handle import NodeHandle
 from linkwright.graph.names.rules import InvalidNameError, join
 from linkwright.messages import InterfaceNotFoundError, get_message, is_before_iron
 
-PARAMETER = "start_type_description_service"
+TYPE_DESCRIPTION_PARAMETER = "start_type_description_service"
 """The parameter that decides whether a node has the type description service."""
 
-_TYPE = "type_description_interfaces/srv/GetTypeDescription"
-_HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
+_SERVICE_TYPE = "type_description_interfaces/srv/GetTypeDescription"
+_TYPE_HASH_PATTERN = re.compile(r"RIHS01_[0-9a-f]{64}")
 
 
 def has_type_descriptions_by_default(variables: Mapping[str, str] = os.environ) -> bool:
@@ -41,11 +41,11 @@ class TypeDescriptions:
 
     def __init__(self, handle: NodeHandle, create_service: Callable[..., object]) -> None:
         self._handle = handle
-        create_service(_TYPE, f"{handle.identity.name}/get_type_description", self._answer)
+        create_service(_SERVICE_TYPE, f"{handle.identity.name}/get_type_description", self._describe_type)
 
-    def _answer(self, request: Any, response: Any) -> Any:
+    def _describe_type(self, request: Any, response: Any) -> Any:
         response.successful = False
-        if not _HASH.fullmatch(request.type_hash):
+        if not _TYPE_HASH_PATTERN.fullmatch(request.type_hash):
             response.failure_reason = "Failed to parse type hash"
             return response
         type_name = next((name for name in self._types_in_use() if _is_requested(name, request)), None)
@@ -57,13 +57,14 @@ class TypeDescriptions:
 
         description = type_description(LIBRARY.definition(type_name))
         referenced_types = description["referenced_type_descriptions"]
-        response.type_description = _interface("TypeDescription")(
-            type_description=_individual(description["type_description"]),
-            referenced_type_descriptions=[_individual(nested_type) for nested_type in referenced_types],
+        response.type_description = _get_message_class("TypeDescription")(
+            type_description=_to_type_message(description["type_description"]),
+            referenced_type_descriptions=[_to_type_message(nested_type) for nested_type in referenced_types],
         )
         if request.include_type_sources:
             response.type_sources = [
-                _source(name) for name in (type_name, *(nested_type["type_name"] for nested_type in referenced_types))
+                _to_source_message(name)
+                for name in (type_name, *(nested_type["type_name"] for nested_type in referenced_types))
             ]
         response.successful = True
         return response
@@ -84,31 +85,31 @@ def _is_requested(name: str, request: Any) -> bool:
         return False
 
 
-def _interface(name: str) -> Any:
+def _get_message_class(name: str) -> Any:
     return get_message(f"type_description_interfaces/msg/{name}")
 
 
-def _individual(description: Mapping[str, Any]) -> Any:
+def _to_type_message(description: Mapping[str, Any]) -> Any:
     """Convert a type description to an IndividualTypeDescription message.
 
     Default values are left out, because they are not part of the hash.
     """
-    field, field_type = _interface("Field"), _interface("FieldType")
+    field, field_type = _get_message_class("Field"), _get_message_class("FieldType")
     fields = [field(name=member["name"], type=field_type(**member["type"])) for member in description["fields"]]
-    return _interface("IndividualTypeDescription")(type_name=description["type_name"], fields=fields)
+    return _get_message_class("IndividualTypeDescription")(type_name=description["type_name"], fields=fields)
 
 
-def _source(name: str) -> Any:
+def _to_source_message(name: str) -> Any:
     """Return the source text of an interface as a TypeSource message.
 
     A type without a file of its own, such as a request, has the encoding ``implicit``.
     """
     _, encoding, own_name = name.split("/")
     if "_" in own_name:
-        return _interface("TypeSource")(type_name=name, encoding="implicit")
+        return _get_message_class("TypeSource")(type_name=name, encoding="implicit")
     from linkwright.messages import definition_text
 
-    return _interface("TypeSource")(type_name=name, encoding=encoding, raw_file_contents=definition_text(name))
+    return _get_message_class("TypeSource")(type_name=name, encoding=encoding, raw_file_contents=definition_text(name))
 
 
 P = ParamSpec("P")
@@ -134,13 +135,15 @@ class NodeQueries:
         """
 
         @wraps(query)
-        def ask(node: NodeQueries, /, *args: P.args, **kwargs: P.kwargs) -> R:
+        def run_query(node: NodeQueries, /, *args: P.args, **kwargs: P.kwargs) -> R:
             return query(node.__graph, *args, **kwargs)
 
-        return ask
+        return run_query
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a topic, expanded and, unless `only_expand` is true, remapped.
+        """Return the absolute name of a topic.
+
+        The name is expanded and, unless `only_expand` is true, remapped.
 
         Raises:
             InvalidTopicNameError: the topic name is not valid.

@@ -48,7 +48,7 @@ class TrafficWindow:
         """Add a message of `size` bytes that arrived at `now_ns`."""
         self._messages.append((now_ns, size))
 
-    def traffic(self, now_ns: int) -> Traffic | None:
+    def measure(self, now_ns: int) -> Traffic | None:
         """Return the statistics, or None while there are fewer than two messages.
 
         As in ``ros2 topic bw``, the bandwidth is averaged from the first message until now, so it decreases when no

@@ -80,7 +80,9 @@ class LifecycleNodeMixin(ManagedEntity):
             return
         node: Any = self
         name = node.get_name()
-        self._transition_events = node.create_publisher(_message("TransitionEvent"), f"{name}/transition_event", 10)
+        self._transition_events = node.create_publisher(
+            _get_message_class("TransitionEvent"), f"{name}/transition_event", 10
+        )
         for service, type_name, callback in (
             ("change_state", "ChangeState", self._on_change_state),
             ("get_state", "GetState", self._on_get_state),
@@ -89,7 +91,7 @@ class LifecycleNodeMixin(ManagedEntity):
             ("get_transition_graph", "GetAvailableTransitions", self._on_get_transition_graph),
         ):
             server = node.create_service(
-                _service(type_name), f"{name}/{service}", callback, callback_group=callback_group
+                _get_service_class(type_name), f"{name}/{service}", callback, callback_group=callback_group
             )
             setattr(self._state_machine, f"service_{service}", server)
 
@@ -186,9 +188,9 @@ class LifecycleNodeMixin(ManagedEntity):
         return TransitionCallbackReturn.SUCCESS
 
     def _change_by_label(self, label: str) -> TransitionCallbackReturn:
-        transition = self._state_machine.by_label(label)
+        transition = self._state_machine.find_by_label(label)
         if transition is None:
-            available = [candidate.label for candidate in self._state_machine.available()]
+            available = [candidate.label for candidate in self._state_machine.available_transitions()]
             raise LifecycleTransitionError(label, self._state_machine.state, available)
         return self._perform(transition)
 
@@ -206,7 +208,7 @@ class LifecycleNodeMixin(ManagedEntity):
         return result
 
     def _end_transition(self, result: TransitionCallbackReturn) -> None:
-        following_transition = self._state_machine.by_label(result.to_label())
+        following_transition = self._state_machine.find_by_label(result.to_label())
         assert following_transition is not None
         self._enter_state(following_transition)
 
@@ -215,7 +217,7 @@ class LifecycleNodeMixin(ManagedEntity):
         name = _CALLBACKS[self._state_machine.state]
         try:
             result = getattr(self, name)(initial)
-        except Exception:  # noqa: BLE001  # a fault of the user's callback is what the error state is for
+        except Exception:  # noqa: BLE001  # the error state handles errors of callbacks
             node.get_logger().error(f"{name} failed:\n{traceback.format_exc().rstrip()}")
             return TransitionCallbackReturn.ERROR
         if isinstance(result, TransitionCallbackReturn):
@@ -240,10 +242,10 @@ class LifecycleNodeMixin(ManagedEntity):
     def _on_change_state(self, request: Any, response: Any) -> Any:
         requested = request.transition
         machine = self._state_machine
-        transition = machine.by_label(requested.label) if requested.label else machine.by_id(requested.id)
+        transition = machine.find_by_label(requested.label) if requested.label else machine.find_by_id(requested.id)
         if transition is None or transition.start.state_id >= CONFIGURING.state_id:
             node: Any = self
-            available = [candidate.label for candidate in machine.available()]
+            available = [candidate.label for candidate in machine.available_transitions()]
             error = LifecycleTransitionError(requested.label or requested.id, machine.state, available)
             node.get_logger().warning(str(error))
             response.success = False
@@ -256,34 +258,36 @@ class LifecycleNodeMixin(ManagedEntity):
         return response
 
     def _on_get_available_states(self, _request: Any, response: Any) -> Any:
-        state_class = _message("State")
+        state_class = _get_message_class("State")
         response.available_states = [state_class(id=state.state_id, label=state.label) for state in STATES]
         return response
 
     def _on_get_available_transitions(self, _request: Any, response: Any) -> Any:
-        response.available_transitions = [_description(candidate) for candidate in self._state_machine.available()]
+        response.available_transitions = [
+            _to_description_message(candidate) for candidate in self._state_machine.available_transitions()
+        ]
         return response
 
     def _on_get_transition_graph(self, _request: Any, response: Any) -> Any:
-        response.available_transitions = [_description(transition) for transition in TRANSITIONS]
+        response.available_transitions = [_to_description_message(transition) for transition in TRANSITIONS]
         return response
 
 
-def _description(transition: Transition) -> Any:
-    message = _message("TransitionDescription")()
+def _to_description_message(transition: Transition) -> Any:
+    message = _get_message_class("TransitionDescription")()
     message.transition.id, message.transition.label = transition.transition_id, transition.label
     message.start_state.label, message.start_state.id = transition.start
     message.goal_state.label, message.goal_state.id = transition.goal
     return message
 
 
-def _message(name: str) -> Any:
+def _get_message_class(name: str) -> Any:
     from linkwright.messages import get_message
 
     return get_message(f"lifecycle_msgs/msg/{name}")
 
 
-def _service(name: str) -> Any:
+def _get_service_class(name: str) -> Any:
     from linkwright.messages import get_service
 
     return get_service(f"lifecycle_msgs/srv/{name}")

@@ -72,39 +72,44 @@ class Transition(NamedTuple):
     goal: LifecycleState
 
 
-def _endings(
-    number: int, through: LifecycleState, success: LifecycleState, failure: LifecycleState, error: LifecycleState
+def _make_endings(
+    number: int,
+    transition_state: LifecycleState,
+    success: LifecycleState,
+    failure: LifecycleState,
+    error: LifecycleState,
 ) -> list[Transition]:
-    """Return the transitions for success, failure and error from the transition state `through`."""
+    """Return the transitions for success, failure and error from a transition state."""
     end_states = (("success", success), ("failure", failure), ("error", error))
     return [
-        Transition(number + index, f"transition_{name}", through, end) for index, (name, end) in enumerate(end_states)
+        Transition(number + index, f"transition_{name}", transition_state, end)
+        for index, (name, end) in enumerate(end_states)
     ]
 
 
-def _requestable_transition(
-    number: int, label: str, start: LifecycleState, through: LifecycleState, goal: LifecycleState
+def _make_requestable_transition(
+    number: int, label: str, start: LifecycleState, transition_state: LifecycleState, goal: LifecycleState
 ) -> list[Transition]:
     """Return a transition that users can request, and its endings.
 
     The IDs of the endings start at ten times the transition's ID.
     """
     return [
-        Transition(number, label, start, through),
-        *_endings(number * 10, through, goal, start, ERRORPROCESSING),
+        Transition(number, label, start, transition_state),
+        *_make_endings(number * 10, transition_state, goal, start, ERRORPROCESSING),
     ]
 
 
 TRANSITIONS = (
-    *_requestable_transition(1, "configure", UNCONFIGURED, CONFIGURING, INACTIVE),
-    *_requestable_transition(2, "cleanup", INACTIVE, CLEANINGUP, UNCONFIGURED),
-    *_requestable_transition(3, "activate", INACTIVE, ACTIVATING, ACTIVE),
-    *_requestable_transition(4, "deactivate", ACTIVE, DEACTIVATING, INACTIVE),
+    *_make_requestable_transition(1, "configure", UNCONFIGURED, CONFIGURING, INACTIVE),
+    *_make_requestable_transition(2, "cleanup", INACTIVE, CLEANINGUP, UNCONFIGURED),
+    *_make_requestable_transition(3, "activate", INACTIVE, ACTIVATING, ACTIVE),
+    *_make_requestable_transition(4, "deactivate", ACTIVE, DEACTIVATING, INACTIVE),
     Transition(5, "shutdown", UNCONFIGURED, SHUTTINGDOWN),
     Transition(6, "shutdown", INACTIVE, SHUTTINGDOWN),
     Transition(7, "shutdown", ACTIVE, SHUTTINGDOWN),
-    *_endings(50, SHUTTINGDOWN, FINALIZED, FINALIZED, ERRORPROCESSING),
-    *_endings(60, ERRORPROCESSING, UNCONFIGURED, FINALIZED, FINALIZED),
+    *_make_endings(50, SHUTTINGDOWN, FINALIZED, FINALIZED, ERRORPROCESSING),
+    *_make_endings(60, ERRORPROCESSING, UNCONFIGURED, FINALIZED, FINALIZED),
 )
 
 
@@ -128,14 +133,17 @@ class StateMachine:
         """The ID and label of the current state (rclpy)."""
         return self.state.state_id, self.state.label
 
-    def available(self) -> list[Transition]:
+    def available_transitions(self) -> list[Transition]:
         """Return the transitions that start from the current state."""
         return [transition for transition in TRANSITIONS if transition.start == self.state]
 
-    def by_id(self, transition_id: int) -> Transition | None:
+    def find_by_id(self, transition_id: int) -> Transition | None:
         """Return the available transition with an ID, or None if there is none."""
-        return next((transition for transition in self.available() if transition.transition_id == transition_id), None)
+        return next(
+            (transition for transition in self.available_transitions() if transition.transition_id == transition_id),
+            None,
+        )
 
-    def by_label(self, label: str) -> Transition | None:
+    def find_by_label(self, label: str) -> Transition | None:
         """Return the available transition with a label, or None if there is none."""
-        return next((transition for transition in self.available() if transition.label == label), None)
+        return next((transition for transition in self.available_transitions() if transition.label == label), None)

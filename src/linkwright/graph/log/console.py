@@ -30,19 +30,19 @@ _ESCAPE = re.compile(r"\\(x1b|[abnrt])")
 _Formatter = Callable[["LogRecord"], str]
 
 
-def console_line(record: LogRecord) -> str:
+def format_console_line(record: LogRecord) -> str:
     """Format a record as rcutils does.
 
     The default format is ``[INFO] [1700000000.123456789] [node]: text``.
     """
     return "".join(
         formatter(record)
-        for formatter in _formatters(os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT)
+        for formatter in _parse_format(os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or DEFAULT_FORMAT)
     )
 
 
 @lru_cache(maxsize=8)
-def _formatters(format_text: str) -> tuple[_Formatter, ...]:
+def _parse_format(format_text: str) -> tuple[_Formatter, ...]:
     """Return a function for each literal text and each known token of a format.
 
     Unknown tokens are left unchanged.
@@ -53,13 +53,13 @@ def _formatters(format_text: str) -> tuple[_Formatter, ...]:
     for match in _TOKEN.finditer(text):
         token = _TOKENS.get(match[1])
         if token is not None:
-            formatters += [_literal(text[end : match.start()]), token]
+            formatters += [_make_literal_formatter(text[end : match.start()]), token]
             end = match.end()
-    formatters.append(_literal(text[end:]))
+    formatters.append(_make_literal_formatter(text[end:]))
     return tuple(formatters)
 
 
-def _literal(text: str) -> _Formatter:
+def _make_literal_formatter(text: str) -> _Formatter:
     return lambda _: text
 
 
@@ -89,10 +89,10 @@ _TOKENS: dict[str, _Formatter] = {
 }
 
 
-_NORMAL = "\x1b[0m"
+_COLOR_RESET = "\x1b[0m"
 _COLORS = {
     LogLevel.DEBUG: "\x1b[32m",
-    LogLevel.INFO: _NORMAL,
+    LogLevel.INFO: _COLOR_RESET,
     LogLevel.WARN: "\x1b[33m",
     LogLevel.ERROR: "\x1b[31m",
     LogLevel.FATAL: "\x1b[31m",
@@ -109,10 +109,10 @@ def print_to_console(record: LogRecord) -> None:
     stream: TextIO | None = sys.stdout if os.environ.get("RCUTILS_LOGGING_USE_STDOUT") == "1" else sys.stderr
     if stream is None:  # A program without a console has no stream.
         return
-    line = console_line(record)
+    line = format_console_line(record)
     try:
         if _wants_color(stream):
-            line = f"{_COLORS[record.level]}{line}{_NORMAL}"
+            line = f"{_COLORS[record.level]}{line}{_COLOR_RESET}"
         stream.write(f"{line}\n")
         stream.flush()
     except (OSError, ValueError):
@@ -166,7 +166,7 @@ class Rosout:
         self._is_publishing = True
         try:
             with suppress(RclError):
-                self._publisher.publish(self._message(record))
+                self._publisher.publish(self._to_message(record))
         finally:
             self._is_publishing = False
 
@@ -177,7 +177,7 @@ class Rosout:
         """
         self._logger.rosout = None
 
-    def _message(self, record: LogRecord) -> Any:
+    def _to_message(self, record: LogRecord) -> Any:
         seconds, nanoseconds = divmod(record.stamp_ns, NANOSECONDS_PER_SECOND)
         message = self._publisher.msg_type()
         message.stamp.sec = seconds

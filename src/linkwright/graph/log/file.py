@@ -9,11 +9,11 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TextIO
 
-from linkwright.graph.log.console import console_line
+from linkwright.graph.log.console import format_console_line
 from linkwright.graph.log.logger import LogLevel, LogRecord
 
 
-def log_folder(environment: Mapping[str, str] | None = None) -> Path:
+def find_log_folder(environment: Mapping[str, str] | None = None) -> Path:
     """Return the log folder: ROS_LOG_DIR, or ``log`` in ROS_HOME, or ``~/.ros/log``."""
     environment = os.environ if environment is None else environment
     if environment.get("ROS_LOG_DIR"):
@@ -31,12 +31,12 @@ class LogFile:
 
     Args:
         executable: the name of the program.
-        folder: the folder of the file; `log_folder` by default.
+        folder: the folder of the file; `find_log_folder` by default.
     """
 
     def __init__(self, executable: str, folder: Path | None = None) -> None:
         milliseconds = time.time_ns() // 1_000_000
-        self.path = (folder or log_folder()) / f"{executable}_{os.getpid()}_{milliseconds}.log"
+        self.path = (folder or find_log_folder()) / f"{executable}_{os.getpid()}_{milliseconds}.log"
         self._file: TextIO | None = None
         self._failed = False
 
@@ -49,7 +49,7 @@ class LogFile:
         if file is None:
             return
         try:
-            file.write(f"{console_line(record)}\n")
+            file.write(f"{format_console_line(record)}\n")
             if record.level >= LogLevel.ERROR:
                 file.flush()
         except OSError:  # For example, the disk is full.

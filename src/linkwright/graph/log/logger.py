@@ -73,7 +73,10 @@ class LogLevels:
         return self._levels_by_name.get(name, LogLevel.UNSET) if name else self._default
 
     def effective_level(self, name: str) -> LogLevel:
-        """Return the level in force for a logger: its own or its nearest ancestor's, or the default."""
+        """Return the level in force for a logger.
+
+        It is the level of the logger or of its nearest ancestor, or the default level.
+        """
         while name:
             level = self._levels_by_name.get(name)
             if level:
@@ -206,7 +209,7 @@ class Logger:
         is_enabled = severity >= self.get_effective_level()
         if not is_enabled and not filters:
             return False
-        frame = _caller()
+        frame = _find_caller()
         name = filters.pop("name", self.name)
         key = (frame.f_code, frame.f_lasti)
         call = self._calls.get(key)
@@ -250,7 +253,7 @@ class Logger:
         return self.log(message, LogLevel.FATAL, **filters)
 
 
-def _caller() -> FrameType:
+def _find_caller() -> FrameType:
     """Return the frame that called a logger: the innermost frame outside this module."""
     frame = sys._getframe(2)
     while frame.f_code.co_filename == __file__ and frame.f_back is not None:
@@ -267,10 +270,10 @@ def log_failure(logger: Logger, operation: str, error: BaseException) -> None:
         error: the exception; a mistake of the user is a `LinkwrightError`.
     """
     if isinstance(error, LinkwrightError):
-        problem = f" {error}"
+        details = f" {error}"
     else:
-        problem = "\n" + "".join(traceback.format_exception(error)).rstrip()
-    logger.error(f"{operation} failed:{problem}")
+        details = "\n" + "".join(traceback.format_exception(error)).rstrip()
+    logger.error(f"{operation} failed:{details}")
 
 
 def run_logged(logger: Logger, operation: str, callback: Callable[[], object]) -> None:
@@ -325,7 +328,7 @@ class CallFilter:
         self._options = dict(options)
         self._severity_and_name = (severity, name)
         self._duration_s = float(options.get("throttle_duration_sec") or 0.0)
-        self._now_s = _seconds_function(options.get("throttle_time_source_type", _DEFAULT_TIME_SOURCE), steady_ns)
+        self._now_s = _make_time_function(options.get("throttle_time_source_type", _DEFAULT_TIME_SOURCE), steady_ns)
         self._last_s: float | None = None
         self._skip = bool(options.get("skip_first"))
         self._once = bool(options.get("once"))
@@ -338,7 +341,7 @@ class CallFilter:
         if name != self._severity_and_name[1]:
             raise ValueError("Logger name cannot be changed between calls.")
         if options != self._options:
-            if _filters(options) != _filters(self._options):
+            if _list_active_filters(options) != _list_active_filters(self._options):
                 raise ValueError("Requested logging filters cannot be changed between calls.")
             raise ValueError("Logging filter parameters cannot be changed between calls.")
 
@@ -359,11 +362,11 @@ class CallFilter:
         return True
 
 
-def _filters(options: dict[str, Any]) -> list[bool]:
+def _list_active_filters(options: dict[str, Any]) -> list[bool]:
     return [bool(options.get(option)) for option in ("throttle_duration_sec", "skip_first", "once")]
 
 
-def _seconds_function(source: Any, steady_ns: Callable[[], int]) -> Callable[[], float]:
+def _make_time_function(source: Any, steady_ns: Callable[[], int]) -> Callable[[], float]:
     if source == _DEFAULT_TIME_SOURCE:
         return lambda: steady_ns() / 1e9
     now = getattr(source, "now", None)

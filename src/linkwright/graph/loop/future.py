@@ -3,7 +3,8 @@
 In rclpy the response to a request is processed in the callback group of the client. While one callback of a mutually
 exclusive group runs, no other callback of the group runs, so a callback that blocks until the response arrives blocks
 forever. Here, a response runs no user code and is processed in any case. Such a wait is logged as an error, so that it
-is found before the program runs on a robot. If the node's parameter `STRICT` is set, the callback hangs as in rclpy.
+is found before the program runs on a robot. If the node's parameter `STRICT_GROUPS_PARAMETER` is set, the callback
+hangs as in rclpy.
 """
 
 from __future__ import annotations
@@ -20,14 +21,14 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from linkwright.graph.loop.node_handle import MutuallyExclusiveCallbackGroup
 
-STRICT = "strict_callback_groups"
+STRICT_GROUPS_PARAMETER = "strict_callback_groups"
 """The parameter that makes responses wait for the callback group of their client, as in rclpy."""
 
-RUNNER = "callback_of"
+RUNNING_ENTITY_VARIABLE = "running_entity"
 """The name of the local variable with the entity in a function that runs the entity's callback."""
 
 _PACKAGE_FOLDER = str(Path(__file__).parents[2]) + os.sep
-_reported: set[tuple[CodeType, str]] = set()
+_reported_waits: set[tuple[CodeType, str]] = set()
 
 
 class WaitableFuture(Protocol):
@@ -57,9 +58,9 @@ def report_self_wait(future: WaitableFuture) -> None:
     group = client.callback_group
     if not isinstance(group, MutuallyExclusiveCallbackGroup) or group.can_execute(client):
         return  # no callback of the group is running
-    frames = list(_frames(sys._getframe(1)))
-    callback_frame = next((frame for frame in frames if _running_entity(frame) is not None), None)
-    if callback_frame is None or _running_entity(callback_frame).callback_group is not group:
+    frames = list(_walk_frames(sys._getframe(1)))
+    callback_frame = next((frame for frame in frames if _find_running_entity(frame) is not None), None)
+    if callback_frame is None or _find_running_entity(callback_frame).callback_group is not group:
         return
     user_frames = [
         frame
@@ -70,9 +71,9 @@ def report_self_wait(future: WaitableFuture) -> None:
         return
     waiting_frame, callback = user_frames[0], user_frames[-1].f_code
     location = f"{waiting_frame.f_code.co_filename}:{waiting_frame.f_lineno}"
-    if (callback, location) in _reported:
+    if (callback, location) in _reported_waits:
         return
-    _reported.add((callback, location))
+    _reported_waits.add((callback, location))
     client.node.logger.error(
         f"callback '{callback.co_name}' ({callback.co_filename}:{callback.co_firstlineno}) waits at {location} for the "
         f"{client.description}, which is in the same mutually exclusive callback group: on a robot it waits forever. "
@@ -81,12 +82,12 @@ def report_self_wait(future: WaitableFuture) -> None:
     )
 
 
-def _running_entity(frame: FrameType) -> Any:
+def _find_running_entity(frame: FrameType) -> Any:
     """Return the entity whose callback an executor's frame runs, or None for any other frame."""
-    return frame.f_locals.get(RUNNER) if RUNNER in frame.f_code.co_varnames else None
+    return frame.f_locals.get(RUNNING_ENTITY_VARIABLE) if RUNNING_ENTITY_VARIABLE in frame.f_code.co_varnames else None
 
 
-def _frames(frame: FrameType | None) -> Iterator[FrameType]:
+def _walk_frames(frame: FrameType | None) -> Iterator[FrameType]:
     while frame is not None:
         yield frame
         frame = frame.f_back
@@ -94,12 +95,12 @@ def _frames(frame: FrameType | None) -> Iterator[FrameType]:
 
 T = TypeVar("T")
 
-_driver = threading.local()
+_step_context = threading.local()
 
 
 def is_stepped_by_executor() -> bool:
     """Return whether the calling thread is inside `StepsByExecutor`."""
-    return bool(getattr(_driver, "depth", 0))
+    return bool(getattr(_step_context, "depth", 0))
 
 
 class StepsByExecutor:
@@ -109,10 +110,10 @@ class StepsByExecutor:
     """
 
     def __enter__(self) -> None:
-        _driver.depth = getattr(_driver, "depth", 0) + 1
+        _step_context.depth = getattr(_step_context, "depth", 0) + 1
 
     def __exit__(self, *_: object) -> None:
-        _driver.depth -= 1
+        _step_context.depth -= 1
 
 
 class Future(Generic[T]):
@@ -284,7 +285,7 @@ class Future(Generic[T]):
         return self.ended()
 
     def __await__(self) -> Generator[Any, None, T | None]:
-        loop = None if getattr(_driver, "depth", 0) else asyncio._get_running_loop()
+        loop = None if getattr(_step_context, "depth", 0) else asyncio._get_running_loop()
         if loop is None:
             while not self.ended():
                 yield self

@@ -369,7 +369,9 @@ class NodeHandle(Handle):
         return tuple(part for part in tuple(self._parts) if isinstance(part, kind))
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """Return the absolute name of a topic, expanded and, unless `only_expand` is true, remapped.
+        """Return the absolute name of a topic.
+
+        The name is expanded and, unless `only_expand` is true, remapped.
 
         Raises:
             InvalidTopicNameError: the topic name is not valid.

@@ -1,1 +1,1 @@
-"""Names in the graph: validation, expansion, remapping, and matching by regular expressions."""
+"""Names in the graph: validation, expansion, remapping, and regular expressions."""

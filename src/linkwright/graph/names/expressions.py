@@ -62,7 +62,7 @@ class Expression:
             raise TooCostlyError("the search takes too long") from None
 
     def found_in(self, names: Iterable[str]) -> set[str]:
-        """Return the names that contain a match of the expression, as C++'s `regex_search` finds it.
+        """Return the names that contain a match, as C++'s `regex_search` finds it.
 
         Raises:
             TooCostlyError: the search takes too long in total.

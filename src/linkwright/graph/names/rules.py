@@ -78,7 +78,7 @@ class InvalidServiceNameError(InvalidNameError):
         super().__init__(phrase("service name"), name, error_msg, invalid_index)
 
 
-def node_name_problem(name: str) -> Problem | None:
+def find_node_name_problem(name: str) -> Problem | None:
     """Return the reason why a node name is not valid, and the index of the mistake.
 
     Return None if the name is valid.
@@ -100,12 +100,12 @@ def node_name_problem(name: str) -> Problem | None:
 
 def check_node_name(name: str) -> None:
     """Raise InvalidNodeNameError if a node name is not valid."""
-    problem = node_name_problem(name)
+    problem = find_node_name_problem(name)
     if problem is not None:
         raise InvalidNodeNameError(name, *problem)
 
 
-def namespace_problem(namespace: str) -> Problem | None:
+def find_namespace_problem(namespace: str) -> Problem | None:
     """Return the reason why an absolute namespace is not valid, and the index of the mistake.
 
     Returns None if the namespace is valid.
@@ -142,7 +142,7 @@ def absolute_namespace(namespace: str) -> str:
         InvalidNamespaceError: the namespace is not valid.
     """
     absolute = namespace if namespace.startswith("/") else f"/{namespace}"
-    problem = namespace_problem(absolute)
+    problem = find_namespace_problem(absolute)
     if problem is not None:
         raise InvalidNamespaceError(namespace, *problem)
     return absolute
@@ -168,7 +168,7 @@ def is_hidden(name: str) -> bool:
 
 
 @lru_cache(maxsize=4096)
-def topic_name_problem(name: str) -> Problem | None:
+def find_topic_name_problem(name: str) -> Problem | None:
     """Return why a topic or service name is not valid before expansion, or None if it is valid.
 
     The result is a pair: the reason, and the index of the invalid character.
@@ -217,7 +217,9 @@ def expand_topic_name(name: str, node_name: str, namespace: str) -> str:
 
 
 def expand_service_name(name: str, node_name: str, namespace: str) -> str:
-    """Return the absolute name of a service or action, expanded by the rules of `expand_topic_name`.
+    """Return the absolute name of a service or action, expanded for a node.
+
+    The rules are those of `expand_topic_name`.
 
     Raises:
         InvalidServiceNameError: the name is not valid.
@@ -228,7 +230,7 @@ def expand_service_name(name: str, node_name: str, namespace: str) -> str:
 def _expand(
     name: str, node_name: str, namespace: str, error: type[InvalidTopicNameError | InvalidServiceNameError]
 ) -> str:
-    problem = topic_name_problem(name)
+    problem = find_topic_name_problem(name)
     if problem is not None:
         raise error(name, *problem)
     full_name = _apply_substitutions(name, node_name, namespace, error) if "{" in name else name
@@ -275,9 +277,9 @@ class NodeIdentity:
         return join(self.namespace, self.name)
 
 
-_TOPIC, _SERVICE = "rostopic://", "rosservice://"
-_NODE_NAMES = ("__node", "__name")
-_NAMESPACE = "__ns"
+_TOPIC_SCHEME, _SERVICE_SCHEME = "rostopic://", "rosservice://"
+_NODE_NAME_SOURCES = ("__node", "__name")
+_NAMESPACE_SOURCE = "__ns"
 
 
 @dataclass(frozen=True, slots=True)
@@ -319,12 +321,20 @@ class Remappings:
 
     def node_name(self, name: str) -> str:
         """Return the remapped name of a node, or the given name if no rule applies."""
-        return next((r.target for r in self._rules if r.source in _NODE_NAMES and r.node in (None, name)), name)
+        return next(
+            (rule.target for rule in self._rules if rule.source in _NODE_NAME_SOURCES and rule.node in (None, name)),
+            name,
+        )
 
     def namespace(self, namespace: str, node_name: str) -> str:
         """Return the remapped namespace of a node, or the given namespace if no rule applies."""
         return next(
-            (r.target for r in self._rules if r.source == _NAMESPACE and r.node in (None, node_name)), namespace
+            (
+                rule.target
+                for rule in self._rules
+                if rule.source == _NAMESPACE_SOURCE and rule.node in (None, node_name)
+            ),
+            namespace,
         )
 
     def topic(self, full_name: str, node_name: str, namespace: str) -> str:
@@ -336,7 +346,7 @@ class Remappings:
             InvalidTopicNameError: a side of a rule is not a valid topic name.
         """
         for rule in self._rules:
-            if rule.source.startswith("__") or rule.scheme == _SERVICE or rule.node not in (None, node_name):
+            if rule.source.startswith("__") or rule.scheme == _SERVICE_SCHEME or rule.node not in (None, node_name):
                 continue
             if expand_topic_name(rule.source, node_name, namespace) == full_name:
                 return expand_topic_name(rule.target, node_name, namespace)
@@ -349,7 +359,7 @@ class Remappings:
             InvalidServiceNameError: a side of a rule is not a valid name.
         """
         for rule in self._rules:
-            if rule.source.startswith("__") or rule.scheme == _TOPIC or rule.node not in (None, node_name):
+            if rule.source.startswith("__") or rule.scheme == _TOPIC_SCHEME or rule.node not in (None, node_name):
                 continue
             if expand_service_name(rule.source, node_name, namespace) == full_name:
                 return expand_service_name(rule.target, node_name, namespace)
@@ -361,7 +371,7 @@ def _parse_rule(source: str, target: str) -> _Rule:
     node_name, colon, remainder = source.partition(":")
     if colon and not remainder.startswith("//"):
         node, source = node_name, remainder
-    scheme = next((prefix for prefix in (_TOPIC, _SERVICE) if source.startswith(prefix)), "")
+    scheme = next((prefix for prefix in (_TOPIC_SCHEME, _SERVICE_SCHEME) if source.startswith(prefix)), "")
     name = source[len(scheme) :]
     if scheme and target.startswith(scheme):
         target = target[len(scheme) :]

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.parameters.files import read_parameter_file
-from linkwright.graph.parameters.parameter import ANY_NODE, Parameter, service_type
+from linkwright.graph.parameters.parameter import ANY_NODE, Parameter, get_service_type
 from linkwright.graph.qos.profile import PARAMETER_EVENTS_QOS, SERVICES_QOS, QoSProfile
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class AsyncParameterClient:
         self.node = node
         self._clients: dict[str, Any] = {
             service: node.create_client(
-                service_type(service),
+                get_service_type(service),
                 f"{remote_node_name}/{service}",
                 qos_profile=qos_profile,
                 callback_group=callback_group,

@@ -1,11 +1,11 @@
 """Parameter files: YAML with node names and, below ``ros__parameters``, parameter values.
 
 Files are read as by rcl_yaml_param_parser: nested names of namespaces and nodes, nested parameter names, its rules for
-scalars (see `scalar_value`), lists of a single type, no anchors. A file that rcl_yaml_param_parser would refuse is
+scalars (see `parse_scalar`), lists of a single type, no anchors. A file that rcl_yaml_param_parser would refuse is
 refused here, too, with the position of the mistake. There is one exception: a parameter whose list contains lists or
 mappings is omitted, because the files of real robots have such lists.
 
-`parameter_file_text` returns the content of a file, as ``ros2 param dump`` writes it.
+`format_parameter_file` returns the content of a file, as ``ros2 param dump`` writes it.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ class _Reader:
         import yaml
 
         try:
-            for event in yaml.parse(self._source.text, Loader=_loader_class()):
+            for event in yaml.parse(self._source.text, Loader=_import_loader_class()):
                 if not isinstance(event, (yaml.StreamStartEvent, yaml.DocumentStartEvent, yaml.DocumentEndEvent)):
                     yield event
         except yaml.YAMLError as error:
@@ -250,7 +250,7 @@ class _Reader:
             raise self._error(
                 phrase("parameter '{name}' has no value", name=name), phrase('write "" for an empty string')
             )
-        return scalar_value(event.value, plain=is_plain)
+        return parse_scalar(event.value, is_plain=is_plain)
 
     def _read_list(self, name: str) -> list[Any]:
         values: list[Any] = []
@@ -275,7 +275,7 @@ class _Reader:
                         first_type=first_type,
                         other_type=other_type,
                     ),
-                    _type_hint(values[0], value, self._event.value),
+                    _make_mixed_types_hint(values[0], value, self._event.value),
                 )
             values.append(value)
             self._advance()
@@ -316,13 +316,13 @@ class _Reader:
 
 
 @lru_cache(maxsize=1)
-def _loader_class() -> Any:
+def _import_loader_class() -> Any:
     import yaml
 
     return getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 
 
-def _type_hint(first: Any, value: Any, text: str) -> Phrase:
+def _make_mixed_types_hint(first: Any, value: Any, text: str) -> Phrase:
     if type(first) is float and type(value) is int:
         return phrase("write {text}.0", text=text)
     if type(first) is int and type(value) is float:
@@ -348,7 +348,7 @@ _SPECIAL_FLOATS = {
 _MIN_INTEGER, _MAX_INTEGER = -(2**63), 2**63 - 1
 
 
-def scalar_value(text: str, *, plain: bool) -> Any:
+def parse_scalar(text: str, *, is_plain: bool) -> Any:
     """Return the value of a YAML scalar by the rules of rcl_yaml_param_parser.
 
     The value is a bool, int, float or str. Booleans are those of YAML 1.1, including ``y`` and ``n``. A number is a
@@ -357,16 +357,16 @@ def scalar_value(text: str, *, plain: bool) -> Any:
 
     Args:
         text: the content of the scalar.
-        plain: whether the scalar is written without quotes.
+        is_plain: whether the scalar is written without quotes.
     """
-    if not plain:
+    if not is_plain:
         return text
     if text in _TRUE:
         return True
     if text in _FALSE:
         return False
     if _INTEGER.fullmatch(text):
-        number = _integer(text.strip())
+        number = _parse_integer(text.strip())
         if _MIN_INTEGER <= number <= _MAX_INTEGER:
             return number
     if text in _SPECIAL_FLOATS or _FLOAT.fullmatch(text):
@@ -376,7 +376,7 @@ def scalar_value(text: str, *, plain: bool) -> Any:
     return text
 
 
-def _integer(text: str) -> int:
+def _parse_integer(text: str) -> int:
     digits = text.lstrip("+-")
     base = 16 if digits[:2] in ("0x", "0X") else 8 if digits.startswith("0") and digits != "0" else 10
     return int(text, base)
@@ -389,7 +389,7 @@ def _parse_hexadecimal_float(text: str) -> float | str:
         return text
 
 
-def parameter_file_text(node: str, values: Mapping[str, Any]) -> str:
+def format_parameter_file(node: str, values: Mapping[str, Any]) -> str:
     """Return the YAML text of a parameter file for one node.
 
     Args:

@@ -14,9 +14,9 @@ from linkwright.graph.parameters.parameter import (
     ParameterException,
     ParameterNotDeclaredException,
     ParameterUninitializedException,
-    message_class,
+    get_message_class,
+    get_service_type,
     parameter_value_to_python,
-    service_type,
 )
 from linkwright.graph.parameters.store import (
     OnSetParameters,
@@ -102,7 +102,7 @@ class NodeParameters:
         return [parameters_by_name[name] for name in names]
 
     def declare_parameters_from_overrides(self) -> None:
-        """Declare a parameter for every override that is not declared yet, with the override's type."""
+        """Declare each override that is not declared yet, with the type of the override."""
         for name, value in self.__parameters.overrides.items():
             if name not in self.__parameters:
                 self.__parameters.declare(name, value, ParameterDescriptor(), ignore_override=True)
@@ -170,7 +170,7 @@ class NodeParameters:
 
         Without an alternative, the result is a parameter without a value.
         """
-        parameter = self.__parameters.value_or_none(name)
+        parameter = self.__parameters.get_if_set(name)
         if parameter is not None:
             return parameter
         return Parameter(name) if alternative_value is None else alternative_value
@@ -180,7 +180,7 @@ class NodeParameters:
 
         An empty prefix returns all parameters.
         """
-        return self.__parameters.with_prefix(prefix)
+        return self.__parameters.find_by_prefix(prefix)
 
     def get_parameter_type(self, name: str) -> int:
         """Return the type number of a parameter's value.
@@ -188,7 +188,7 @@ class NodeParameters:
         Raises:
             ParameterNotDeclaredException: the parameter is not declared.
         """
-        return self.__parameters.type_of(name).value
+        return self.__parameters.get_type(name).value
 
     def get_parameter_types(self, names: Sequence[str]) -> list[int]:
         """Return the types of several parameters. See `get_parameter_type`."""
@@ -234,11 +234,11 @@ class NodeParameters:
             raise TypeError("The depth must be instance of type int")
         if depth < 0:
             raise ValueError("The depth must be greater than or equal to zero")
-        from linkwright.graph.parameters.parameter import message_class
+        from linkwright.graph.parameters.parameter import get_message_class
 
         names = [name for name in self.__parameters.names() if _is_listed(name, prefixes, depth)]
         name_prefixes = [name.rpartition(PARAMETER_SEPARATOR_STRING)[0] for name in names]
-        result = message_class("ListParametersResult")()
+        result = get_message_class("ListParametersResult")()
         result.names = names
         result.prefixes = [prefix for prefix in dict.fromkeys(name_prefixes) if prefix]
         return result
@@ -251,7 +251,7 @@ class NodeParameters:
         """
         from linkwright.graph.parameters.parameter import to_descriptor_message
 
-        descriptor = self.__parameters.descriptor(name)
+        descriptor = self.__parameters.get_descriptor(name)
         message = to_descriptor_message(descriptor)
         if message is not descriptor and name in self.__parameters:
             self.__parameters.replace_descriptor(name, message)
@@ -392,7 +392,7 @@ class ParameterServices:
             ("set_parameters", self._set),
             ("set_parameters_atomically", self._set_atomically),
         ):
-            create_service(service_type(service), f"{node_name}/{service}", callback, qos_profile=PARAMETERS_QOS)
+            create_service(get_service_type(service), f"{node_name}/{service}", callback, qos_profile=PARAMETERS_QOS)
 
     def _describe(self, request: Any, response: Any) -> Any:
         try:
@@ -431,7 +431,7 @@ class ParameterServices:
         try:
             return self._node.set_parameters_atomically([Parameter.from_parameter_msg(message) for message in messages])
         except (ParameterException, ValueError) as error:
-            return message_class("SetParametersResult")(successful=False, reason=str(error))
+            return get_message_class("SetParametersResult")(successful=False, reason=str(error))
 
 
 class ParameterEvents:

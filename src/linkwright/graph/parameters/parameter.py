@@ -65,12 +65,12 @@ class ParameterRules:
 
     def matches_node(self, full_name: str) -> bool:
         """Return whether any pattern matches a node."""
-        return any(_expression(pattern).fullmatch(full_name) for pattern in self._values)
+        return any(_compile_pattern(pattern).fullmatch(full_name) for pattern in self._values)
 
     def unmatched_patterns(self, full_names: Iterable[str]) -> list[str]:
         """Return the patterns that match none of the given nodes."""
         names = list(full_names)
-        return [value for value in self._values if not any(map(_expression(value).fullmatch, names))]
+        return [value for value in self._values if not any(map(_compile_pattern(value).fullmatch, names))]
 
     def for_node(self, full_name: str) -> dict[str, Any]:
         """Return the values for a node, by parameter name.
@@ -80,17 +80,20 @@ class ParameterRules:
         """
         node_values: dict[str, Any] = {}
         for pattern, values in self._values.items():
-            if _expression(pattern).fullmatch(full_name):
+            if _compile_pattern(pattern).fullmatch(full_name):
                 node_values.update(values)
         return node_values
 
     def skipped_findings_for(self, full_name: str) -> list[Diagnostic]:
-        """Return the findings about parameters that are not set because their values are not allowed."""
-        return [finding for pattern, finding in self.skipped_findings if _expression(pattern).fullmatch(full_name)]
+        """Return the findings about a node's parameters that are not set.
+
+        Their values are not allowed.
+        """
+        return [finding for pattern, finding in self.skipped_findings if _compile_pattern(pattern).fullmatch(full_name)]
 
 
 @lru_cache(maxsize=256)
-def _expression(pattern: str) -> re.Pattern[str]:
+def _compile_pattern(pattern: str) -> re.Pattern[str]:
     while "/**/**" in pattern:  # Equivalent to a single ``/**``, but many of them take very long to match.
         pattern = pattern.replace("/**/**", "/**")
     escaped = re.escape(pattern).replace(r"/\*\*", r"(/\w+)*").replace(r"/\*", r"(/\w+)")
@@ -218,7 +221,7 @@ PARAMETER_SEPARATOR_STRING = "."
 
 
 class ParameterType(Enum):
-    """The types that a parameter can have, with the numbers of rcl_interfaces/msg/ParameterType."""
+    """The types of parameters, with the numbers of rcl_interfaces/msg/ParameterType."""
 
     NOT_SET = 0
     BOOL = 1
@@ -475,7 +478,7 @@ class SetParametersResult:
 
 
 @cache
-def service_type(service: str) -> str:
+def get_service_type(service: str) -> str:
     """Return the type name of a parameter service.
 
     An example is ``rcl_interfaces/srv/GetParameters`` for ``get_parameters``.
@@ -483,7 +486,7 @@ def service_type(service: str) -> str:
     return "rcl_interfaces/srv/" + "".join(word.capitalize() for word in service.split("_"))
 
 
-def message_class(name: str) -> Any:
+def get_message_class(name: str) -> Any:
     """Return a message class of rcl_interfaces."""
     from linkwright.messages import get_message
 
@@ -495,7 +498,7 @@ def to_descriptor_message(descriptor: Any) -> Any:
 
     A descriptor that is already such a message is returned unchanged.
     """
-    descriptor_class = message_class("ParameterDescriptor")
+    descriptor_class = get_message_class("ParameterDescriptor")
     if isinstance(descriptor, descriptor_class):
         return descriptor
     message = descriptor_class(
@@ -506,9 +509,9 @@ def to_descriptor_message(descriptor: Any) -> Any:
         read_only=descriptor.read_only,
         dynamic_typing=descriptor.dynamic_typing,
     )
-    message.integer_range = [_range("IntegerRange", limits, int) for limits in descriptor.integer_range]
+    message.integer_range = [_to_range_message("IntegerRange", limits, int) for limits in descriptor.integer_range]
     message.floating_point_range = [
-        _range("FloatingPointRange", limits, float) for limits in descriptor.floating_point_range
+        _to_range_message("FloatingPointRange", limits, float) for limits in descriptor.floating_point_range
     ]
     return message
 
@@ -518,13 +521,13 @@ def to_result_message(result: Any) -> Any:
 
     A result that is already such a message is returned unchanged.
     """
-    result_class = message_class("SetParametersResult")
+    result_class = get_message_class("SetParametersResult")
     if isinstance(result, result_class):
         return result
     return result_class(successful=result.successful, reason=result.reason)
 
 
-def _range(name: str, limits: Range, kind: type) -> Any:
-    return message_class(name)(
+def _to_range_message(name: str, limits: Range, kind: type) -> Any:
+    return get_message_class(name)(
         from_value=kind(limits.from_value), to_value=kind(limits.to_value), step=kind(limits.step)
     )

@@ -31,7 +31,9 @@ WRONG_TYPE = "Wrong parameter type"
 """The beginning of every reason that concerns the type of a value."""
 
 
-def refusal_reason(parameter: Parameter, descriptor: Any, *, declared: bool, check_read_only: bool) -> str | None:
+def find_refusal_reason(
+    parameter: Parameter, descriptor: Any, *, is_declared: bool, check_read_only: bool
+) -> str | None:
     """Return the reason why a parameter cannot be set, or None if it can be set.
 
     Fills in the descriptor's name, and its type if the parameter has dynamic typing.
@@ -39,7 +41,7 @@ def refusal_reason(parameter: Parameter, descriptor: Any, *, declared: bool, che
     Args:
         parameter: the name and the new value.
         descriptor: a `ParameterDescriptor`, or the rcl_interfaces message of the same name.
-        declared: whether the parameter is declared already.
+        is_declared: whether the parameter is declared already.
         check_read_only: whether to refuse a change to a read-only parameter; False while the parameter is being
             declared.
     """
@@ -49,7 +51,7 @@ def refusal_reason(parameter: Parameter, descriptor: Any, *, declared: bool, che
     is_set = parameter.type_ is not ParameterType.NOT_SET
     if descriptor.dynamic_typing:
         descriptor.type = parameter.type_.value
-    elif declared and not is_set:
+    elif is_declared and not is_set:
         return phrase("Static parameter cannot be undeclared")
     elif is_set and parameter.type_.value != descriptor.type:
         return phrase(
@@ -58,13 +60,13 @@ def refusal_reason(parameter: Parameter, descriptor: Any, *, declared: bool, che
             actual=str(parameter.type_),
         )
     if parameter.type_ is ParameterType.INTEGER and descriptor.integer_range:
-        return _integer_range_problem(parameter, descriptor.integer_range[0])
+        return _check_integer_range(parameter, descriptor.integer_range[0])
     if parameter.type_ is ParameterType.DOUBLE and descriptor.floating_point_range:
-        return _floating_point_range_problem(parameter, descriptor.floating_point_range[0])
+        return _check_floating_point_range(parameter, descriptor.floating_point_range[0])
     return None
 
 
-def _integer_range_problem(parameter: Parameter, allowed_range: Any) -> str | None:
+def _check_integer_range(parameter: Parameter, allowed_range: Any) -> str | None:
     low, high = sorted((allowed_range.from_value, allowed_range.to_value))
     value = parameter.value
     if value in (low, high):
@@ -89,7 +91,7 @@ def _integer_range_problem(parameter: Parameter, allowed_range: Any) -> str | No
     return None
 
 
-def _floating_point_range_problem(parameter: Parameter, allowed_range: Any) -> str | None:
+def _check_floating_point_range(parameter: Parameter, allowed_range: Any) -> str | None:
     low, high = sorted((allowed_range.from_value, allowed_range.to_value))
     value = parameter.value
     if isclose(value, low, rel_tol=_RELATIVE_TOLERANCE) or isclose(value, high, rel_tol=_RELATIVE_TOLERANCE):
@@ -122,11 +124,11 @@ OnSetParameters = Callable[[list[Parameter]], Any]
 """Returns a `SetParametersResult`, or an rcl_interfaces message of the same name."""
 PostSetParameters = Callable[[list[Parameter]], object]
 
-_EMPTY_LIST = (
+_EMPTY_LIST_MESSAGE = (
     "parameter list cannot be empty, this might be due to pre_set_parameters_callback modifying the original "
     "parameters list."
 )
-_INVALID_RESULT = "Callback returned an invalid type"
+_INVALID_RESULT_MESSAGE = "Callback returned an invalid type"
 _NAME_ONLY_WARNING = (
     "when declaring parameter named '{}', declaring a parameter only providing its name is deprecated. You have to "
     'either:\n\t- Pass a name and a default value different to "PARAMETER NOT SET" (and optionally a descriptor).\n'
@@ -224,12 +226,12 @@ class ParameterStore:
             return Parameter(name)
         raise ParameterNotDeclaredException(name, self._parameters)
 
-    def value_or_none(self, name: str) -> Parameter | None:
+    def get_if_set(self, name: str) -> Parameter | None:
         """Return a parameter if it has a value, otherwise None."""
         parameter = self._parameters.get(name)
         return None if parameter is None or parameter.type_ is ParameterType.NOT_SET else parameter
 
-    def type_of(self, name: str) -> ParameterType:
+    def get_type(self, name: str) -> ParameterType:
         """Return the type of a parameter's value."""
         if name in self._parameters:
             return self._parameters[name].type_
@@ -237,7 +239,7 @@ class ParameterStore:
             return ParameterType.NOT_SET
         raise ParameterNotDeclaredException(name, self._parameters)
 
-    def with_prefix(self, prefix: str) -> dict[str, Parameter]:
+    def find_by_prefix(self, prefix: str) -> dict[str, Parameter]:
         """Return the parameters below a prefix, with the rest of their names as keys.
 
         For an empty prefix the result contains all parameters.
@@ -249,7 +251,7 @@ class ParameterStore:
             if name.startswith(full_prefix)
         }
 
-    def descriptor(self, name: str) -> Any:
+    def get_descriptor(self, name: str) -> Any:
         """Return the stored descriptor of a parameter.
 
         If undeclared parameters are allowed, a name that is not declared results in an empty descriptor.
@@ -282,7 +284,7 @@ class ParameterStore:
         fallback = current if alternative is None else Parameter(name, value=alternative)
         reason = None
         for candidate in (current, fallback):
-            reason = refusal_reason(candidate, descriptor, declared=True, check_read_only=False)
+            reason = find_refusal_reason(candidate, descriptor, is_declared=True, check_read_only=False)
             if reason is None:
                 self._parameters[name] = candidate
                 self._descriptors[name] = descriptor
@@ -295,7 +297,7 @@ class ParameterStore:
         if self.pre_set:
             new_parameters = [parameter for callback in tuple(self.pre_set) for parameter in callback(list(parameters))]
             if not new_parameters:
-                return SetParametersResult(successful=False, reason=_EMPTY_LIST)
+                return SetParametersResult(successful=False, reason=_EMPTY_LIST_MESSAGE)
         if not all(isinstance(parameter, Parameter) for parameter in new_parameters):
             raise TypeError(phrase("parameter must be instance of type '{parameter}'", parameter=repr(Parameter)))
         undeclared = [parameter.name for parameter in new_parameters if parameter.name not in self._parameters]
@@ -357,15 +359,17 @@ class ParameterStore:
             if descriptor is None:
                 continue
             is_declared = parameter.name in self._parameters
-            reason = refusal_reason(parameter, descriptor, declared=is_declared, check_read_only=descriptors is None)
+            reason = find_refusal_reason(
+                parameter, descriptor, is_declared=is_declared, check_read_only=descriptors is None
+            )
             if reason is not None:
                 return SetParametersResult(successful=False, reason=reason)
         for callback in tuple(self.on_set):
             result = callback(parameters)
             if not hasattr(result, "successful"):
                 name = getattr(callback, "__qualname__", callback)
-                warnings.warn(f"{_INVALID_RESULT}, it should return SetParametersResult: {name}", stacklevel=5)
-                return SetParametersResult(successful=False, reason=_INVALID_RESULT)
+                warnings.warn(f"{_INVALID_RESULT_MESSAGE}, it should return SetParametersResult: {name}", stacklevel=5)
+                return SetParametersResult(successful=False, reason=_INVALID_RESULT_MESSAGE)
             if not result.successful:
                 return result
         change = ParameterChange()
@@ -389,7 +393,7 @@ class ParameterStore:
             self._descriptors[name] = descriptors[name]
         elif name not in self._descriptors:
             self._descriptors[name] = ParameterDescriptor(name, parameter.type_.value, dynamic_typing=True)
-        (change.new if self.value_or_none(name) is None else change.changed).append(parameter)
+        (change.new if self.get_if_set(name) is None else change.changed).append(parameter)
         self._parameters[name] = parameter
 
 

@@ -1,6 +1,6 @@
 """Compatibility of offered and requested QoS profiles (DDS "requested versus offered").
 
-`fit` chooses a profile that all publishers of a topic satisfy, as ros2cli does.
+`fit_profile` chooses a profile that all publishers of a topic satisfy, as ros2cli does.
 """
 
 from __future__ import annotations
@@ -51,10 +51,10 @@ def resolve_defaults(qos: QoSProfile) -> QoSProfile:
         history=_resolve_policy(qos.history, HistoryPolicy.KEEP_LAST),
         reliability=_resolve_policy(qos.reliability, ReliabilityPolicy.RELIABLE),
         durability=_resolve_policy(qos.durability, DurabilityPolicy.VOLATILE),
-        lifespan=_or_infinite(qos.lifespan),
-        deadline=_or_infinite(qos.deadline),
+        lifespan=_resolve_duration(qos.lifespan),
+        deadline=_resolve_duration(qos.deadline),
         liveliness=_resolve_policy(qos.liveliness, LivelinessPolicy.AUTOMATIC),
-        liveliness_lease_duration=_or_infinite(qos.liveliness_lease_duration),
+        liveliness_lease_duration=_resolve_duration(qos.liveliness_lease_duration),
         avoid_ros_namespace_conventions=qos.avoid_ros_namespace_conventions,
     )
 
@@ -63,11 +63,11 @@ def _resolve_policy(value: V, default: V) -> V:
     return default if value.name in ("SYSTEM_DEFAULT", "UNKNOWN", "BEST_AVAILABLE") else value
 
 
-def _or_infinite(duration: Duration) -> Duration:
+def _resolve_duration(duration: Duration) -> Duration:
     return INFINITE if limit_ns(duration) is None else duration
 
 
-def incompatible_policies(offered: QoSProfile, requested: QoSProfile) -> list[QoSPolicyKind]:
+def find_incompatible_policies(offered: QoSProfile, requested: QoSProfile) -> list[QoSPolicyKind]:
     """Return the policies that a subscription requests and a publisher does not offer.
 
     The list is empty if the profiles are compatible.
@@ -98,40 +98,38 @@ def _is_stricter(requested: Duration, offered: Duration) -> bool:
     return requested_ns is not None and (offered_ns is None or requested_ns < offered_ns)
 
 
-def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: bool) -> QoSProfile:
+def resolve_best_available(qos: QoSProfile, peers: Iterable[QoSProfile], *, is_publisher: bool) -> QoSProfile:
     """Return a profile whose BEST_AVAILABLE values are resolved, as rmw_dds_common does.
 
     The chosen values match the endpoints that are known now.
 
     Args:
         qos: the profile; returned unchanged if it has no BEST_AVAILABLE value.
-        others: the profiles of the topic's subscriptions for a publisher, or of its publishers for a subscription.
-        publisher: whether the profile is for a publisher, which offers as much as it can.
+        peers: the profiles of the topic's subscriptions for a publisher, or of its publishers for a subscription.
+        is_publisher: whether the profile is for a publisher, which offers as much as it can.
     """
     if not _has_best_available(qos):
         return qos
-    other_profiles = list(others)
+    peer_profiles = list(peers)
     reliability, durability, liveliness = qos.reliability, qos.durability, qos.liveliness
     if reliability is ReliabilityPolicy.BEST_AVAILABLE:
-        strict = publisher or all(profile.reliability is ReliabilityPolicy.RELIABLE for profile in other_profiles)
-        reliability = ReliabilityPolicy.RELIABLE if strict else ReliabilityPolicy.BEST_EFFORT
+        is_strict = is_publisher or all(profile.reliability is ReliabilityPolicy.RELIABLE for profile in peer_profiles)
+        reliability = ReliabilityPolicy.RELIABLE if is_strict else ReliabilityPolicy.BEST_EFFORT
     if durability is DurabilityPolicy.BEST_AVAILABLE:
-        strict = publisher or all(_is_transient_local(profile) for profile in other_profiles)
-        durability = DurabilityPolicy.TRANSIENT_LOCAL if strict else DurabilityPolicy.VOLATILE
+        is_strict = is_publisher or all(_is_transient_local(profile) for profile in peer_profiles)
+        durability = DurabilityPolicy.TRANSIENT_LOCAL if is_strict else DurabilityPolicy.VOLATILE
     manual = LivelinessPolicy.MANUAL_BY_TOPIC
     if liveliness is LivelinessPolicy.BEST_AVAILABLE:
-        are_manual = [profile.liveliness is manual for profile in other_profiles]
-        strict = any(are_manual) if publisher else bool(are_manual) and all(are_manual)
-        liveliness = manual if strict else LivelinessPolicy.AUTOMATIC
-    choose = min if publisher else max
+        are_manual = [profile.liveliness is manual for profile in peer_profiles]
+        is_strict = any(are_manual) if is_publisher else bool(are_manual) and all(are_manual)
+        liveliness = manual if is_strict else LivelinessPolicy.AUTOMATIC
+    choose_strictest = min if is_publisher else max
 
-    def chosen(duration: Duration, other_durations: Iterable[Duration]) -> Duration:
+    def choose_duration(duration: Duration, peer_durations: Iterable[Duration]) -> Duration:
         if duration != BEST_AVAILABLE_DURATION:
             return duration
-        limited_durations = [
-            other_duration for other_duration in other_durations if limit_ns(other_duration) is not None
-        ]
-        return choose(limited_durations) if limited_durations else UNSPECIFIED
+        limited_durations = [peer_duration for peer_duration in peer_durations if limit_ns(peer_duration) is not None]
+        return choose_strictest(limited_durations) if limited_durations else UNSPECIFIED
 
     return QoSProfile(
         depth=qos.depth,
@@ -139,10 +137,10 @@ def best_available(qos: QoSProfile, others: Iterable[QoSProfile], *, publisher: 
         reliability=reliability,
         durability=durability,
         lifespan=qos.lifespan,
-        deadline=chosen(qos.deadline, (profile.deadline for profile in other_profiles)),
+        deadline=choose_duration(qos.deadline, (profile.deadline for profile in peer_profiles)),
         liveliness=liveliness,
-        liveliness_lease_duration=chosen(
-            qos.liveliness_lease_duration, (profile.liveliness_lease_duration for profile in other_profiles)
+        liveliness_lease_duration=choose_duration(
+            qos.liveliness_lease_duration, (profile.liveliness_lease_duration for profile in peer_profiles)
         ),
         avoid_ros_namespace_conventions=qos.avoid_ros_namespace_conventions,
     )
@@ -163,14 +161,14 @@ def qos_check_compatible(publisher_qos: QoSProfile, subscription_qos: QoSProfile
     If a profile leaves a policy to the middleware, the first value may be a warning. The reasons are those of rmw's
     ``rmw_qos_profile_check_compatible``.
     """
-    errors = "".join(f"ERROR: {reason};" for reason in _errors(publisher_qos, subscription_qos))
+    errors = "".join(f"ERROR: {reason};" for reason in _find_errors(publisher_qos, subscription_qos))
     if errors:
         return QoSCompatibility.ERROR, errors
-    warnings = "".join(f"WARNING: {reason};" for reason in _warnings(publisher_qos, subscription_qos))
+    warnings = "".join(f"WARNING: {reason};" for reason in _find_warnings(publisher_qos, subscription_qos))
     return (QoSCompatibility.WARNING, warnings) if warnings else (QoSCompatibility.OK, "")
 
 
-def _errors(publisher: QoSProfile, subscription: QoSProfile) -> Iterable[str]:
+def _find_errors(publisher: QoSProfile, subscription: QoSProfile) -> Iterable[str]:
     if (
         publisher.reliability is ReliabilityPolicy.BEST_EFFORT
         and subscription.reliability is ReliabilityPolicy.RELIABLE
@@ -196,7 +194,7 @@ def _errors(publisher: QoSProfile, subscription: QoSProfile) -> Iterable[str]:
         yield "Subscription liveliness lease duration is less than publisher"
 
 
-def _warnings(publisher: QoSProfile, subscription: QoSProfile) -> Iterable[str]:
+def _find_warnings(publisher: QoSProfile, subscription: QoSProfile) -> Iterable[str]:
     offered, requested = publisher.reliability, subscription.reliability
     if _is_unknown(offered) and _is_unknown(requested):
         yield (
@@ -253,7 +251,7 @@ class FittedProfile:
     mixed: tuple[tuple[str, str], ...] = ()
 
 
-def fit(base: QoSProfile, offers: Sequence[QoSProfile]) -> FittedProfile:
+def fit_profile(base: QoSProfile, offers: Sequence[QoSProfile]) -> FittedProfile:
     """Return a profile with the strongest reliability and durability that all publishers offer.
 
     Args:

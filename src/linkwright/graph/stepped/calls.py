@@ -25,13 +25,13 @@ class Calls:
         is_closed: whether further calls are ignored.
     """
 
-    __slots__ = ("_count", "_failed", "is_closed", "number")
+    __slots__ = ("_count", "_on_failure", "is_closed", "number")
 
     def __init__(self, on_failure: Failure) -> None:
         self.number = 0
         self.is_closed = False
         self._count = 0
-        self._failed = on_failure
+        self._on_failure = on_failure
 
     def call(self, function: Callable[[], object]) -> None:
         """Call a function, and pass an exception that it raises to `on_failure`."""
@@ -52,7 +52,7 @@ class Calls:
         This method must be called in the simulation's thread.
         """
         if not self.is_closed:
-            self._failed(error)
+            self._on_failure(error)
 
     def close(self, function: Callable[[], object], on_error: Failure) -> None:
         """Call a final function, and ignore all further calls.
@@ -68,6 +68,6 @@ class Calls:
             on_error(error)
 
 
-def logged_calls(logger: Logger, name: str) -> Calls:
+def create_logged_calls(logger: Logger, name: str) -> Calls:
     """Return a `Calls` object that logs exceptions and continues."""
     return Calls(partial(log_failure, logger, f"a callback of '{name}'"))

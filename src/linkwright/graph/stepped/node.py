@@ -9,15 +9,15 @@ from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.graph.endpoints.base import Endpoint, EndpointInfo
-from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
-from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.graph.endpoints.command_disputes import DisputeMonitor
+from linkwright.graph.endpoints.command_guard import CommandGuard, describe_lost_publisher
 from linkwright.graph.endpoints.publisher import Publisher
 from linkwright.graph.endpoints.subscription import Subscription
 from linkwright.graph.faults import InvalidHandleError
 from linkwright.graph.log.logger import Logger
 from linkwright.graph.node import Node
 from linkwright.graph.qos.profile import QoSProfile
-from linkwright.graph.stepped.calls import Calls, logged_calls
+from linkwright.graph.stepped.calls import Calls, create_logged_calls
 from linkwright.graph.stepped.exchange import Exchange
 from linkwright.messages import get_service
 
@@ -81,12 +81,12 @@ class Output:
         """
         call_number = self.calls.number
         if not call_number:
-            return self._has_readers()
+            return self._has_subscriptions()
         if call_number != self._cached_call_number:
-            self._cached_call_number, self._is_wanted = call_number, self._has_readers()
+            self._cached_call_number, self._is_wanted = call_number, self._has_subscriptions()
         return self._is_wanted
 
-    def _has_readers(self) -> bool:
+    def _has_subscriptions(self) -> bool:
         for publisher in self.publishers:  # noqa: SIM110 - `any` takes twice as long, and calls are frequent
             if publisher.get_subscription_count():
                 return True
@@ -100,7 +100,7 @@ class Output:
         self.exchange.send(self._outlet, message)
 
     def deferred_publisher(self, create_message: Callable[..., Any]) -> Callable[..., None]:
-        """Return a function that publishes the message created by `create_message` from its arguments.
+        """Return a function that creates a message from its arguments and publishes it.
 
         The message is created where it is published, so a simulation with its own thread need not wait for it.
 
@@ -139,7 +139,7 @@ class SteppedNode:
         calls: Calls | None = None,
     ) -> None:
         self._node = node
-        self.calls = calls or logged_calls(node.get_logger(), node.get_fully_qualified_name())
+        self.calls = calls or create_logged_calls(node.get_logger(), node.get_fully_qualified_name())
         self._now_ns = now_ns or node.get_clock().now_ns
         self._exchange = exchange
         self._owned = owned
@@ -182,7 +182,7 @@ class SteppedNode:
         callback: Callable[[Any], object],
         qos: QoSProfile | int = 10,
         *,
-        commander: Commander | None = None,
+        command_guard: CommandGuard | None = None,
         stop_motion: Callable[[], object] | None = None,
     ) -> None:
         """Subscribe to a topic, with a callback that runs between two steps.
@@ -192,19 +192,19 @@ class SteppedNode:
             topic: relative, absolute or private name.
             callback: called with each message.
             qos: the QoS; a number is a depth.
-            commander: for commands that remain in effect until the next one, an object returned by the method
-                `commander`.
+            command_guard: the guard of commands that remain in effect until the next one, created by the
+                method `command_guard`.
             stop_motion: called instead of the callback, with a warning, if a message contains NaN or an infinite
                 number, which would make the world unstable. None to accept such messages.
         """
         self._subscribe_to(
-            msg_type, [topic], self._make_callback(topic, callback, stop_motion, commander), qos, commander
+            msg_type, [topic], self._make_callback(topic, callback, stop_motion, command_guard), qos, command_guard
         )
 
-    def commander(self, stop_motion: Callable[[], bool]) -> Commander:
-        """Return an object that revokes the last command when its publisher is lost.
+    def command_guard(self, stop_motion: Callable[[], bool]) -> CommandGuard:
+        """Return a guard that revokes the last command when its publisher is lost.
 
-        Such an object is for commands that remain in effect until the next one. It also warns if several nodes send
+        The guard is for commands that remain in effect until the next one. It also warns if several nodes send
         commands at the same time.
 
         Args:
@@ -212,10 +212,10 @@ class SteppedNode:
                 warning is logged.
         """
 
-        def lost(publisher: EndpointInfo) -> None:
+        def on_lost(publisher: EndpointInfo) -> None:
             self.post(partial(self._stop_motion, stop_motion, publisher))
 
-        return Commander(lost, DriverWatch(self.logger, self._node.graph, self._now_ns))
+        return CommandGuard(on_lost, DisputeMonitor(self.logger, self._node.graph, self._now_ns))
 
     def service(self, srv_type: str, name: str, callback: Callable[[Any, Any], Any]) -> None:
         """Offer a service.
@@ -262,7 +262,7 @@ class SteppedNode:
 
     def _create_output(self, msg_type: Any, names: Iterable[str], qos: QoSProfile | int) -> Output:
         publishers = [
-            self._node.create_publisher(msg_type, name, self._profile(name, "publisher", qos)) for name in names
+            self._node.create_publisher(msg_type, name, self._resolve_qos(name, "publisher", qos)) for name in names
         ]
         self._endpoints += publishers
         return Output(self._exchange, publishers, self.calls)
@@ -272,13 +272,13 @@ class SteppedNode:
         topic: str,
         callback: Callable[[Any], object],
         stop_motion: Callable[[], object] | None,
-        commander: Commander | None,
+        command_guard: CommandGuard | None,
     ) -> Callable[..., object]:
         """Return a subscription callback that passes each message to `callback` between steps."""
         if stop_motion is not None:
             callback = partial(self._pass_if_finite, callback, stop_motion, topic)
         deferred_callback: Callable[..., object] = partial(self._on_received, callback)
-        return deferred_callback if commander is None else commander.tracking_callback(deferred_callback)
+        return deferred_callback if command_guard is None else command_guard.tracking_callback(deferred_callback)
 
     def _subscribe_to(
         self,
@@ -286,16 +286,16 @@ class SteppedNode:
         names: Iterable[str],
         callback: Callable[..., object],
         qos: QoSProfile | int,
-        commander: Commander | None,
+        command_guard: CommandGuard | None,
     ) -> None:
         for name in names:
-            profile = self._profile(name, "subscriber", qos)
+            profile = self._resolve_qos(name, "subscriber", qos)
 
             def listen(name: str, profile: QoSProfile = profile) -> Endpoint:
                 subscription: Subscription[Any] = self._node.create_subscription(msg_type, name, callback, profile)
                 self._endpoints.append(subscription)
-                if commander is not None:
-                    commander.watch(subscription)
+                if command_guard is not None:
+                    command_guard.watch(subscription)
                 return subscription
 
             self._listen(self._node.handle.resolve_topic_name(name), listen)
@@ -304,7 +304,7 @@ class SteppedNode:
         """Call `listen`, which subscribes to the topic with the given name."""
         listen(topic)
 
-    def _profile(self, topic: str, side: str, qos: QoSProfile | int) -> QoSProfile:
+    def _resolve_qos(self, topic: str, side: str, qos: QoSProfile | int) -> QoSProfile:
         """Return the QoS profile of a topic's endpoint.
 
         Args:

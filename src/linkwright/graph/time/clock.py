@@ -14,7 +14,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any, Protocol
 
 from linkwright.graph.faults import NotInitializedError
-from linkwright.graph.time.fine_alarms import ScheduledAlarm, fine_alarms
+from linkwright.graph.time.fine_alarms import ScheduledAlarm, get_fine_alarms
 from linkwright.graph.time.values import ClockType, Duration, Time
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -96,7 +96,7 @@ class SystemClock(Timebase):
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
         """Schedule a callback on an event loop, with microsecond precision where possible."""
         if steady_ns - time.monotonic_ns() <= _MAX_PRECISE_WAIT_NS:
-            alarms = fine_alarms(loop)
+            alarms = get_fine_alarms(loop)
             if alarms is not None:
                 return alarms.call_at(steady_ns, callback)
         return loop.call_at(steady_ns / NANOSECONDS_PER_SECOND, callback)
@@ -125,7 +125,7 @@ class JumpClock(Timebase):
         return self._steady_ns
 
     def call_at(self, loop: AbstractEventLoop, steady_ns: int, callback: Callable[[], None]) -> Alarm:
-        """Schedule a callback for the moment when the clock is advanced to a steady time. See `schedule`."""
+        """Schedule a callback for a steady time. See `schedule`."""
         return self.schedule(steady_ns, callback)
 
     def attach(self, dispatcher: SettlingDispatcher) -> None:
@@ -257,7 +257,7 @@ class JumpHandle:
     def unregister(self) -> None:
         """Unregister the callbacks of this handle."""
         if self._clock is not None:
-            self._clock.forget_jump_callback(self)
+            self._clock.remove_jump_callback(self)
             self._clock = None
 
     def __enter__(self) -> Self:
@@ -327,7 +327,7 @@ class Clock:
             self._jump_handles.append(handle)
         return handle
 
-    def forget_jump_callback(self, handle: JumpHandle) -> None:
+    def remove_jump_callback(self, handle: JumpHandle) -> None:
         """Remove a handle. See `JumpHandle.unregister`."""
         with self._change_condition:
             if handle in self._jump_handles:
@@ -519,9 +519,9 @@ class ROSClock(Clock):
         """
         if not isinstance(time, Time):
             raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
-        self.override(time.nanoseconds)
+        self.set_simulated_time(time.nanoseconds)
 
-    def override(self, now_ns: int) -> None:
+    def set_simulated_time(self, now_ns: int) -> None:
         """Set simulated time, in nanoseconds since the epoch."""
         with self._change_condition:
             if not self._active:

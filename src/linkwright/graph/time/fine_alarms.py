@@ -28,7 +28,7 @@ _CLOCK_MONOTONIC = 1
 _ABSOLUTE = 1
 
 
-def fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
+def get_fine_alarms(loop: AbstractEventLoop) -> FineAlarms | None:
     """Return the fine alarms of an event loop.
 
     Return None if only the loop's own alarms are available.

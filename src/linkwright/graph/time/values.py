@@ -12,7 +12,7 @@ from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 if TYPE_CHECKING:
     from linkwright import messages
 
-_LIMIT = 2**63
+_NANOSECONDS_LIMIT = 2**63
 
 
 class ClockType(IntEnum):
@@ -39,7 +39,7 @@ class Duration:
 
     def __init__(self, *, seconds: float = 0, nanoseconds: float = 0) -> None:
         total = int(seconds * NANOSECONDS_PER_SECOND) + int(nanoseconds)
-        if not -_LIMIT <= total < _LIMIT:
+        if not -_NANOSECONDS_LIMIT <= total < _NANOSECONDS_LIMIT:
             raise OverflowError("Total nanoseconds value is too large to store in C duration.")
         self.nanoseconds: int = total
 
@@ -111,7 +111,7 @@ class Duration:
         return cls(nanoseconds=msg.sec * NANOSECONDS_PER_SECOND + msg.nanosec)
 
 
-INFINITE = Duration(nanoseconds=_LIMIT - 1)
+INFINITE = Duration(nanoseconds=_NANOSECONDS_LIMIT - 1)
 """The longest duration, which means no limit in a QoS profile."""
 
 
@@ -143,7 +143,7 @@ class Time:
         if nanoseconds < 0:
             raise ValueError("Nanoseconds value must not be negative")
         total = int(seconds * NANOSECONDS_PER_SECOND) + int(nanoseconds)
-        if total >= _LIMIT:
+        if total >= _NANOSECONDS_LIMIT:
             raise OverflowError("Total nanoseconds value is too large to store in C time point.")
         self.nanoseconds: int = total
         self.clock_type = clock_type

@@ -15,7 +15,12 @@ from numpy.typing import NDArray
 
 from linkwright.diagnostics import phrase
 from linkwright.geometry.arrays import IDENTITY, compose, invert
-from linkwright.graph.transforms.errors import frame_name_error, loop, not_connected_error, unknown_frame_error
+from linkwright.graph.transforms.errors import (
+    frame_loop_error,
+    frame_name_error,
+    not_connected_error,
+    unknown_frame_error,
+)
 from linkwright.messages import TFMessage, TransformBatch
 
 Rows = NDArray[np.intp]
@@ -23,7 +28,7 @@ Poses = NDArray[np.float64]
 
 
 class FrameTree:
-    """The tree of n frames, prepared so that `poses_in_roots` needs few array operations.
+    """The tree of n frames, prepared so that `compute_root_poses` needs few array operations.
 
     Args:
         parents: array, shape (n,), of the index of each frame's parent; -1 for frames without a parent.
@@ -50,7 +55,7 @@ class FrameTree:
             self._rounds.append((active, reference[active]))
             reference[active] = reference[reference[active]]
 
-    def poses_in_roots(self, local: Poses) -> Poses:
+    def compute_root_poses(self, local: Poses) -> Poses:
         """Return the pose of each frame in the root of its tree, shape (n, 7).
 
         The rows of roots are the identity. The rows of frames in a loop are meaningless.
@@ -99,7 +104,7 @@ class _Plan:
     `revision` is the revision at which the parents were last checked.
     """
 
-    taken: Rows
+    batch_rows: Rows
     rows: Rows
     parents: Rows
     revision: int = -1
@@ -141,9 +146,9 @@ class TransformBuffer:
             now_ns: the current time, in nanoseconds since the epoch, for the ages of transforms.
         """
         batch = message.batch
-        plan = self._plan_for(batch)
+        plan = self._get_plan(batch)
         poses = batch.poses
-        batch_rows, rows, parents = plan.taken, plan.rows, plan.parents
+        batch_rows, rows, parents = plan.batch_rows, plan.rows, plan.parents
         usable = _usable_mask(poses)
         if not usable.all():
             self._report_unusable(batch, np.flatnonzero(~usable))
@@ -171,7 +176,7 @@ class TransformBuffer:
         """
         ages = np.where(self._static | (self._parents < 0), 0.0, (now_ns - self._received_ns) / 1e9)
         np.maximum(ages, 0.0, out=ages)
-        return FrameSnapshot(self._revision, self._names, self._parent_tuple, self._poses_in(fixed_frame), ages)
+        return FrameSnapshot(self._revision, self._names, self._parent_tuple, self._compute_poses_in(fixed_frame), ages)
 
     def lookup(self, target: str, source: str) -> Poses:
         """Return the pose of the source frame in the target frame.
@@ -186,14 +191,14 @@ class TransformBuffer:
             ConnectivityException: no transforms connect the two frames.
             InvalidArgumentException: a name is empty or starts with a slash.
         """
-        target_row, source_row = self._row("target_frame", target), self._row("source_frame", source)
+        target_row, source_row = self._find_row("target_frame", target), self._find_row("source_frame", source)
         roots = self._tree.roots
         for frame, row in ((target, target_row), (source, source_row)):
             if roots[row] < 0:
-                raise loop(phrase(" Frame '{frame}' is in the loop or below it.", frame=frame))
+                raise frame_loop_error(phrase(" Frame '{frame}' is in the loop or below it.", frame=frame))
         if roots[target_row] != roots[source_row]:
             raise not_connected_error(target, source)
-        poses = self._poses_in_roots()
+        poses = self._get_root_poses()
         return compose(invert(poses[target_row]), poses[source_row])
 
     def has_frame(self, frame: str) -> bool:
@@ -235,32 +240,32 @@ class TransformBuffer:
         self._tree = FrameTree(self._parents)
         self._root_poses = None
 
-    def _row(self, argument: str, frame: str) -> int:
+    def _find_row(self, argument: str, frame: str) -> int:
         argument = f"lookupTransform argument {argument}"
-        problem = frame_name_error(argument, frame)
-        if problem is not None:
-            raise problem
+        error = frame_name_error(argument, frame)
+        if error is not None:
+            raise error
         row = self._rows.get(frame)
         if row is None:
             raise unknown_frame_error(argument, frame, self._names)
         return row
 
-    def _poses_in_roots(self) -> Poses:
+    def _get_root_poses(self) -> Poses:
         if self._root_poses is None:
-            self._root_poses = self._tree.poses_in_roots(self._local)
+            self._root_poses = self._tree.compute_root_poses(self._local)
         return self._root_poses
 
-    def _poses_in(self, fixed_frame: str) -> Poses:
+    def _compute_poses_in(self, fixed_frame: str) -> Poses:
         row = self._rows.get(fixed_frame)
         roots = self._tree.roots
         if row is None or roots[row] < 0:
             return np.full((len(self._names), 7), np.nan)
-        root_poses = self._poses_in_roots()
+        root_poses = self._get_root_poses()
         poses = root_poses.copy() if roots[row] == row else compose(invert(root_poses[row]), root_poses)
         poses[roots != roots[row]] = np.nan
         return poses
 
-    def _plan_for(self, batch: TransformBatch) -> _Plan:
+    def _get_plan(self, batch: TransformBatch) -> _Plan:
         key = (batch.parents, batch.children)
         plan = self._plans.get(key)
         if plan is None:

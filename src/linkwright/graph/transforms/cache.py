@@ -88,7 +88,9 @@ class FrameCache(ABC):
 
     @abstractmethod
     def latest(self) -> tuple[int, int] | None:
-        """Return the stamp of the latest transform in nanoseconds (0 if static), and the number of its parent.
+        """Return the stamp of the latest transform, in nanoseconds, and the number of its parent.
+
+        The stamp of a static transform is 0.
 
         Returns None if there is no transform.
         """

@@ -23,12 +23,12 @@ from linkwright.graph.transforms.errors import (
     ConnectivityException,
     ExtrapolationException,
     LookupException,
+    find_frame_name_problem,
     frame_name_error,
-    frame_name_problem,
     unknown_frame_error,
 )
 from linkwright.graph.transforms.report import FrameFacts, frames_as_dot, frames_as_text, frames_as_yaml
-from linkwright.graph.transforms.velocity import velocity
+from linkwright.graph.transforms.velocity import compute_velocity
 from linkwright.graph.transforms.walk import Walker
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
@@ -40,13 +40,13 @@ _OLD_DATA_PERIOD_S = 2.0
 
 Two publishers whose clocks differ would otherwise cause a warning for every message.
 """
-_MAX_RESOLVED = 64
+_MAX_RESOLVED_FRAME_LISTS = 64
 """The maximum number of lists of frames that are kept resolved. Publishers usually send the same lists."""
 
 _Entries = list[tuple["FrameCache | None", int]]
 """For each transform of a message, the cache of the child frame and the number of the parent frame."""
 
-_NOT_DEFINED = "Source or target frame is not yet defined"
+_NOT_DEFINED_REASON = "Source or target frame is not yet defined"
 
 
 class BufferCore:
@@ -106,7 +106,7 @@ class BufferCore:
                 self._store(parent, child, stamp_ns, tuple(pose), authority, static=static)
             return
         with self._lock:
-            entries = self._resolve(parents, children, authority, static)
+            entries = self._resolve_frames(parents, children, authority, static)
             for row, ((cache, parent_number), stamp_ns) in enumerate(zip(entries, stamps, strict=True)):
                 if cache is None or not cache.add(stamp_ns, Sample(parent_number, poses, row)):
                     pose = tuple(poses[row].tolist())
@@ -129,7 +129,7 @@ class BufferCore:
             InvalidArgumentException: a name is empty or starts with a slash.
         """
         pose, time_ns = self.lookup(target_frame, source_frame, to_nanoseconds(time))
-        return _message(target_frame, source_frame, time_ns, pose)
+        return _to_message(target_frame, source_frame, time_ns, pose)
 
     def lookup_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
@@ -143,10 +143,10 @@ class BufferCore:
         """
         with self._lock:
             for argument, frame in (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame)):
-                self._number(f"lookupTransform argument {argument}_frame", frame)
+                self._find_frame_number(f"lookupTransform argument {argument}_frame", frame)
             source_in_fixed, _ = self.lookup(fixed_frame, source_frame, to_nanoseconds(source_time))
             fixed_in_target, time_ns = self.lookup(target_frame, fixed_frame, to_nanoseconds(target_time))
-        return _message(target_frame, source_frame, time_ns, compose(fixed_in_target, source_in_fixed))
+        return _to_message(target_frame, source_frame, time_ns, compose(fixed_in_target, source_in_fixed))
 
     def lookup(self, target: str, source: str, time_ns: int) -> tuple[Transform, int]:
         """Return the pose of the source frame in the target frame, and its time in nanoseconds.
@@ -159,8 +159,8 @@ class BufferCore:
                 cache = self._caches[self._numbers.get(target, 0)]
                 latest = None if cache is None or time_ns else cache.latest()
                 return IDENTITY, latest[0] if latest else time_ns
-            target_number = self._number("lookupTransform argument target_frame", target)
-            source_number = self._number("lookupTransform argument source_frame", source)
+            target_number = self._find_frame_number("lookupTransform argument target_frame", target)
+            source_number = self._find_frame_number("lookupTransform argument source_frame", source)
             path = self._walker.find_path(target_number, source_number, time_ns)
             return path.pose(), path.time_ns
 
@@ -170,7 +170,7 @@ class BufferCore:
             return True, ""
         with self._lock:
             for argument, frame in (("target", target_frame), ("source", source_frame)):
-                reason = self._frame_id_problem(f"canTransform argument {argument}_frame", frame)
+                reason = self._find_frame_id_problem(f"canTransform argument {argument}_frame", frame)
                 if reason:
                     return False, reason
             return self._can_transform(target_frame, source_frame, to_nanoseconds(time))
@@ -182,7 +182,7 @@ class BufferCore:
         frames = (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame))
         with self._lock:
             for argument, frame in frames:
-                reason = self._frame_id_problem(f"canTransform argument {argument}_frame", frame)
+                reason = self._find_frame_id_problem(f"canTransform argument {argument}_frame", frame)
                 if reason:
                     return False, reason
             result = self._can_transform(target_frame, fixed_frame, to_nanoseconds(target_time))
@@ -198,14 +198,14 @@ class BufferCore:
             ConnectivityException: no transforms connect the two frames.
         """
         with self._lock:
-            target = self._number("getLatestCommonTime argument target_frame", target_frame)
-            source = self._number("getLatestCommonTime argument source_frame", source_frame)
+            target = self._find_frame_number("getLatestCommonTime argument target_frame", target_frame)
+            source = self._find_frame_number("getLatestCommonTime argument source_frame", source_frame)
             if target == source:
                 cache = self._caches[target]
                 latest = None if cache is None else cache.latest()
                 time_ns = latest[0] if latest else 0
             else:
-                time_ns = self._walker.latest_common_time(target, source)
+                time_ns = self._walker.find_latest_common_time(target, source)
         return Time(nanoseconds=time_ns)
 
     def lookup_velocity(
@@ -218,14 +218,14 @@ class BufferCore:
         time: Any,
         averaging_interval: Any,
     ) -> tuple[Vector3, Vector3]:
-        """Return the linear and angular velocity of a frame. See `velocity`.
+        """Return the linear and angular velocity of a frame. See `compute_velocity`.
 
         Raises:
             TransformException: as for `lookup_transform_core`.
         """
         with self._lock:
             latest_ns = self.get_latest_common_time(observation_frame, tracking_frame).nanoseconds
-            return velocity(
+            return compute_velocity(
                 self,
                 tracking_frame,
                 observation_frame,
@@ -246,12 +246,12 @@ class BufferCore:
         If `time` is given, the text includes the delay of each frame at that time.
         """
         with self._lock:
-            return frames_as_yaml(self._frame_facts(), to_nanoseconds(time) if time is not None else 0)
+            return frames_as_yaml(self._collect_frame_facts(), to_nanoseconds(time) if time is not None else 0)
 
     def all_frames_as_string(self) -> str:
         """Return all frames with their parents, one per line."""
         with self._lock:
-            return frames_as_text(self._frame_facts(with_empty=True))
+            return frames_as_text(self._collect_frame_facts(with_empty=True))
 
     def frame_names(self) -> list[str]:
         """Return the names of all frames, in the order in which they were first seen."""
@@ -268,8 +268,8 @@ class BufferCore:
         """
         with self._lock:
             names = [
-                *self._chain_names(fixed_frame, source_frame, to_nanoseconds(source_time)),
-                *self._chain_names(target_frame, fixed_frame, to_nanoseconds(target_time)),
+                *self._find_chain_names(fixed_frame, source_frame, to_nanoseconds(source_time)),
+                *self._find_chain_names(target_frame, fixed_frame, to_nanoseconds(target_time)),
             ]
         chain_names: list[str] = []
         for name in names:
@@ -283,7 +283,7 @@ class BufferCore:
         If `time` is given, the graph includes ages.
         """
         with self._lock:
-            return frames_as_dot(self._frame_facts(), to_nanoseconds(time) if time is not None else 0)
+            return frames_as_dot(self._collect_frame_facts(), to_nanoseconds(time) if time is not None else 0)
 
     # tf2_py's names of these methods
     _chain = chain
@@ -318,13 +318,13 @@ class BufferCore:
 
     def _store(self, parent: str, child: str, stamp_ns: int, pose: Transform, authority: str, *, static: bool) -> None:
         parent, child = parent.removeprefix("/"), child.removeprefix("/")
-        problem = _transform_problem(parent, child, pose, authority)
+        problem = _find_transform_problem(parent, child, pose, authority)
         if problem is not None:
             self._logger.error(problem)
             return
         with self._lock:
             number = self._add_frame(child)
-            cache = self._cache(number, static)
+            cache = self._get_cache(number, static)
             if cache.add(stamp_ns, Sample(self._add_frame(parent), pose)):
                 self._authorities[number] = authority
                 return
@@ -334,16 +334,18 @@ class BufferCore:
             throttle_duration_sec=_OLD_DATA_PERIOD_S,
         )
 
-    def _resolve(self, parents: tuple[str, ...], children: tuple[str, ...], authority: str, static: bool) -> _Entries:
+    def _resolve_frames(
+        self, parents: tuple[str, ...], children: tuple[str, ...], authority: str, static: bool
+    ) -> _Entries:
         """Return, for each transform, the cache of the child frame and the number of its parent.
 
         The result is computed once for all messages with these frames. The cache is None for a transform that is
         refused, which must be logged.
         """
         key = (parents, children, authority, static)
-        known = self._resolved_frames.get(key)
-        if known is not None:
-            return known
+        known_entries = self._resolved_frames.get(key)
+        if known_entries is not None:
+            return known_entries
         entries: _Entries = []
         for parent, child in zip(parents, children, strict=True):
             parent, child = parent.removeprefix("/"), child.removeprefix("/")
@@ -351,14 +353,14 @@ class BufferCore:
                 entries.append((None, 0))
                 continue
             number = self._add_frame(child)
-            entries.append((self._cache(number, static), self._add_frame(parent)))
+            entries.append((self._get_cache(number, static), self._add_frame(parent)))
             self._authorities[number] = authority
-        if len(self._resolved_frames) >= _MAX_RESOLVED:
+        if len(self._resolved_frames) >= _MAX_RESOLVED_FRAME_LISTS:
             self._resolved_frames.clear()
         self._resolved_frames[key] = entries
         return entries
 
-    def _cache(self, frame_number: int, static: bool) -> FrameCache:
+    def _get_cache(self, frame_number: int, static: bool) -> FrameCache:
         """Return the cache of a frame.
 
         A frame that changes between static and moving gets a new cache.
@@ -377,17 +379,17 @@ class BufferCore:
             self._caches.append(None)
         return number
 
-    def _number(self, argument: str, frame: str) -> int:
-        problem = frame_name_error(argument, frame)
-        if problem is not None:
-            raise problem
+    def _find_frame_number(self, argument: str, frame: str) -> int:
+        error = frame_name_error(argument, frame)
+        if error is not None:
+            raise error
         number = self._numbers.get(frame)
         if number is None:
             raise unknown_frame_error(argument, frame, self._numbers)
         return number
 
-    def _frame_id_problem(self, argument: str, frame: str) -> str | None:
-        reason: str | None = frame_name_problem(frame)
+    def _find_frame_id_problem(self, argument: str, frame: str) -> str | None:
+        reason: str | None = find_frame_name_problem(frame)
         if reason is None and frame not in self._numbers:
             reason = "frame does not exist"
         return None if reason is None else f'Invalid frame ID "{frame}" passed to {argument} - {reason}'
@@ -395,7 +397,7 @@ class BufferCore:
     def _can_transform(self, target: str, source: str, time_ns: int) -> tuple[bool, str]:
         target_number, source_number = self._numbers.get(target, 0), self._numbers.get(source, 0)
         if not target_number or not source_number:
-            return False, _NOT_DEFINED
+            return False, _NOT_DEFINED_REASON
         if target_number == source_number:
             return True, ""
         try:
@@ -404,15 +406,15 @@ class BufferCore:
             return False, str(error)
         return True, ""
 
-    def _chain_names(self, target: str, source: str, time_ns: int) -> list[str]:
-        target_number = self._number("_chainAsVector argument target_frame", target)
-        source_number = self._number("_chainAsVector argument source_frame", source)
+    def _find_chain_names(self, target: str, source: str, time_ns: int) -> list[str]:
+        target_number = self._find_frame_number("_chainAsVector argument target_frame", target)
+        source_number = self._find_frame_number("_chainAsVector argument source_frame", source)
         if target_number == source_number:
             return [target]
         path = self._walker.find_path(target_number, source_number, time_ns, poses=False)
         return [self._names[number] for number in path.chain()]
 
-    def _frame_facts(self, *, with_empty: bool = False) -> list[FrameFacts]:
+    def _collect_frame_facts(self, *, with_empty: bool = False) -> list[FrameFacts]:
         frames = []
         for index, cache in enumerate(self._caches):
             if cache is None:
@@ -454,7 +456,7 @@ def to_nanoseconds(time: Any) -> int:
     return int(time.nanoseconds)
 
 
-def _transform_problem(parent: str, child: str, pose: Transform, authority: str) -> str | None:
+def _find_transform_problem(parent: str, child: str, pose: Transform, authority: str) -> str | None:
     """Return the reason for refusing a transform, with tf2's wording, or None."""
     x, y, z, w = pose[3:]
     # The comparison is false for NaN and infinite numbers, too, so this single test covers the usual case.
@@ -486,7 +488,7 @@ def _transform_problem(parent: str, child: str, pose: Transform, authority: str)
     )
 
 
-def _message(target: str, source: str, time_ns: int, pose: Transform) -> Any:
+def _to_message(target: str, source: str, time_ns: int, pose: Transform) -> Any:
     from linkwright.messages import TransformStamped
 
     message = TransformStamped()

@@ -55,7 +55,7 @@ class TimeoutException(TransformException):
         super().__init__(text, code="GRAPH306")
 
 
-def loop(detail: str) -> LookupException:
+def frame_loop_error(detail: str) -> LookupException:
     """Return the error for parents that form a loop, with `detail` appended to the message."""
     return LookupException(
         phrase("The tf tree is invalid because it contains a loop.{detail}", detail=detail), code="GRAPH303"
@@ -75,7 +75,7 @@ def frame_name_error(argument: str, frame: str) -> InvalidArgumentException | No
         argument: the name of the argument, for the message.
         frame: the frame name.
     """
-    reason = frame_name_problem(frame)
+    reason = find_frame_name_problem(frame)
     if reason is None:
         return None
     return InvalidArgumentException(
@@ -85,7 +85,7 @@ def frame_name_error(argument: str, frame: str) -> InvalidArgumentException | No
     )
 
 
-def frame_name_problem(frame: str) -> Phrase | None:
+def find_frame_name_problem(frame: str) -> Phrase | None:
     """Return the reason why a frame name is not valid, or None if the name is valid."""
     if not frame:
         return phrase("in tf2 frame_ids cannot be empty")

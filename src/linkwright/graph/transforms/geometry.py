@@ -20,13 +20,13 @@ _NO_ROTATION = float(np.finfo(np.float64).eps)
 
 def pose_from_transform(transform: Any) -> Transform:
     """Return the pose in a geometry_msgs/msg/TransformStamped."""
-    return _transform(transform.transform.translation, transform.transform.rotation)
+    return _to_transform(transform.transform.translation, transform.transform.rotation)
 
 
 def do_transform_point(point: Any, transform: Any) -> Any:
     """Return a PointStamped in the target frame."""
     result = _new_message("PointStamped", transform)
-    _set_vector(result.point, _apply(transform, (point.point.x, point.point.y, point.point.z)))
+    _set_vector(result.point, _transform_point(transform, (point.point.x, point.point.y, point.point.z)))
     return result
 
 
@@ -50,7 +50,7 @@ def do_transform_pose(pose: Any, transform: Any) -> Any:
     from linkwright.messages import get_message
 
     result = get_message("geometry_msgs/msg/Pose")()
-    local_pose = _transform(pose.position, pose.orientation)
+    local_pose = _to_transform(pose.position, pose.orientation)
     x, y, z, qx, qy, qz, qw = compose(pose_from_transform(transform), local_pose)
     _set_vector(result.position, (x, y, z))
     orientation = result.orientation
@@ -93,7 +93,7 @@ def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
     points = []
     for corner in polygon.polygon.points:
         point = point_class()
-        _set_vector(point, _apply(transform, (corner.x, corner.y, corner.z)))
+        _set_vector(point, _transform_point(transform, (corner.x, corner.y, corner.z)))
         points.append(point)
     result.polygon.points = points
     return result
@@ -125,7 +125,7 @@ def _new_message(name: str, transform: Any) -> Any:
     return result
 
 
-def _apply(transform: Any, vector: Vector3) -> Vector3:
+def _transform_point(transform: Any, vector: Vector3) -> Vector3:
     pose = pose_from_transform(transform)
     x, y, z = rotate(pose[3:], vector)
     return pose[0] + x, pose[1] + y, pose[2] + z
@@ -135,7 +135,7 @@ def _rotate_vector(transform: Any, vector: Any) -> Vector3:
     return rotate(pose_from_transform(transform)[3:], (vector.x, vector.y, vector.z))
 
 
-def _transform(position: Any, rotation: Any) -> Transform:
+def _to_transform(position: Any, rotation: Any) -> Transform:
     unit_rotation = normalized(rotation.x, rotation.y, rotation.z, rotation.w, min_squared_norm=_NO_ROTATION)
     return (position.x, position.y, position.z, *unit_rotation)
 

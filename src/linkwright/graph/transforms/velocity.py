@@ -31,7 +31,7 @@ class PoseSource(Protocol):
         """Return the pose of the source frame in the target frame, and its time in nanoseconds."""
 
 
-def velocity(
+def compute_velocity(
     buffer: PoseSource,
     tracking_frame: str,
     observation_frame: str,

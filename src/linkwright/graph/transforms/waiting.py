@@ -149,7 +149,7 @@ class Buffer(BufferCore):
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Future[Any]:
         """Return a future that gets the transform as soon as it is available."""
-        return self._future(
+        return self._create_future(
             lambda: self.can_transform_core(target_frame, source_frame, time)[0],
             lambda: self.lookup_transform_core(target_frame, source_frame, time),
         )
@@ -159,7 +159,7 @@ class Buffer(BufferCore):
     ) -> Future[Any]:
         """Return a future that gets a transform through a fixed frame as soon as it is available."""
         arguments = (target_frame, target_time, source_frame, source_time, fixed_frame)
-        return self._future(
+        return self._create_future(
             lambda: self.can_transform_full_core(*arguments)[0], lambda: self.lookup_transform_full_core(*arguments)
         )
 
@@ -173,7 +173,7 @@ class Buffer(BufferCore):
                     return result
                 self._new_data.wait(min(remaining_s, _CHECK_INTERVAL_S))
 
-    def _future(self, is_available: Callable[[], bool], look_up: Callable[[], Any]) -> Future[Any]:
+    def _create_future(self, is_available: Callable[[], bool], look_up: Callable[[], Any]) -> Future[Any]:
         future: Future[Any] = Future()
 
         def on_new_data() -> None:

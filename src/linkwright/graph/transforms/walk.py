@@ -12,7 +12,12 @@ from typing import Any
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import IDENTITY, Transform, compose, invert
 from linkwright.graph.transforms.cache import FrameCache, NoDataError
-from linkwright.graph.transforms.errors import ExtrapolationException, LookupException, loop, not_connected_error
+from linkwright.graph.transforms.errors import (
+    ExtrapolationException,
+    LookupException,
+    frame_loop_error,
+    not_connected_error,
+)
 
 MAX_DEPTH = 1000
 """The maximum number of frames in a path. A longer path counts as a loop (tf2 ``MAX_GRAPH_DEPTH``)."""
@@ -85,7 +90,7 @@ class Walker:
             LookupException: the frames' parents form a loop.
         """
         if time_ns == 0:
-            time_ns = self.latest_common_time(target, source)
+            time_ns = self.find_latest_common_time(target, source)
         path = FramePath(time_ns)
         reason = self._climb_from_source(path, source, target, poses)
         if path.top == target:
@@ -93,7 +98,7 @@ class Walker:
         self._climb_from_target(path, source, target, poses, reason)
         return path
 
-    def latest_common_time(self, target: int, source: int) -> int:
+    def find_latest_common_time(self, target: int, source: int) -> int:
         """Return the latest time with transforms for all moving frames between two frames.
 
         The time is in nanoseconds, and 0 if all frames between the two are static.
@@ -105,23 +110,23 @@ class Walker:
         ancestors: list[tuple[int, int]] = []
         times: list[int] = []
         frame = source
-        for latest in self._latest_upwards(source):
+        for latest in self._walk_latest_upwards(source):
             ancestors.append(latest)
             times.append(latest[0])
             frame = latest[1]
             if frame == target:
-                return _earliest(times)
+                return _find_earliest(times)
         parents = {parent: index for index, (_, parent) in reversed(list(enumerate(ancestors)))}
         times = []
-        for stamp, parent in self._latest_upwards(target):
+        for stamp, parent in self._walk_latest_upwards(target):
             times.append(stamp)
             if parent in parents:
-                return _earliest(times + [stamp for stamp, _ in ancestors[: parents[parent] + 1]])
+                return _find_earliest(times + [stamp for stamp, _ in ancestors[: parents[parent] + 1]])
             if parent == source:
-                return _earliest(times)
+                return _find_earliest(times)
         raise not_connected_error(self._names[target], self._names[source])
 
-    def _latest_upwards(self, frame: int) -> Any:
+    def _walk_latest_upwards(self, frame: int) -> Any:
         for _ in range(MAX_DEPTH + 1):
             cache = self._caches[frame]
             latest = None if cache is None else cache.latest()
@@ -129,7 +134,7 @@ class Walker:
                 return
             yield latest
             frame = latest[1]
-        raise self._loop()
+        raise self._make_loop_error()
 
     def _climb_from_source(self, path: FramePath, source: int, target: int, poses: bool) -> str | None:
         """Climb from the source to the target or the root, and store this half in `path`.
@@ -150,7 +155,7 @@ class Walker:
                 reason = str(error)
                 break
             if depth > MAX_DEPTH:
-                raise self._loop()
+                raise self._make_loop_error()
             if poses:
                 pose = compose(step, pose)
             path.up.append(frame)
@@ -175,7 +180,7 @@ class Walker:
             except NoDataError as error:
                 raise self._extrapolation_error(str(error), source, target) from None
             if depth > MAX_DEPTH:
-                raise self._loop()
+                raise self._make_loop_error()
             if poses:
                 pose = compose(step, pose)
             path.down.append(frame)
@@ -196,9 +201,9 @@ class Walker:
             )
         )
 
-    def _loop(self) -> LookupException:
-        return loop(f"\n{self._describe_frames()}\n")
+    def _make_loop_error(self) -> LookupException:
+        return frame_loop_error(f"\n{self._describe_frames()}\n")
 
 
-def _earliest(times: list[int]) -> int:
+def _find_earliest(times: list[int]) -> int:
     return min((time for time in times if time), default=0)

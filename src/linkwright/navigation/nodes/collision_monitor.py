@@ -15,8 +15,8 @@ from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.graph import EndpointInfo, Subscription
-from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
-from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.graph.endpoints.command_disputes import DisputeMonitor
+from linkwright.graph.endpoints.command_guard import CommandGuard, describe_lost_publisher
 from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import get_message
@@ -99,10 +99,10 @@ class MonitorNode(ManagedNode):
         self._output = VelocityTopic(self, parameters.cmd_vel_out_topic, self._is_stamped)
         topic = parameters.cmd_vel_in_topic
         for message_type in choose_velocity_types(self, topic, self._is_stamped):
-            commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
-            callback = commander.tracking_callback(self._on_velocity)
+            command_guard = CommandGuard(self._on_publisher_lost, DisputeMonitor.of(self))
+            callback = command_guard.tracking_callback(self._on_velocity)
             subscription: Subscription[Any] = self.create_subscription(message_type, topic, callback, _QUEUE_DEPTH)
-            commander.watch(self.register(subscription))
+            command_guard.watch(self.register(subscription))
 
     def activate(self) -> None:
         """Start forwarding velocities, and publish the polygons of the zones."""

@@ -15,8 +15,8 @@ from typing import Any
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.graph import Parameter, ParameterType, SetParametersResult, Subscription
 from linkwright.graph.endpoints.base import EndpointInfo
-from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
-from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.graph.endpoints.command_disputes import DisputeMonitor
+from linkwright.graph.endpoints.command_guard import CommandGuard, describe_lost_publisher
 from linkwright.graph.lifecycle.states import LifecycleState, TransitionCallbackReturn
 from linkwright.messages import get_message
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
@@ -74,12 +74,12 @@ class _ManagedSmoother(ManagedNode):
         self._read_parameters()
         is_stamped = self._is_stamped
         self._output = VelocityTopic(self, "cmd_vel_smoothed", is_stamped)
-        commander = Commander(self._on_publisher_lost, DriverWatch.of(self))
+        command_guard = CommandGuard(self._on_publisher_lost, DisputeMonitor.of(self))
         for message_type in choose_velocity_types(self, "cmd_vel", is_stamped):
             subscription: Subscription[Any] = self.create_subscription(
-                message_type, "cmd_vel", commander.tracking_callback(self._receive), _QUEUE_DEPTH
+                message_type, "cmd_vel", command_guard.tracking_callback(self._receive), _QUEUE_DEPTH
             )
-            commander.watch(self.register(subscription))
+            command_guard.watch(self.register(subscription))
         if self._get_parameter_value("feedback") == "CLOSED_LOOP":
             odometry = get_message("nav_msgs/msg/Odometry")
             self.register(

@@ -28,7 +28,7 @@ from linkwright.graph import (
     ReliabilityPolicy,
     Subscription,
 )
-from linkwright.graph.qos.compatibility import fit
+from linkwright.graph.qos.compatibility import fit_profile
 from linkwright.messages import get_message, interface_names, set_fields
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import get_arguments
@@ -106,7 +106,7 @@ class _ExpressionTool(SingleNode, ABC):
             name: getattr(self._arguments, f"qos_{name}") for name in ("depth", "history", "reliability", "durability")
         }
         if self._arguments.qos_profile is None and not any(overrides.values()):
-            return fit(SENSOR_DATA_QOS, offers).profile
+            return fit_profile(SENSOR_DATA_QOS, offers).profile
         base = QoSPresetProfiles.get_from_short_key(self._arguments.qos_profile or "sensor_data")
         return QoSProfile(
             overrides["depth"] or base.depth,

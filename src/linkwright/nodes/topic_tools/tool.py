@@ -13,9 +13,9 @@ from typing import Any, ClassVar
 
 from linkwright.graph import DEFAULT_QOS, Graph, Publisher, QoSProfile, Subscription
 from linkwright.graph.endpoints.base import EndpointInfo
-from linkwright.graph.endpoints.commander import Commander
-from linkwright.graph.endpoints.drivers import DriverWatch
-from linkwright.graph.qos.compatibility import fit
+from linkwright.graph.endpoints.command_disputes import DisputeMonitor
+from linkwright.graph.endpoints.command_guard import CommandGuard
+from linkwright.graph.qos.compatibility import fit_profile
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import get_arguments, log_unknown_parameters, options_from_arguments
 from linkwright.nodes.standstill import VELOCITIES, send_stop
@@ -95,10 +95,10 @@ class TopicTool(SingleNode, ABC):
     def _create_subscription(self, message_type: str, qos: QoSProfile) -> Subscription[Any]:
         if message_type not in VELOCITIES:
             return self._node.create_subscription(message_type, self._input, self._receive, qos)
-        commander = Commander(self._stop_output, DriverWatch.of(self._node))
-        callback = commander.tracking_callback(self._receive)
+        command_guard = CommandGuard(self._stop_output, DisputeMonitor.of(self._node))
+        callback = command_guard.tracking_callback(self._receive)
         subscription: Subscription[Any] = self._node.create_subscription(message_type, self._input, callback, qos)
-        commander.watch(subscription)
+        command_guard.watch(subscription)
         return subscription
 
     def _stop_output(self, lost_publisher: EndpointInfo) -> None:
@@ -113,7 +113,7 @@ class TopicTool(SingleNode, ABC):
         return self._node.get_publishers_info_by_topic(self._input)
 
     def _choose_profile(self, offers: list[QoSProfile]) -> QoSProfile:
-        qos_match = fit(DEFAULT_QOS, offers)
+        qos_match = fit_profile(DEFAULT_QOS, offers)
         if qos_match.mixed and not self._has_mixed_qos:
             for offered_value, fallback_value in qos_match.mixed:
                 self._node.get_logger().warning(

@@ -32,7 +32,7 @@ _OLD_ROBOT_ALPHA = 0.4
 
 def add_old_robot(config: RvizConfig, name: str) -> None:
     """Add a translucent display of the old robot to the configuration of the new robot."""
-    display = config.new_display("rviz_default_plugins/RobotModel", name)
+    display = config.make_display("rviz_default_plugins/RobotModel", name)
     for path, value in (
         (("Description Topic", "Value"), TOPIC),
         (("TF Prefix",), PREFIX),

@@ -10,7 +10,7 @@ from typing import Any, cast
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.graph import MessageInfo, Node, Parameter
 from linkwright.graph.parameters.client import AsyncParameterClient
-from linkwright.graph.parameters.files import parameter_file_text, plain_value
+from linkwright.graph.parameters.files import format_parameter_file, plain_value
 from linkwright.graph.parameters.parameter import ParameterType
 from linkwright.page.audience import Page
 from linkwright.page.protocol.monitor import (
@@ -26,7 +26,7 @@ from linkwright.page.protocol.monitor import (
 )
 from linkwright.panels.monitor.topic_tap import Paced, TopicTap
 from linkwright.panels.page_feature import FeatureHost, PageFeature
-from linkwright.rviz.parameter_answers import NoAnswerError, wait_for_response, wait_for_services
+from linkwright.rviz.parameter_responses import NoParameterResponseError, wait_for_response, wait_for_services
 
 _KIND_NAMES: dict[ParameterType, ParameterKind] = {
     kind: cast("ParameterKind", kind.name.lower()) for kind in ParameterType
@@ -184,7 +184,7 @@ class RemoteNode:
             descriptors = (
                 (await self._response_to(self._client.describe_parameters(names))).descriptors if names else []
             )
-        except NoAnswerError as error:
+        except NoParameterResponseError as error:
             self.parameters = NodeParameters(self.name, [], str(error))
             self._publish(self.parameters)
             return
@@ -200,7 +200,7 @@ class RemoteNode:
         try:
             await wait_for_services(self._client)
             response = await self._response_to(self._client.set_parameters([parameter_of(request)]))
-        except (ValueError, NoAnswerError) as error:
+        except (ValueError, NoParameterResponseError) as error:
             on_result(ParameterResult(self.name, request.name, False, str(error)))
             return
         result = response.results[0]
@@ -211,11 +211,11 @@ class RemoteNode:
         try:
             names = await self._parameter_names()
             values = (await self._response_to(self._client.get_parameters(names))).values if names else []
-        except NoAnswerError as error:
+        except NoParameterResponseError as error:
             on_result(ParameterDump(self.name, file, "", str(error)))
             return
         plain_values = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
-        on_result(ParameterDump(self.name, file, parameter_file_text(self.name, plain_values), None))
+        on_result(ParameterDump(self.name, file, format_parameter_file(self.name, plain_values), None))
 
     async def _parameter_names(self) -> list[str]:
         await wait_for_services(self._client)

@@ -15,7 +15,7 @@ from linkwright.graph import (
     Subscription,
     qos_check_compatible,
 )
-from linkwright.graph.qos.compatibility import fit
+from linkwright.graph.qos.compatibility import fit_profile
 from linkwright.graph.qos.profile import QoSPresetProfiles
 from linkwright.rviz.context import ViewerContext
 
@@ -145,7 +145,7 @@ class TopicTap:
             self.message_class = None
             return
         sensor_data = QoSPresetProfiles.get_from_short_key("sensor_data")
-        self._qos = fit(sensor_data, offered_profiles).profile
+        self._qos = fit_profile(sensor_data, offered_profiles).profile
         self._qos.depth = _QUEUE_DEPTH
         self._subscription = Subscription(
             self._node.handle, self.message_class, self.topic, self._qos, self._receive, raw=self._raw

@@ -138,8 +138,8 @@ class _Gauge:
             self.tap.error = "a message of the topic could not be read"
             return None
 
-    def traffic(self) -> TopicTraffic:
-        figures = self.window.traffic(time.monotonic_ns())
+    def measure(self) -> TopicTraffic:
+        figures = self.window.measure(time.monotonic_ns())
         if figures is None or figures.age_ns < _MIN_MEASURED_NS:
             return TopicTraffic(self.topic, None, None, self.tap.error)
         return TopicTraffic(self.topic, figures.messages_per_second, figures.bytes_per_second, self.tap.error)
@@ -249,7 +249,7 @@ class TopicsFeature(PageFeature):
         for page, request in self._requests.items():
             gauges = self._sorted_gauges(request.measured_topics | request.opened_topics)
             if gauges:
-                page.send(TopicFigures([gauge.traffic() for gauge in gauges]))
+                page.send(TopicFigures([gauge.measure() for gauge in gauges]))
         if self._gauges:
             self._figures_sender.request()
 

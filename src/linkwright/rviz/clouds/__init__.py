@@ -1,6 +1,6 @@
 """Point data from messages: positions, channels, and the colors of RViz's transformers."""
 
-from linkwright.rviz.clouds.colors import AXES, TRANSFORMERS, ColorSettings, colored, supported_transformers
+from linkwright.rviz.clouds.colors import AXES, TRANSFORMERS, ColorSettings, compute_colors, find_supported_transformers
 from linkwright.rviz.clouds.depth import DepthCamera, DepthCloudBuilder
 from linkwright.rviz.clouds.points import (
     BadCloudError,
@@ -8,8 +8,8 @@ from linkwright.rviz.clouds.points import (
     ScanProjector,
     decimate,
     deskew,
-    points_of_cloud,
-    points_of_legacy_cloud,
+    points_from_cloud,
+    points_from_legacy_cloud,
 )
 
 __all__ = [
@@ -21,10 +21,10 @@ __all__ = [
     "DepthCloudBuilder",
     "Points",
     "ScanProjector",
-    "colored",
+    "compute_colors",
     "decimate",
     "deskew",
-    "points_of_cloud",
-    "points_of_legacy_cloud",
-    "supported_transformers",
+    "find_supported_transformers",
+    "points_from_cloud",
+    "points_from_legacy_cloud",
 ]

@@ -59,13 +59,13 @@ class ColorSettings:
     in_fixed_frame: bool = True
 
 
-def supported_transformers(points: Points) -> tuple[str, ...]:
+def find_supported_transformers(points: Points) -> tuple[str, ...]:
     """Return the transformers that can color these points.
 
     The transformer that RViz selects by default is the first.
     """
     transformers = [INTENSITY, AXIS, FLAT]
-    if packed := _packed_channel(points):
+    if packed := _find_packed_channel(points):
         values = points.channels[packed]
         if values.dtype.kind + str(values.dtype.itemsize) in ("i4", "u4", "f4"):
             transformers.insert(0, RGB8)
@@ -75,7 +75,7 @@ def supported_transformers(points: Points) -> tuple[str, ...]:
     return tuple(transformers)
 
 
-def colored(
+def compute_colors(
     points: Points, settings: ColorSettings, pose: NDArray[np.float64] | None = None
 ) -> tuple[Colors, tuple[float, float] | None]:
     """Return the colors of the points, and the computed bounds or None.
@@ -94,7 +94,7 @@ def colored(
     if settings.transformer == AXIS:
         return _color_by_axis(points, settings, pose)
     if settings.transformer == RGB8:
-        return _unpacked_colors(points), None
+        return _unpack_colors(points), None
     if settings.transformer == RGBF32:
         parts = [np.clip(np.nan_to_num(points.channels[name]), 0.0, 1.0) * 255.0 for name in "rgb"]
         colors = np.full((len(points), 4), 255, np.uint8)
@@ -109,16 +109,16 @@ def _color_by_intensity(points: Points, settings: ColorSettings) -> tuple[Colors
         values = points.values("intensities")
     if values is None:  # white, as in RViz when the channel is missing
         return np.full((len(points), 4), 255, np.uint8), None
-    computed = None
+    computed_bounds = None
     if settings.intensities is None:
-        computed = _bounds(values, _MAX_INTENSITY)
-    minimum, maximum = computed or settings.intensities or (0.0, 0.0)
+        computed_bounds = _find_bounds(values, _MAX_INTENSITY)
+    minimum, maximum = computed_bounds or settings.intensities or (0.0, 0.0)
     span = maximum - minimum or 1e20
     if settings.rainbow:
-        table = rainbow()[::-1] if not settings.inverted else rainbow()
+        table = make_rainbow()[::-1] if not settings.inverted else make_rainbow()
     else:
-        table = _two_color_gradient(settings.darkest, settings.brightest)
-    return _colors_from_table(table, values, minimum, span), computed
+        table = _make_two_color_gradient(settings.darkest, settings.brightest)
+    return _colors_from_table(table, values, minimum, span), computed_bounds
 
 
 def _color_by_axis(
@@ -129,14 +129,14 @@ def _color_by_axis(
         values = points.positions @ row + np.float32(pose[settings.axis])
     else:
         values = points.positions[:, settings.axis]
-    computed = None
+    computed_bounds = None
     if settings.values is None:
-        computed = _bounds(values, 9999.0)
-    minimum, maximum = computed or settings.values or (0.0, 0.0)
-    return _colors_from_table(rainbow()[::-1], values, minimum, maximum - minimum or 0.001), computed
+        computed_bounds = _find_bounds(values, 9999.0)
+    minimum, maximum = computed_bounds or settings.values or (0.0, 0.0)
+    return _colors_from_table(make_rainbow()[::-1], values, minimum, maximum - minimum or 0.001), computed_bounds
 
 
-def _bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
+def _find_bounds(values: NDArray[Any], limit: float) -> tuple[float, float]:
     """Return the minimum and maximum of the finite values, clipped to ±`limit`.
 
     Both are 0 if no value is finite.
@@ -165,17 +165,17 @@ def _colors_from_table(table: NDArray[np.uint32], values: NDArray[Any], minimum:
 
 
 @cache
-def rainbow() -> NDArray[np.uint32]:
+def make_rainbow() -> NDArray[np.uint32]:
     """Return RViz's rainbow as packed colors, from magenta at 0 through blue to red."""
     corners = np.array([(1, 0, 1), (0, 0, 1), (0, 1, 1), (0, 1, 0), (1, 1, 0), (1, 0, 0)]) * 255.0
-    return _gradient(corners, _RAINBOW_STEPS)
+    return _make_gradient(corners, _RAINBOW_STEPS)
 
 
-def _two_color_gradient(darkest: tuple[int, int, int], brightest: tuple[int, int, int]) -> NDArray[np.uint32]:
-    return _gradient(np.array([darkest, brightest], dtype=np.float64), _MIX_STEPS)
+def _make_two_color_gradient(darkest: tuple[int, int, int], brightest: tuple[int, int, int]) -> NDArray[np.uint32]:
+    return _make_gradient(np.array([darkest, brightest], dtype=np.float64), _MIX_STEPS)
 
 
-def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
+def _make_gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
     """Return a table of opaque packed colors, interpolated evenly between corner colors."""
     positions = np.linspace(0, len(corners) - 1, steps + 1)
     table = np.full((steps + 1, 4), 255, np.uint8)
@@ -185,12 +185,12 @@ def _gradient(corners: NDArray[np.float64], steps: int) -> NDArray[np.uint32]:
     return packed
 
 
-def _packed_channel(points: Points) -> str | None:
+def _find_packed_channel(points: Points) -> str | None:
     """Return the last channel named ``rgb`` or ``rgba``, as in RViz, or None if there is none."""
     return next((name for name in reversed(list(points.channels)) if name in ("rgb", "rgba")), None)
 
 
-def _unpacked_colors(points: Points) -> Colors:
+def _unpack_colors(points: Points) -> Colors:
     """Return the packed colors of the points as red, green, blue and alpha, shape (N, 4).
 
     The channel is ``rgb``, or ``rgba`` if there is no ``rgb``.

@@ -23,16 +23,16 @@ class DepthCamera:
     Attributes:
         columns: x / z of the rays of each column, float32, shape (width,).
         rows: y / z of the rays of each row, float32, shape (height,).
-        pixel: the width of a pixel at a distance of one meter, in meters.
+        pixel_width: the width of a pixel at a distance of one meter, in meters.
     """
 
     columns: NDArray[np.float32]
     rows: NDArray[np.float32]
-    pixel: float
+    pixel_width: float
 
     @classmethod
     def of(cls, info: Any, width: int, height: int) -> DepthCamera:
-        """Return the camera described by a sensor_msgs/msg/CameraInfo, for images of the given size.
+        """Return the camera of a sensor_msgs/msg/CameraInfo, for images of the given size.
 
         Raises:
             BadCloudError: the image size differs from the camera's, or the camera has no focal length.
@@ -55,14 +55,14 @@ class DepthCamera:
                     roi_height=roi_height,
                 )
             )
-        p = np.asarray(info.p, np.float64)
-        if not np.isfinite(p).all() or p[0] == 0.0 or p[5] == 0.0:
+        projection = np.asarray(info.p, np.float64)
+        if not np.isfinite(projection).all() or projection[0] == 0.0 or projection[5] == 0.0:
             raise BadCloudError(
                 phrase("Error updating depth cloud: the projection matrix of the CameraInfo has no focal length")
             )
-        columns = (np.arange(width) - (p[2] - info.roi.x_offset) / binning_x) / (p[0] / binning_x)
-        rows = (np.arange(height) - (p[6] - info.roi.y_offset) / binning_y) / (p[5] / binning_y)
-        focal = float(info.k[0]) or float(p[0])
+        columns = (np.arange(width) - (projection[2] - info.roi.x_offset) / binning_x) / (projection[0] / binning_x)
+        rows = (np.arange(height) - (projection[6] - info.roi.y_offset) / binning_y) / (projection[5] / binning_y)
+        focal = float(info.k[0]) or float(projection[0])
         return cls(columns.astype(np.float32), rows.astype(np.float32), binning_x / focal)
 
 
@@ -85,7 +85,7 @@ class DepthCloudBuilder:
         camera: DepthCamera,
         color: DecodedImage | None,
         *,
-        keep_covered: float | None = None,
+        covered_timeout_s: float | None = None,
         now: float = 0.0,
     ) -> Points:
         """Return the points of a depth image, in the camera's optical frame.
@@ -94,7 +94,7 @@ class DepthCloudBuilder:
             depth: sensor_msgs/msg/Image, 16UC1 or mono16 in millimeters or 32FC1 in meters.
             camera: a camera of the image's size.
             color: an image of the same size; None for white points.
-            keep_covered: seconds for which covered points remain visible, at half their brightness; None to discard
+            covered_timeout_s: seconds for which covered points remain visible, at half brightness; None to discard
                 them immediately.
             now: the current time, in seconds.
 
@@ -114,13 +114,13 @@ class DepthCloudBuilder:
                     rows=color.height,
                 )
             )
-        colors = np.full(meters.shape, 0x00FFFFFF, np.uint32) if color is None else _packed_colors(color)
-        if keep_covered is None:
+        colors = np.full(meters.shape, 0x00FFFFFF, np.uint32) if color is None else _pack_colors(color)
+        if covered_timeout_s is None:
             self._covered = None
             return _points_from_depths(meters, colors, valid, camera)
-        return self._with_covered(meters, colors, valid, camera, now, keep_covered)
+        return self._add_covered_points(meters, colors, valid, camera, now, covered_timeout_s)
 
-    def _with_covered(
+    def _add_covered_points(
         self,
         meters: NDArray[np.float32],
         colors: NDArray[np.uint32],
@@ -157,7 +157,10 @@ class _CoveredPoints:
 
 
 def _read_depths(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
-    """Return the depths in meters and a mask of the valid depths, each of shape (height, width)."""
+    """Return the depths in meters and a mask of the valid depths.
+
+    Both have the shape (height, width).
+    """
     type_codes = {"32FC1": "f4", "16UC1": "u2", "mono16": "u2"}
     type_code = type_codes.get(image.encoding)
     if type_code is None:
@@ -187,7 +190,7 @@ def _read_depths(image: Any) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
     return meters, valid
 
 
-def _packed_colors(image: DecodedImage) -> NDArray[np.uint32]:
+def _pack_colors(image: DecodedImage) -> NDArray[np.uint32]:
     """Return the image's colors packed like an ``rgb`` channel."""
     rgb = image.rgb().astype(np.uint32)
     packed: NDArray[np.uint32] = np.bitwise_or(rgb[..., 0] << 16 | rgb[..., 1] << 8, rgb[..., 2], dtype=np.uint32)

@@ -55,7 +55,7 @@ class Points:
         return self.channels.get(name)
 
 
-def points_of_cloud(message: Any) -> Points:
+def points_from_cloud(message: Any) -> Points:
     """Return the points of a PointCloud2 whose coordinates are finite.
 
     As in RViz, only the first of several fields with the same name is used, and only the first value of a field with
@@ -79,7 +79,7 @@ def points_of_cloud(message: Any) -> Points:
                 step=step,
             )
         )
-    fields = _fields(message.fields, step)
+    fields = _parse_fields(message.fields, step)
     if any(fields.get(axis, ("", 0))[0] != "f4" for axis in _AXES):
         raise BadCloudError(phrase("No position transformer available for cloud"))
     if count == 0:
@@ -87,7 +87,7 @@ def points_of_cloud(message: Any) -> Points:
             np.empty((0, 3), np.float32), {name: np.empty(0, field_code) for name, (field_code, _) in fields.items()}
         )
     byte_order = ">" if message.is_bigendian else "<"
-    positions = _coordinates(data, [fields[axis][1] for axis in _AXES], byte_order, step, count)
+    positions = _copy_coordinates(data, [fields[axis][1] for axis in _AXES], byte_order, step, count)
     valid = None
     with np.errstate(all="ignore"):
         if not np.isfinite(positions.sum(dtype=np.float64)):
@@ -96,12 +96,12 @@ def points_of_cloud(message: Any) -> Points:
     channels: dict[str, NDArray[Any]] = {}
     for name, (type_code, offset) in fields.items():
         if name not in _AXES:
-            column = _column(data, offset, byte_order + type_code, step, count)
+            column = _view_column(data, offset, byte_order + type_code, step, count)
             channels[name] = column if valid is None else column[valid]
     return Points(positions, channels)
 
 
-def points_of_legacy_cloud(message: Any) -> Points:
+def points_from_legacy_cloud(message: Any) -> Points:
     """Return the points of a sensor_msgs/msg/PointCloud whose coordinates are finite.
 
     Raises:
@@ -125,7 +125,7 @@ def points_of_legacy_cloud(message: Any) -> Points:
     return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
 
 
-def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
+def _parse_fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
     """Return the NumPy type (such as ``f4``) and the byte offset of each field, by name."""
     formats: dict[str, tuple[str, int]] = {}
     for point_field in fields:
@@ -145,7 +145,7 @@ def _fields(fields: Any, step: int) -> dict[str, tuple[str, int]]:
     return formats
 
 
-def _coordinates(
+def _copy_coordinates(
     data: NDArray[np.uint8], offsets: list[int], byte_order: str, step: int, count: int
 ) -> NDArray[np.float32]:
     """Return a copy of the coordinates, shape (N, 3), so that the message can be freed."""
@@ -153,19 +153,19 @@ def _coordinates(
     if offsets == [first_offset, first_offset + 4, first_offset + 8]:
         view: NDArray[Any] = np.ndarray((count, 3), byte_order + "f4", data.data, first_offset, (step, 4))
         return view.astype(np.float32)
-    columns = [_column(data, offset, byte_order + "f4", step, count) for offset in offsets]
+    columns = [_view_column(data, offset, byte_order + "f4", step, count) for offset in offsets]
     return np.stack(columns, axis=1).astype(np.float32, copy=False)
 
 
-def _column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: int) -> NDArray[Any]:
+def _view_column(data: NDArray[np.uint8], offset: int, kind: str, step: int, count: int) -> NDArray[Any]:
     column: NDArray[Any] = np.ndarray((count,), kind, data.data, offset, (step,))
     return column
 
 
 def decimate(cloud: CloudPoints, max_bytes: int) -> CloudPoints:
-    """Return every k-th point of a cloud, with k chosen for arrays of at most about `max_bytes` bytes.
+    """Return every k-th point of a cloud, to limit the size of the arrays.
 
-    At least one point is returned.
+    The arrays have at most about `max_bytes` bytes. At least one point is returned.
     """
     total_bytes = cloud.positions.nbytes + cloud.colors.nbytes
     step = -(-total_bytes // max(1, max_bytes))
@@ -196,7 +196,7 @@ class ScanProjector:
             hits = np.flatnonzero((ranges >= scan.range_min) & (ranges < scan.range_max))
         distances = ranges[hits]
         positions = np.zeros((len(hits), 3), np.float32)
-        directions = self._rays(scan.angle_min, scan.angle_increment, len(ranges))
+        directions = self._compute_ray_directions(scan.angle_min, scan.angle_increment, len(ranges))
         np.multiply(directions[hits], distances[:, np.newaxis], out=positions[:, :2])
         channels: dict[str, NDArray[Any]] = {}
         intensities = np.frombuffer(scan.intensities, np.float32)
@@ -210,7 +210,7 @@ class ScanProjector:
         valid = np.isfinite(positions).all(axis=1)
         return Points(positions[valid], {name: values[valid] for name, values in channels.items()})
 
-    def _rays(self, first: float, step: float, count: int) -> NDArray[np.float32]:
+    def _compute_ray_directions(self, first: float, step: float, count: int) -> NDArray[np.float32]:
         """Return the cosine and the sine of each ray's angle, shape (`count`, 2)."""
         shape = (first, step, count)
         if shape != self._shape:

@@ -34,7 +34,7 @@ class FileForm:
 class FileState:
     """The modification time (ns) and size (bytes) of a file, used to detect later changes."""
 
-    modified: int
+    modified_ns: int
     size: int
 
 
@@ -88,7 +88,7 @@ def write(path: Path, text: str, form: FileForm) -> None:
         raise LinkwrightError(Diagnostic("RVIZ104", message)) from None
 
 
-def state_of(path: Path) -> FileState | None:
+def get_file_state(path: Path) -> FileState | None:
     """Return the current state of a file, or None if there is no file."""
     try:
         status = path.stat()

@@ -26,8 +26,8 @@ def is_former(cls: str) -> bool:
     return cls.startswith(_RVIZ1_PREFIX)
 
 
-def modern_class(cls: str) -> str:
-    """Return RViz 2's class name of a display, tool or view, given its name in RViz 1 or RViz 2."""
+def to_modern_class(cls: str) -> str:
+    """Return RViz 2's name for the class of a display, tool or view of RViz 1 or RViz 2."""
     if not is_former(cls):
         return cls
     name = cls.removeprefix(_RVIZ1_PREFIX)
@@ -49,7 +49,7 @@ class FormerKey:
     write: Callable[[str], str] = str
 
 
-def former_keys(cls: str) -> Mapping[Path, FormerKey]:
+def get_former_keys(cls: str) -> Mapping[Path, FormerKey]:
     """Return the RViz 1 keys of a class, by property path.
 
     The mapping is empty for a class of RViz 2.
@@ -59,7 +59,7 @@ def former_keys(cls: str) -> Mapping[Path, FormerKey]:
     return _KEYS_BY_CLASS.get(cls.removeprefix(_RVIZ1_PREFIX), _TOPIC_KEYS)
 
 
-def _reliability(unreliable: str) -> str:
+def _reliability_from_unreliable(unreliable: str) -> str:
     return "Best Effort" if unreliable.strip().lower() in ("true", "1") else "Reliable"
 
 
@@ -92,7 +92,9 @@ def _deviation_from_variance(variance: str) -> str:
 def _qos_keys(topic: Path) -> dict[Path, FormerKey]:
     return {
         (*topic, "Depth"): FormerKey("Queue Size"),
-        (*topic, "Reliability Policy"): FormerKey("Unreliable", _reliability, _unreliable_from_reliability),
+        (*topic, "Reliability Policy"): FormerKey(
+            "Unreliable", _reliability_from_unreliable, _unreliable_from_reliability
+        ),
     }
 
 

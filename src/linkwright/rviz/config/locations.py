@@ -32,7 +32,7 @@ _MAX_RECENT_FILES = 10
 _MAX_ENTRIES = 1000
 
 
-def configuration_path(text: str, folder: Path) -> Path:
+def resolve_configuration_path(text: str, folder: Path) -> Path:
     """Return the path of the configuration file that a page requested.
 
     Args:
@@ -158,11 +158,13 @@ def recovery_file(config: RvizConfig) -> Path:
     """
     folder = recovery_folder()
     if config.path is not None:
-        path = _real_path(config.path)
-        return folder / path.name if path.parent == _real_path(folder) else folder / _recovery_file_name(str(path))
+        path = _resolve_path(config.path)
+        return (
+            folder / path.name if path.parent == _resolve_path(folder) else folder / _make_recovery_file_name(str(path))
+        )
     name = config.document.source.name
     return folder / (
-        f"{_UNNAMED}{EXTENSION}" if name.startswith("<") else _recovery_file_name(name)
+        f"{_UNNAMED}{EXTENSION}" if name.startswith("<") else _make_recovery_file_name(name)
     )  # a name such as "<default>"
 
 
@@ -179,7 +181,7 @@ def store_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
         text = config.text()
         if _is_saved(config, text):
             continue
-        path = _unused_path(recovery_file(config), used_paths)
+        path = _find_unused_path(recovery_file(config), used_paths)
         used_paths.add(path)
         with suppress(OSError):  # the write below reports the error
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -189,14 +191,14 @@ def store_unsaved(configs: Iterable[RvizConfig]) -> list[Diagnostic]:
             diagnostics += error.diagnostics
         else:
             RecentFiles().add(path)
-            diagnostics.append(_stored_finding(config, path))
+            diagnostics.append(_make_stored_finding(config, path))
     return diagnostics
 
 
 def find_unsaved(config: RvizConfig) -> list[Diagnostic]:
     """Return the finding (RVIZ302) about a recovery file of an earlier run, if there is one."""
     path = recovery_file(config)
-    if config.path is None or _real_path(config.path) == _real_path(path) or not path.is_file():
+    if config.path is None or _resolve_path(config.path) == _resolve_path(path) or not path.is_file():
         return []
     message = phrase(
         "earlier unsaved changes to '{path}' are stored in '{recovery_file}': {hint}",
@@ -217,18 +219,18 @@ def remove_recovery_files(previous_path: Path | None, config: RvizConfig, recent
         recent: the list from which removed files are dropped.
     """
     recovery_files = {recovery_file(config)}
-    if previous_path is not None and _real_path(previous_path).parent == _real_path(recovery_folder()):
-        recovery_files.add(_real_path(previous_path))
+    if previous_path is not None and _resolve_path(previous_path).parent == _resolve_path(recovery_folder()):
+        recovery_files.add(_resolve_path(previous_path))
     for path in recovery_files:
-        if config.path is None or _real_path(path) == _real_path(config.path):
+        if config.path is None or _resolve_path(path) == _resolve_path(config.path):
             continue
         with suppress(OSError):
             path.unlink()
             recent.remove(path)
 
 
-def _stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
-    if config.path is None or _real_path(config.path) == _real_path(path):
+def _make_stored_finding(config: RvizConfig, path: Path) -> Diagnostic:
+    if config.path is None or _resolve_path(config.path) == _resolve_path(path):
         message = phrase("unsaved displays are stored in '{path}': {hint}", path=path, hint=_RECOVERY_HINT)
     else:
         message = phrase(
@@ -250,7 +252,7 @@ def _is_saved(config: RvizConfig, text: str) -> bool:
         return False
 
 
-def _recovery_file_name(name: str) -> str:
+def _make_recovery_file_name(name: str) -> str:
     """Return the name of the recovery file for a configuration.
 
     Characters that are not safe in a file name are replaced, because the configuration's name may come from a page.
@@ -260,7 +262,7 @@ def _recovery_file_name(name: str) -> str:
     return f"{stem or _UNNAMED}-{digest}{EXTENSION}"
 
 
-def _unused_path(path: Path, used_paths: set[Path]) -> Path:
+def _find_unused_path(path: Path, used_paths: set[Path]) -> Path:
     """Return the path, or a numbered path next to it if another page's copy already uses it."""
     number, candidate = 1, path
     while candidate in used_paths:
@@ -269,5 +271,5 @@ def _unused_path(path: Path, used_paths: set[Path]) -> Path:
     return candidate
 
 
-def _real_path(path: Path) -> Path:
+def _resolve_path(path: Path) -> Path:
     return Path(os.path.realpath(path))

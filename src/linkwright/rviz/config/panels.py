@@ -20,7 +20,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.page.protocol.configuration import PanelName
 from linkwright.page.protocol.time import SyncMode
 from linkwright.rviz.config.former_names import is_former
-from linkwright.rviz.config.yaml_tree import Section, entries, insert_section, new_section, remove_section
+from linkwright.rviz.config.yaml_tree import Section, get_items, insert_section, new_section, remove_section
 
 _DOCK_MARK = b"\xfb"
 _SHOWN_FLAG = 1
@@ -72,7 +72,7 @@ class PanelsConfig:
         self._known_sections = list(document.sections(_PANELS))
         self._added_sections: list[Section] = []
         unknown_sections = [
-            section for section in self._known_sections if section.scalar("Class") and _panel_of(section) is None
+            section for section in self._known_sections if section.scalar("Class") and _find_panel(section) is None
         ]
         if unknown_sections:
             names = ", ".join(f"'{section.text('Name') or section.text('Class')}'" for section in unknown_sections)
@@ -88,9 +88,9 @@ class PanelsConfig:
 
         None if the file has no ``Panels``.
         """
-        if entries(self._document, _PANELS) is None:
+        if get_items(self._document, _PANELS) is None:
             return None
-        panels = (_panel_of(section) for section in self._loaded_sections() if self._is_shown(section))
+        panels = (_find_panel(section) for section in self._find_loaded_sections() if self._is_shown(section))
         return list(dict.fromkeys(panel for panel in panels if panel is not None))
 
     def show(self, panels: Collection[PanelName]) -> bool:
@@ -109,7 +109,7 @@ class PanelsConfig:
         return self.shown != previous_panels
 
     def _open(self, panel: PanelName) -> None:
-        sections = [section for section in self._loaded_sections() if _panel_of(section) == panel]
+        sections = [section for section in self._find_loaded_sections() if _find_panel(section) == panel]
         if any(map(self._is_shown, sections)):
             return
         section = sections[0] if sections else self._add(panel)
@@ -117,15 +117,15 @@ class PanelsConfig:
             self._set_shown(section, is_visible=True)
 
     def _close(self, panel: PanelName) -> None:
-        for section in list(self._loaded_sections()):
-            if _panel_of(section) != panel or not self._is_shown(section):
+        for section in list(self._find_loaded_sections()):
+            if _find_panel(section) != panel or not self._is_shown(section):
                 continue
             if section not in self._added_sections:
                 self._set_shown(section, is_visible=False)
             if self._is_shown(section):
                 remove_section(self._document, _PANELS, section)
 
-    def _loaded_sections(self) -> list[Section]:
+    def _find_loaded_sections(self) -> list[Section]:
         """Return the entries that RViz loads: entries with a class and a name."""
         return [
             section
@@ -160,7 +160,7 @@ class PanelsConfig:
             (
                 section
                 for section in self._known_sections
-                if _panel_of(section) == panel and section not in present_sections
+                if _find_panel(section) == panel and section not in present_sections
             ),
             None,
         )
@@ -191,7 +191,7 @@ class PanelsConfig:
         return (self._document.text(*path) or "").strip().lower() == "true"
 
 
-def _panel_of(section: Section) -> PanelName | None:
+def _find_panel(section: Section) -> PanelName | None:
     return _PANEL_BY_CLASS.get(section.text("Class") or "")
 
 
@@ -249,17 +249,17 @@ class Synchronization:
 
 
 def read_synchronization(document: Section) -> Synchronization:
-    """Return the synchronization of the Time panel, or the default if RViz ignores the settings.
+    """Return the synchronization of the Time panel, or the default if RViz ignores it.
 
     RViz uses them only if ``Experimental`` is on. RViz 1 up to Noetic always uses them and does not write that key.
     """
-    panel = _time_panel(document)
-    if panel is None or not (_text(panel, "Experimental").lower() == "true" or _is_always_on(panel)):
+    panel = _find_time_panel(document)
+    if panel is None or not (_get_text(panel, "Experimental").lower() == "true" or _is_always_on(panel)):
         return Synchronization()
-    mode_number = _text(panel, "SyncMode")
+    mode_number = _get_text(panel, "SyncMode")
     if mode_number not in ("1", "2"):
         return Synchronization()
-    return Synchronization(_MODES[int(mode_number)], _text(panel, "SyncSource"))
+    return Synchronization(_MODES[int(mode_number)], _get_text(panel, "SyncSource"))
 
 
 def write_synchronization(document: Section, synchronization: Synchronization) -> bool:
@@ -267,7 +267,7 @@ def write_synchronization(document: Section, synchronization: Synchronization) -
 
     A file without a Time panel stays unchanged.
     """
-    panel = _time_panel(document)
+    panel = _find_time_panel(document)
     if panel is None or read_synchronization(document) == synchronization:
         return False
     panel.put(("SyncMode",), str(_MODES.index(synchronization.mode)))
@@ -279,16 +279,20 @@ def write_synchronization(document: Section, synchronization: Synchronization) -
 
 def _is_always_on(panel: Section) -> bool:
     """Return whether RViz 1 up to Noetic wrote the panel. Its synchronization is always on."""
-    return is_former(_text(panel, "Class")) and not _text(panel, "Experimental") and bool(_text(panel, "SyncSource"))
+    return (
+        is_former(_get_text(panel, "Class"))
+        and not _get_text(panel, "Experimental")
+        and bool(_get_text(panel, "SyncSource"))
+    )
 
 
-def _time_panel(document: Section) -> Section | None:
+def _find_time_panel(document: Section) -> Section | None:
     for panel in document.sections(_PANELS):
-        if _text(panel, "Class") in _TIME_CLASSES:
+        if _get_text(panel, "Class") in _TIME_CLASSES:
             return panel
     return None
 
 
-def _text(section: Section, key: str) -> str:
+def _get_text(section: Section, key: str) -> str:
     scalar = section.scalar(key)
     return scalar.text.strip() if scalar else ""

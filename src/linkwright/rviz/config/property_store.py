@@ -9,7 +9,15 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.graph import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.page.protocol.configuration import Property, PropertyChanged, PropertyValue, TopicOffer
 from linkwright.rviz.config.former_names import FormerKey
-from linkwright.rviz.config.schema import Path, PropertySpec, Schema, accept, fallback_value, from_text, to_text
+from linkwright.rviz.config.schema import (
+    Path,
+    PropertySpec,
+    Schema,
+    accept_value,
+    fallback_value,
+    value_from_text,
+    value_to_text,
+)
 from linkwright.rviz.config.yaml_tree import NewSection, SavedEntry, Scalar, Section, make_section, remove_unchanged
 
 _MIN_INDEXED_PROPERTIES = 30
@@ -65,7 +73,7 @@ class PropertyStore:
         Raises:
             KeyError: when the schema has no such property.
         """
-        return self._get_value(path, self._spec(path))
+        return self._get_value(path, self._get_spec(path))
 
     def flag(self, *path: str) -> bool:
         """Return the value of a ``bool`` property."""
@@ -83,7 +91,7 @@ class PropertyStore:
 
     def check(self, path: Path, value: object) -> None:
         """Validate a value as `set` does, without storing it."""
-        accept(self._spec(path), value)
+        accept_value(self._get_spec(path), value)
 
     def set(self, path: Path, value: object) -> PropertyValue:
         """Store a value, and return the stored value, which may have been converted or clamped.
@@ -92,11 +100,11 @@ class PropertyStore:
             KeyError: when the schema has no such property.
             ValueError: when the property does not accept the value.
         """
-        spec = self._spec(path)
-        accepted_value = accept(spec, value)
+        spec = self._get_spec(path)
+        accepted_value = accept_value(spec, value)
         if accepted_value != self._get_value(path, spec):
             self._values[path] = accepted_value
-            self._write(path, spec, to_text(spec, accepted_value))
+            self._write(path, spec, value_to_text(spec, accepted_value))
         return accepted_value
 
     def set_read_only(self, path: Path, value: PropertyValue) -> bool:
@@ -107,7 +115,7 @@ class PropertyStore:
         Raises:
             KeyError: when the schema has no such property.
         """
-        spec = self._spec(path)
+        spec = self._get_spec(path)
         if self._get_value(path, spec) == value:
             return False
         self._values[path] = value
@@ -166,7 +174,7 @@ class PropertyStore:
 
         Properties that are hidden, or whose condition is not met, have no row.
         """
-        return [self._row(spec, ()) for spec in self._get_schema() if self._is_shown(spec)]
+        return [self._make_row(spec, ()) for spec in self._get_schema() if self._is_shown(spec)]
 
     def is_condition(self, path: Path) -> bool:
         """Return whether other rows are shown or hidden depending on the value at a path."""
@@ -184,7 +192,7 @@ class PropertyStore:
         """Set the function that returns the frame names offered for properties of kind ``frame``."""
         self._get_frames = frames
 
-    def _row(self, spec: PropertySpec, parent_path: Path) -> Property:
+    def _make_row(self, spec: PropertySpec, parent_path: Path) -> Property:
         path = (*parent_path, spec.name)
         return Property(
             id=property_id(self._owner, path),
@@ -197,7 +205,7 @@ class PropertyStore:
             maximum=spec.maximum,
             read_only=spec.read_only,
             expanded=spec.expanded,
-            children=[self._row(child, path) for child in spec.children if self._is_shown(child)],
+            children=[self._make_row(child, path) for child in spec.children if self._is_shown(child)],
             details=spec.details,
             topics=TopicOffer(list(spec.messages), list(spec.name_words)) if spec.messages else None,
         )
@@ -209,7 +217,7 @@ class PropertyStore:
         if spec.when is None:
             return True
         path, value = spec.when
-        return self.get(*path) == value and self._condition_holds(self._spec(path))
+        return self.get(*path) == value and self._condition_holds(self._get_spec(path))
 
     def _get_value(self, path: Path, spec: PropertySpec) -> PropertyValue:
         try:
@@ -219,13 +227,13 @@ class PropertyStore:
             return value
 
     def _read_value(self, path: Path, spec: PropertySpec) -> PropertyValue:
-        scalar = None if spec.read_only else self._scalar(path)
+        scalar = None if spec.read_only else self._find_scalar(path)
         if scalar is None or spec.kind == "group":
             return spec.default
         if spec.kind in ("enum", "frame") and not scalar.text:
             return spec.default  # RViz writes an empty value if there were no options
         try:
-            return from_text(spec, scalar.text)
+            return value_from_text(spec, scalar.text)
         except ValueError as error:
             value = fallback_value(spec)
             message = phrase(
@@ -234,7 +242,7 @@ class PropertyStore:
             self._report(Diagnostic("RVIZ201", message, scalar.span, Severity.WARNING, source=self._section.source))
             return value
 
-    def _scalar(self, path: Path) -> Scalar | None:
+    def _find_scalar(self, path: Path) -> Scalar | None:
         scalar = self._section.scalar(*self._base, *path)
         former_key = self._former_keys.get(path)
         if scalar is None and former_key is not None:
@@ -278,7 +286,7 @@ class PropertyStore:
     def _is_stored(self, path: Path) -> bool:
         """Return whether the schema has the property and the property is not read-only."""
         try:
-            return not self._spec(path).read_only
+            return not self._get_spec(path).read_only
         except KeyError:
             return False
 
@@ -293,7 +301,7 @@ class PropertyStore:
             self._index = specs, {spec.name: spec for spec in reversed(specs)}
         return self._index[1].get(name)
 
-    def _spec(self, path: Path) -> PropertySpec:
+    def _get_spec(self, path: Path) -> PropertySpec:
         specs = self._get_schema()
         spec: PropertySpec | None = None
         for name in path:
@@ -311,7 +319,9 @@ def _depends_on(spec: PropertySpec, path: Path) -> bool:
     return is_condition or any(_depends_on(child, path) for child in spec.children)
 
 
-def qos_of(properties: PropertyStore, name: str = "Topic", *, transient_local: bool | None = None) -> QoSProfile:
+def qos_from_properties(
+    properties: PropertyStore, name: str = "Topic", *, transient_local: bool | None = None
+) -> QoSProfile:
     """Return the QoS profile that a topic property and its child properties describe.
 
     Args:

@@ -13,7 +13,7 @@ from linkwright.page.protocol.views_and_tools import View
 from linkwright.rviz.config import file as configuration_file
 from linkwright.rviz.config import yaml_tree
 from linkwright.rviz.config.file import FileForm, FileState
-from linkwright.rviz.config.former_names import GROUP, modern_class
+from linkwright.rviz.config.former_names import GROUP, to_modern_class
 from linkwright.rviz.config.panels import PanelsConfig
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.schema import Path as PropertyPath
@@ -65,7 +65,7 @@ _CONFIGURATION_KEYS = ("Panels", "Toolbars", "Window Geometry")
 """Keys of a configuration: a file with one of them is accepted even if it has no displays."""
 _DEFAULT_PLUGINS = "rviz_default_plugins/"
 
-_DEFAULT = """\
+_DEFAULT_TEXT = """\
 Panels:
   - Class: rviz_common/Displays
     Name: Displays
@@ -131,7 +131,7 @@ class DisplayConfig:
     ) -> None:
         self.section = section
         self.group = group
-        self.cls = modern_class(self.written_class)
+        self.cls = to_modern_class(self.written_class)
         self.identity = ""
         self.displays: list[DisplayConfig] = read_displays(section, self, report) if self.is_group else []
 
@@ -182,12 +182,12 @@ class DisplayConfig:
             self.section.put((key,), "true" if value else "false")
 
     @property
-    def box(self) -> list[SavedEntry]:
+    def check_box_entries(self) -> list[SavedEntry]:
         """The current entries of the check box in the file, to restore the check box later."""
         return [self.section.copy_entry(key) for key in _CHECK_BOX_KEYS]
 
-    @box.setter
-    def box(self, saved_entries: list[SavedEntry]) -> None:
+    @check_box_entries.setter
+    def check_box_entries(self, saved_entries: list[SavedEntry]) -> None:
         for saved_entry in saved_entries:
             self.section.restore(saved_entry)
 
@@ -282,7 +282,7 @@ class RvizConfig:
         self.document = document
         self._form = form or FileForm()
         self._new_sections: list[NewSection] = []
-        self._state: FileState | None = configuration_file.state_of(path) if path else None
+        self._state: FileState | None = configuration_file.get_file_state(path) if path else None
         self.options = PropertyStore(
             "global",
             document,
@@ -334,7 +334,7 @@ class RvizConfig:
     @classmethod
     def default(cls) -> RvizConfig:
         """Return RViz's default configuration: a Grid, Fixed Frame ``map``."""
-        return cls.parse(_DEFAULT, "<default>")
+        return cls.parse(_DEFAULT_TEXT, "<default>")
 
     @classmethod
     def for_model(
@@ -348,9 +348,9 @@ class RvizConfig:
             frames: whether TF is enabled, although its axes cover a robot that has visuals.
             name: the name of the model's file, under which unsaved edits are stored.
         """
-        config = cls.parse(_DEFAULT, name)
+        config = cls.parse(_DEFAULT_TEXT, name)
         for name, values in _MODEL_DISPLAYS:
-            display = config.new_display(_DEFAULT_PLUGINS + name, name)
+            display = config.make_display(_DEFAULT_PLUGINS + name, name)
             for key, value in values.items():
                 display.section.put((key,), value, string=True, nested=True)
             display.checked = frames or name != "TF"
@@ -363,9 +363,9 @@ class RvizConfig:
         view = config.views.current
         view.values |= {"Distance": _MODEL_DISTANCE, "Pitch": _MODEL_PITCH}
         if size is not None:
-            for display_config, path, length in _fitted_sizes(config.displays, size):
+            for display_config, path, length in _compute_fitted_sizes(config.displays, size):
                 display_config.section.put(path, f"{length:g}")
-            view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape}
+            view.values |= {"Distance": size.distance, "Focal Shape Size": size.focal_shape_size}
         config.propose_view(view.values)
         config._proposed_sizes = _ProposedSizes(config.displays, size)
         return config
@@ -404,9 +404,9 @@ class RvizConfig:
 
     @property
     def spacing(self) -> float | None:
-        """The typical distance between the frames of a link and its parent in m, or None if unknown.
+        """The typical distance between the frames of a link and its parent, in meters.
 
-        The distance is also None after `take_sizes` was called.
+        The distance is None if it is unknown, and after `take_sizes` was called.
         """
         size = None if self._proposed_sizes is None else self._proposed_sizes.size
         return None if size is None else size.spacing
@@ -424,7 +424,7 @@ class RvizConfig:
         proposed_sizes, self._proposed_sizes = self._proposed_sizes, None
         if proposed_sizes is None or not isfinite(diagonal + ground) or diagonal <= 0:
             return []
-        return proposed_sizes.corrections(diagonal, ground)
+        return proposed_sizes.compute_corrections(diagonal, ground)
 
     def copy(self) -> RvizConfig:
         """Return a copy of the configuration that has no file."""
@@ -443,7 +443,7 @@ class RvizConfig:
         for display in self.displays:
             yield from display.walk()
 
-    def new_display(self, cls: str, name: str) -> DisplayConfig:
+    def make_display(self, cls: str, name: str) -> DisplayConfig:
         """Return a new enabled display with the defaults of its class, to be added with `insert`."""
         section = yaml_tree.new_section(self.document.source)
         section.put(("Class",), cls, string=True)
@@ -468,16 +468,16 @@ class RvizConfig:
         if group is not None and (not group.is_group or group in display.walk()):
             raise ValueError(f"'{display.name}' cannot be put into '{group.name}'")
         siblings = self.siblings(group)
-        insert_display(display, self._parent(group), siblings, len(siblings) if index is None else index)
+        insert_display(display, self._find_parent(group), siblings, len(siblings) if index is None else index)
         display.group = group
 
     def remove(self, display: DisplayConfig) -> None:
         """Remove a display from its group or the top level, and from the file."""
-        remove_display(display, self._parent(display.group), self.siblings(display.group))
+        remove_display(display, self._find_parent(display.group), self.siblings(display.group))
 
     def make_group(self, name: str) -> DisplayConfig:
         """Return an empty group, to be added with `insert`."""
-        return self.new_display(GROUP, name)
+        return self.make_display(GROUP, name)
 
     def arrangement(self) -> Arrangement:
         """Return the current order and grouping of the displays, for `arrange`."""
@@ -493,7 +493,7 @@ class RvizConfig:
             self.siblings(group)[:] = displays
             for display in displays:
                 display.group = group
-            yaml_tree.restore_sequence(self._parent(group), "Displays", arrangement.sequences[group])
+            yaml_tree.restore_sequence(self._find_parent(group), "Displays", arrangement.sequences[group])
         self._new_sections = yaml_tree.remove_unchanged(self._new_sections)
 
     def siblings(self, group: DisplayConfig | None) -> list[DisplayConfig]:
@@ -504,7 +504,7 @@ class RvizConfig:
         section = group.section if group is not None else self.document.section(_MANAGER)
         return yaml_tree.copy_sequence(section, "Displays") if section is not None else SavedSequence(None, None)
 
-    def _parent(self, group: DisplayConfig | None) -> Section:
+    def _find_parent(self, group: DisplayConfig | None) -> Section:
         """Return the section that contains the ``Displays`` of a group or of the top level.
 
         The top-level section is created if it is missing.
@@ -523,7 +523,7 @@ class RvizConfig:
         Without edits, this is exactly the text that was read.
         """
         source = self.document.source
-        if yaml_tree.same(self.document, yaml_tree.parse(source.text, source.name)):
+        if yaml_tree.are_same(self.document, yaml_tree.parse(source.text, source.name)):
             return source.text
         return yaml_tree.write(self.document).replace("\n", self._form.newline)
 
@@ -541,12 +541,12 @@ class RvizConfig:
             raise ValueError("the configuration has no file: give the path to save to")
         configuration_file.write(target, self.text(), self._form)
         self.path = target
-        self._state = configuration_file.state_of(target)
+        self._state = configuration_file.get_file_state(target)
 
     @property
     def changed_on_disk(self) -> bool:
         """Whether another program has changed the file since it was read or saved."""
-        return self.path is not None and configuration_file.state_of(self.path) not in (self._state, None)
+        return self.path is not None and configuration_file.get_file_state(self.path) not in (self._state, None)
 
 
 class _ProposedSizes:
@@ -560,13 +560,13 @@ class _ProposedSizes:
     def __init__(self, displays: Sequence[DisplayConfig], size: ModelSize | None) -> None:
         self._displays = tuple(displays)
         self.size = size
-        sizes = _fitted_sizes(displays, size or _UNKNOWN_SIZE, ground=1.0)
+        sizes = _compute_fitted_sizes(displays, size or _UNKNOWN_SIZE, ground=1.0)
         self._proposed_texts = {path: display.section.text(*path) for display, path, _ in sizes}
 
-    def corrections(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
-        """Return the sizes for the measured robot, without the properties that the user has changed."""
+    def compute_corrections(self, diagonal: float, ground: float) -> list[tuple[DisplayConfig, PropertyPath, float]]:
+        """Return the sizes for the measured robot, except those that the user has changed."""
         spacing = diagonal if self.size is None else self.size.spacing
-        sizes = _fitted_sizes(self._displays, ModelSize(diagonal, spacing), ground)
+        sizes = _compute_fitted_sizes(self._displays, ModelSize(diagonal, spacing), ground)
         return [change for change in sizes if change[0].section.text(*change[1]) == self._proposed_texts[change[1]]]
 
     def for_copies(self, copies: Mapping[DisplayConfig, DisplayConfig]) -> _ProposedSizes | None:
@@ -578,7 +578,7 @@ class _ProposedSizes:
 _UNKNOWN_SIZE = ModelSize(1.0, 1.0)
 
 
-def _fitted_sizes(
+def _compute_fitted_sizes(
     displays: Sequence[DisplayConfig], size: ModelSize, ground: float = 0.0
 ) -> list[tuple[DisplayConfig, PropertyPath, float]]:
     """Return the sizes of grid and axes that fit a robot.
@@ -589,4 +589,4 @@ def _fitted_sizes(
     """
     grid, _, tf = displays
     offset = [(grid, ("Offset", "Z"), round(ground, 4))] if ground else []
-    return [(grid, ("Cell Size",), size.cell), (tf, ("Marker Scale",), size.marker_scale), *offset]
+    return [(grid, ("Cell Size",), size.cell_size), (tf, ("Marker Scale",), size.marker_scale), *offset]

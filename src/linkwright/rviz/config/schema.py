@@ -78,7 +78,7 @@ class PropertySpec:
 Schema = tuple[PropertySpec, ...]
 
 
-def vector(name: str, description: str) -> PropertySpec:
+def vector_spec(name: str, description: str) -> PropertySpec:
     """Return the declaration of a group with the float properties X, Y and Z in meters.
 
     The defaults are 0, as in RViz's VectorProperty.
@@ -99,7 +99,7 @@ def alpha(
     return PropertySpec("Alpha", "float", default, description, minimum=0.0, maximum=1.0, when=when)
 
 
-def length(name: str, default: float, description: str, when: tuple[Path, str] | None = None) -> PropertySpec:
+def length_spec(name: str, default: float, description: str, when: tuple[Path, str] | None = None) -> PropertySpec:
     """Return the declaration of a property for a length in meters."""
     return PropertySpec(name, "float", default, description, when=when)
 
@@ -126,7 +126,7 @@ def line_width_spec() -> PropertySpec:
     )
 
 
-def accept(spec: PropertySpec, value: object) -> PropertyValue:
+def accept_value(spec: PropertySpec, value: object) -> PropertyValue:
     """Return the value to store for a value sent by a page.
 
     The value is checked against the property's kind. Numbers are converted and clamped to the bounds.
@@ -148,13 +148,13 @@ def accept(spec: PropertySpec, value: object) -> PropertyValue:
     return accepted_value
 
 
-def from_text(spec: PropertySpec, text: str) -> PropertyValue:
+def value_from_text(spec: PropertySpec, text: str) -> PropertyValue:
     """Return the value that a scalar of a .rviz file represents.
 
     Raises:
         ValueError: the text is not a valid value; the message states the expected value.
     """
-    return accept(spec, _read_as_qt(spec, text.strip()))
+    return accept_value(spec, _read_as_qt(spec, text.strip()))
 
 
 def fallback_value(spec: PropertySpec) -> PropertyValue:
@@ -166,11 +166,11 @@ def fallback_value(spec: PropertySpec) -> PropertyValue:
 
 
 def is_on(text: str) -> bool:
-    """Return whether RViz reads the text of a check box in a file as true, see `fallback_value`."""
+    """Return whether RViz reads the text of a check box as true. See `fallback_value`."""
     return _BOOLEANS.get(text.strip().lower(), True)
 
 
-def to_text(spec: PropertySpec, value: PropertyValue) -> str:
+def value_to_text(spec: PropertySpec, value: PropertyValue) -> str:
     """Return the spelling of a value in a .rviz file."""
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -234,7 +234,7 @@ def _accept_number(spec: PropertySpec, value: object) -> int | float | None:
 def _read_as_qt(spec: PropertySpec, text: str) -> object:
     """Return the value that Qt reads from a text.
 
-    Text that Qt cannot read is returned unchanged, and `accept` rejects it.
+    Text that Qt cannot read is returned unchanged, and `accept_value` rejects it.
     """
     kind = spec.kind
     if kind == "bool":

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from linkwright.diagnostics import Diagnostic
-from linkwright.rviz.config.former_names import former_keys, modern_class
+from linkwright.rviz.config.former_names import get_former_keys, to_modern_class
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.schema import PropertySpec, Schema, topic_spec
 from linkwright.rviz.config.yaml_tree import Section, ensure_section, insert_section, new_section, remove_section
@@ -35,7 +35,7 @@ class ToolKind:
     action: tuple[str, str] | None = None
 
 
-def _topic(default: str, description: str) -> PropertySpec:
+def _topic_spec(default: str, description: str) -> PropertySpec:
     """Return the declaration of a topic to publish to, with its QoS.
 
     The property is a ``string``, because the topic need not exist yet.
@@ -64,7 +64,7 @@ TOOL_KINDS: dict[str, ToolKind] = {
     "rviz_default_plugins/SetInitialPose": ToolKind(
         "2D Pose Estimate",
         (
-            _topic("/initialpose", "The topic to publish pose estimates to."),
+            _topic_spec("/initialpose", "The topic to publish pose estimates to."),
             PropertySpec("Covariance x", "float", 0.25, "Covariance along x, in square meters.", minimum=0.0),
             PropertySpec("Covariance y", "float", 0.25, "Covariance along y, in square meters.", minimum=0.0),
             PropertySpec(
@@ -78,12 +78,12 @@ TOOL_KINDS: dict[str, ToolKind] = {
         "geometry_msgs/msg/PoseWithCovarianceStamped",
     ),
     "rviz_default_plugins/SetGoal": ToolKind(
-        "2D Goal Pose", (_topic("/goal_pose", "The topic to publish goals to."),), "geometry_msgs/msg/PoseStamped"
+        "2D Goal Pose", (_topic_spec("/goal_pose", "The topic to publish goals to."),), "geometry_msgs/msg/PoseStamped"
     ),
     "rviz_default_plugins/PublishPoint": ToolKind(
         "Publish Point",
         (
-            _topic("/clicked_point", "The topic to publish points to."),
+            _topic_spec("/clicked_point", "The topic to publish points to."),
             PropertySpec("Single click", "bool", True, "Return to the default tool after one click."),
         ),
         "geometry_msgs/msg/PointStamped",
@@ -96,7 +96,7 @@ DEFAULT_TOOLS = tuple(cls for cls in TOOL_KINDS if cls.startswith("rviz_default_
 """The classes of the tools that are shown if a file lists no tools."""
 
 
-def tool_name(cls: str) -> str:
+def get_tool_name(cls: str) -> str:
     """Return the label of a tool's button.
 
     As in RViz, an unknown class is labeled with its class name, split into words.
@@ -149,7 +149,7 @@ class ToolsConfig:
         self._is_listed_in_file = bool(self._entries)
         if not self._entries:
             for cls in DEFAULT_TOOLS:
-                self._append_entry(cls, self._new_section(cls))
+                self._append_entry(cls, self._make_section(cls))
 
     @property
     def entries(self) -> list[ToolEntry]:
@@ -171,8 +171,8 @@ class ToolsConfig:
         if cls not in TOOL_KINDS:
             raise ValueError(f"there is no tool class {cls!r}")
         self.write_defaults()
-        section = self._new_section(cls)
-        insert_section(self._manager(), _TOOLS, section)
+        section = self._make_section(cls)
+        insert_section(self._get_manager(), _TOOLS, section)
         return self._append_entry(cls, section)
 
     def remove(self, identity: str) -> ToolEntry:
@@ -184,7 +184,7 @@ class ToolsConfig:
         entry = self._entries[identity]
         self.write_defaults()
         del self._entries[identity]
-        remove_section(self._manager(), _TOOLS, entry.section)
+        remove_section(self._get_manager(), _TOOLS, entry.section)
         return entry
 
     def write_defaults(self) -> None:
@@ -194,24 +194,24 @@ class ToolsConfig:
         """
         if not self._is_listed_in_file:
             for entry in self._entries.values():
-                insert_section(self._manager(), _TOOLS, entry.section)
+                insert_section(self._get_manager(), _TOOLS, entry.section)
         self._is_listed_in_file = True
 
-    def _manager(self) -> Section:
+    def _get_manager(self) -> Section:
         return ensure_section(self._document, _MANAGER)
 
-    def _new_section(self, cls: str) -> Section:
+    def _make_section(self, cls: str) -> Section:
         section = new_section(self._document.source)
         section.put(("Class",), cls, string=True)
         return section
 
     def _append_entry(self, written_class: str, section: Section) -> ToolEntry:
         """Append a tool to the entries and return it, given its class name of RViz 1 or RViz 2."""
-        cls = modern_class(written_class)
+        cls = to_modern_class(written_class)
         self._count += 1
         identity = f"tool-{self._count}"
         schema: Schema = TOOL_KINDS[cls].schema if cls in TOOL_KINDS else ()
-        store = PropertyStore(identity, section, lambda: schema, self._report, former=former_keys(written_class))
+        store = PropertyStore(identity, section, lambda: schema, self._report, former=get_former_keys(written_class))
         entry = ToolEntry(identity, cls, section, store)
         self._entries[identity] = entry
         return entry

@@ -1,4 +1,4 @@
-"""RViz's views: property declarations by class, views in .rviz files, and sizes for a robot.
+"""RViz's views: properties by class, views in .rviz files, and sizes for a robot.
 
 The declarations determine the rows of the Views panel, the keys of ``Views`` in the file, and the values accepted from
 pages. The page implements cameras and mouse actions, see `frontend/src/state/views`. Names and defaults are the same as
@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.page.protocol.configuration import Property, PropertyValue
 from linkwright.page.protocol.views_and_tools import View, ViewClass
-from linkwright.rviz.config.former_names import modern_class
+from linkwright.rviz.config.former_names import to_modern_class
 from linkwright.rviz.config.property_store import PropertyStore
-from linkwright.rviz.config.schema import FIXED_FRAME, MAX_TEXT_LENGTH, Path, PropertySpec, Schema, vector
+from linkwright.rviz.config.schema import FIXED_FRAME, MAX_TEXT_LENGTH, Path, PropertySpec, Schema, vector_spec
 from linkwright.rviz.config.yaml_tree import (
     SavedEntry,
     Section,
@@ -49,21 +49,21 @@ class ModelSize:
 
         It is used until a page has measured the robot's meshes.
         """
-        return _rounded(2.0 * self.diagonal)
+        return _round_length(2.0 * self.diagonal)
 
     @property
     def marker_scale(self) -> float:
         """The marker scale of the TF display at which axes are visible but do not cover links."""
         axis = min(max(self.spacing / 2, self.diagonal / 40), self.diagonal / 10)
-        return _rounded(axis / _AXIS_LENGTH)
+        return _round_length(axis / _AXIS_LENGTH)
 
     @property
-    def focal_shape(self) -> float:
+    def focal_shape_size(self) -> float:
         """The diameter of the disc at the focal point in m, at most the default of RViz."""
-        return min(_MAX_FOCAL_SHAPE, _rounded(self.diagonal / 15))
+        return min(_MAX_FOCAL_SHAPE, _round_length(self.diagonal / 15))
 
     @property
-    def cell(self) -> float:
+    def cell_size(self) -> float:
         """The cell size of the grid in m.
 
         It is the largest power of ten that is at most 1.5 times the diagonal.
@@ -71,7 +71,7 @@ class ModelSize:
         return float(10.0 ** math.floor(math.log10(self.diagonal * 1.5)))
 
 
-def _rounded(length: float) -> float:
+def _round_length(length: float) -> float:
     """Return a length rounded to two significant digits, as a user would type it."""
     return float(f"{length:.2g}")
 
@@ -124,7 +124,7 @@ _ORBIT: Schema = (
     ),
     PropertySpec("Yaw", "float", _EIGHTH_TURN, _YAW_HELP),
     PropertySpec("Pitch", "float", _EIGHTH_TURN, _PITCH_HELP, minimum=-PITCH_LIMIT, maximum=PITCH_LIMIT),
-    vector("Focal Point", "The point that the camera orbits, in the target frame, in meters."),
+    vector_spec("Focal Point", "The point that the camera orbits, in the target frame, in meters."),
 )
 _FPS: Schema = (
     _NEAR_CLIP,
@@ -166,7 +166,7 @@ SIMILAR_CLASSES = {"rviz_default_plugins/FrameAligned": FPS}
 """The supported class for each similar, unsupported class: FrameAligned is an FPS that can be aligned and locked."""
 
 
-def value_paths(schema: Schema) -> dict[str, Path]:
+def find_value_paths(schema: Schema) -> dict[str, Path]:
     """Return the paths of the properties that have a value, by key of `View.values`.
 
     A key consists of the names of the path, joined with ``/``.
@@ -174,15 +174,15 @@ def value_paths(schema: Schema) -> dict[str, Path]:
     return {"/".join(path): path for path, spec in _walk(schema, ()) if spec.kind != "group"}
 
 
-def view_classes() -> list[ViewClass]:
+def make_view_classes() -> list[ViewClass]:
     """Return the view classes and their property rows, for the page."""
     return [
-        ViewClass(cls, [_row(spec, ()) for spec in schema if not spec.hidden], _defaults(schema))
+        ViewClass(cls, [_make_row(spec, ()) for spec in schema if not spec.hidden], _get_defaults(schema))
         for cls, schema in VIEW_SCHEMAS.items()
     ]
 
 
-def _defaults(schema: Schema) -> dict[str, PropertyValue]:
+def _get_defaults(schema: Schema) -> dict[str, PropertyValue]:
     return {"/".join(path): spec.default for path, spec in _walk(schema, ()) if spec.kind != "group"}
 
 
@@ -194,7 +194,7 @@ def _walk(schema: Schema, parent_path: Path) -> list[tuple[Path, PropertySpec]]:
     return specs
 
 
-def _row(spec: PropertySpec, parent_path: Path) -> Property:
+def _make_row(spec: PropertySpec, parent_path: Path) -> Property:
     path = (*parent_path, spec.name)
     return Property(
         id="/".join(path),
@@ -205,7 +205,7 @@ def _row(spec: PropertySpec, parent_path: Path) -> Property:
         minimum=spec.minimum,
         maximum=spec.maximum,
         expanded=spec.expanded,
-        children=[_row(child, path) for child in spec.children],
+        children=[_make_row(child, path) for child in spec.children],
     )
 
 
@@ -235,7 +235,7 @@ class ViewEntry:
         self._section = section
         self._base = base
         self._report = report
-        self._cls = self._supported_class()
+        self._cls = self._find_supported_class()
         self._store = self._make_store(self._cls)
         self._view = self._read()
 
@@ -258,14 +258,14 @@ class ViewEntry:
             raise ValueError(f"the name of a view has at most {MAX_TEXT_LENGTH} characters")
         if view.cls not in VIEW_SCHEMAS:
             raise ValueError(f"there is no view class {view.cls!r}")
-        paths = value_paths(VIEW_SCHEMAS[view.cls])
+        paths = find_value_paths(VIEW_SCHEMAS[view.cls])
         store = self._store if view.cls == self._cls else self._make_store(view.cls)
         for name, value in view.values.items():
             if name not in paths:
                 raise ValueError(f"a view of the class {view.cls!r} has no value {name!r}")
             store.check(paths[name], value)
         self._write_class(view.cls)
-        if self._name() != view.name:
+        if self._get_name() != view.name:
             self._section.put((*self._base, "Name"), view.name, string=True)
         for name, value in view.values.items():
             store.set(paths[name], value)
@@ -275,7 +275,7 @@ class ViewEntry:
     def _write_class(self, cls: str) -> None:
         """Change the class of the view, and remove the keys that the new class does not have."""
         scalar = self._section.scalar(*self._base, "Class")
-        written_class = modern_class(scalar.text) if scalar else ""
+        written_class = to_modern_class(scalar.text) if scalar else ""
         if cls in (written_class, SIMILAR_CLASSES.get(written_class)):
             return
         section = ensure_section(self._section, *self._base)
@@ -284,15 +284,15 @@ class ViewEntry:
             if spec.name not in new_keys:
                 section.restore(SavedEntry(spec.name, None))
         section.put(("Class",), cls, string=True)
-        section.put(("Name",), self._name(), string=True)
+        section.put(("Name",), self._get_name(), string=True)
         package, _, name = cls.partition("/")
         section.put(("Value",), f"{name} ({package})", string=True)
 
     def _read(self) -> View:
-        paths = value_paths(VIEW_SCHEMAS[self._cls])
-        return View(self._cls, self._name(), {name: self._store.get(*path) for name, path in paths.items()})
+        paths = find_value_paths(VIEW_SCHEMAS[self._cls])
+        return View(self._cls, self._get_name(), {name: self._store.get(*path) for name, path in paths.items()})
 
-    def _name(self) -> str:
+    def _get_name(self) -> str:
         scalar = self._section.scalar(*self._base, "Name")
         return scalar.text if scalar else CURRENT_NAME
 
@@ -300,11 +300,11 @@ class ViewEntry:
         schema: Schema = VIEW_SCHEMAS[cls]
         return PropertyStore("view", self._section, lambda: schema, self._report, base=self._base)
 
-    def _supported_class(self) -> str:
+    def _find_supported_class(self) -> str:
         scalar = self._section.scalar(*self._base, "Class")
         if scalar is None:
             return ORBIT
-        cls = modern_class(scalar.text)
+        cls = to_modern_class(scalar.text)
         if cls in VIEW_SCHEMAS:
             return cls
         shown_class = SIMILAR_CLASSES.get(cls, ORBIT)

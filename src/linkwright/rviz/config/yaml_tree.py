@@ -23,7 +23,7 @@ _Resolver: Any = yaml.resolver.Resolver
 MAX_DEPTH = 100
 """The deepest nesting that is read. PyYAML builds nodes by recursion, without a limit."""
 
-MAXIMUM_NODES = 1_000_000
+MAX_NODES = 1_000_000
 """The largest number of nodes after aliases are expanded. A few lines of YAML can expand to billions of nodes."""
 
 _STRING = "tag:yaml.org,2002:str"
@@ -71,7 +71,7 @@ class Section:
 
     def scalar(self, *path: str) -> Scalar | None:
         """Return the scalar at a path, or None if there is none or if the scalar is null."""
-        node = self._scalar_node(path)
+        node = self._find_scalar(path)
         return None if node is None else Scalar(node.value, self.span(node))
 
     def text(self, *path: str) -> str | None:
@@ -79,7 +79,7 @@ class Section:
 
         This is faster than `scalar`, which adds the position.
         """
-        node = self._scalar_node(path)
+        node = self._find_scalar(path)
         return None if node is None else str(node.value)
 
     def section(self, *path: str) -> Section | None:
@@ -107,19 +107,19 @@ class Section:
         tag = _STRING if string else _Resolver().resolve(yaml.ScalarNode, text, (True, False))
         parent = self.node
         for key in path[:-1]:
-            parent = _child_mapping(parent, key)
-        existing_node = _child(parent, path[-1])
+            parent = _get_or_create_mapping(parent, key)
+        existing_node = _find_child(parent, path[-1])
         # RViz 1 writes a topic as a scalar, although in RViz 2 its settings are children of the topic.
         is_scalar = isinstance(existing_node, yaml.ScalarNode) and existing_node.tag != _NULL
         if isinstance(existing_node, yaml.MappingNode) or (nested and not is_scalar):
-            parent, last_key = _child_mapping(parent, path[-1]), "Value"
+            parent, last_key = _get_or_create_mapping(parent, path[-1]), "Value"
         else:
             last_key = path[-1]
         _set_value(parent, last_key, yaml.ScalarNode(tag, text))
 
     def copy_entry(self, key: str) -> SavedEntry:
         """Return a copy of a key and its value, for `restore`."""
-        node = _child(self.node, key)
+        node = _find_child(self.node, key)
         return SavedEntry(key, None if node is None else _copy(node))
 
     def restore(self, saved_entry: SavedEntry) -> None:
@@ -131,12 +131,12 @@ class Section:
 
     def span(self, node: yaml.Node | None = None) -> Span:
         """Return the range of a node in the file, by default the range of this mapping."""
-        return _span(node or self.node, self.source)
+        return _get_span(node or self.node, self.source)
 
-    def _scalar_node(self, path: tuple[str, ...]) -> yaml.ScalarNode | None:
+    def _find_scalar(self, path: tuple[str, ...]) -> yaml.ScalarNode | None:
         node = self._find(path)
         if isinstance(node, yaml.MappingNode):
-            node = _child(node, "Value")
+            node = _find_child(node, "Value")
         return node if isinstance(node, yaml.ScalarNode) and node.tag != _NULL else None
 
     def _find(self, path: tuple[str, ...]) -> yaml.Node | None:
@@ -144,7 +144,7 @@ class Section:
         for key in path:
             if not isinstance(node, yaml.MappingNode):
                 return None
-            node = _child(node, key)
+            node = _find_child(node, key)
         return node
 
 
@@ -160,7 +160,7 @@ def parse(text: str, name: str) -> Section:
         # RViz reads only the first document of a file.
         root = next(yaml.compose_all(text, Loader=_Loader), None)
     except yaml.YAMLError as error:
-        raise LinkwrightError(_yaml_diagnostic(error, source)) from None
+        raise LinkwrightError(_make_yaml_diagnostic(error, source)) from None
     if not isinstance(root, yaml.MappingNode):
         message = (
             phrase("'{name}' is empty", name=name)
@@ -176,12 +176,12 @@ def parse(text: str, name: str) -> Section:
 
 def write(section: Section) -> str:
     """Return the document as text, preserving key order, scalars and layout of the source."""
-    return _text_in_layout(section.node, section.source.text)
+    return _format_in_layout(section.node, section.source.text)
 
 
-def same(first: Section, other: Section) -> bool:
+def are_same(first: Section, other: Section) -> bool:
     """Return whether two documents would be written as the same text."""
-    return _default_text(first.node) == _default_text(other.node)
+    return _format_in_default_layout(first.node) == _format_in_default_layout(other.node)
 
 
 def new_section(source: SourceText) -> Section:
@@ -207,7 +207,7 @@ def insert_section(parent: Section, key: str, section: Section, before: Section 
         section: the mapping to insert.
         before: the item to insert before; None or an unknown item to append.
     """
-    sequence = _child(parent.node, key)
+    sequence = _find_child(parent.node, key)
     if not isinstance(sequence, yaml.SequenceNode):
         sequence = yaml.SequenceNode(_SEQUENCE, [], flow_style=False)
         _set_value(parent.node, key, sequence)
@@ -222,14 +222,14 @@ def insert_section(parent: Section, key: str, section: Section, before: Section 
 
 def remove_section(parent: Section, key: str, section: Section) -> None:
     """Remove a mapping from the sequence under a key."""
-    sequence = _child(parent.node, key)
+    sequence = _find_child(parent.node, key)
     if isinstance(sequence, yaml.SequenceNode):
         sequence.value[:] = [item for item in sequence.value if item is not section.node]
 
 
-def entries(parent: Section, key: str) -> list[yaml.Node] | None:
+def get_items(parent: Section, key: str) -> list[yaml.Node] | None:
     """Return the item nodes of the sequence under a key, or None if the key has no sequence."""
-    sequence = _child(parent.node, key)
+    sequence = _find_child(parent.node, key)
     return list(sequence.value) if isinstance(sequence, yaml.SequenceNode) else None
 
 
@@ -243,7 +243,7 @@ class SavedSequence:
 
 def copy_sequence(parent: Section, key: str) -> SavedSequence:
     """Return the current node of a key and the items of its sequence, for `restore_sequence`."""
-    return SavedSequence(_child(parent.node, key), entries(parent, key))
+    return SavedSequence(_find_child(parent.node, key), get_items(parent, key))
 
 
 def restore_sequence(parent: Section, key: str, saved_sequence: SavedSequence) -> None:
@@ -261,20 +261,20 @@ class NewSection:
     """A mapping that was created on demand, for `remove_unchanged`.
 
     Attributes:
-        holder: the mapping that contains the new mapping.
+        parent: the mapping that contains the new mapping.
         saved_entry: the previous value of the holder's key.
         section: the new mapping.
         keys: the keys that the new mapping had when it was created.
     """
 
-    holder: Section
+    parent: Section
     saved_entry: SavedEntry
     section: Section
     keys: list[str]
 
 
 def make_section(section: Section, *path: str) -> tuple[Section, list[NewSection]]:
-    """Return the mapping at a path, creating missing mappings, and the list of created mappings."""
+    """Return the mapping at a path, and the mappings that were created along the path."""
     new_sections = []
     for key in path:
         child_section = section.section(key)
@@ -294,7 +294,7 @@ def remove_unchanged(new_sections: list[NewSection]) -> list[NewSection]:
     remaining_sections = list(new_sections)
     while remaining_sections and remaining_sections[-1].section.keys() == remaining_sections[-1].keys:
         removed_section = remaining_sections.pop()
-        removed_section.holder.restore(removed_section.saved_entry)
+        removed_section.parent.restore(removed_section.saved_entry)
     return remaining_sections
 
 
@@ -302,7 +302,7 @@ def ensure_section(section: Section, *path: str) -> Section:
     """Return the mapping at a path, creating it if it is missing."""
     node = section.node
     for key in path:
-        node = _child_mapping(node, key)
+        node = _get_or_create_mapping(node, key)
     return Section(node, section.source)
 
 
@@ -322,14 +322,14 @@ def _copy(node: yaml.Node, *, deep: bool = True) -> yaml.Node:
     return type(node)(node.tag, value, node.start_mark, node.end_mark, node.flow_style)
 
 
-def _span(node: yaml.Node, source: SourceText) -> Span:
+def _get_span(node: yaml.Node, source: SourceText) -> Span:
     start, end = node.start_mark, node.end_mark
     if start is None or end is None:
         return source.span(0, 0)
     return Span(source.name, start.line + 1, start.column + 1, end.line + 1, end.column + 1)
 
 
-def _child(node: yaml.MappingNode, key: str) -> yaml.Node | None:
+def _find_child(node: yaml.MappingNode, key: str) -> yaml.Node | None:
     child: yaml.Node | None = None
     for name, value in node.value:
         if isinstance(name, yaml.ScalarNode) and name.value == key:
@@ -337,8 +337,8 @@ def _child(node: yaml.MappingNode, key: str) -> yaml.Node | None:
     return child
 
 
-def _child_mapping(node: yaml.MappingNode, key: str) -> yaml.MappingNode:
-    child = _child(node, key)
+def _get_or_create_mapping(node: yaml.MappingNode, key: str) -> yaml.MappingNode:
+    child = _find_child(node, key)
     if isinstance(child, yaml.MappingNode):
         if child.flow_style and not child.value:
             child.flow_style = False
@@ -388,13 +388,13 @@ def _expand_aliases(root: yaml.Node, source: SourceText) -> None:
     def visit(node: yaml.Node, ancestors: tuple[int, ...]) -> yaml.Node:
         nonlocal count
         count += 1
-        if id(node) in ancestors or count > MAXIMUM_NODES:
+        if id(node) in ancestors or count > MAX_NODES:
             message = (
                 phrase("an alias refers to itself")
                 if id(node) in ancestors
-                else phrase("the file has more than {maximum_nodes} values", maximum_nodes=MAXIMUM_NODES)
+                else phrase("the file has more than {maximum_nodes} values", maximum_nodes=MAX_NODES)
             )
-            raise LinkwrightError(Diagnostic("RVIZ102", message, _span(node, source), source=source))
+            raise LinkwrightError(Diagnostic("RVIZ102", message, _get_span(node, source), source=source))
         if id(node) in visited_ids:
             node = _copy(node, deep=False)
         visited_ids.add(id(node))
@@ -408,7 +408,7 @@ def _expand_aliases(root: yaml.Node, source: SourceText) -> None:
     visit(root, ())
 
 
-def _yaml_diagnostic(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
+def _make_yaml_diagnostic(error: yaml.YAMLError, source: SourceText) -> Diagnostic:
     mark = getattr(error, "problem_mark", None) or getattr(error, "context_mark", None)
     problem = getattr(error, "problem", None) or getattr(error, "reason", None) or str(error)
     span = None
@@ -435,14 +435,14 @@ _EMPTY_MAPPING_LINE = re.compile(r"^ +\{\}\r?$", re.MULTILINE)
 _INDENTED_ITEMS = re.compile(r"^( *)[^\s#-][^\n]*:[ \r]*\n\1 +- ", re.MULTILINE)
 
 
-def _text_in_layout(node: yaml.Node, source: str) -> str:
+def _format_in_layout(node: yaml.Node, source: str) -> str:
     """Return a node as text in the layout of a source text."""
     if not _INDENTED_ITEMS.search(source):
-        return _default_text(node)
+        return _format_in_default_layout(node)
     return _serialize(node, _RvizDumper if _EMPTY_MAPPING_LINE.search(source) else _IndentingDumper)
 
 
-def _default_text(node: yaml.Node) -> str:
+def _format_in_default_layout(node: yaml.Node) -> str:
     """Return a document as text in libyaml's default layout.
 
     The conversion is fast.

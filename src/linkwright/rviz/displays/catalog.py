@@ -45,18 +45,22 @@ class UnsupportedDisplay(ViewerDisplay):
         self.set_status([StatusRow("Class", "warn", text)])
 
 
-GROUP = "linkwright.displays"
+ENTRY_POINT_GROUP = "linkwright.displays"
 """The group of the entry points."""
 
 
 def has_display(cls: str) -> bool:
     """Return whether a display class is available, that is, has an entry point."""
-    return cls in extensions(GROUP)
+    return cls in extensions(ENTRY_POINT_GROUP)
 
 
 def display_classes() -> list[type[ViewerDisplay]]:
     """Return the display classes that can be imported, including the group class."""
-    return [display_class for cls in extensions(GROUP) if isinstance(display_class := _display_class(cls), type)]
+    return [
+        display_class
+        for cls in extensions(ENTRY_POINT_GROUP)
+        if isinstance(display_class := _load_display_class(cls), type)
+    ]
 
 
 def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> ViewerDisplay:
@@ -66,7 +70,7 @@ def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> Vie
     """
     if not has_display(config.cls):
         return UnsupportedDisplay(host, identity, config)
-    display_class = _display_class(config.cls)
+    display_class = _load_display_class(config.cls)
     if isinstance(display_class, str):
         host.context.node.get_logger().error(f"Displays of class '{config.cls}' cannot be imported: {display_class}")
         return UnsupportedDisplay(host, identity, config)
@@ -74,10 +78,10 @@ def make_display(host: DisplayHost, identity: str, config: DisplayConfig) -> Vie
 
 
 @cache
-def _display_class(cls: str) -> type[ViewerDisplay] | str:
+def _load_display_class(cls: str) -> type[ViewerDisplay] | str:
     """Return the class that an entry point names, or the reason why the class cannot be loaded."""
     try:
-        display_class = extensions(GROUP)[cls].load()
+        display_class = extensions(ENTRY_POINT_GROUP)[cls].load()
     except Exception as error:  # noqa: BLE001  # a third-party package may raise any exception
         return f"{type(error).__name__}: {error}"
     if not (isinstance(display_class, type) and issubclass(display_class, ViewerDisplay)):

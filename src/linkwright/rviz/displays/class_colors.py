@@ -14,7 +14,7 @@ from linkwright.images.color_words import find_rgb
 
 Color: TypeAlias = tuple[int, int, int]
 
-KNOWN: dict[str, Color] = {
+KNOWN_COLORS: dict[str, Color] = {
     "car": (255, 165, 0),
     "person": (0, 0, 255),
     "cyclist": (255, 255, 0),
@@ -41,7 +41,7 @@ _PALETTE: tuple[Color, ...] = (
 )
 
 
-def class_color(name: str, table: Mapping[str, Color]) -> Color:
+def choose_class_color(name: str, table: Mapping[str, Color]) -> Color:
     """Return the color of a detection class.
 
     The color is the first that is found in the table, in vision_msgs_rviz_plugins, as a color word in the name, or
@@ -50,7 +50,7 @@ def class_color(name: str, table: Mapping[str, Color]) -> Color:
     if not name:
         return UNCLASSIFIED_COLOR
     lower_name = name.lower()
-    color = table.get(lower_name) or KNOWN.get(lower_name) or find_rgb(name)
+    color = table.get(lower_name) or KNOWN_COLORS.get(lower_name) or find_rgb(name)
     return color or _PALETTE[zlib.crc32(name.encode()) % len(_PALETTE)]
 
 

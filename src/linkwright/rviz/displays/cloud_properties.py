@@ -140,11 +140,11 @@ def scalar_specs(channel: str, minimum: float, maximum: float, *, inverted: bool
     return tuple(replace(spec, **changes.get(spec.name, {})) for spec in (*STYLE_SPECS, *TRANSFORMER_SPECS))
 
 
-def color_settings(properties: PropertyStore) -> ColorSettings:
+def read_color_settings(properties: PropertyStore) -> ColorSettings:
     """Return the color settings from the values of the properties."""
     flag, number, text = properties.flag, properties.number, properties.text
 
-    def bounds(auto_property: str, *paths: Path) -> tuple[float, float] | None:
+    def read_bounds(auto_property: str, *paths: Path) -> tuple[float, float] | None:
         return None if flag(auto_property) else (number(*paths[0]), number(*paths[1]))
 
     return ColorSettings(
@@ -152,14 +152,14 @@ def color_settings(properties: PropertyStore) -> ColorSettings:
         channel=text(CHANNEL),
         rainbow=flag("Use rainbow"),
         inverted=flag("Invert Rainbow"),
-        darkest=_rgb(text("Min Color")),
-        brightest=_rgb(text("Max Color")),
-        intensities=bounds(AUTO_INTENSITY, (MIN_INTENSITY,), (MAX_INTENSITY,)),
+        darkest=_parse_rgb(text("Min Color")),
+        brightest=_parse_rgb(text("Max Color")),
+        intensities=read_bounds(AUTO_INTENSITY, (MIN_INTENSITY,), (MAX_INTENSITY,)),
         axis=AXES.index(text("Axis")),
-        values=bounds(AUTO_VALUES, (AUTO_VALUES, VALUE_BOUNDS[0]), (AUTO_VALUES, VALUE_BOUNDS[1])),
+        values=read_bounds(AUTO_VALUES, (AUTO_VALUES, VALUE_BOUNDS[0]), (AUTO_VALUES, VALUE_BOUNDS[1])),
         in_fixed_frame=flag("Use Fixed Frame"),
     )
 
 
-def _rgb(color: str) -> tuple[int, int, int]:
+def _parse_rgb(color: str) -> tuple[int, int, int]:
     return int(color[1:3], 16), int(color[3:5], 16), int(color[5:7], 16)

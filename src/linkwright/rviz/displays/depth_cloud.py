@@ -146,10 +146,10 @@ class DepthCloudDisplay(CloudDisplay):
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
         """Return the message type, topic and QoS of the depth image, according to its transport."""
-        source = self._depth_source()
-        return source.message_type, source.topic, self._qos()
+        source = self._find_depth_source()
+        return source.message_type, source.topic, self._make_qos()
 
-    def most_waiting(self) -> int:
+    def max_waiting_messages(self) -> int:
         """Return the maximum number of queued depth images.
 
         The same limit applies to stored color images.
@@ -167,7 +167,7 @@ class DepthCloudDisplay(CloudDisplay):
     def process_message(self, message: Any, pose: Pose | None) -> None:
         """Show a depth image, or store it until its CameraInfo and its color image have arrived."""
         assert pose is not None
-        color = self._nearest_color(message) if self._has_color_topic() else None
+        color = self._find_nearest_color(message) if self._has_color_topic() else None
         if self._info is None or (color is None and self._has_color_topic()):
             self._pending = (message, pose)
             return
@@ -212,7 +212,7 @@ class DepthCloudDisplay(CloudDisplay):
 
     # --- topics ------------------------------------------------------------------------------------------------
 
-    def _qos(self) -> QoSProfile:
+    def _make_qos(self) -> QoSProfile:
         is_reliable = self.properties.text(RELIABILITY) == "Reliable"
         return QoSProfile(
             depth=int(self.properties.number(QUEUE_SIZE)),
@@ -220,14 +220,14 @@ class DepthCloudDisplay(CloudDisplay):
             reliability=ReliabilityPolicy.RELIABLE if is_reliable else ReliabilityPolicy.BEST_EFFORT,
         )
 
-    def _depth_source(self) -> ImageSource:
+    def _find_depth_source(self) -> ImageSource:
         return ImageSource.of(self.properties.text(DEPTH_TOPIC), self.properties.text(DEPTH_TRANSPORT))
 
-    def _color_source(self) -> ImageSource:
+    def _find_color_source(self) -> ImageSource:
         return ImageSource.of(self.properties.text(COLOR_TOPIC), self.properties.text(COLOR_TRANSPORT))
 
     def _subscribe(self) -> None:
-        depth, color = self._depth_source(), self._color_source()
+        depth, color = self._find_depth_source(), self._find_color_source()
         for name, source in ((DEPTH_TRANSPORT, depth), (COLOR_TRANSPORT, color)):
             if not source.is_supported:
                 choice = phrase("choose raw, compressed or compressedDepth")
@@ -246,7 +246,7 @@ class DepthCloudDisplay(CloudDisplay):
         if not depth.topic:
             return
         info = self.properties.text(INFO_TOPIC).strip() or camera_info_topic(depth.base)
-        problem = self._info_topic.listen(info, self._qos())
+        problem = self._info_topic.listen(info, self._make_qos())
         self.set_status_row(
             "Depth Camera Info",
             "error" if problem else "warn",
@@ -254,7 +254,7 @@ class DepthCloudDisplay(CloudDisplay):
         )
         if color.topic:
             self._color_topic = SideTopic(self.host, color.message_type, self._on_color)
-            if problem := self._color_topic.listen(color.topic, self._qos()):
+            if problem := self._color_topic.listen(color.topic, self._make_qos()):
                 self.set_status_row("Message", "error", problem)
             self.choose_transformer("RGB8")
 
@@ -268,22 +268,22 @@ class DepthCloudDisplay(CloudDisplay):
     def _on_info(self, info: Any) -> None:
         self._info = info
         self.set_status_row("Depth Camera Info", "ok", phrase("OK"))
-        self._try_pending()
+        self._retry_pending_depths()
 
     def _on_color(self, message: Any) -> None:
         self._recent_colors.append(message)
-        while len(self._recent_colors) > self.most_waiting():
+        while len(self._recent_colors) > self.max_waiting_messages():
             self._recent_colors.popleft()
-        self._try_pending()
+        self._retry_pending_depths()
 
-    def _try_pending(self) -> None:
+    def _retry_pending_depths(self) -> None:
         if self._pending is not None:
             self.process_message(*self._pending)
 
     def _has_color_topic(self) -> bool:
         return bool(self.properties.text(COLOR_TOPIC).strip())
 
-    def _nearest_color(self, depth: Any) -> Any:
+    def _find_nearest_color(self, depth: Any) -> Any:
         """Return the color image nearest in time to a depth image, or None if none is close enough."""
         stamp_ns = self.frame_of(depth)[1]
         nearest = min(self._recent_colors, key=lambda image: abs(self.frame_of(image)[1] - stamp_ns), default=None)
@@ -317,25 +317,25 @@ class DepthCloudDisplay(CloudDisplay):
         self.show(points, pose, self.frame_of(message)[1])
 
     def _make_points(self, message: Any, pose: Pose, color: Any) -> Points:
-        depth = self._depth_unpacker.image(message, self._depth_source().transport)
+        depth = self._depth_unpacker.image(message, self._find_depth_source().transport)
         self.set_status_row(
             "Depth Image Size", "ok", phrase("{width} x {height}", width=depth.width, height=depth.height)
         )
         image = None
         if color is not None:
-            color = self._color_unpacker.image(color, self._color_source().transport)
+            color = self._color_unpacker.image(color, self._find_color_source().transport)
             self.set_status_row(
                 "Image Size", "ok", phrase("{width} x {height}", width=color.width, height=color.height)
             )
             image = decode_image(color, RangeFinder())
         camera = DepthCamera.of(self._info, depth.width, depth.height)
-        self._pixel_width = camera.pixel
+        self._pixel_width = camera.pixel_width
         covered_seconds = (
             self.properties.number(OCCLUSION, OCCLUSION_TIMEOUT) if self.properties.flag(OCCLUSION) else None
         )
         if covered_seconds is not None and self._has_moved(pose):
             self._builder.reset()
-        return self._builder.points(depth, camera, image, keep_covered=covered_seconds, now=time.monotonic())
+        return self._builder.points(depth, camera, image, covered_timeout_s=covered_seconds, now=time.monotonic())
 
     def _has_moved(self, pose: Pose) -> bool:
         previous_pose = self._camera_pose

@@ -11,13 +11,13 @@ import numpy as np
 
 from linkwright.diagnostics import phrase
 from linkwright.page.protocol.detections import ImageBoxes
-from linkwright.rviz.config.property_store import qos_of
+from linkwright.rviz.config.property_store import qos_from_properties
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.topic_display import SideTopic
-from linkwright.rviz.displays.class_colors import class_color
-from linkwright.rviz.displays.detections import best_result
+from linkwright.rviz.displays.class_colors import choose_class_color
+from linkwright.rviz.displays.detections import find_best_result
 from linkwright.rviz.displays.detector_threshold import DetectorThreshold
 from linkwright.rviz.displays.image import ImageDisplay
 
@@ -84,7 +84,7 @@ class DetectionImageDisplay(ImageDisplay):
             self._images.append(message)
             return
         self._images.clear()
-        self.forget(_BOXES_KEY)
+        self.remove_content(_BOXES_KEY)
         super().process_image(message, pose)
 
     def on_time_changed(self) -> None:
@@ -110,7 +110,7 @@ class DetectionImageDisplay(ImageDisplay):
     def _subscribe_detections(self) -> None:
         topic = self.properties.text(DETECTIONS).strip()
         problem = (
-            self._detections_topic.listen(topic, qos_of(self.properties, DETECTIONS))
+            self._detections_topic.listen(topic, qos_from_properties(self.properties, DETECTIONS))
             if topic
             else phrase("Empty topic name")
         )
@@ -123,7 +123,7 @@ class DetectionImageDisplay(ImageDisplay):
         self._last_detection_time = asyncio.get_running_loop().time()
         _, stamp_ns = self.frame_of(message)
         image = next((image for image in self._images if self.frame_of(image)[1] == stamp_ns), None)
-        content = _boxes(message, of_image=image is not None)
+        content = _make_boxes(message, of_image=image is not None)
         if content is None:
             self.set_status_row(
                 DETECTIONS, "error", phrase("Message contained invalid floating point values (nans or infs)")
@@ -137,7 +137,7 @@ class DetectionImageDisplay(ImageDisplay):
             super().process_image(image, None)
 
 
-def _boxes(message: Any, *, of_image: bool) -> ImageBoxes | None:
+def _make_boxes(message: Any, *, of_image: bool) -> ImageBoxes | None:
     """Return the boxes of a Detection2DArray, or None if a number is not finite.
 
     Args:
@@ -145,7 +145,7 @@ def _boxes(message: Any, *, of_image: bool) -> ImageBoxes | None:
         of_image: whether the boxes belong to the next image, which is still stored.
     """
     detections = list(message.detections)
-    results = [best_result(detection) for detection in detections]
+    results = [find_best_result(detection) for detection in detections]
     centers = [detection.bbox.center for detection in detections]
     boxes = np.array(
         [
@@ -156,6 +156,6 @@ def _boxes(message: Any, *, of_image: bool) -> ImageBoxes | None:
     ).reshape(-1, 5)
     if not np.isfinite(boxes).all():
         return None
-    colors = np.array([class_color(name, {}) for name, _ in results], dtype=np.uint8).reshape(-1, 3)
+    colors = np.array([choose_class_color(name, {}) for name, _ in results], dtype=np.uint8).reshape(-1, 3)
     scores = np.array([score for _, score in results], dtype=np.float32)
     return ImageBoxes(boxes, colors, scores, [name for name, _ in results], of_image)

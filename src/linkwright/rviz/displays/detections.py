@@ -15,7 +15,7 @@ from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.topic_display import RecentDisplay
-from linkwright.rviz.displays.class_colors import Color, class_color, read_class_colors
+from linkwright.rviz.displays.class_colors import Color, choose_class_color, read_class_colors
 
 ONLY_EDGE, CONFIG_PATH, LIFETIME = "Only Edge", "ConfigPath", "Lifetime"
 
@@ -48,10 +48,10 @@ _CLASS_PROPERTIES: Schema = (
 class _BoxDisplay(RecentDisplay):
     """The base class of displays that show the boxes of the last message."""
 
-    def _content(
+    def _make_content(
         self, boxes: Sequence[Any], colors: Sequence[Color], scores: Sequence[float], names: Sequence[str]
     ) -> DataContent | None:
-        poses = np.array([_pose_values(box.center) for box in boxes], dtype=np.float32).reshape(-1, 7)
+        poses = np.array([_pose_to_values(box.center) for box in boxes], dtype=np.float32).reshape(-1, 7)
         sizes = np.array([(box.size.x, box.size.y, box.size.z) for box in boxes], dtype=np.float32).reshape(-1, 3)
         if not self.is_finite(poses, sizes):
             return None
@@ -59,7 +59,7 @@ class _BoxDisplay(RecentDisplay):
         return SolidBoxes(poses, sizes, color_array, np.array(scores, dtype=np.float32), list(names))
 
 
-def _pose_values(pose: Any) -> tuple[float, ...]:
+def _pose_to_values(pose: Any) -> tuple[float, ...]:
     """Return a pose message as x y z qx qy qz qw.
 
     A zero quaternion, the default in messages, becomes the identity rotation.
@@ -82,7 +82,7 @@ class BoundingBox3DArrayDisplay(_BoxDisplay):
         Pages replace white with the color of the property.
         """
         boxes = self.boxes_of(message)
-        return self._content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
+        return self._make_content(boxes, [(255, 255, 255)] * len(boxes), [-1.0] * len(boxes), [""] * len(boxes))
 
     def boxes_of(self, message: Any) -> Sequence[Any]:
         """Return the vision_msgs/msg/BoundingBox3D messages that a message contains."""
@@ -105,7 +105,7 @@ class BoundingBox3DDisplay(BoundingBox3DArrayDisplay):
         return [message]
 
 
-def best_result(detection: Any) -> tuple[str, float]:
+def find_best_result(detection: Any) -> tuple[str, float]:
     """Return the class and score of the most likely hypothesis of a Detection2D or Detection3D.
 
     If there are no hypotheses, return an empty class and a score of -1.
@@ -135,7 +135,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
 
     def stop(self) -> None:
         """Unsubscribe, and cancel the timer that hides the boxes."""
-        self._cancel_end()
+        self._cancel_expiry()
         super().stop()
 
     def on_property_changed(self, path: Path) -> None:
@@ -152,23 +152,23 @@ class Detection3DArrayDisplay(_BoxDisplay):
         If ``Lifetime`` is set, they are hidden after this number of seconds.
         """
         super().process_message(message, pose)
-        self._cancel_end()
+        self._cancel_expiry()
         seconds = int(self.properties.number(LIFETIME))
         if seconds:
             self._end_timer = asyncio.get_running_loop().call_later(seconds, self.reset)
 
     def reset(self) -> None:
         """Discard the boxes."""
-        self._cancel_end()
+        self._cancel_expiry()
         super().reset()
 
     def content(self, message: Any) -> DataContent | None:
         """Return the boxes of the detections in a message, with the colors of their classes."""
         detections = self.detections_of(message)
-        results = [best_result(detection) for detection in detections]
-        colors = [class_color(name, self._table) for name, _ in results]
+        results = [find_best_result(detection) for detection in detections]
+        colors = [choose_class_color(name, self._table) for name, _ in results]
         boxes = [detection.bbox for detection in detections]
-        return self._content(boxes, colors, [score for _, score in results], [name for name, _ in results])
+        return self._make_content(boxes, colors, [score for _, score in results], [name for name, _ in results])
 
     def detections_of(self, message: Any) -> Sequence[Any]:
         """Return the vision_msgs/msg/Detection3D messages that a message contains."""
@@ -184,7 +184,7 @@ class Detection3DArrayDisplay(_BoxDisplay):
             except ValueError as error:
                 self.set_status_row(CONFIG_PATH, "error", foreign(error))
 
-    def _cancel_end(self) -> None:
+    def _cancel_expiry(self) -> None:
         if self._end_timer is not None:
             self._end_timer.cancel()
             self._end_timer = None

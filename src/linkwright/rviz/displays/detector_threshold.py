@@ -10,7 +10,7 @@ from linkwright.graph import Node, Parameter
 from linkwright.graph.parameters.client import AsyncParameterClient
 from linkwright.graph.parameters.parameter import ParameterType
 from linkwright.page.protocol.configuration import StatusLevel
-from linkwright.rviz.parameter_answers import NoAnswerError, wait_for_response, wait_for_services
+from linkwright.rviz.parameter_responses import NoParameterResponseError, wait_for_response, wait_for_services
 
 _PARAMETER_NAMES = ["threshold", "confidence_threshold", "detection.threshold"]
 """The parameter names in Linkwright's detector and yolo_ros, in yolov5_ros, and in openrobotics_darknet_ros."""
@@ -75,7 +75,7 @@ class DetectorThreshold:
                 return "ok", f"The display filters: {name} has no parameter 'threshold'"
             parameter = Parameter(parameter_name, ParameterType.DOUBLE, value)
             result = (await wait_for_response(client, client.set_parameters([parameter]))).results[0]
-        except NoAnswerError as error:
+        except NoParameterResponseError as error:
             return "warn", f"The display filters: {error}"
         finally:
             with suppress(ValueError):  # the node may already have been destroyed

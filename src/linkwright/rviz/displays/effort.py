@@ -18,7 +18,7 @@ from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, alpha, topic_spec
 from linkwright.rviz.displays.base.display import DisplayHost
 from linkwright.rviz.displays.base.topic_display import RecentDisplay
-from linkwright.rviz.robot import frame_of
+from linkwright.rviz.robot import get_frame_name
 from linkwright.urdf import Joint
 
 _DESCRIPTION = "Robot Description"
@@ -111,7 +111,7 @@ class EffortDisplay(RecentDisplay):
         """
         stamp = message.header.stamp
         joint = next((self._joints[name] for name in message.name if self._joints and name in self._joints), None)
-        frame = self.host.frames.fixed_frame if joint is None else self._frame(joint)
+        frame = self.host.frames.fixed_frame if joint is None else self._get_frame(joint)
         return frame, stamp.nanoseconds
 
     def content(self, message: Any) -> DataContent | None:
@@ -131,7 +131,7 @@ class EffortDisplay(RecentDisplay):
             (joint, effort, pose)
             for name, effort in zip(message.name, message.effort, strict=True)
             if (joint := self._joints.get(name)) is not None
-            and (pose := self._ring_pose(joint, float(effort), stamp_ns)) is not None
+            and (pose := self._compute_ring_pose(joint, float(effort), stamp_ns)) is not None
         ]
         return EffortRings(
             [joint.name for joint, _, _ in rings],
@@ -140,11 +140,11 @@ class EffortDisplay(RecentDisplay):
             np.array([joint.limit.effort if joint.limit else 0.0 for joint, _, _ in rings], dtype=np.float32),
         )
 
-    def _ring_pose(self, joint: Joint, effort: float, stamp_ns: int) -> tuple[float, ...] | None:
+    def _compute_ring_pose(self, joint: Joint, effort: float, stamp_ns: int) -> tuple[float, ...] | None:
         if not math.isfinite(effort):
             self.set_status_row(joint.name, "error", phrase("Invalid effort: {effort}", effort=effort))
             return None
-        frame, fixed_frame = self._frame(joint), self.host.frames.fixed_frame
+        frame, fixed_frame = self._get_frame(joint), self.host.frames.fixed_frame
         try:
             pose = self.context.transforms.pose(fixed_frame, frame, stamp_ns)
         except TransformException:
@@ -163,8 +163,8 @@ class EffortDisplay(RecentDisplay):
         qx, qy, qz, qw = rotation
         return (x, y, z, *quaternion_multiply((qx, qy, qz, qw), rotation_from_z(joint.axis)))
 
-    def _frame(self, joint: Joint) -> str:
-        return frame_of(joint.child, self.properties.text(_PREFIX))
+    def _get_frame(self, joint: Joint) -> str:
+        return get_frame_name(joint.child, self.properties.text(_PREFIX))
 
     # --- description -------------------------------------------------------------------------------------------
 

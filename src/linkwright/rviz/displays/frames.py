@@ -16,10 +16,10 @@ from linkwright.rviz.config.schema import (
     alpha,
     line_style_spec,
     line_width_spec,
-    vector,
+    vector_spec,
 )
 from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
-from linkwright.rviz.frames.stream import transform_status
+from linkwright.rviz.frames.stream import make_transform_status
 
 if TYPE_CHECKING:
     from linkwright.graph.names.expressions import Expression
@@ -52,7 +52,7 @@ class AxesDisplay(ViewerDisplay):
 
     def on_frames_changed(self) -> None:
         """Show in the status whether the frame's pose is known."""
-        self.set_status([transform_status(self.host.frames, self.properties.text(_REFERENCE))])
+        self.set_status([make_transform_status(self.host.frames, self.properties.text(_REFERENCE))])
 
 
 class GridDisplay(ViewerDisplay):
@@ -75,7 +75,7 @@ class GridDisplay(ViewerDisplay):
         PropertySpec("Color", "color", "#a0a0a4", "Color of the lines."),
         alpha("Opacity of the lines: 0 is invisible.", 0.5),
         PropertySpec("Plane", "enum", "XY", "The plane of the grid.", options=("XY", "XZ", "YZ")),
-        vector("Offset", "The center of the grid in the reference frame, in meters."),
+        vector_spec("Offset", "The center of the grid in the reference frame, in meters."),
     )
 
     def start(self) -> None:
@@ -89,7 +89,7 @@ class GridDisplay(ViewerDisplay):
 
     def on_frames_changed(self) -> None:
         """Show in the status whether the reference frame's pose is known."""
-        self.set_status([transform_status(self.host.frames, self.properties.text(_REFERENCE))])
+        self.set_status([make_transform_status(self.host.frames, self.properties.text(_REFERENCE))])
 
 
 class FrameFilter:
@@ -183,7 +183,7 @@ class TfDisplay(ViewerDisplay):
     def schema(self) -> Schema:
         """Return the fixed properties, a check box for each frame, and the tree of frames."""
         if self._schema is None:
-            self._schema = (*self.SCHEMA, self._frames_spec(), self._tree_spec())
+            self._schema = (*self.SCHEMA, self._make_frames_spec(), self._make_tree_spec())
         return self._schema
 
     def start(self) -> None:
@@ -206,7 +206,10 @@ class TfDisplay(ViewerDisplay):
             self.pages.publish(PropertyChanged(self.property_id(_ALL_ENABLED), False))
 
     def on_enabled_changed(self) -> None:
-        """Update the status of the frames, and notify the host, which fades frames only for enabled displays."""
+        """Update the status of the frames, and notify the host.
+
+        The host fades frames only for enabled displays.
+        """
         self.host.on_fading_changed()
         super().on_enabled_changed()
 
@@ -226,10 +229,10 @@ class TfDisplay(ViewerDisplay):
         problems = [
             StatusRow(name, "error", frame_filter.problem) for name, frame_filter in filters if frame_filter.problem
         ]
-        self.set_status(problems + [self._frame_status(name) for name in shown_names])
+        self.set_status(problems + [self._make_frame_status(name) for name in shown_names])
 
-    def _frame_status(self, name: str) -> StatusRow:
-        problem = self.host.frames.problem(name)
+    def _make_frame_status(self, name: str) -> StatusRow:
+        problem = self.host.frames.find_problem(name)
         return StatusRow(name, "warn", problem) if problem else StatusRow(name, "ok", phrase("Transform OK"))
 
     def _filter_names(self, names: set[str]) -> set[str]:
@@ -250,7 +253,7 @@ class TfDisplay(ViewerDisplay):
     def _check_box_names(self) -> list[str]:
         return [name for name in self._shown_frames if name != _ALL_ENABLED[1]]
 
-    def _frames_spec(self) -> PropertySpec:
+    def _make_frames_spec(self) -> PropertySpec:
         frame_specs = tuple(
             PropertySpec(name, "bool", True, "Draw this frame.", nested=True, details="frame")
             for name in self._check_box_names()
@@ -260,18 +263,18 @@ class TfDisplay(ViewerDisplay):
             "Frames", "group", description="The frames that tf knows.", children=(all_spec, *frame_specs)
         )
 
-    def _tree_spec(self) -> PropertySpec:
+    def _make_tree_spec(self) -> PropertySpec:
         children: dict[str | None, list[str]] = {}
         shown_names = set(self._shown_frames)
         for name, parent in self._parents:
             children.setdefault(parent if parent in shown_names else None, []).append(name)
-        roots = tuple(_tree(name, children, 1) for name in children.get(None, ()))
+        roots = tuple(_make_tree(name, children, 1) for name in children.get(None, ()))
         return PropertySpec("Tree", "group", description="The tree of frames.", children=roots)
 
 
-def _tree(name: str, children: dict[str | None, list[str]], depth: int) -> PropertySpec:
+def _make_tree(name: str, children: dict[str | None, list[str]], depth: int) -> PropertySpec:
     names = children.get(name, [])
     if names and depth == _MAX_TREE_DEPTH:
         continuation = PropertySpec("...", "group", description="The chain continues; it is too long to be shown here.")
         return PropertySpec(name, "group", children=(continuation,))
-    return PropertySpec(name, "group", children=tuple(_tree(child, children, depth + 1) for child in names))
+    return PropertySpec(name, "group", children=tuple(_make_tree(child, children, depth + 1) for child in names))

@@ -49,7 +49,7 @@ class GridCellsDisplay(TopicDisplay):
 
     def _refuse(self, level: StatusLevel, text: Phrase) -> None:
         """Remove the cells, and show the reason in the status row of the topic, as in RViz."""
-        self.forget()
+        self.remove_content()
         self.set_status_row(TOPIC, level, text)
 
 
@@ -95,7 +95,10 @@ class PolygonDisplay(RecentDisplay):
 
 
 class RangeDisplay(RecentDisplay):
-    """A display of the last measurements of a range sensor as cones with the sensor's field of view."""
+    """A display of the last measurements of a range sensor, drawn as cones.
+
+    A cone has the angle of the sensor's field of view.
+    """
 
     CLASS = "rviz_default_plugins/Range"
     MESSAGE = "sensor_msgs/msg/Range"
@@ -110,10 +113,10 @@ class RangeDisplay(RecentDisplay):
     def content(self, message: Any) -> DataContent | None:
         """Return the cone of a measurement, with length 0 if the measurement is not valid."""
         angle = float(message.field_of_view)
-        return RangeCone(_cone_length(message), angle if math.isfinite(angle) else 0.0)
+        return RangeCone(_compute_cone_length(message), angle if math.isfinite(angle) else 0.0)
 
 
-def _cone_length(message: Any) -> float:
+def _compute_cone_length(message: Any) -> float:
     """Return the length of the cone in meters, as in RViz, according to REP 117.
 
     A fixed-distance ranger has equal minimum and maximum ranges. It reports -Inf for a detection. A detection is drawn

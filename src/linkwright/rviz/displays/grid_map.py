@@ -113,7 +113,7 @@ class GridMapDisplay(RecentDisplay):
     def content(self, message: Any) -> DataContent | None:
         """Return the surface of a grid map, or None if the map cannot be drawn."""
         try:
-            surface = self._surface(message)
+            surface = self._make_surface(message)
         except BadGridError as error:
             self.refuse(foreign(error))
             return None
@@ -127,7 +127,7 @@ class GridMapDisplay(RecentDisplay):
             self.reset()
             self.show_again()
 
-    def _surface(self, message: Any) -> GridSurface:
+    def _make_surface(self, message: Any) -> GridSurface:
         properties = self.properties
         grid = _Grid(message)
         is_flat = properties.text("Height Transformer") == "Flat"
@@ -136,7 +136,7 @@ class GridMapDisplay(RecentDisplay):
         for name in message.basic_layers:
             valid &= np.isfinite(grid.layer(name))
         colors = np.zeros((*grid.shape, 4), dtype=np.uint8)
-        colors[..., :3] = self._colors(grid)
+        colors[..., :3] = self._compute_colors(grid)
         colors[..., 3] = np.where(valid, 255, 0)
         step = 1
         while -(-grid.shape[0] // step) * -(-grid.shape[1] // step) > _MAX_CELLS:
@@ -156,12 +156,12 @@ class GridMapDisplay(RecentDisplay):
             properties.text("Color Transformer") != "None",
         )
 
-    def _colors(self, grid: _Grid) -> NDArray[np.uint8]:
+    def _compute_colors(self, grid: _Grid) -> NDArray[np.uint8]:
         """Return the RGB color of each cell, shape (rows, columns, 3), or one color, shape (3,)."""
         properties = self.properties
         transformer = properties.text("Color Transformer")
         if transformer in ("FlatColor", "None"):
-            return _rgb(properties.text("Color"))
+            return _parse_rgb(properties.text("Color"))
         values = grid.layer(properties.text("Color Layer"))
         if transformer == "ColorLayer":
             bits = values.view(np.uint32)
@@ -177,7 +177,7 @@ class GridMapDisplay(RecentDisplay):
         )
         rainbow_word = "ColorMap" if self.config.section.scalar("Use ColorMap") else "Rainbow"
         if not properties.flag(f"Use {rainbow_word}"):
-            low, high = _rgb(properties.text("Min Color")), _rgb(properties.text("Max Color"))
+            low, high = _parse_rgb(properties.text("Min Color")), _parse_rgb(properties.text("Max Color"))
             colors = low + fractions[..., None] * (high.astype(np.float32) - low)
             return np.rint(colors).astype(np.uint8)
         if properties.flag(f"Invert {rainbow_word}"):
@@ -191,7 +191,7 @@ _RAINBOW = np.array(
 """The colors from violet to red."""
 
 
-def _rgb(text: str) -> NDArray[np.uint8]:
+def _parse_rgb(text: str) -> NDArray[np.uint8]:
     return np.array([int(text[start : start + 2], 16) for start in (1, 3, 5)], dtype=np.uint8)
 
 

@@ -25,7 +25,7 @@ from linkwright.images import (
     is_cut_off,
 )
 from linkwright.page.protocol.images import CameraModel, ImageFrame, ImageSize
-from linkwright.rviz.config.property_store import qos_of
+from linkwright.rviz.config.property_store import qos_from_properties
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, topic_spec
 from linkwright.rviz.displays.base.display import DisplayHost, Pose, ViewerDisplay
@@ -54,19 +54,19 @@ class ImageTopicDisplay(TopicDisplay):
         self._source = ImageSource("")
 
     @classmethod
-    def messages_shown(cls) -> tuple[str, ...]:
+    def shown_message_types(cls) -> tuple[str, ...]:
         """Return the message types of raw and compressed images."""
         return (cls.MESSAGE, "sensor_msgs/msg/CompressedImage")
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
         """Return the message type, topic and QoS to subscribe with, according to the transport."""
-        source = self._selected_source()
+        source = self._find_selected_source()
         return source.message_type, source.topic, super().subscription()[2]
 
     def process_message(self, message: Any, pose: Pose | None) -> None:
         """Decode an image and show it, or show the reason why it cannot be decoded."""
         try:
-            image = self._image_of(message)
+            image = self._to_image(message)
         except BadImageError as error:
             self.set_status_row("Image", "error", foreign(error))
             return
@@ -96,7 +96,7 @@ class ImageTopicDisplay(TopicDisplay):
             pose: the pose of the image's frame in the Fixed Frame, or None.
         """
         try:
-            content = self._frame(message, camera)
+            content = self._make_frame(message, camera)
         except BadImageError as error:
             self.set_status_row("Image", "error", foreign(error))
             return
@@ -105,17 +105,17 @@ class ImageTopicDisplay(TopicDisplay):
         else:
             self.delete_status_row("Image")
         frame, stamp_ns = TopicDisplay.frame_of(self, message)
-        shrink = partial(self._compressor.compressed, content)
+        shrink = partial(self._compressor.compress, content)
         self.send(content, frame=frame.removeprefix("/"), pose=pose, stamp_ns=stamp_ns, shrink=shrink)
 
-    def reduction(self, width: int, height: int) -> int:
+    def choose_reduction(self, width: int, height: int) -> int:
         """Return the block size by which an image is reduced before it is sent.
 
         Each square block of this side length, in pixels, is averaged to one pixel.
         """
         return 1
 
-    def _selected_source(self) -> ImageSource:
+    def _find_selected_source(self) -> ImageSource:
         """Return the topic and transport that the topic property selects.
 
         The result includes the message type if the topic has a publisher.
@@ -131,13 +131,13 @@ class ImageTopicDisplay(TopicDisplay):
             return source
 
     def _report_count(self) -> None:
-        if self._count == 0 and self._selected_source() != self._source:
+        if self._count == 0 and self._find_selected_source() != self._source:
             self._restart()
         else:
             super()._report_count()
 
     def _subscribe(self) -> None:
-        source = self._source = self._selected_source()
+        source = self._source = self._find_selected_source()
         if source.is_supported:
             super()._subscribe()
         else:
@@ -152,13 +152,13 @@ class ImageTopicDisplay(TopicDisplay):
                 ),
             )
 
-    def _image_of(self, message: Any) -> Any:
+    def _to_image(self, message: Any) -> Any:
         transport = self._source.transport_of(message)
         if transport == COMPRESSED and not has_range(encoding_of(message)):
             return message
         return self._unpacker.image(message, transport)
 
-    def _frame(self, message: Any, camera: CameraModel | None) -> ImageFrame:
+    def _make_frame(self, message: Any, camera: CameraModel | None) -> ImageFrame:
         if not hasattr(message, "encoding"):
             data = np.frombuffer(message.data, np.uint8)
             if not _is_readable(data[:16].tobytes()):
@@ -167,7 +167,7 @@ class ImageTopicDisplay(TopicDisplay):
                 )
             return ImageFrame(0, 0, 0, 0, "file", data, camera)
         image = decode_image(message, self.ranges)
-        reduced_image = image.reduce_by(self.reduction(image.width, image.height)).subsample(MAX_PIXELS)
+        reduced_image = image.reduce_by(self.choose_reduction(image.width, image.height)).subsample(MAX_PIXELS)
         return ImageFrame(
             width=image.width,
             height=image.height,
@@ -179,9 +179,9 @@ class ImageTopicDisplay(TopicDisplay):
         )
 
 
-def _is_readable(start: bytes) -> bool:
+def _is_readable(header: bytes) -> bool:
     """Return whether data starts with the signature of a JPEG, PNG, GIF, BMP or WebP file."""
-    return start.startswith((b"\xff\xd8\xff", b"\x89PNG", b"GIF8", b"BM")) or start[8:12] == b"WEBP"
+    return header.startswith((b"\xff\xd8\xff", b"\x89PNG", b"GIF8", b"BM")) or header[8:12] == b"WEBP"
 
 
 _NORMALIZE = "Normalize Range"
@@ -243,7 +243,7 @@ class ImageDisplay(ImageTopicDisplay):
         if previous_size is not None and (message.width > previous_size.width or message.height > previous_size.height):
             self.show_again()
 
-    def reduction(self, width: int, height: int) -> int:
+    def choose_reduction(self, width: int, height: int) -> int:
         """Return the largest block size at which no panel loses detail."""
         panel = self._panel
         if panel is None or panel.width <= 0 or panel.height <= 0:
@@ -364,13 +364,13 @@ class CameraDisplay(ImageTopicDisplay):
             )
         return tuple(specs.values())
 
-    def most_waiting(self) -> int:
+    def max_waiting_messages(self) -> int:
         """Return the maximum number of queued messages, a constant as in RViz."""
         return _MAX_QUEUED
 
     def process_image(self, message: Any, pose: Pose | None) -> None:
         """Show an image, with the camera's parameters if they are known."""
-        camera = self._camera_model(message)
+        camera = self._make_camera_model(message)
         self.show_image(message, camera, pose)
 
     def on_time_changed(self) -> None:
@@ -390,7 +390,7 @@ class CameraDisplay(ImageTopicDisplay):
         if not topic:
             return
         info = camera_info_topic(topic)
-        problem = self._info_topic.listen(info, qos_of(self.properties))
+        problem = self._info_topic.listen(info, qos_from_properties(self.properties))
         text = problem or phrase("No CameraInfo received on [{topic}]. Topic may not exist.", topic=info)
         self.set_status_row(_INFO_ROW, "error" if problem else "warn", text)
 
@@ -404,7 +404,7 @@ class CameraDisplay(ImageTopicDisplay):
         if is_first:
             self.show_again()
 
-    def _camera_model(self, image: Any) -> CameraModel | None:
+    def _make_camera_model(self, image: Any) -> CameraModel | None:
         """Return the camera model for an image, or None if there is no valid CameraInfo.
 
         If the CameraInfo is not valid, the reason is shown in the status.
@@ -424,8 +424,8 @@ class CameraDisplay(ImageTopicDisplay):
             )
             self.set_status_row(_INFO_ROW, "error", text)
             return None
-        p = arrays[3]
-        if p[0] == 0.0 or p[5] == 0.0:
+        projection = arrays[3]
+        if projection[0] == 0.0 or projection[5] == 0.0:
             text = phrase("CameraInfo/P resulted in an invalid position calculation (nans or infs)")
             self.set_status_row(_INFO_ROW, "error", text)
             return None
@@ -433,10 +433,10 @@ class CameraDisplay(ImageTopicDisplay):
         return CameraModel(
             width=float(width),
             height=float(height),
-            focal_x=float(p[0]),
-            focal_y=float(p[5]),
-            center_x=float(p[2]),
-            center_y=float(p[6]),
-            offset_x=float(-p[3] / p[0]),
-            offset_y=float(-p[7] / p[5]),
+            focal_x=float(projection[0]),
+            focal_y=float(projection[5]),
+            center_x=float(projection[2]),
+            center_y=float(projection[6]),
+            offset_x=float(-projection[3] / projection[0]),
+            offset_y=float(-projection[7] / projection[5]),
         )

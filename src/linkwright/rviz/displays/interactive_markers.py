@@ -18,7 +18,7 @@ from linkwright.rviz.config.schema import Path, PropertySpec
 from linkwright.rviz.displays.base.display import DataDisplay, DisplayHost, Pose
 from linkwright.rviz.markers import BadMarkerError
 from linkwright.rviz.markers.interactive import ClientEvents, InteractiveMarkerClient, read_interactive_marker
-from linkwright.rviz.markers.shapes import pose_of
+from linkwright.rviz.markers.shapes import pose_to_values
 
 _NAMESPACE_PROPERTY = "Interactive Markers Namespace"
 _TRANSPARENCY_PROPERTY = "Enable Transparency"
@@ -125,7 +125,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         if not namespace:
             self.set_status_row(_CLIENT_ROW, "error", phrase("Error connecting: empty namespace"))
             return
-        self._release = self.context.transforms.use(self._on_transforms)
+        self._release = self.context.transforms.add_listener(self._on_transforms)
         events = ClientEvents(
             on_all_markers=lambda markers: self._apply_or_queue(partial(self._apply_all, markers)),
             on_update=lambda update: self._apply_or_queue(partial(self._apply_update, update)),
@@ -168,7 +168,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self._markers.clear()
         self._poses.clear()
         self._unplaced_names.clear()
-        self.forget()
+        self.remove_content()
 
     def _apply_all(self, markers: list[Any]) -> None:
         self._clear()
@@ -185,36 +185,38 @@ class InteractiveMarkersDisplay(DataDisplay):
 
     def _apply_marker(self, marker: Any) -> None:
         self._markers[marker.name] = marker
-        self._poses[marker.name] = pose_of(marker.pose)
+        self._poses[marker.name] = pose_to_values(marker.pose)
         self._data.pop(f"pose {marker.name}", None)
         self._show(marker.name)
 
-    def _move(self, moved: Any) -> None:
-        marker = self._markers.get(moved.name)
+    def _move(self, pose_update: Any) -> None:
+        marker = self._markers.get(pose_update.name)
         if marker is None:
             self.set_status_row(
-                moved.name, "error", phrase("Pose received for non-existing marker '{name}'", name=moved.name)
+                pose_update.name,
+                "error",
+                phrase("Pose received for non-existing marker '{name}'", name=pose_update.name),
             )
             return
-        pose = pose_of(moved.pose)
-        self._poses[moved.name] = pose
-        is_same_frame = moved.header.frame_id in ("", marker.header.frame_id) and _is_latest(moved) == _is_latest(
-            marker
-        )
-        if moved.header.frame_id:
-            marker.header = moved.header
+        pose = pose_to_values(pose_update.pose)
+        self._poses[pose_update.name] = pose
+        is_same_frame = pose_update.header.frame_id in ("", marker.header.frame_id) and _is_latest(
+            pose_update
+        ) == _is_latest(marker)
+        if pose_update.header.frame_id:
+            marker.header = pose_update.header
         if not is_same_frame or not _is_latest(marker):
-            self._show(moved.name)  # the pose is relative to another frame or time
-        elif moved.name not in self._unplaced_names:
-            content = InteractiveMarkerMoved(moved.name, pose)
-            self.send(content, key=f"pose {moved.name}", frame=marker.header.frame_id.removeprefix("/"))
+            self._show(pose_update.name)  # the pose is relative to another frame or time
+        elif pose_update.name not in self._unplaced_names:
+            content = InteractiveMarkerMoved(pose_update.name, pose)
+            self.send(content, key=f"pose {pose_update.name}", frame=marker.header.frame_id.removeprefix("/"))
 
     def _erase(self, name: str) -> None:
         self._markers.pop(name, None)
         self._poses.pop(name, None)
         self._unplaced_names.discard(name)
         self._data.pop(f"pose {name}", None)
-        self.forget(f"marker {name}")
+        self.remove_content(f"marker {name}")
         self.delete_status_row(name)
 
     # --- to pages ----------------------------------------------------------------------------------------------
@@ -223,18 +225,18 @@ class InteractiveMarkersDisplay(DataDisplay):
         marker = self._markers[name]
         frame = marker.header.frame_id.removeprefix("/")
         try:
-            frame_pose = self._frame_pose(marker, frame)
+            frame_pose = self._find_frame_pose(marker, frame)
             shape = read_interactive_marker(
-                marker, self._index, self._relative_pose, transparent=self.properties.flag(_TRANSPARENCY_PROPERTY)
+                marker, self._index, self._find_relative_pose, transparent=self.properties.flag(_TRANSPARENCY_PROPERTY)
             )
         except TransformException as error:
             self._unplaced_names.add(name)
             self.set_status_row(name, "error", error.diagnostics[0].message)
-            self.forget(f"marker {name}")
+            self.remove_content(f"marker {name}")
             return
         except BadMarkerError as error:
             self.set_status_row(name, "error", foreign(error))
-            self.forget(f"marker {name}")
+            self.remove_content(f"marker {name}")
             return
         self._unplaced_names.discard(name)
         self.delete_status_row(name)
@@ -242,7 +244,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         self.context.meshes.replace(self.id, self._index.folders)
         self.send(shape, key=f"marker {name}", frame=frame, pose=frame_pose)
 
-    def _frame_pose(self, marker: Any, frame: str) -> Pose | None:
+    def _find_frame_pose(self, marker: Any, frame: str) -> Pose | None:
         """Return the pose of a marker's frame at its stamp, or None for the latest transform.
 
         Raises:
@@ -253,7 +255,7 @@ class InteractiveMarkersDisplay(DataDisplay):
         pose = self.context.transforms.pose(fixed_frame, frame, stamp.nanoseconds)
         return None if _is_latest(marker) else pose
 
-    def _relative_pose(self, reference: str, frame: str) -> Transform:
+    def _find_relative_pose(self, reference: str, frame: str) -> Transform:
         x, y, z, qx, qy, qz, qw = self.context.transforms.pose(reference, frame, 0).tolist()
         return x, y, z, qx, qy, qz, qw
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Phrase, phrase
 from linkwright.page.protocol.configuration import PropertyChanged
 from linkwright.page.protocol.images import OccupancyMap
-from linkwright.rviz.config.property_store import qos_of
+from linkwright.rviz.config.property_store import qos_from_properties
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, Schema, alpha, topic_spec
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
@@ -88,7 +88,7 @@ class MapDisplay(TopicDisplay):
         self._pose: Pose | None = None
         self._last_send_time = 0.0
         self._send_timer: asyncio.TimerHandle | None = None
-        self._follow_topic(replace_in_file=False)
+        self._derive_update_topic(replace_in_file=False)
 
     def frame_of(self, message: Any) -> tuple[str, int]:
         """Return the map's frame, by default ``map``, and the time of the frame's pose in ns.
@@ -111,7 +111,7 @@ class MapDisplay(TopicDisplay):
     def on_property_changed(self, path: Path) -> None:
         """Subscribe to another topic or to other updates, or apply the timestamp setting."""
         if path == (TOPIC,):
-            self._follow_topic(replace_in_file=True)
+            self._derive_update_topic(replace_in_file=True)
             self.pages.publish(PropertyChanged(self.property_id((_UPDATE_TOPIC,)), self.properties.text(_UPDATE_TOPIC)))
         super().on_property_changed(path)
         if path[0] == _UPDATE_TOPIC:
@@ -120,9 +120,9 @@ class MapDisplay(TopicDisplay):
             self.show_again()
 
     def on_properties_restored(self) -> None:
-        """Derive the update topic from the map's topic if the file does not contain an update topic."""
+        """Derive the update topic from the map's topic if the file does not contain one."""
         super().on_properties_restored()
-        self._follow_topic(replace_in_file=False)
+        self._derive_update_topic(replace_in_file=False)
 
     def on_frames_changed(self) -> None:
         """Place the map in a new Fixed Frame, and show whether the map's pose is known."""
@@ -130,7 +130,7 @@ class MapDisplay(TopicDisplay):
         if self._map is None or self.properties.flag(_USE_TIMESTAMP):
             return
         frame = self.frame_of(self._map)[0].removeprefix("/")
-        problem = self.host.frames.problem(frame)
+        problem = self.host.frames.find_problem(frame)
         self.set_status_row(TRANSFORM, "error" if problem else "ok", problem or phrase("Transform OK"))
 
     def on_time_changed(self) -> None:
@@ -157,7 +157,7 @@ class MapDisplay(TopicDisplay):
             self._send_timer.cancel()
             self._send_timer = None
 
-    def _follow_topic(self, *, replace_in_file: bool) -> None:
+    def _derive_update_topic(self, *, replace_in_file: bool) -> None:
         """Derive the update topic from the map's topic, as RViz does.
 
         If the file contains an update topic, it is replaced only if `replace_in_file` is true. If the file contains
@@ -177,7 +177,7 @@ class MapDisplay(TopicDisplay):
             return
         self.set_status_row("Message", "warn", phrase("No map received"))
         update_topic = self.properties.text(_UPDATE_TOPIC).strip() or f"{topic}_updates"
-        problem = self._updates.listen(update_topic, qos_of(self.properties, _UPDATE_TOPIC))
+        problem = self._updates.listen(update_topic, qos_from_properties(self.properties, _UPDATE_TOPIC))
         self.set_status_row("Update Topic", "error" if problem else "ok", problem or phrase("OK"))
 
     def _unsubscribe(self) -> None:
@@ -189,7 +189,7 @@ class MapDisplay(TopicDisplay):
     def _accept_map(self, message: Any) -> bool:
         info = message.info
         cells = np.frombuffer(message.data, np.uint8)
-        origin = _pose_of(info.origin)
+        origin = _pose_to_values(info.origin)
         if not np.isfinite([info.resolution, *origin]).all():
             self.set_status_row(
                 "Map", "error", phrase("Message contained invalid floating point values (nans or infs)")
@@ -199,7 +199,7 @@ class MapDisplay(TopicDisplay):
                 "Map", "error", phrase("Map is zero-sized ({width}x{height})", width=info.width, height=info.height)
             )
         elif info.width * info.height != cells.size:
-            self.set_status_row("Map", "error", _size_mismatch(info, cells))
+            self.set_status_row("Map", "error", _describe_size_mismatch(info, cells))
         else:
             self._map = message
             self._cells, self._owns_cells = cells.reshape(info.height, info.width), False
@@ -210,7 +210,7 @@ class MapDisplay(TopicDisplay):
         return False
 
     def _publish_read_only_values(self, message: Any) -> None:
-        for path, value in _read_only_values(message.info):
+        for path, value in _iterate_read_only_values(message.info):
             if self.properties.set_read_only(path, value):
                 self.pages.publish(PropertyChanged(self.property_id(path), value))
 
@@ -224,15 +224,15 @@ class MapDisplay(TopicDisplay):
             self.set_status_row("Update", "error", phrase("Update area outside of original map area."))
             return
         if cells.size != update.width * update.height:
-            self.set_status_row("Update", "error", _size_mismatch(update, cells))
+            self.set_status_row("Update", "error", _describe_size_mismatch(update, cells))
             return
         if not self._owns_cells:
             self._cells, self._owns_cells = self._cells.copy(), True
         self._cells[update.y : top, update.x : right] = cells.reshape(update.height, update.width)
         self.set_status_row("Update", "ok", phrase("Update OK"))
-        self._send_soon()
+        self._schedule_send()
 
-    def _send_soon(self) -> None:
+    def _schedule_send(self) -> None:
         """Schedule sending the map, so that several updates are sent as one map."""
         if self._send_timer is None:
             delay = max(0.0, self._last_send_time + _UPDATE_PERIOD_S - time.monotonic())
@@ -250,14 +250,14 @@ class MapDisplay(TopicDisplay):
             width=info.width,
             height=info.height,
             resolution=float(info.resolution),
-            origin=_pose_of(info.origin),
+            origin=_pose_to_values(info.origin),
             cells=self._cells,
         )
         self._last_send_time = time.monotonic()
         self.send(content, frame=frame.removeprefix("/"), pose=self._pose if use_timestamp else None, stamp_ns=stamp_ns)
 
 
-def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
+def _describe_size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
     """Return the status text for a map or update whose size does not match its number of cells.
 
     `grid` is a MapMetaData or an update.
@@ -270,7 +270,7 @@ def _size_mismatch(grid: Any, cells: NDArray[np.uint8]) -> Phrase:
     )
 
 
-def _pose_of(origin: Any) -> list[float]:
+def _pose_to_values(origin: Any) -> list[float]:
     """Return a pose message as x y z qx qy qz qw.
 
     A zero quaternion becomes the identity rotation.
@@ -280,7 +280,7 @@ def _pose_of(origin: Any) -> list[float]:
     return [position.x, position.y, position.z, *(quaternion if any(quaternion) else [0.0, 0.0, 0.0, 1.0])]
 
 
-def _read_only_values(info: Any) -> Iterator[tuple[Path, float | int]]:
+def _iterate_read_only_values(info: Any) -> Iterator[tuple[Path, float | int]]:
     """Yield the path and value of each read-only property, from a nav_msgs/msg/MapMetaData."""
     yield ("Resolution",), float(info.resolution)
     yield ("Width",), info.width

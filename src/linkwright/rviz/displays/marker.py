@@ -78,7 +78,7 @@ class MarkerDisplay(StoredMarkersDisplay):
     def process_message(self, message: Any, pose: Pose | None) -> None:
         """Apply the action of a marker: add, delete, or delete all."""
         self._apply_marker(message)
-        while len(self._pending_ids) > self.most_waiting():
+        while len(self._pending_ids) > self.max_waiting_messages():
             self._remove(next(iter(self._pending_ids)))
         self._show()
 
@@ -173,7 +173,7 @@ class MarkerDisplay(StoredMarkersDisplay):
         marker_frame = fixed_frame if marker.frame == FIXED_FRAME else marker.frame
         shape = marker.reading.shape
         try:
-            frame = self._frame_pose(fixed_frame, marker_frame, 0 if marker.locked else marker.stamp_ns)
+            frame = self._find_frame_pose(fixed_frame, marker_frame, 0 if marker.locked else marker.stamp_ns)
         except TransformException as error:
             reason = error.diagnostics[0].message
             text = phrase(
@@ -198,7 +198,7 @@ class MarkerDisplay(StoredMarkersDisplay):
             shape.frame, shape.pose = "", marker_pose(frame, marker.reading)
         self._store.put(shape)
 
-    def _frame_pose(self, fixed_frame: str, frame: str, stamp_ns: int) -> Transform:
+    def _find_frame_pose(self, fixed_frame: str, frame: str, stamp_ns: int) -> Transform:
         pose = self._frame_poses.get((frame, stamp_ns))
         if pose is None:
             pose = self._frame_poses[frame, stamp_ns] = tuple(

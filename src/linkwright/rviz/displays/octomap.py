@@ -9,19 +9,19 @@ import numpy as np
 from linkwright.diagnostics import foreign, phrase
 from linkwright.geometry.single import IDENTITY
 from linkwright.graph import QoSProfile
-from linkwright.rviz.config.property_store import qos_of
+from linkwright.rviz.config.property_store import qos_from_properties
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, PropertySpec, topic_spec
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.stored_markers import StoredMarkersDisplay
 from linkwright.rviz.displays.base.topic_display import TRANSFORM
 from linkwright.rviz.displays.moveit.octree import BadOctreeError, Cells, read_octree
-from linkwright.rviz.displays.moveit.properties import fraction
+from linkwright.rviz.displays.moveit.properties import fraction_spec
 from linkwright.rviz.displays.moveit.voxels import (
     BY_PROBABILITY,
     VOXEL_COLORING,
     VOXEL_RENDERING,
-    octomap_markers,
+    make_octomap_markers,
     select_rendered,
 )
 
@@ -44,7 +44,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         topic_spec(_TOPIC, description=MESSAGE, messages=(MESSAGE,)),
         VOXEL_RENDERING,
         VOXEL_COLORING,
-        fraction("Voxel Alpha", 1.0, "Opacity of the cells."),
+        fraction_spec("Voxel Alpha", 1.0, "Opacity of the cells."),
         PropertySpec(
             "Max. Octree Depth",
             "int",
@@ -64,7 +64,7 @@ class OctomapDisplay(StoredMarkersDisplay):
 
     def subscription(self) -> tuple[str, str, QoSProfile]:
         """Return the message type, topic and QoS to subscribe with."""
-        return self.MESSAGE, self.properties.text(_TOPIC).strip(), qos_of(self.properties, _TOPIC)
+        return self.MESSAGE, self.properties.text(_TOPIC).strip(), qos_from_properties(self.properties, _TOPIC)
 
     def on_property_changed(self, path: Path) -> None:
         """Subscribe to another topic, or redraw the last map."""
@@ -75,7 +75,7 @@ class OctomapDisplay(StoredMarkersDisplay):
 
     def on_frames_changed(self) -> None:
         """Show in the status whether the pose of the map's frame is known."""
-        problem = self.host.frames.problem(self._frame) if self._frame else None
+        problem = self.host.frames.find_problem(self._frame) if self._frame else None
         if problem:
             self.set_status_row(TRANSFORM, "error", problem)
         elif self._frame:
@@ -99,8 +99,8 @@ class OctomapDisplay(StoredMarkersDisplay):
             return
         self.delete_status_row(_MAP_ROW)
         self._frame = message.header.frame_id.removeprefix("/")
-        markers = octomap_markers(
-            self._cells_to_draw(cells, message.resolution),
+        markers = make_octomap_markers(
+            self._select_cells(cells, message.resolution),
             "octomap",
             frame=self._frame,
             base=IDENTITY,
@@ -115,7 +115,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         self.show_markers()
         self.on_frames_changed()
 
-    def _cells_to_draw(self, cells: Cells, resolution: float) -> Cells:
+    def _select_cells(self, cells: Cells, resolution: float) -> Cells:
         """Return the cells of the selected kind and height, at the selected maximum depth.
 
         Smaller cells are merged. A merged cell has the largest probability of its parts.
@@ -123,7 +123,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         cells = select_rendered(cells, self.properties.text("Voxel Rendering"))
         height = cells.centers[:, 2]
         min_height, max_height = (self.properties.number(f"{bound}. Height Display") for bound in ("Min", "Max"))
-        cells = cells.chosen((height >= min_height) & (height <= max_height))
+        cells = cells.select((height >= min_height) & (height <= max_height))
         min_size = resolution * 2 ** (_MAX_DEPTH - int(self.properties.number("Max. Octree Depth")))
         is_small = cells.sizes < min_size * 0.75
         if not is_small.any():
@@ -131,7 +131,7 @@ class OctomapDisplay(StoredMarkersDisplay):
         indices, inverse = np.unique(np.floor(cells.centers[is_small] / min_size), axis=0, return_inverse=True)
         probabilities = np.zeros(len(indices))
         np.maximum.at(probabilities, inverse.reshape(-1), cells.probabilities[is_small])
-        large_cells = cells.chosen(~is_small)
+        large_cells = cells.select(~is_small)
         return Cells(
             np.concatenate([large_cells.centers, (indices + 0.5) * min_size]),
             np.concatenate([large_cells.sizes, np.full(len(indices), min_size)]),

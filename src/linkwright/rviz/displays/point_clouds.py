@@ -21,12 +21,12 @@ from linkwright.rviz.clouds import (
     BadCloudError,
     Points,
     ScanProjector,
-    colored,
+    compute_colors,
     decimate,
     deskew,
-    points_of_cloud,
-    points_of_legacy_cloud,
-    supported_transformers,
+    find_supported_transformers,
+    points_from_cloud,
+    points_from_legacy_cloud,
 )
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, Schema, topic_spec
@@ -43,7 +43,7 @@ from linkwright.rviz.displays.cloud_properties import (
     STYLE_SPECS,
     TRANSFORMER_SPECS,
     VALUE_BOUNDS,
-    color_settings,
+    read_color_settings,
     scalar_specs,
 )
 
@@ -57,7 +57,7 @@ class _ShownCloud:
     points: Points
     pose: Pose
     stamp_ns: int
-    received: float
+    received_s: float
 
 
 class CloudDisplay(TopicDisplay):
@@ -103,7 +103,7 @@ class CloudDisplay(TopicDisplay):
         )
 
     def show(self, points: Points, pose: Pose, stamp_ns: int) -> None:
-        """Show points at the pose of their frame, and remove the points whose Decay Time has passed.
+        """Show points at the pose of their frame, and remove points older than the Decay Time.
 
         Args:
             points: the points.
@@ -117,7 +117,7 @@ class CloudDisplay(TopicDisplay):
         if decay_time == 0:
             for previous in self._shown_clouds:
                 if previous.key:
-                    self.forget(previous.key)
+                    self.remove_content(previous.key)
             self._shown_clouds.clear()
         cloud = _ShownCloud(str(self._number) if decay_time > 0 else "", points, pose, stamp_ns, now)
         self._shown_clouds.append(cloud)
@@ -150,7 +150,7 @@ class CloudDisplay(TopicDisplay):
         self._cancel_timers()
         super().stop()
 
-    def fields_of(self, key: str, index: int) -> dict[str, float | str] | None:
+    def get_fields(self, key: str, index: int) -> dict[str, float | str] | None:
         """Return the channels of a point by name, or None if the point is no longer shown.
 
         Args:
@@ -174,8 +174,8 @@ class CloudDisplay(TopicDisplay):
     # --- colors -----------------------------------------------------------------------------------------------
 
     def _draw(self, cloud: _ShownCloud) -> None:
-        settings = color_settings(self.properties)
-        colors, bounds = colored(cloud.points, settings, cloud.pose)
+        settings = read_color_settings(self.properties)
+        colors, bounds = compute_colors(cloud.points, settings, cloud.pose)
         if bounds is not None:
             self._computed_bounds[AUTO_INTENSITY if settings.transformer == "Intensity" else AUTO_VALUES] = bounds
         content = CloudPoints(
@@ -188,7 +188,7 @@ class CloudDisplay(TopicDisplay):
         self.send(content, key=cloud.key, pose=cloud.pose, stamp_ns=cloud.stamp_ns, shrink=shrink)
 
     def _offer_transformers(self, points: Points) -> None:
-        transformers = supported_transformers(points)
+        transformers = find_supported_transformers(points)
         channels = ("x", "y", "z", *points.channels)
         if (transformers, channels) != (self._transformers, self._channels):
             self._transformers, self._channels = transformers, channels
@@ -220,9 +220,9 @@ class CloudDisplay(TopicDisplay):
             self._remove_oldest(len(self._shown_clouds) - 1)
             return
         now = time.monotonic()
-        self._remove_oldest(sum(now - cloud.received > decay_time for cloud in self._shown_clouds))
+        self._remove_oldest(sum(now - cloud.received_s > decay_time for cloud in self._shown_clouds))
         if self._shown_clouds:
-            remaining_time = self._shown_clouds[0].received + decay_time - now
+            remaining_time = self._shown_clouds[0].received_s + decay_time - now
             self._decay_timer = asyncio.get_running_loop().call_later(max(0.01, remaining_time + 0.005), self._on_decay)
 
     def _on_decay(self) -> None:
@@ -232,7 +232,7 @@ class CloudDisplay(TopicDisplay):
 
     def _remove_oldest(self, count: int) -> None:
         for _ in range(count):
-            self.forget(self._shown_clouds.popleft().key)
+            self.remove_content(self._shown_clouds.popleft().key)
 
     def _cancel_timers(self) -> None:
         for handle in (self._decay_timer, self._count_timer):
@@ -276,7 +276,7 @@ class PointsDisplay(CloudDisplay):
             BadCloudError: the message has no usable points.
         """
 
-    def lack_of_points(self, message: Any) -> Phrase | None:
+    def explain_missing_points(self, message: Any) -> Phrase | None:
         """Return a warning that explains why a message has no points, or None."""
         return None
 
@@ -296,7 +296,7 @@ class PointsDisplay(CloudDisplay):
             self.set_status_row("Message", "error", foreign(error))
             return
         self.delete_status_row("Message")
-        warning = self.lack_of_points(message) if len(points) == 0 else None
+        warning = self.explain_missing_points(message) if len(points) == 0 else None
         self.delete_status_row("Values") if warning is None else self.set_status_row("Values", "warn", warning)
         self.show(*self.place(points, message, pose), self.frame_of(message)[1])
 
@@ -325,7 +325,7 @@ class LaserScanDisplay(PointsDisplay):
         """Return the end points of the rays that hit an object."""
         return self._projector.points(message)
 
-    def lack_of_points(self, message: Any) -> Phrase | None:
+    def explain_missing_points(self, message: Any) -> Phrase | None:
         """Return a warning if all ranges are invalid, or None.
 
         By REP 117, an infinite range means that no object is in range. This is not a reason for a warning.
@@ -381,7 +381,7 @@ class PointCloudDisplay(PointsDisplay):
 
     def points_of(self, message: Any) -> Points:
         """Return the points with finite coordinates."""
-        return points_of_legacy_cloud(message)
+        return points_from_legacy_cloud(message)
 
 
 class PointCloud2Display(PointsDisplay):
@@ -397,9 +397,9 @@ class PointCloud2Display(PointsDisplay):
 
     def points_of(self, message: Any) -> Points:
         """Return the points with finite coordinates."""
-        return points_of_cloud(message)
+        return points_from_cloud(message)
 
-    def lack_of_points(self, message: Any) -> Phrase | None:
+    def explain_missing_points(self, message: Any) -> Phrase | None:
         """Return a warning if the message has points but none has finite coordinates, or None."""
         count = message.width * message.height
         return phrase("All {count} points are NaN or infinite", count=count) if count else None

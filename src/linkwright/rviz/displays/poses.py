@@ -16,11 +16,11 @@ from linkwright.rviz.config.schema import (
     PropertySpec,
     Schema,
     alpha,
-    length,
+    length_spec,
     line_style_spec,
     line_width_spec,
     topic_spec,
-    vector,
+    vector_spec,
 )
 from linkwright.rviz.displays.base.display import DisplayHost
 from linkwright.rviz.displays.base.topic_display import RecentDisplay
@@ -38,12 +38,12 @@ def pose_shape_specs(*, nested: bool = False) -> Schema:
     sizes = (
         PropertySpec("Color", "color", "#ff1900", "Color of the arrow.", when=_IS_ARROW),
         alpha("Opacity of the arrow.", when=_IS_ARROW),
-        length("Shaft Length", 1.0, "Length of the arrow's shaft, in meters.", _IS_ARROW),
-        length("Shaft Radius", 0.05, "Thickness of the arrow's shaft, in meters.", _IS_ARROW),
-        length("Head Length", 0.3, "Length of the arrow's head, in meters.", _IS_ARROW),
-        length("Head Radius", 0.1, "Width of the arrow's head, in meters.", _IS_ARROW),
-        length("Axes Length", 1.0, "Length of each axis, in meters.", _IS_AXES),
-        length("Axes Radius", 0.1, "Thickness of each axis, in meters.", _IS_AXES),
+        length_spec("Shaft Length", 1.0, "Length of the arrow's shaft, in meters.", _IS_ARROW),
+        length_spec("Shaft Radius", 0.05, "Thickness of the arrow's shaft, in meters.", _IS_ARROW),
+        length_spec("Head Length", 0.3, "Length of the arrow's head, in meters.", _IS_ARROW),
+        length_spec("Head Radius", 0.1, "Width of the arrow's head, in meters.", _IS_ARROW),
+        length_spec("Axes Length", 1.0, "Length of each axis, in meters.", _IS_AXES),
+        length_spec("Axes Radius", 0.1, "Thickness of each axis, in meters.", _IS_AXES),
     )
     options = ("Arrow", "Axes")
     if nested:
@@ -51,7 +51,7 @@ def pose_shape_specs(*, nested: bool = False) -> Schema:
     return (PropertySpec("Shape", "enum", "Arrow", description, options=options), *sizes)
 
 
-def covariance() -> PropertySpec:
+def covariance_spec() -> PropertySpec:
     """Return the declaration of the property group of RViz's CovarianceProperty."""
     position = (
         PropertySpec("Color", "color", "#cc33cc", "Color of the ellipsoid."),
@@ -108,15 +108,15 @@ _IS_FLAT_ARROW = (("Shape",), "Arrow (Flat)")
 _IS_SOLID_ARROW = (("Shape",), "Arrow (3D)")
 
 
-def pose_row(pose: Any) -> tuple[float, ...]:
+def pose_to_row(pose: Any) -> tuple[float, ...]:
     """Return a geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw."""
     position, orientation = pose.position, pose.orientation
     return (position.x, position.y, position.z, orientation.x, orientation.y, orientation.z, orientation.w)
 
 
-def pose_rows(poses: Iterable[Any]) -> Floats:
+def poses_to_rows(poses: Iterable[Any]) -> Floats:
     """Return poses as rows x y z qx qy qz qw, shape (N, 7)."""
-    return np.array([pose_row(pose) for pose in poses], dtype=np.float32).reshape(-1, 7)
+    return np.array([pose_to_row(pose) for pose in poses], dtype=np.float32).reshape(-1, 7)
 
 
 class PoseDisplay(RecentDisplay):
@@ -129,7 +129,7 @@ class PoseDisplay(RecentDisplay):
 
     def content(self, message: Any) -> DataContent | None:
         """Return the pose of a message, or None if it is not valid."""
-        pose_values = pose_row(message.pose)
+        pose_values = pose_to_row(message.pose)
         return (
             PoseMarks(np.array([pose_values], dtype=np.float32), NO_COVARIANCE) if self.is_finite(pose_values) else None
         )
@@ -140,11 +140,11 @@ class PoseWithCovarianceDisplay(RecentDisplay):
 
     CLASS = "rviz_default_plugins/PoseWithCovariance"
     MESSAGE = "geometry_msgs/msg/PoseWithCovarianceStamped"
-    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape_specs(), covariance())
+    SCHEMA = (topic_spec(description=MESSAGE, filter_size=10), *pose_shape_specs(), covariance_spec())
 
     def content(self, message: Any) -> DataContent | None:
         """Return the pose and covariance of a message, or None if they are not valid."""
-        pose_values = pose_row(message.pose.pose)
+        pose_values = pose_to_row(message.pose.pose)
         covariance_values = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(pose_values, covariance_values):
             return None
@@ -172,18 +172,18 @@ class PoseArrayDisplay(RecentDisplay):
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
         *_POSE_PROPERTIES,
-        length("Arrow Length", 0.3, "Length of the arrows, in meters.", _IS_FLAT_ARROW),
-        length("Head Radius", 0.03, "Width of the arrows' heads, in meters.", _IS_SOLID_ARROW),
-        length("Head Length", 0.07, "Length of the arrows' heads, in meters.", _IS_SOLID_ARROW),
-        length("Shaft Radius", 0.01, "Thickness of the arrows' shafts, in meters.", _IS_SOLID_ARROW),
-        length("Shaft Length", 0.23, "Length of the arrows' shafts, in meters.", _IS_SOLID_ARROW),
-        length("Axes Length", 0.3, "Length of each axis, in meters.", _IS_AXES),
-        length("Axes Radius", 0.01, "Thickness of each axis, in meters.", _IS_AXES),
+        length_spec("Arrow Length", 0.3, "Length of the arrows, in meters.", _IS_FLAT_ARROW),
+        length_spec("Head Radius", 0.03, "Width of the arrows' heads, in meters.", _IS_SOLID_ARROW),
+        length_spec("Head Length", 0.07, "Length of the arrows' heads, in meters.", _IS_SOLID_ARROW),
+        length_spec("Shaft Radius", 0.01, "Thickness of the arrows' shafts, in meters.", _IS_SOLID_ARROW),
+        length_spec("Shaft Length", 0.23, "Length of the arrows' shafts, in meters.", _IS_SOLID_ARROW),
+        length_spec("Axes Length", 0.3, "Length of each axis, in meters.", _IS_AXES),
+        length_spec("Axes Radius", 0.01, "Thickness of each axis, in meters.", _IS_AXES),
     )
 
     def content(self, message: Any) -> DataContent | None:
         """Return the poses of a message, or None if they are not valid."""
-        rows = pose_rows(message.poses)
+        rows = poses_to_rows(message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None
 
 
@@ -195,8 +195,8 @@ class ParticleCloudDisplay(RecentDisplay):
     SCHEMA = (
         topic_spec(description=MESSAGE, filter_size=10),
         *_POSE_PROPERTIES,
-        length("Min Arrow Length", 0.02, "Length of the arrow of an unlikely pose, in meters."),
-        length("Max Arrow Length", 0.3, "Length of the arrow of a certain pose, in meters."),
+        length_spec("Min Arrow Length", 0.02, "Length of the arrow of an unlikely pose, in meters."),
+        length_spec("Max Arrow Length", 0.3, "Length of the arrow of a certain pose, in meters."),
         PropertySpec(
             "Arrow Height Scale", "float", 5.0, "Height in meters at which a pose of weight 1 is drawn.", minimum=0.0
         ),
@@ -204,7 +204,7 @@ class ParticleCloudDisplay(RecentDisplay):
 
     def content(self, message: Any) -> DataContent | None:
         """Return the poses and weights of the particles, or None if they are not valid."""
-        rows = pose_rows(particle.pose for particle in message.particles)
+        rows = poses_to_rows(particle.pose for particle in message.particles)
         weights = np.array([particle.weight for particle in message.particles], dtype=np.float32)
         return ParticleMarks(rows, weights) if self.is_finite(rows, weights) else None
 
@@ -240,7 +240,7 @@ class OdometryDisplay(RecentDisplay):
         ),
         PropertySpec("Keep", "int", 100, "The number of marks that are kept; 0 for all.", minimum=0),
         *pose_shape_specs(nested=True),
-        covariance(),
+        covariance_spec(),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
@@ -252,7 +252,7 @@ class OdometryDisplay(RecentDisplay):
 
         None means that the pose is not valid, or too close to the last mark.
         """
-        pose_values = pose_row(message.pose.pose)
+        pose_values = pose_to_row(message.pose.pose)
         covariance_values = np.asarray(message.pose.covariance, dtype=np.float64)
         if not self.is_finite(pose_values, covariance_values):
             return None
@@ -297,18 +297,18 @@ class PathDisplay(RecentDisplay):
         PropertySpec("Color", "color", "#19ff00", "Color of the lines."),
         alpha("Opacity of the lines."),
         PropertySpec("Buffer Length", "int", 1, "The number of paths that are shown.", minimum=1),
-        vector("Offset", "Offset of the paths in the Fixed Frame, in meters."),
+        vector_spec("Offset", "Offset of the paths in the Fixed Frame, in meters."),
         PropertySpec("Pose Style", "enum", "None", "The shape of the poses.", options=("None", "Axes", "Arrows")),
-        length("Length", 0.3, "Length of each axis, in meters.", _SHOWS_AXES),
-        length("Radius", 0.03, "Thickness of each axis, in meters.", _SHOWS_AXES),
+        length_spec("Length", 0.3, "Length of each axis, in meters.", _SHOWS_AXES),
+        length_spec("Radius", 0.03, "Thickness of each axis, in meters.", _SHOWS_AXES),
         PropertySpec("Pose Color", "color", "#ff55ff", "Color of the arrows.", when=_SHOWS_ARROWS),
-        length("Shaft Length", 0.1, "Length of the arrows' shafts, in meters.", _SHOWS_ARROWS),
-        length("Head Length", 0.2, "Length of the arrows' heads, in meters.", _SHOWS_ARROWS),
-        length("Shaft Diameter", 0.1, "Thickness of the arrows' shafts, in meters.", _SHOWS_ARROWS),
-        length("Head Diameter", 0.3, "Width of the arrows' heads, in meters.", _SHOWS_ARROWS),
+        length_spec("Shaft Length", 0.1, "Length of the arrows' shafts, in meters.", _SHOWS_ARROWS),
+        length_spec("Head Length", 0.2, "Length of the arrows' heads, in meters.", _SHOWS_ARROWS),
+        length_spec("Shaft Diameter", 0.1, "Thickness of the arrows' shafts, in meters.", _SHOWS_ARROWS),
+        length_spec("Head Diameter", 0.3, "Width of the arrows' heads, in meters.", _SHOWS_ARROWS),
     )
 
     def content(self, message: Any) -> DataContent | None:
         """Return the poses of a path, or None if they are not valid."""
-        rows = pose_rows(stamped_pose.pose for stamped_pose in message.poses)
+        rows = poses_to_rows(stamped_pose.pose for stamped_pose in message.poses)
         return PoseMarks(rows, NO_COVARIANCE) if self.is_finite(rows) else None

@@ -19,7 +19,7 @@ from linkwright.urdf import Joint, Link, Robot
 LINKS = "Links"
 JOINTS = "Joints"
 STYLE = (LINKS, "Link Tree Style")
-ALL = (LINKS, "All Links Enabled")
+ALL_LINKS = (LINKS, "All Links Enabled")
 
 _TREE_STYLES = ("Tree of links", "Tree of links and joints")
 _OPTIONS = (
@@ -33,7 +33,7 @@ _OPTIONS = (
     PropertySpec("Expand Tree", "bool", False, "Open or close the rows of all links and joints of the tree."),
     PropertySpec("Expand Link Details", "bool", False, "Open or close the details of each link."),
     PropertySpec("Expand Joint Details", "bool", False, "Open or close the details of each joint."),
-    PropertySpec(ALL[1], "bool", True, "Enable or disable all links."),
+    PropertySpec(ALL_LINKS[1], "bool", True, "Enable or disable all links."),
 )
 _OPTION_NAMES = frozenset(spec.name for spec in _OPTIONS)
 
@@ -67,27 +67,30 @@ class RobotRows:
     def specs(self, style: str) -> tuple[PropertySpec, ...]:
         """Return the groups of links and of joints, each in alphabetical order."""
         links = tuple(
-            self._link(self._robot.links[name]) for name in sorted(self._robot.links) if name not in _OPTION_NAMES
+            self._make_link_spec(self._robot.links[name])
+            for name in sorted(self._robot.links)
+            if name not in _OPTION_NAMES
         )
-        joints = tuple(self._joint(self._robot.joints[name], style) for name in sorted(self._robot.joints))
+        joints = tuple(self._make_joint_spec(self._robot.joints[name], style) for name in sorted(self._robot.joints))
         return (
             PropertySpec(LINKS, "group", description="The links of the robot.", children=(*_OPTIONS, *links)),
             PropertySpec(JOINTS, "group", description="The joints of the robot.", children=joints),
         )
 
     @property
-    def boxes(self) -> list[Path]:
+    def link_check_boxes(self) -> list[Path]:
         """The paths of the links' check boxes."""
         return [(LINKS, name) for name in sorted(self._links_with_shapes - _OPTION_NAMES)]
 
-    def boxes_of(self, joint: str, style: str) -> list[Path]:
+    def find_controlled_boxes(self, joint: str, style: str) -> list[Path]:
         """Return the paths of the links' check boxes that a joint's check box controls."""
-        return [(LINKS, name) for name in self._links_of(self._robot.joints[joint], style)]
+        return [(LINKS, name) for name in self._find_links(self._robot.joints[joint], style)]
 
-    def derived(self, style: str, is_on: Callable[[Path], bool]) -> dict[Path, bool]:
-        """Return the states of the joints' check boxes and of *All Links Enabled*, by property path.
+    def derive_states(self, style: str, is_on: Callable[[Path], bool]) -> dict[Path, bool]:
+        """Return the states of the dependent check boxes, by property path.
 
-        One of these check boxes is on if the check boxes of all its links are on.
+        These are the check boxes of the joints, and *All Links Enabled*. Each of them is on if the check boxes of all
+        its links are on.
 
         Args:
             style: the Link Tree Style.
@@ -97,32 +100,32 @@ class RobotRows:
         joint_states: dict[Path, bool] = {
             (JOINTS, joint.name): all(link_states.get(name, True) for name in links)
             for joint in self._robot.joints.values()
-            if (links := self._links_of(joint, style))
+            if (links := self._find_links(joint, style))
         }
-        return {**joint_states, ALL: all(link_states.values())}
+        return {**joint_states, ALL_LINKS: all(link_states.values())}
 
-    def _link(self, link: Link) -> PropertySpec:
+    def _make_link_spec(self, link: Link) -> PropertySpec:
         if link.name not in self._links_with_shapes:
             description = "A link without shapes."
             return PropertySpec(link.name, "group", None, description, children=_LINK_EXTRAS, details="link")
         description, children = "Draw the shapes of this link.", (_LINK_ALPHA, *_LINK_EXTRAS)
         return PropertySpec(link.name, "bool", True, description, children=children, details="link")
 
-    def _joint(self, joint: Joint, style: str) -> PropertySpec:
+    def _make_joint_spec(self, joint: Joint, style: str) -> PropertySpec:
         children = (_JOINT_AXES, _JOINT_AXIS) if joint.type in _TYPES_WITH_AXIS else (_JOINT_AXES,)
         description = f"Joint '{joint.name}' with parent link '{joint.parent}' and child link '{joint.child}'."
-        if not self._links_of(joint, style):
+        if not self._find_links(joint, style):
             return PropertySpec(joint.name, "group", None, description, children=children, details="joint")
         return PropertySpec(joint.name, "bool", True, description, children=children, details="joint")
 
-    def _links_of(self, joint: Joint, style: str) -> list[str]:
+    def _find_links(self, joint: Joint, style: str) -> list[str]:
         key = (joint.name, style in _TREE_STYLES)
         if key not in self._visible_links:
-            links = self._links_below(joint) if style in _TREE_STYLES else [joint.child]
+            links = self._find_links_below(joint) if style in _TREE_STYLES else [joint.child]
             self._visible_links[key] = [name for name in links if name in self._links_with_shapes]
         return self._visible_links[key]
 
-    def _links_below(self, joint: Joint) -> list[str]:
+    def _find_links_below(self, joint: Joint) -> list[str]:
         link_names, pending = [], [joint.child]
         while pending:
             link = pending.pop()
@@ -263,7 +266,7 @@ class RobotModelDisplay(ViewerDisplay):
                 self.context.node.get_logger().error(f"Link '{status.link}': {self._page_problems[key]}")
         self._show_status()
 
-    def provenance(self, link: str) -> LinkProvenance | None:
+    def find_provenance(self, link: str) -> LinkProvenance | None:
         """Return the source locations of the definition of a link, or None if they are not known.
 
         The call takes as long as expanding the description.
@@ -296,17 +299,17 @@ class RobotModelDisplay(ViewerDisplay):
         is_changed, self._text = text != self._text, text
         self._description = [StatusRow("URDF", "ok", phrase("URDF parsed OK"))]
         if self.properties.text("Description Source") == "Topic":
-            self._description.insert(0, self._topic_row(is_changed=is_changed))
+            self._description.insert(0, self._make_topic_row(is_changed=is_changed))
         self._show_robot(reading.robot)
 
-    def _topic_row(self, *, is_changed: bool) -> StatusRow:
+    def _make_topic_row(self, *, is_changed: bool) -> StatusRow:
         """Return the status row of the topic.
 
         The row names the publisher if there are several.
 
         If a different description from another publisher replaces the current one, a warning is logged.
         """
-        previous_gid = None if self._publisher is None else self._description_source.current(self._publisher)
+        previous_gid = None if self._publisher is None else self._description_source.find_current_gid(self._publisher)
         self._publisher = self._description_source.publisher
         publishers = self._description_source.publishers()
         owner = publishers.pop(self._publisher or b"", phrase("an unknown node"))
@@ -380,11 +383,11 @@ class RobotModelDisplay(ViewerDisplay):
         dependent_paths: list[Path] = []
         if path == STYLE:
             self._robot_specs = rows.specs(style)
-        elif path == ALL:
-            dependent_paths = rows.boxes
+        elif path == ALL_LINKS:
+            dependent_paths = rows.link_check_boxes
         elif path[0] == JOINTS and len(path) == 2:
-            dependent_paths = rows.boxes_of(path[1], style)
-        elif path not in rows.boxes:
+            dependent_paths = rows.find_controlled_boxes(path[1], style)
+        elif path not in rows.link_check_boxes:
             return
         value = self.properties.get(*path)
         changed = [
@@ -400,7 +403,7 @@ class RobotModelDisplay(ViewerDisplay):
             self.pages.publish(PropertyChanged(self.property_id(box_path), self.properties.get(*box_path)))
 
     def _derive_boxes(self, rows: RobotRows) -> list[Path]:
-        derived_states = rows.derived(self.properties.text(*STYLE), lambda path: self.properties.flag(*path))
+        derived_states = rows.derive_states(self.properties.text(*STYLE), lambda path: self.properties.flag(*path))
         return [path for path, value in derived_states.items() if self.properties.set_read_only(path, value)]
 
     def _log_new_file_problems(self, problems: dict[str, list[Phrase]]) -> None:
@@ -413,10 +416,10 @@ class RobotModelDisplay(ViewerDisplay):
 
     def _show_status(self) -> None:
         links = sorted(self.scene.links, key=lambda link: link.name)
-        self.set_status(self._description + [self._link_status(link.name, link.frame) for link in links])
+        self.set_status(self._description + [self._make_link_status(link.name, link.frame) for link in links])
 
-    def _link_status(self, name: str, frame: str) -> StatusRow:
-        problems = [problem] if (problem := self.host.frames.problem(frame)) else []
+    def _make_link_status(self, name: str, frame: str) -> StatusRow:
+        problems = [problem] if (problem := self.host.frames.find_problem(frame)) else []
         problems += self._file_problems.get(name, ())
         problems += [text for (link, _), text in self._page_problems.items() if link == name]
         if problems:

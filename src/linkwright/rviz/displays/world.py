@@ -24,13 +24,13 @@ from linkwright.rviz.config.schema import Path, PropertySpec, alpha, topic_spec
 from linkwright.rviz.config.simulated_world import DESCRIPTION_TOPIC, POSES_TOPIC, RAYS_TOPIC, WORLD_DISPLAY
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.base.topic_display import SideTopic, TopicDisplay
-from linkwright.rviz.displays.world_rays import CHOICES, LidarRays
+from linkwright.rviz.displays.world_rays import RAY_CHOICES, LidarRays
 from linkwright.rviz.frames.history import PlacedFrame
-from linkwright.rviz.lights import lights_of
-from linkwright.rviz.sensors import DisplayedLidar, sensors_of
-from linkwright.rviz.skies import daylight, fog_of
-from linkwright.rviz.viewpoints import camera_of, robots_of
-from linkwright.rviz.worlds import WorldContent, content_of
+from linkwright.rviz.lights import convert_lights
+from linkwright.rviz.sensors import DisplayedLidar, convert_sensors
+from linkwright.rviz.skies import compute_daylight, convert_fog
+from linkwright.rviz.viewpoints import find_camera, find_robots
+from linkwright.rviz.worlds import WorldContent, make_content
 from linkwright.sdf.frames import FrameError
 from linkwright.sdf.poses import SEPARATOR, WORLD
 from linkwright.sdf.reader import read
@@ -83,27 +83,27 @@ class WorldDisplay(TopicDisplay):
         PropertySpec(
             _RAYS_PROPERTY,
             "enum",
-            CHOICES[0],
+            RAY_CHOICES[0],
             "Draw the rays of lidars at their measured lengths: of lidars with "
             "<visualize>true</visualize>, of all, or of none. If a lidar has very many rays, only some "
             "are drawn.",
-            options=CHOICES,
+            options=RAY_CHOICES,
         ),
         PropertySpec(_RAYS_TOPIC_PROPERTY, "string", RAYS_TOPIC, "The topic of the rays, sensor_msgs/msg/LaserScan."),
         PropertySpec(
             _FRUSTUMS_PROPERTY,
             "enum",
-            CHOICES[0],
+            RAY_CHOICES[0],
             "Draw the view of cameras, from the near to the far plane: of cameras with "
             "<visualize>true</visualize>, of all, or of none.",
-            options=CHOICES,
+            options=RAY_CHOICES,
         ),
     )
 
     def __init__(self, host: DisplayHost, identity: str, config: DisplayConfig) -> None:
         super().__init__(host, identity, config)
         self._poses_topic = SideTopic(host, "tf2_msgs/msg/TFMessage", self._on_poses)
-        self._rays = LidarRays(host, self._show_rays, lambda lidar: self.forget(_rays_key(lidar)))
+        self._rays = LidarRays(host, self._show_rays, lambda lidar: self.remove_content(_rays_key(lidar)))
         self._reading_task: asyncio.Task[None] | None = None
         self._revision = 0
         self._content = WorldContent()
@@ -139,13 +139,13 @@ class WorldDisplay(TopicDisplay):
         if path == (_POSES_PROPERTY,):
             self._subscribe_poses()
         elif path in ((_RAYS_PROPERTY,), (_RAYS_TOPIC_PROPERTY,)):
-            self._follow_rays()
+            self._subscribe_rays()
 
     def on_enabled_changed(self) -> None:
         """Subscribe if the display is enabled, or unsubscribe."""
         super().on_enabled_changed()
         self._subscribe_poses()
-        self._follow_rays()
+        self._subscribe_rays()
 
     def on_time_changed(self) -> None:
         """Process the messages that were queued while time was paused."""
@@ -158,7 +158,7 @@ class WorldDisplay(TopicDisplay):
 
         The world stays visible, because its description is not published again.
         """
-        self._rays.forget()
+        self._rays.clear()
 
     def reset(self) -> None:
         """Discard the world.
@@ -168,9 +168,9 @@ class WorldDisplay(TopicDisplay):
         self._cancel_reading()
         self._content, self._link_indices, self._last_sent = WorldContent(), {}, ()
         self._page_problems.clear()
-        self._rays.describe(())
+        self._rays.set_lidars(())
         self.context.meshes.replace(self.id, {})
-        self.forget()
+        self.remove_content()
 
     def on_frames_changed(self) -> None:
         """Compute the pose of the world again, and send the poses."""
@@ -217,8 +217,8 @@ class WorldDisplay(TopicDisplay):
         if problem is not None:
             self.set_status_row(_POSES_PROPERTY, "error", problem)
 
-    def _follow_rays(self) -> None:
-        problem = self._rays.follow(
+    def _subscribe_rays(self) -> None:
+        problem = self._rays.subscribe(
             self.properties.text(_RAYS_TOPIC_PROPERTY).strip() if self.enabled else "",
             self.properties.text(_RAYS_PROPERTY),
         )
@@ -269,12 +269,12 @@ class WorldDisplay(TopicDisplay):
         self._revision += 1
         self._content, self._poses, self._last_sent = content, poses, ()
         self._link_indices = {link.name: row for row, link in enumerate(content.links)}
-        self._anchors = _anchors(content)
+        self._anchors = _find_anchors(content)
         self._page_problems.clear()
-        lidars, cameras = sensors_of(world)
-        self.send(_world_scene(self._revision, world, content, lidars, cameras), key=_SCENE_KEY)
-        self._rays.describe(lidars)
-        self._follow_rays()
+        lidars, cameras = convert_sensors(world)
+        self.send(_make_world_scene(self._revision, world, content, lidars, cameras), key=_SCENE_KEY)
+        self._rays.set_lidars(lidars)
+        self._subscribe_rays()
         self.set_status_row(
             _WORLD_ROW,
             "ok",
@@ -391,7 +391,7 @@ class WorldDisplay(TopicDisplay):
             pose: the pose of the frame in the root frame of its tf tree.
         """
         pose_in_world = np.array(compose(tuple(self._poses[row]), invert(pose)))
-        transforms, root = self.context.transforms, self._root(frame)
+        transforms, root = self.context.transforms, self._find_root(frame)
         previous_frame = transforms.placed_frame(WORLD)
         if (
             previous_frame is None
@@ -420,13 +420,13 @@ class WorldDisplay(TopicDisplay):
             frame = _frame_name(self._content.links[row].name)
             if frame not in frames:
                 continue
-            reference = self._root(frame) if self._places_tf_frames else self.host.frames.fixed_frame
+            reference = self._find_root(frame) if self._places_tf_frames else self.host.frames.fixed_frame
             for stamp_ns in (self._stamp_ns, 0):
                 with suppress(TransformException):
                     return row, frame, tuple(self.context.transforms.pose(reference, frame, stamp_ns))
         return None
 
-    def _root(self, frame: str) -> str:
+    def _find_root(self, frame: str) -> str:
         """Return the root frame of the tf tree that contains a frame."""
         names, parents = self.host.frames.names, self.host.frames.parents
         if frame not in names:
@@ -439,24 +439,24 @@ class WorldDisplay(TopicDisplay):
         return names[row]
 
 
-def _world_scene(
+def _make_world_scene(
     revision: int, world: World, content: WorldContent, lidars: list[DisplayedLidar], cameras: list[CameraScene]
 ) -> WorldScene:
-    camera = camera_of(world)
+    camera = find_camera(world)
     return WorldScene(
         revision,
         world.name,
         content.links,
-        lights_of(world),
+        convert_lights(world),
         list(world.scene.ambient[:3]),
         list(world.scene.background[:3]),
         world.scene.shadows,
         [lidar.scene for lidar in lidars],
         cameras,
-        robots_of(world),
+        find_robots(world),
         None if camera is None else list(camera),
-        daylight(world.scene.sky),
-        fog_of(world.scene.fog),
+        compute_daylight(world.scene.sky),
+        convert_fog(world.scene.fog),
     )
 
 
@@ -473,7 +473,7 @@ def _read_content(text: str, index: MeshIndex) -> tuple[World, WorldContent]:
     if sdf is None or not (sdf.worlds or sdf.models):
         raise LinkwrightError(*reading.diagnostics)
     world = sdf.worlds[0] if sdf.worlds else World(sdf.models[0].name, models=sdf.models)
-    return world, content_of(world, index)
+    return world, make_content(world, index)
 
 
 def _rays_key(lidar: str) -> str:
@@ -484,7 +484,10 @@ def _frame_name(name: str) -> str:
     return name.rpartition(SEPARATOR)[2]
 
 
-def _anchors(content: WorldContent) -> tuple[int, ...]:
-    """Return the indices of the possible anchors: links with a unique frame name, in file order."""
+def _find_anchors(content: WorldContent) -> tuple[int, ...]:
+    """Return the indices of the links with a unique frame name, in file order.
+
+    These links are the possible anchors.
+    """
     counts = Counter(_frame_name(link.name) for link in content.links)
     return tuple(row for row, link in enumerate(content.links) if counts[_frame_name(link.name)] == 1)

@@ -14,7 +14,7 @@ from linkwright.rviz.displays.base.display import DisplayHost
 from linkwright.rviz.displays.base.topic_display import SideTopic
 from linkwright.rviz.sensors import DisplayedLidar
 
-CHOICES = ("Visualized", "All", "None")
+RAY_CHOICES = ("Visualized", "All", "None")
 """The sensors to draw: the sensors with ``<visualize>true</visualize>``, all sensors, or none."""
 _OTHERS_SUFFIX = "/others"
 """The suffix of the topic for lidars without ``<visualize>``."""
@@ -41,7 +41,7 @@ class LidarRays:
         self._topics: dict[str, SideTopic] = {}
         self._host = host
 
-    def describe(self, lidars: Iterable[DisplayedLidar]) -> None:
+    def set_lidars(self, lidars: Iterable[DisplayedLidar]) -> None:
         """Set the lidars of a world, and show their last measurements, if there are any."""
         self._lidars = {lidar.scene.name: lidar for lidar in lidars}
         self._hide_except(set())
@@ -49,7 +49,7 @@ class LidarRays:
         for message in list(self._last_messages.values()):
             self._on_measurement(message)
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Discard and hide all rays.
 
         No rays are drawn until new measurements arrive.
@@ -57,12 +57,12 @@ class LidarRays:
         self._last_messages.clear()
         self._hide_except(set())
 
-    def follow(self, topic: str, choice: str) -> Phrase | None:
+    def subscribe(self, topic: str, choice: str) -> Phrase | None:
         """Subscribe to the ray topics of exactly the lidars whose rays are drawn.
 
         Args:
             topic: the topic of the rays; empty for no rays.
-            choice: the lidars to draw, see `CHOICES`.
+            choice: the lidars to draw, see `RAY_CHOICES`.
 
         Returns:
             RViz's error text if a subscription failed, or None.
@@ -87,7 +87,7 @@ class LidarRays:
 
     def close(self) -> None:
         """Unsubscribe."""
-        self.follow("", "")
+        self.subscribe("", "")
 
     def _hide_except(self, drawn_lidars: set[str]) -> None:
         for name in self._drawn_lidars - drawn_lidars:

@@ -62,7 +62,7 @@ class FrameHistory:
 
         return BufferCore(logger=self._node.get_logger())
 
-    def use(self, listener: Callable[[], None]) -> Callable[[], None]:
+    def add_listener(self, listener: Callable[[], None]) -> Callable[[], None]:
         """Subscribe, and call a listener whenever transforms arrive.
 
         Return a function that removes the listener, and unsubscribes if there is no other listener.
@@ -113,7 +113,7 @@ class FrameHistory:
         placed_frame = next((candidate for candidate in self._placed_frames.values() if candidate.name == name), None)
         return None if placed_frame is None or name in self._buffer.frame_names() else placed_frame
 
-    def in_known_frame(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
+    def to_known_frame(self, frame: str, pose: ArrayLike) -> tuple[str, NDArray[np.float64]]:
         """Return a frame of tf and the pose in it, so that other programs can use the pose.
 
         If a display has placed the given frame, the pose is converted to a frame of tf. Otherwise frame and pose are
@@ -123,10 +123,10 @@ class FrameHistory:
             frame: the frame that the pose is in.
             pose: x, y, z, qx, qy, qz, qw.
         """
-        own = self.placed_frame(frame)
-        if own is None or own.parent is None:
+        placed_frame = self.placed_frame(frame)
+        if placed_frame is None or placed_frame.parent is None:
             return frame, np.asarray(pose, dtype=np.float64)
-        return own.parent, compose(invert(own.pose), pose)
+        return placed_frame.parent, compose(invert(placed_frame.pose), pose)
 
     def set_placed_frame(self, display: str, placed_frame: PlacedFrame | None) -> None:
         """Place the frame of a display, or withdraw it.
@@ -143,7 +143,7 @@ class FrameHistory:
         for listener in self.on_placed_frame:
             listener()
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Discard all transforms except static ones, because time was reset."""
         self._buffer.clear()
 

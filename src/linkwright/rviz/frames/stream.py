@@ -35,7 +35,7 @@ from linkwright.page.protocol.time import SyncMode
 from linkwright.rviz.config.schema import FIXED_FRAME
 from linkwright.rviz.frames.history import FrameHistory
 
-_MIN_READ_INTERVAL = 0.004
+_MIN_READ_INTERVAL_S = 0.004
 """The minimum time in s between two reads of the buffer, so that frequent equal transforms cost little."""
 
 _MAX_EARLINESS = 0.8
@@ -74,14 +74,14 @@ class FrameView:
     parents: tuple[int, ...] = ()
     placed: frozenset[str] = field(default_factory=frozenset)
 
-    def problem(self, frame: str) -> Phrase | None:
+    def find_problem(self, frame: str) -> Phrase | None:
         """Return RViz's error text for a frame without a known pose, or None."""
         if frame in self.placed:
             return None
         return phrase("No transform from [{frame}] to [{fixed_frame}]", frame=frame, fixed_frame=self.fixed_frame)
 
 
-def transform_status(frames: FrameView, frame: str) -> StatusRow:
+def make_transform_status(frames: FrameView, frame: str) -> StatusRow:
     """Return the status row ``Transform`` of a display, with RViz's text.
 
     The frame may be ``<Fixed Frame>``.
@@ -174,7 +174,7 @@ class TimeControl:
         self._on_change()
 
 
-class FrameAudience(Protocol):
+class FramePages(Protocol):
     """The pages that receive frames."""
 
     def __len__(self) -> int:
@@ -215,7 +215,7 @@ class FrameStream:
     def __init__(
         self,
         node: Node,
-        pages: FrameAudience,
+        pages: FramePages,
         time: TimeControl,
         history: FrameHistory,
         *,
@@ -284,7 +284,7 @@ class FrameStream:
                 self._add_transforms(message, static=static)
         self.refresh()
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Discard all transforms except static ones, because time was reset."""
         self._paused_messages.clear()
         self._buffer.clear()
@@ -334,7 +334,7 @@ class FrameStream:
             return
         self._is_update_scheduled = True
         max_earliness = _MAX_EARLINESS / self.rate
-        due_time = max(self._due_time - max_earliness, self._last_read_time + _MIN_READ_INTERVAL)
+        due_time = max(self._due_time - max_earliness, self._last_read_time + _MIN_READ_INTERVAL_S)
         if due_time <= self._loop.time():
             self._read_condition.trigger()
         else:
@@ -354,8 +354,8 @@ class FrameStream:
         self._is_update_scheduled, self._read_timer = False, None
         self._last_read_time = self._loop.time()
         fixed_frame = self.fixed_frame
-        snapshot = self._snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
-        poses, ages = self._poses_to_show(snapshot, fixed_frame), snapshot.ages
+        snapshot = self._take_snapshot(fixed_frame, self._paused_ns or self._clock.now_ns())
+        poses, ages = self._compute_shown_poses(snapshot, fixed_frame), snapshot.ages
         is_unconnected = fixed_frame not in snapshot.names and self._is_unconnected(fixed_frame)
         if is_unconnected:
             poses, ages = np.concatenate([poses, _IDENTITY]), np.append(ages, 0.0)
@@ -365,7 +365,7 @@ class FrameStream:
             self._send(rows, ages)
         self._notify_displays(snapshot, rows, fixed_frame, has_new_structure=has_new_structure)
 
-    def _snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
+    def _take_snapshot(self, fixed_frame: str, now_ns: int) -> FrameSnapshot:
         """Return the poses of all frames in the Fixed Frame.
 
         A display may have placed the Fixed Frame.
@@ -378,17 +378,17 @@ class FrameStream:
         return replace(snapshot, poses=compose(placed_frame.pose, snapshot.poses))
 
     def _is_unconnected(self, frame: str) -> bool:
-        """Return whether a frame is a robot's, or is placed by a display without a connection to tf."""
+        """Return whether a frame belongs to a robot, or to a display without a connection to tf."""
         placed_frame = self._history.placed_frame(frame)
         return frame in self._own_frames() or (placed_frame is not None and placed_frame.parent is None)
 
-    def _poses_to_show(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
+    def _compute_shown_poses(self, snapshot: FrameSnapshot, fixed_frame: str) -> NDArray[np.float64]:
         """Return the poses of frames at the time to be shown.
 
         If the pose of a frame at that time is unknown, its latest pose is used.
         """
         stamp_ns = self._time.lookup_ns()
-        self._follow(needed=stamp_ns is not None)
+        self._update_subscription(needed=stamp_ns is not None)
         if stamp_ns is None:
             return snapshot.poses
         poses: NDArray[np.float64] = snapshot.poses.copy()
@@ -397,10 +397,10 @@ class FrameStream:
                 poses[row] = self._history.pose(fixed_frame, name, stamp_ns)
         return poses
 
-    def _follow(self, *, needed: bool) -> None:
+    def _update_subscription(self, *, needed: bool) -> None:
         """Subscribe to the history of transforms while it is needed to show an earlier time."""
         if needed and self._release is None:
-            self._release = self._history.use(lambda: None)
+            self._release = self._history.add_listener(lambda: None)
         elif not needed and self._release is not None:
             self._release()
             self._release = None
@@ -431,11 +431,11 @@ class FrameStream:
 
     def _send(self, poses: NDArray[np.float32], ages: NDArray[np.float64]) -> None:
         self._poses, self._ages = poses, ages
-        self._due_time = self._next_due_time()
+        self._due_time = self._compute_due_time()
         self._frame = pack_transforms(self._table.revision, self._stamp_ns / 1e9, poses, ages)
         self._pages.send_transforms(self._frame)
 
-    def _next_due_time(self) -> float:
+    def _compute_due_time(self) -> float:
         """Return the earliest time of the next update, on the event loop's clock.
 
         A slightly late update does not delay the next update, so that transforms that arrive exactly at this rate do

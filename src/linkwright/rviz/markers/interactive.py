@@ -1,4 +1,4 @@
-"""Interactive markers: the client of a marker server, and the conversion to drawable shapes.
+"""Interactive markers: the client of a marker server, and the conversion to shapes.
 
 The client receives all markers first, and then changes. After a lost change, it receives all markers again. Controls
 without markers get the same arrows, rings and buttons as in the ``interactive_markers`` package.
@@ -33,7 +33,7 @@ from linkwright.page.protocol.markers import (
     MarkerShape,
     OrientationMode,
 )
-from linkwright.rviz.markers.shapes import BadMarkerError, pose_of, read_marker, unit_quaternion
+from linkwright.rviz.markers.shapes import BadMarkerError, pose_to_values, read_marker, unit_quaternion
 
 _CHECK_PERIOD_S = 0.25
 """Seconds between two checks whether the server is available."""
@@ -196,7 +196,7 @@ def read_interactive_marker(
         BadMarkerError: the marker cannot be drawn.
     """
     scale = message.scale or 1.0
-    pose = pose_of(message.pose)
+    pose = pose_to_values(message.pose)
     if not all(map(math.isfinite, (*pose, scale))):
         raise BadMarkerError(phrase("Marker contains invalid floats!"))
     names: set[str] = set()
@@ -207,7 +207,7 @@ def read_interactive_marker(
         scale=scale,
         controls=[
             _read_control(
-                control, message, scale, _unique_name(control.name, names), index, frames, transparent=transparent
+                control, message, scale, _make_unique_name(control.name, names), index, frames, transparent=transparent
             )
             for control in message.controls
         ],
@@ -218,7 +218,7 @@ def read_interactive_marker(
     )
 
 
-def _unique_name(name: str, used_names: set[str]) -> str:
+def _make_unique_name(name: str, used_names: set[str]) -> str:
     unique_name, number = name, 0
     while unique_name in used_names:
         unique_name, number = f"{name}_u{number}", number + 1
@@ -245,9 +245,13 @@ def _read_control(
     if control.markers:
         markers = [_read_marker(marker, message, index, frames) for marker in control.markers]
     elif mode == "menu":
-        markers, orientation_mode, is_independent = [_button_marker(control.description, scale)], "view_facing", False
+        markers, orientation_mode, is_independent = (
+            [_make_button_marker(control.description, scale)],
+            "view_facing",
+            False,
+        )
     else:
-        markers = list(_default_markers(mode, orientation, scale, 0.5 if transparent else 1.0))
+        markers = list(_make_default_markers(mode, orientation, scale, 0.5 if transparent else 1.0))
     for number, marker in enumerate(markers):
         marker.id = f"{message.name}/{name}/{number}"
         marker.namespace = message.name
@@ -270,32 +274,32 @@ def _read_marker(marker: Any, message: Any, index: MeshIndex, frames: FramePlace
     reference = message.header.frame_id.removeprefix("/")
     if frame:
         # The pose is relative to the frame in the header, but the page attaches the marker to the control.
-        pose_in_reference = compose(frames(reference, frame), _as_pose(shape.pose))
-        shape.pose = list(compose(invert(_as_pose(pose_of(message.pose))), pose_in_reference))
+        pose_in_reference = compose(frames(reference, frame), _to_transform(shape.pose))
+        shape.pose = list(compose(invert(_to_transform(pose_to_values(message.pose))), pose_in_reference))
     return shape
 
 
-def _as_pose(pose: list[float]) -> Transform:
+def _to_transform(pose: list[float]) -> Transform:
     x, y, z, qx, qy, qz, qw = pose
     return x, y, z, qx, qy, qz, qw
 
 
-def _default_markers(
+def _make_default_markers(
     mode: InteractionMode, orientation: list[float], scale: float, alpha: float
 ) -> Iterator[MarkerShape]:
-    color = [*_axis_color(orientation), alpha]
-    base = _new_shape("arrow", orientation, [scale] * 3, color)
+    color = [*_compute_axis_color(orientation), alpha]
+    base = _make_shape("arrow", orientation, [scale] * 3, color)
     if mode == "move_axis":
         for direction in (1.0, -1.0):
             points = np.array([[direction * scale * 0.5, 0, 0], [direction * scale * 0.9, 0, 0]], dtype=np.float32)
             yield replace(base, scale=[scale * 0.15, scale * 0.25, scale * 0.2], points=points)
     elif mode in ("move_plane", "rotate_axis", "move_rotate"):
-        points, shades = _ring_triangles(mode)
-        colors = _NO_COLORS if shades is None else _shade(color[:3], shades)
+        points, shades = _make_ring_triangles(mode)
+        colors = _NO_COLORS if shades is None else _apply_shades(color[:3], shades)
         yield replace(base, shape="triangle_list", points=points, colors=colors)
 
 
-def _axis_color(orientation: list[float]) -> list[float]:
+def _compute_axis_color(orientation: list[float]) -> list[float]:
     """Return the color of an axis: red for x, green for y, blue for z, or a mixture.
 
     The axis is the x axis of an orientation.
@@ -305,7 +309,7 @@ def _axis_color(orientation: list[float]) -> list[float]:
     return color
 
 
-def _ring_triangles(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float64] | None]:
+def _make_ring_triangles(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray[np.float64] | None]:
     """Return the triangles of a ring about x, inner radius 0.5, and their brightness or None."""
     angles = np.arange(_RING_STEPS) * (2 * np.pi / _RING_STEPS)
     inner = 0.5 * np.stack([np.zeros(_RING_STEPS), np.cos(angles), np.sin(angles)], axis=1)
@@ -330,20 +334,20 @@ def _ring_triangles(mode: InteractionMode) -> tuple[NDArray[np.float32], NDArray
     return corners.reshape(-1, 3).astype(np.float32), shades
 
 
-def _shade(color: list[float], shades: NDArray[np.float64]) -> NDArray[np.float32]:
+def _apply_shades(color: list[float], shades: NDArray[np.float64]) -> NDArray[np.float32]:
     rgb = shades[:, None] * np.array(color)
     return np.hstack([rgb, np.ones((len(shades), 1))]).astype(np.float32)
 
 
-def _button_marker(text: str, scale: float) -> MarkerShape:
+def _make_button_marker(text: str, scale: float) -> MarkerShape:
     size = 0.25 * scale
-    shape = _new_shape("text", [0.0, 0.0, 0.0, 1.0], [size] * 3, [1.0, 1.0, 1.0, 1.0])
+    shape = _make_shape("text", [0.0, 0.0, 0.0, 1.0], [size] * 3, [1.0, 1.0, 1.0, 1.0])
     shape.pose[0], shape.pose[2] = -0.1 * size, 1.2 * scale - 0.1 * size
     shape.text = text
     return shape
 
 
-def _new_shape(kind: MarkerKind, orientation: list[float], scale: list[float], color: list[float]) -> MarkerShape:
+def _make_shape(kind: MarkerKind, orientation: list[float], scale: list[float], color: list[float]) -> MarkerShape:
     return MarkerShape(
         id="",
         namespace="",

@@ -112,7 +112,7 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
     if not 0 <= message.type < len(_MARKER_KINDS):
         raise BadMarkerError(phrase("Unknown marker type: {type}", type=message.type))
     kind = _MARKER_KINDS[message.type]
-    pose = _pose(message.pose)
+    pose = _to_transform(message.pose)
     shape = MarkerShape(
         id=marker_id(message),
         namespace=message.ns,
@@ -120,9 +120,9 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
         frame="",
         pose=list(pose),
         scale=[message.scale.x, message.scale.y, message.scale.z],
-        color=_rgba(message.color),
-        points=_points(message.points),
-        colors=_colors(message.colors),
+        color=_to_rgba(message.color),
+        points=_to_point_array(message.points),
+        colors=_to_color_array(message.colors),
         uvs=_NO_UVS,
         text=message.text if kind == "text" else "",
         mesh=None,
@@ -132,7 +132,7 @@ def read_marker(message: Any, index: MeshIndex) -> MarkerReading:
     check_shape = _CHECKS.get(kind)
     warning = check_shape(shape) if check_shape else None
     if kind == "mesh":
-        shape.mesh = _mesh(message, shape, index)
+        shape.mesh = _find_mesh(message, shape, index)
     elif kind == "triangle_list":
         _add_texture(message, shape, index)
     return MarkerReading(shape, pose, warning)
@@ -143,35 +143,35 @@ def marker_pose(frame: Transform, reading: MarkerReading) -> list[float]:
     return list(compose(frame, reading.pose))
 
 
-def pose_of(pose: Any) -> list[float]:
+def pose_to_values(pose: Any) -> list[float]:
     """Return a geometry_msgs/msg/Pose as x, y, z, qx, qy, qz, qw, with a normalized quaternion."""
-    return list(_pose(pose))
+    return list(_to_transform(pose))
 
 
-def _pose(pose: Any) -> Transform:
+def _to_transform(pose: Any) -> Transform:
     position = pose.position
     return (position.x, position.y, position.z, *unit_quaternion(pose.orientation))
 
 
-def unit_quaternion(q: Any) -> Quaternion:
+def unit_quaternion(quaternion: Any) -> Quaternion:
     """Return a geometry_msgs/msg/Quaternion, normalized to unit length.
 
     A quaternion that is not set becomes the identity, as in RViz.
     """
-    return normalized(q.x, q.y, q.z, q.w)
+    return normalized(quaternion.x, quaternion.y, quaternion.z, quaternion.w)
 
 
-def _rgba(color: Any) -> list[float]:
+def _to_rgba(color: Any) -> list[float]:
     return [color.r, color.g, color.b, color.a]
 
 
-def _points(points: Any) -> NDArray[np.float32]:
+def _to_point_array(points: Any) -> NDArray[np.float32]:
     if not points:
         return _NO_POINTS
     return np.array([(point.x, point.y, point.z) for point in points], dtype=np.float32).reshape(-1, 3)
 
 
-def _colors(colors: Any) -> NDArray[np.float32]:
+def _to_color_array(colors: Any) -> NDArray[np.float32]:
     if not colors:
         return _NO_COLORS
     return np.array([(color.r, color.g, color.b, color.a) for color in colors], dtype=np.float32).reshape(-1, 4)
@@ -245,7 +245,7 @@ _CHECKS: dict[MarkerKind, Callable[[MarkerShape], Phrase | None]] = {
 }
 
 
-def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
+def _find_mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
     """Return the mesh in the message, or the file that the message refers to.
 
     Messages can contain meshes since ROS 2 Iron.
@@ -254,7 +254,7 @@ def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
     embedded_file = message.mesh_file
     if embedded_file.filename and len(embedded_file.data):
         data = np.frombuffer(bytes(embedded_file.data), dtype=np.uint8)
-        return MarkerMesh(_extension(embedded_file.filename), None, data, message.mesh_use_embedded_materials)
+        return MarkerMesh(_get_extension(embedded_file.filename), None, data, message.mesh_use_embedded_materials)
     located = index.locate(name, None, MESH_TYPES)
     if located.url is None:
         raise BadMarkerError(
@@ -265,7 +265,7 @@ def _mesh(message: Any, shape: MarkerShape, index: MeshIndex) -> MarkerMesh:
                 reason=located.problem,
             )
         )
-    return MarkerMesh(_extension(name), located.url, None, message.mesh_use_embedded_materials)
+    return MarkerMesh(_get_extension(name), located.url, None, message.mesh_use_embedded_materials)
 
 
 def _add_texture(message: Any, shape: MarkerShape, index: MeshIndex) -> None:
@@ -294,7 +294,7 @@ def _add_texture(message: Any, shape: MarkerShape, index: MeshIndex) -> None:
     shape.uvs = np.array([(uv.u, uv.v) for uv in message.uv_coordinates], dtype=np.float32)
 
 
-def _extension(name: str) -> str:
+def _get_extension(name: str) -> str:
     return name.rpartition(".")[2].lower()
 
 
@@ -375,11 +375,11 @@ class MarkerStore:
             self._display,
             MarkersChanged(
                 everything=sends_all,
-                removed_ids=[] if sends_all else _newer(self._removed_ids, page_revision),
+                removed_ids=[] if sends_all else _find_newer(self._removed_ids, page_revision),
                 markers=[shape for revision, shape in self._markers.values() if sends_all or revision > page_revision],
             ),
         )
 
 
-def _newer(revisions: dict[str, int], page_revision: int) -> list[str]:
+def _find_newer(revisions: dict[str, int], page_revision: int) -> list[str]:
     return [identity for identity, revision in revisions.items() if revision > page_revision]

@@ -13,7 +13,7 @@ from linkwright.rviz.config.yaml_tree import SavedEntry
 from linkwright.rviz.displays.base.display import DisplayHost, ViewerDisplay
 from linkwright.rviz.displays.catalog import make_display
 
-MERGE_INTERVAL = 1.0
+MERGE_INTERVAL_S = 1.0
 """Edits of the same subject are merged if they follow within this time, in s, so that a drag is one edit."""
 
 State = TypeVar("State")
@@ -84,7 +84,7 @@ class History:
         The steps of a drag are merged, for example.
         """
         is_recent = (
-            self._clock() - self._last_edit_time < MERGE_INTERVAL
+            self._clock() - self._last_edit_time < MERGE_INTERVAL_S
             and not self._undone_edits
             and self._saved_count != len(self._done_edits)
         )
@@ -145,10 +145,10 @@ class History:
         self._changed()
 
 
-MAXIMUM_DISPLAYS = 1000
+MAX_DISPLAYS = 1000
 """The largest number of displays that pages may add."""
 
-MAXIMUM_NESTING = 20
+MAX_NESTING = 20
 """The largest number of groups around a display, so that the file can be read again."""
 
 
@@ -214,7 +214,7 @@ class DisplayTree:
         """
         if value == display.config.checked:
             return
-        old_state, enabled = display.config.box, self._enabled_states()
+        old_state, enabled = display.config.check_box_entries, self._get_enabled_states()
         display.config.checked = value
         self._notify_check_box(display, enabled)
         name = EditName("enable" if value else "disable", display.config.name)
@@ -250,7 +250,7 @@ class DisplayTree:
         Raises:
             ValueError: there are too many displays.
         """
-        entries = _outermost(displays)
+        entries = _find_outermost(displays)
         self._check_count(entries)
 
         def copy() -> None:
@@ -258,16 +258,16 @@ class DisplayTree:
                 siblings = self._config.siblings(entry.group)
                 self._config.insert(self._config.duplicate(entry), entry.group, siblings.index(entry) + 1)
 
-        self._rearrange(_edit_name("duplicate", displays), copy)
+        self._rearrange(_make_edit_name("duplicate", displays), copy)
 
     def remove(self, displays: Sequence[ViewerDisplay]) -> None:
         """Remove displays, including the contents of groups."""
 
         def remove_all() -> None:
-            for entry in _outermost(displays):
+            for entry in _find_outermost(displays):
                 self._config.remove(entry)
 
-        self._rearrange(_edit_name("remove", displays), remove_all)
+        self._rearrange(_make_edit_name("remove", displays), remove_all)
 
     def move(
         self, displays: Sequence[ViewerDisplay], group: DisplayConfig | None, before: DisplayConfig | None
@@ -283,7 +283,7 @@ class DisplayTree:
             ValueError: the target is not a group, is inside one of the displays, or the displays would be nested too
                 deeply.
         """
-        entries = _outermost(displays)
+        entries = _find_outermost(displays)
         if group is not None and (not group.is_group or any(group in entry.walk() for entry in entries)):
             raise ValueError(f"displays cannot be put into '{group.name}'")
         _check_nesting(group, entries)
@@ -296,7 +296,7 @@ class DisplayTree:
                 self._config.remove(entry)
                 self._config.insert(entry, group, siblings.index(target) if target else None)
 
-        self._rearrange(_edit_name("move", displays), move_all)
+        self._rearrange(_make_edit_name("move", displays), move_all)
 
     def group(self, displays: Sequence[ViewerDisplay], name: str) -> None:
         """Move displays into a new group at the position of the first of them.
@@ -304,7 +304,7 @@ class DisplayTree:
         Raises:
             ValueError: there are too many displays, or the group would be nested too deeply.
         """
-        entries = _outermost(displays)
+        entries = _find_outermost(displays)
         enclosing_group, index = entries[0].group, self._config.siblings(entries[0].group).index(entries[0])
         group = self._config.make_group(name)
         self._check_count([group])
@@ -344,8 +344,8 @@ class DisplayTree:
         display = self.find(identity)
         if display is None:
             return saved_entries
-        replaced, enabled = display.config.box, self._enabled_states()
-        display.config.box = saved_entries
+        replaced, enabled = display.config.check_box_entries, self._get_enabled_states()
+        display.config.check_box_entries = saved_entries
         self._notify_check_box(display, enabled)
         return replaced
 
@@ -361,7 +361,7 @@ class DisplayTree:
 
     def arrange(self, arrangement: Arrangement) -> Arrangement:
         """Restore an arrangement, and return the arrangement that it replaced."""
-        old_arrangement, enabled = self._config.arrangement(), self._enabled_states()
+        old_arrangement, enabled = self._config.arrangement(), self._get_enabled_states()
         self._config.arrange(arrangement)
         self._apply_config(enabled)
         return old_arrangement
@@ -369,12 +369,12 @@ class DisplayTree:
     def _rearrange(
         self, name: EditName, change: Callable[[], None], new_displays: Sequence[ViewerDisplay] = ()
     ) -> None:
-        old_arrangement, enabled = self._config.arrangement(), self._enabled_states()
+        old_arrangement, enabled = self._config.arrangement(), self._get_enabled_states()
         change()
         self._apply_config(enabled, new_displays)
         self._history.add(Edit(name, self.arrange, old_arrangement))
 
-    def _enabled_states(self) -> dict[DisplayConfig, bool]:
+    def _get_enabled_states(self) -> dict[DisplayConfig, bool]:
         return {display.config: display.enabled for display in self.displays}
 
     def _apply_config(self, enabled: dict[DisplayConfig, bool], new_displays: Sequence[ViewerDisplay] = ()) -> None:
@@ -396,7 +396,7 @@ class DisplayTree:
         self._rearranged()
         for display in self.displays:
             if display.config not in displays_by_entry:
-                self._begin(display)
+                self._start_display(display)
             elif display.enabled != enabled[display.config]:
                 display.on_enabled_changed()
 
@@ -404,7 +404,7 @@ class DisplayTree:
         for display in self.displays:
             display.on_displays_rearranged(self.displays)
 
-    def _begin(self, display: ViewerDisplay) -> None:
+    def _start_display(self, display: ViewerDisplay) -> None:
         if self._running:
             display.start()
             display.on_frames_changed()
@@ -412,8 +412,8 @@ class DisplayTree:
             self._host.pages.publish(message)
 
     def _check_count(self, entries: Sequence[DisplayConfig]) -> None:
-        if len(self.displays) + sum(1 for entry in entries for _ in entry.walk()) > MAXIMUM_DISPLAYS:
-            raise ValueError(f"there can be no more than {MAXIMUM_DISPLAYS} displays")
+        if len(self.displays) + sum(1 for entry in entries for _ in entry.walk()) > MAX_DISPLAYS:
+            raise ValueError(f"there can be no more than {MAX_DISPLAYS} displays")
 
     def _create_display(self, entry: DisplayConfig) -> ViewerDisplay:
         entry.identity = entry.identity or next(self._host.context.display_ids)
@@ -425,28 +425,28 @@ def _check_nesting(group: DisplayConfig | None, entries: Sequence[DisplayConfig]
 
     `extra_groups` is the number of further groups that will enclose the entries.
     """
-    if _depth(group) + extra_groups + max(map(_height, entries)) > MAXIMUM_NESTING:
-        raise ValueError(f"groups cannot be nested deeper than {MAXIMUM_NESTING}")
+    if _compute_depth(group) + extra_groups + max(map(_compute_height, entries)) > MAX_NESTING:
+        raise ValueError(f"groups cannot be nested deeper than {MAX_NESTING}")
 
 
-def _depth(group: DisplayConfig | None) -> int:
+def _compute_depth(group: DisplayConfig | None) -> int:
     """Return the number of groups that enclose the contents of a group.
 
     The top level, None, has depth 0.
     """
-    return 0 if group is None else 1 + _depth(group.group)
+    return 0 if group is None else 1 + _compute_depth(group.group)
 
 
-def _height(entry: DisplayConfig) -> int:
+def _compute_height(entry: DisplayConfig) -> int:
     """Return the nesting depth of the groups in an entry, including the entry itself."""
-    return 1 + max(map(_height, entry.displays), default=0) if entry.is_group else 0
+    return 1 + max(map(_compute_height, entry.displays), default=0) if entry.is_group else 0
 
 
-def _outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:
+def _find_outermost(displays: Sequence[ViewerDisplay]) -> list[DisplayConfig]:
     """Return the entries of the displays that are not inside another of these displays."""
     entries = [display.config for display in displays]
     return [entry for entry in entries if not any(entry in other.walk() for other in entries if other is not entry)]
 
 
-def _edit_name(kind: EditKind, displays: Sequence[ViewerDisplay]) -> EditName:
+def _make_edit_name(kind: EditKind, displays: Sequence[ViewerDisplay]) -> EditName:
     return EditName(kind, ", ".join(display.config.name for display in displays))

@@ -20,7 +20,7 @@ from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.rviz_config import RvizConfig
 from linkwright.rviz.config.schema import Path
 from linkwright.rviz.context import ViewerContext
-from linkwright.rviz.displays.base.display import ViewerDisplay, worst_level
+from linkwright.rviz.displays.base.display import ViewerDisplay, find_worst_level
 from linkwright.rviz.displays.frames import FRAME_TIMEOUT, TfDisplay
 from linkwright.rviz.displays.robot_model import RobotModelDisplay
 from linkwright.rviz.frames.stream import FrameStream, FrameView, TimeControl
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from linkwright.rviz.config.yaml_tree import SavedEntry
 
 
-GLOBAL = "global"
+GLOBAL_OWNER = "global"
 """The owner of the Global Options, used instead of the ID of a display."""
 
 _FIXED_FRAME = "Fixed Frame"
@@ -123,7 +123,7 @@ class VisualizationManager:
         self._report_warnings()
         self.tree.fill(config)
         self.on_fading_changed()
-        self.publish(self.tree_message())
+        self.publish(self.make_tree_message())
         self.tree.start()
         self._stream.refresh()
         self._synchronize()
@@ -146,22 +146,22 @@ class VisualizationManager:
         """Send a message to the pages that show this configuration."""
         self.pages.publish(message)
 
-    def opening_state(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
+    def make_opening_state(self) -> tuple[list[ServerMessage], FrameTable, list[Payload]]:
         """Return the messages, frame table and binary frames for a new page, to send in this order."""
         self._stream.refresh()
         table, transforms = self._stream.current_frames
-        messages: list[ServerMessage] = [self.tree_message()]
+        messages: list[ServerMessage] = [self.make_tree_message()]
         for display in self.displays:
             messages += display.messages()
         data: list[Payload] = [frame for display in self.displays for frame in display.data()]
         return messages, table, [*([transforms] if transforms else []), *data]
 
-    def tree_message(self) -> Tree:
+    def make_tree_message(self) -> Tree:
         """Return the message with the content of the Displays panel, for pages."""
         return Tree(
             global_options=self.config.options.rows(),
             global_status=self._global_status,
-            global_level=worst_level(self._global_status),
+            global_level=find_worst_level(self._global_status),
             displays=[display.row() for display in self.displays],
         )
 
@@ -186,7 +186,7 @@ class VisualizationManager:
         Raises:
             KeyError: there is no such display.
         """
-        if owner == GLOBAL:
+        if owner == GLOBAL_OWNER:
             return self.config.options
         display = self.display(owner)
         if display is None:
@@ -200,7 +200,7 @@ class VisualizationManager:
         """
         owner, _, property_name = identity.partition("/")
         display = self.display(owner)
-        if display is None and owner != GLOBAL:
+        if display is None and owner != GLOBAL_OWNER:
             return  # the display was removed in the meantime
         if display is not None and property_name == "Enabled":
             if not isinstance(value, bool):
@@ -257,7 +257,7 @@ class VisualizationManager:
         display = self.display(owner)
         if display is not None:
             display.restore(saved_entries)
-        elif owner == GLOBAL:
+        elif owner == GLOBAL_OWNER:
             for path in self.config.options.restore(saved_entries):
                 self._on_option_changed(path[0])
 
@@ -291,8 +291,8 @@ class VisualizationManager:
     def reset_time(self) -> None:
         """Reset time: discard displayed messages, and all transforms except static ones."""
         self.time.reset()
-        self.context.transforms.forget()
-        self._stream.forget()
+        self.context.transforms.clear()
+        self._stream.clear()
         for display in self.displays:
             display.on_time_reset()
 
@@ -323,7 +323,7 @@ class VisualizationManager:
         options = self.config.options
         changes_rows = options.is_condition((name,))
         self.publish(
-            self.tree_message() if changes_rows else PropertyChanged(options.identity((name,)), options.get(name))
+            self.make_tree_message() if changes_rows else PropertyChanged(options.identity((name,)), options.get(name))
         )
         if name == _FRAME_RATE:
             self._stream.rate = options.number(_FRAME_RATE)
@@ -334,7 +334,7 @@ class VisualizationManager:
 
     def _on_rearranged(self) -> None:
         self.on_fading_changed()
-        self.publish(self.tree_message())
+        self.publish(self.make_tree_message())
 
     def _on_frames_changed(self, frames: FrameView) -> None:
         has_new_names = frames.names != self.frames.names
@@ -358,7 +358,7 @@ class VisualizationManager:
             row = StatusRow("Fixed Frame", "warn", phrase("No tf data.  Actual error: {missing}", missing=missing))
         if [row] != self._global_status:
             self._global_status = [row]
-            self.publish(DisplayStatus(GLOBAL, row.level, [row]))
+            self.publish(DisplayStatus(GLOBAL_OWNER, row.level, [row]))
 
     def on_robot_changed(self, removed_frames: set[str]) -> None:
         """Handle a display's new robot.
@@ -379,7 +379,7 @@ class VisualizationManager:
         )
 
 
-LINGERING = 60.0
+LINGERING_S = 60.0
 """Seconds for which the displays of a closed page are kept, because the page may only be reloading."""
 
 MAX_LINGERING = 8
@@ -433,7 +433,7 @@ class Managers:
         manager.pages.discard(page)
         if manager is not self.shared and not len(manager.pages):
             self._close_timers[page.configuration_name] = asyncio.get_running_loop().call_later(
-                LINGERING, self._drop, page.configuration_name
+                LINGERING_S, self._drop, page.configuration_name
             )
             if len(self._close_timers) > MAX_LINGERING:
                 self._drop(next(iter(self._close_timers)))

@@ -16,8 +16,8 @@ import yaml
 from linkwright.diagnostics import Diagnostic, LinkwrightError, foreign, install_hint, phrase
 from linkwright.files.input_files import read_text
 from linkwright.graph import Graph, MessageInfo, Node, Publisher, QoSProfile, ReliabilityPolicy, Subscription
-from linkwright.graph.endpoints.commander import Commander
-from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.graph.endpoints.command_disputes import DisputeMonitor
+from linkwright.graph.endpoints.command_guard import CommandGuard
 from linkwright.graph.endpoints.event_types import PublisherEventCallbacks, QoSMatchedInfo
 from linkwright.graph.names.rules import join
 from linkwright.graph.parameters.qos_overrides import QoSOverridingOptions
@@ -150,17 +150,17 @@ class _Bridge(SingleNode):
             return
         lazy = self._is_lazy if topic.lazy is None else topic.lazy
         publishers: list[Publisher[Any]] = []
-        commander = driver_watch = None
+        command_guard = dispute_monitor = None
         if target_type in VELOCITIES:
-            commander = Commander(lambda lost: send_stop(self._node, publishers[0], lost))
-            driver_watch = DriverWatch.of(self._node)
+            command_guard = CommandGuard(lambda lost: send_stop(self._node, publishers[0], lost))
+            dispute_monitor = DisputeMonitor.of(self._node)
 
         def forward(message: Any, info: MessageInfo) -> None:
             # A bidirectional bridge also receives the messages that it publishes itself.
             if all(info.publisher_gid != publisher.gid for publisher in self._publishers):
-                if commander is not None and driver_watch is not None:
-                    commander.note_publisher(info)
-                    driver_watch.record_command(message, info)
+                if command_guard is not None and dispute_monitor is not None:
+                    command_guard.note_publisher(info)
+                    dispute_monitor.record_command(message, info)
                 publishers[0].publish(convert(message))
 
         def subscribe() -> Subscription[Any]:
@@ -168,8 +168,8 @@ class _Bridge(SingleNode):
             subscription: Subscription[Any] = source_node.create_subscription(
                 source_type, source_topic, forward, profile
             )
-            if commander is not None:
-                commander.watch(subscription)
+            if command_guard is not None:
+                command_guard.watch(subscription)
             return subscription
 
         direction = _BridgeDirection(subscribe, lazy=lazy)

@@ -86,13 +86,13 @@ class ClassicAckermann(SimulatedPlugin[AckermannParameters]):
         self._distance_topic = (
             node.publisher("std_msgs/msg/Float32", "distance", 1) if parameters.publish_distance else None
         )
-        commander = node.commander(self._stop_motion)
+        command_guard = node.command_guard(self._stop_motion)
         node.subscribe(
             "geometry_msgs/msg/Twist",
             "cmd_vel",
             self._on_command,
             1,
-            commander=commander,
+            command_guard=command_guard,
             stop_motion=self._stop_motion,
         )
         self._reset_motion()

@@ -211,13 +211,13 @@ class ClassicDiffDrive(_DiffDrive[ClassicParameters]):
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
         )
         self._uses_true_pose = parameters.odometry_source.strip().lower() in (str(_WORLD_ODOMETRY_SOURCE), "world")
-        commander = node.commander(self._stop_motion)
+        command_guard = node.command_guard(self._stop_motion)
         node.subscribe(
             "geometry_msgs/msg/Twist",
             parameters.command_topic,
             self._on_command,
             1,
-            commander=commander,
+            command_guard=command_guard,
             stop_motion=self._stop_motion,
         )
         self.every(parameters.update_rate, self._update)

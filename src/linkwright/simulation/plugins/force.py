@@ -47,12 +47,12 @@ class ClassicForce(SimulatedPlugin[ForceParameters]):
             )
         self.simulation.keep_awake(self._link)
         self._wrench = _NO_WRENCH
-        commander = self.node.commander(self._stop_motion)
+        command_guard = self.node.command_guard(self._stop_motion)
         self.node.subscribe(
             "geometry_msgs/msg/Wrench",
             parameters.topic_name,
             self._on_wrench,
-            commander=commander,
+            command_guard=command_guard,
             stop_motion=self._stop_motion,
         )
         self.every(0.0, self._apply_wrench)

@@ -103,13 +103,13 @@ def connect_drive(
         TRANSFORMS_TYPE, parameters.tf_topic or f"/model/{model}/tf", TRANSFORMS_DEPTH, conventional_topic="/tf"
     )
     topic = parameters.topic or f"/model/{model}/cmd_vel"
-    commander = node.commander(commands.stop)
+    command_guard = node.command_guard(commands.stop)
     node.subscribe(
         "geometry_msgs/msg/Twist",
         topic,
         commands.set_command,
         conventional_topic="/cmd_vel",
-        commander=commander,
+        command_guard=command_guard,
         stop_motion=commands.stop,
     )
     return OdometryTopics(frame, child_frame, odometry, transforms)

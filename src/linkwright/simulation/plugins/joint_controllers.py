@@ -107,9 +107,9 @@ class _JointController(SimulatedPlugin[P], Generic[P]):
         parameters = self.parameters
         sub_topic = parameters.sub_topic or f"joint/{parameters.joint_name[0]}/{topic_suffix}"
         topic = parameters.topic or f"/model/{self.context.path}/{sub_topic}"
-        commander = self.node.commander(self._stop_motion)
+        command_guard = self.node.command_guard(self._stop_motion)
         self.node.subscribe(
-            "std_msgs/msg/Float64", topic, self._on_command, commander=commander, stop_motion=self._stop_motion
+            "std_msgs/msg/Float64", topic, self._on_command, command_guard=command_guard, stop_motion=self._stop_motion
         )
         self._reset_motion()
 

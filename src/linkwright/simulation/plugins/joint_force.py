@@ -33,9 +33,9 @@ class GzJointForce(SimulatedPlugin[JointForceParameters]):
         simulation.keep_awake(simulation.scene.joints[self._joint].child)
         self._force = 0.0
         topic = f"/model/{self.context.path}/joint/{name}/cmd_force"
-        commander = self.node.commander(self._stop_motion)
+        command_guard = self.node.command_guard(self._stop_motion)
         self.node.subscribe(
-            "std_msgs/msg/Float64", topic, self._on_command, commander=commander, stop_motion=self._stop_motion
+            "std_msgs/msg/Float64", topic, self._on_command, command_guard=command_guard, stop_motion=self._stop_motion
         )
         self.every(0.0, self._apply_force)
 

@@ -173,13 +173,13 @@ class GzMulticopterControl(SimulatedPlugin[ControlParameters]):
         self.reset()
         namespace = self.text_in(element, "robotNamespace").strip("/")
         topic_prefix = f"/{namespace}/" if namespace else "/"
-        commander = self.node.commander(self._stop_motion)
+        command_guard = self.node.command_guard(self._stop_motion)
         twist_type = "geometry_msgs/msg/Twist"
         self.node.subscribe(
             twist_type,
             topic_prefix + parameters.command_topic,
             self._on_twist,
-            commander=commander,
+            command_guard=command_guard,
             stop_motion=self._stop_motion,
         )
         self.node.subscribe("std_msgs/msg/Bool", topic_prefix + parameters.enable_topic, self._on_enable)

@@ -9,7 +9,7 @@ from typing import Any
 
 from linkwright.graph import Node
 from linkwright.graph.endpoints.base import Endpoint
-from linkwright.graph.endpoints.commander import Commander
+from linkwright.graph.endpoints.command_guard import CommandGuard
 from linkwright.graph.qos.profile import QoSProfile
 from linkwright.graph.stepped.calls import Calls
 from linkwright.graph.stepped.exchange import Exchange
@@ -77,7 +77,7 @@ class PluginNode(SteppedNode):
         callback: Callable[[Any], object],
         qos: QoSProfile | int = 10,
         *,
-        commander: Commander | None = None,
+        command_guard: CommandGuard | None = None,
         stop_motion: Callable[[], object] | None = None,
         conventional_topic: str = "",
     ) -> None:
@@ -85,8 +85,8 @@ class PluginNode(SteppedNode):
 
         The arguments are those of `publisher` and of `SteppedNode.subscribe`.
         """
-        handle_message = self._make_callback(topic, callback, stop_motion, commander)
-        self._subscribe_to(msg_type, self._topic_names(topic, conventional_topic), handle_message, qos, commander)
+        handle_message = self._make_callback(topic, callback, stop_motion, command_guard)
+        self._subscribe_to(msg_type, self._topic_names(topic, conventional_topic), handle_message, qos, command_guard)
 
     def close(self) -> None:
         """Remove all endpoints of the plugin from the graph."""

@@ -92,13 +92,13 @@ class PlanarMove(PlanarDrive[PlanarMoveParameters]):
         self._topics = OdometryTopics(
             parameters.odometry_frame, parameters.robot_base_frame, odometry, transforms, variances
         )
-        commander = node.commander(self._stop_motion)
+        command_guard = node.command_guard(self._stop_motion)
         node.subscribe(
             "geometry_msgs/msg/Twist",
             parameters.command_topic,
             self._on_command,
             1,
-            commander=commander,
+            command_guard=command_guard,
             stop_motion=self._stop_motion,
         )
         self.every(0.0, self._move)

@@ -41,13 +41,13 @@ class GzVelocityControl(PlanarDrive[VelocityControlParameters]):
         self.require_free_model()
         self.reset()
         topic = self.parameters.topic or f"/model/{self.context.path}/cmd_vel"
-        commander = self.node.commander(self._stop_motion)
+        command_guard = self.node.command_guard(self._stop_motion)
         self.node.subscribe(
             "geometry_msgs/msg/Twist",
             topic,
             self._on_command,
             conventional_topic="/cmd_vel",
-            commander=commander,
+            command_guard=command_guard,
             stop_motion=self._stop_motion,
         )
         self.every(0.0, self._move)

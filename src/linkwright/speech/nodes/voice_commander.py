@@ -18,7 +18,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.translation import ENGLISH, language_of, localized
 from linkwright.graph import LATCHED_QOS, Clock, ClockType, Graph, ParameterType, Publisher, Subscription
 from linkwright.graph.endpoints.base import EndpointInfo
-from linkwright.graph.endpoints.commander import Commander
+from linkwright.graph.endpoints.command_guard import CommandGuard
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import check_positive, invalid_value_error, log_unknown_parameters
 from linkwright.nodes.velocity_topic import VelocityTopic
@@ -164,9 +164,9 @@ class VoiceCommander(SingleNode):
         return check_positive(self._node, name, value)
 
     def _subscribe_to_texts(self) -> None:
-        commander = Commander(self._on_commander_lost)
-        callback = commander.tracking_callback(lambda message: self._execute(message.data, by_voice=False))
-        commander.watch(self._node.create_subscription(_STRING, "voice/text_input", callback, _QUEUE_DEPTH))
+        command_guard = CommandGuard(self._on_commander_lost)
+        callback = command_guard.tracking_callback(lambda message: self._execute(message.data, by_voice=False))
+        command_guard.watch(self._node.create_subscription(_STRING, "voice/text_input", callback, _QUEUE_DEPTH))
 
     # --- listening -----------------------------------------------------------------------------------------------
 

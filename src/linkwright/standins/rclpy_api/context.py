@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 from linkwright.diagnostics import LinkwrightError, print_diagnostics
 from linkwright.graph import Graph
-from linkwright.graph.command_line.log_setup import Logging, set_up
+from linkwright.graph.command_line.log_setup import LoggingSetup, set_up_logging
 from linkwright.graph.command_line.ros_arguments import RosArguments, parse
 from linkwright.graph.faults import RclError
 from linkwright.standins.rclpy_api import logging
@@ -48,7 +48,7 @@ class Context:
         self._was_ended_by_signal = False
         self._domain_id: int | None = None
         self._graph = graph
-        self._logging: Logging | None = None
+        self._logging: LoggingSetup | None = None
         self._joining_transport: BackgroundTransport | None = None
         self.ros_arguments = RosArguments()
 
@@ -111,7 +111,7 @@ class Context:
             print_diagnostics([finding for _, finding in self.ros_arguments.parameters.skipped_findings], sys.stderr)
             self._domain_id = domain_id
             if initialize_logging and joins_network and not logging.is_configured():
-                self._logging = set_up(self.ros_arguments, Path(sys.argv[0]).stem or "python3", logging.LEVELS)
+                self._logging = set_up_logging(self.ros_arguments, Path(sys.argv[0]).stem or "python3", logging.LEVELS)
                 logging.write_to(self._logging.sink)
             self._initialized = self._ok = True
         current_state().open_contexts.add(self)

@@ -25,7 +25,7 @@ def validate_namespace(namespace: str) -> bool:
     Raises:
         InvalidNamespaceError: the namespace is not valid.
     """
-    problem = names.namespace_problem(namespace)
+    problem = names.find_namespace_problem(namespace)
     if problem is not None:
         raise names.InvalidNamespaceError(namespace, *problem)
     return True
@@ -39,7 +39,7 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
     Raises:
         InvalidTopicNameError, InvalidServiceNameError: the name is not valid.
     """
-    _raise_if_invalid(name, names.topic_name_problem(name), is_service=is_service)
+    _raise_if_invalid(name, names.find_topic_name_problem(name), is_service=is_service)
     return True
 
 
@@ -49,7 +49,7 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
     Raises:
         InvalidTopicNameError, InvalidServiceNameError: the name is not valid.
     """
-    problem = names.topic_name_problem(name)
+    problem = names.find_topic_name_problem(name)
     if problem is None and not name.startswith("/"):
         problem = "topic name must be absolute, it must lead with a '/'", 0
     _raise_if_invalid(name, problem, is_service=is_service)

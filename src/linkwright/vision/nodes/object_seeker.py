@@ -18,7 +18,7 @@ import numpy as np
 from linkwright.diagnostics.translation import ENGLISH, LANGUAGES
 from linkwright.geometry.single import Transform, invert, rotate, rpy_from_quaternion
 from linkwright.graph import SENSOR_DATA_QOS, EndpointInfo, Graph
-from linkwright.graph.endpoints.commander import Commander, describe_lost_publisher
+from linkwright.graph.endpoints.command_guard import CommandGuard, describe_lost_publisher
 from linkwright.messages import get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
@@ -75,13 +75,13 @@ class ObjectSeeker(SingleNode):
         self._trip = Nav2Trip(node, self._on_trip_end) if self._uses_nav2 else None
         self._velocity = VelocityTopic(node, "cmd_vel", frame_id=self._base)
         self._response = node.create_publisher(text, "/voice/response", _QUEUE_DEPTH)
-        self._commander = Commander(self._on_commander_lost)
+        self._command_guard = CommandGuard(self._on_commander_lost)
         node.create_subscription("std_msgs/msg/Empty", "vision/stop", lambda _: self._stop(), _QUEUE_DEPTH)
         node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", self._receive_scan, SENSOR_DATA_QOS)
         for name, language in (("", None), *((f"/{language}", language) for language in LANGUAGES)):
             for topic, follow in (("vision/go_to", False), ("vision/follow", True)):
-                callback = self._commander.tracking_callback(partial(self._begin, language, follow))
-                self._commander.watch(node.create_subscription(text, topic + name, callback, _QUEUE_DEPTH))
+                callback = self._command_guard.tracking_callback(partial(self._begin, language, follow))
+                self._command_guard.watch(node.create_subscription(text, topic + name, callback, _QUEUE_DEPTH))
             describe_in_language = partial(self._describe, language or self._language)
             node.create_service("std_srvs/srv/Trigger", f"vision/describe{name}", describe_in_language)
         node.create_timer(_STEP_S, self._step)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from linkwright.graph.endpoints.base import MessageInfo
 from linkwright.graph.endpoints.bus import describe_mismatch, report_to_publisher, report_to_subscription
-from linkwright.graph.qos.compatibility import incompatible_policies
+from linkwright.graph.qos.compatibility import find_incompatible_policies
 from linkwright.graph.qos.profile import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import InterfaceNotFoundError, serialize, type_hash
 from linkwright.wire.dds.backlog import Backlog
@@ -334,7 +334,7 @@ class OutgoingTopic(MirroredTopic):
         """
         offered = self._publisher.qos_profile
         for reader in self._remote.topic_endpoints(self.topic_name, writers=False):
-            policies = incompatible_policies(offered, reader.qos)
+            policies = find_incompatible_policies(offered, reader.qos)
             name = self._remote.node_name(reader)
             if policies and (name or include_unnamed) and self._log_limits.mark_seen(reader.guid):
                 sides = describe_mismatch(self._publisher.node_name, offered, name or _UNNAMED, reader.qos, policies)
@@ -420,7 +420,7 @@ class IncomingTopic(MirroredTopic):
         """
         requested = self._subscription.qos_profile
         for writer in self._remote.topic_endpoints(self.topic_name, writers=True):
-            policies = incompatible_policies(writer.qos, requested)
+            policies = find_incompatible_policies(writer.qos, requested)
             name = self._remote.node_name(writer)
             if policies and (name or include_unnamed) and self._log_limits.mark_seen(writer.guid):
                 sides = describe_mismatch(

@@ -11,7 +11,7 @@ from linkwright.descriptions import DescriptionLibrary
 from linkwright.messages import get_message
 from linkwright.page.files import MeshIndex
 from linkwright.rviz.displays.moveit.robot import PosableRobot, UnusableStateError
-from linkwright.rviz.displays.moveit.trajectory import display_seconds, read_motion
+from linkwright.rviz.displays.moveit.trajectory import compute_display_time_s, read_motion
 from tests.rviz.displays.moveit.arm import (
     ARM,
     ObjectColor,
@@ -64,7 +64,7 @@ def robot_drawing() -> PosableRobot:
     [("3x", 0.2), ("0.05 s", 0.05), ("0.05s", 0.05), ("0.1", 0.1), ("REALTIME", 0.6), ("0x", 0.2), ("soon", 0.2)],
 )
 def test_state_display_time_is_parsed(text, seconds):
-    assert display_seconds(text, 0.6) == pytest.approx(seconds)
+    assert compute_display_time_s(text, 0.6) == pytest.approx(seconds)
 
 
 def test_motion_starts_at_start_state_and_keeps_other_joints():

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.rviz.displays.moveit.octree import BadOctreeError, read_octree
-from linkwright.rviz.displays.moveit.voxels import octomap_markers
+from linkwright.rviz.displays.moveit.voxels import make_octomap_markers
 
 IDENTITY = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 FREE, OCCUPIED, INNER = 1, 2, 3
@@ -91,7 +91,7 @@ def test_hidden_cells_are_not_drawn():
     data = tree_node(c7=INNER) + tree_node(c0=INNER) * 12 + full_tree + (full_tree + solid * 8) * 8
     cells = read(data)
     assert len(cells.sizes) == 512
-    (marker,) = octomap_markers(cells, "map", frame="base", base=IDENTITY, alpha=0.5, by_probability=False)
+    (marker,) = make_octomap_markers(cells, "map", frame="base", base=IDENTITY, alpha=0.5, by_probability=False)
     assert len(marker.points) == 512 - 6**3
     assert marker.scale == [0.5, 0.5, 0.5]
     low = marker.colors[marker.points[:, 2].argmin()]
@@ -102,5 +102,5 @@ def test_hidden_cells_are_not_drawn():
 
 def test_colors_can_show_cell_probability():
     cells = read(tree_node(c0=OCCUPIED))
-    (marker,) = octomap_markers(cells, "map", frame="base", base=IDENTITY, alpha=1.0, by_probability=True)
+    (marker,) = make_octomap_markers(cells, "map", frame="base", base=IDENTITY, alpha=1.0, by_probability=True)
     assert marker.colors[0].tolist() == pytest.approx([0.029, 0.971, 0, 1])

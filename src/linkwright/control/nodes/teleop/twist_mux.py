@@ -18,8 +18,8 @@ from typing import Any
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.graph import Graph, MessageInfo, Node, Publisher, Subscription
-from linkwright.graph.endpoints.commander import Commander
-from linkwright.graph.endpoints.drivers import DriverWatch
+from linkwright.graph.endpoints.command_disputes import DisputeMonitor
+from linkwright.graph.endpoints.command_guard import CommandGuard
 from linkwright.nodes.diagnostic_updater import DiagnosticUpdater, Health, Level
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.standstill import send_stop
@@ -94,12 +94,12 @@ class TwistMux(SingleNode):
                 localized(phrase("no parameter topics.NAME.topic is set, so nothing is forwarded"))
             )
         self._publisher: Publisher[Any] = node.create_publisher(message_type, "cmd_vel_out", _QUEUE_DEPTH)
-        self._commander = Commander(partial(send_stop, node, self._publisher))
+        self._command_guard = CommandGuard(partial(send_stop, node, self._publisher))
         for source in self._topics:
             velocities: Subscription[Any] = node.create_subscription(
-                message_type, source.topic, partial(self._on_velocity, source, DriverWatch.of(node)), _QUEUE_DEPTH
+                message_type, source.topic, partial(self._on_velocity, source, DisputeMonitor.of(node)), _QUEUE_DEPTH
             )
-            self._commander.watch(velocities)
+            self._command_guard.watch(velocities)
         for source in self._locks:
             node.create_subscription("std_msgs/msg/Bool", source.topic, partial(self._on_lock, source), _QUEUE_DEPTH)
         for source in (*self._topics, *self._locks):
@@ -113,8 +113,8 @@ class TwistMux(SingleNode):
     def _get_now_ns(self) -> int:
         return self._node.get_clock().now().nanoseconds
 
-    def _on_velocity(self, source: _Source, drivers: DriverWatch, message: Any, info: MessageInfo) -> None:
-        drivers.record_command(message, info)
+    def _on_velocity(self, source: _Source, dispute_monitor: DisputeMonitor, message: Any, info: MessageInfo) -> None:
+        dispute_monitor.record_command(message, info)
         now_ns = self._get_now_ns()
         source.record_message(now_ns)
         lock_priority = self._find_lock_priority(now_ns)
@@ -122,7 +122,7 @@ class TwistMux(SingleNode):
             topic for topic in self._topics if topic.priority and not self._is_masked(topic, lock_priority, now_ns)
         ]
         if unmasked and max(unmasked, key=lambda source_topic: source_topic.priority) is source:
-            self._commander.note_publisher(info)
+            self._command_guard.note_publisher(info)
             self._publisher.publish(message)
 
     def _on_lock(self, source: _Source, message: Any) -> None:

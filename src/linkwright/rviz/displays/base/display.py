@@ -20,7 +20,7 @@ from linkwright.page.protocol.configuration import (
     StatusRow,
 )
 from linkwright.page.protocol.message import DataContent, DisplayForgotten, ServerMessage, pack_data
-from linkwright.rviz.config.former_names import former_keys
+from linkwright.rviz.config.former_names import get_former_keys
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import FIXED_FRAME, Path, Schema
@@ -60,7 +60,7 @@ Pose = NDArray[np.float64]
 _LEVEL_RANK: dict[StatusLevel, int] = {"ok": 0, "warn": 1, "error": 2}
 
 
-def worst_level(rows: list[StatusRow]) -> StatusLevel:
+def find_worst_level(rows: list[StatusRow]) -> StatusLevel:
     """Return the most severe level of status rows.
 
     The display's own row has this level.
@@ -100,12 +100,12 @@ class ViewerDisplay:
             self.schema,
             host.context.report,
             frames=self._reference_frames,
-            former=former_keys(config.written_class),
+            former=get_former_keys(config.written_class),
         )
         self.status: list[StatusRow] = []
 
     @classmethod
-    def messages_shown(cls) -> tuple[str, ...]:
+    def shown_message_types(cls) -> tuple[str, ...]:
         """Return the message types of the topics that the display can show."""
         message: str = getattr(cls, "MESSAGE", "")
         return (message,) if message else ()
@@ -134,13 +134,13 @@ class ViewerDisplay:
             group=self.config.group.identity if self.config.group else None,
             enabled=self.config.checked,
             supported=self.SUPPORTED,
-            level=worst_level(self.status),
+            level=find_worst_level(self.status),
             status=self.status,
             properties=self.properties.rows(),
         )
 
     def set_property(self, path: Path, value: object) -> None:
-        """Set a property to a value received from a page, apply the value, and send it to all pages.
+        """Set a property to a value from a page, apply the value, and send it to all pages.
 
         Raises:
             ValueError: the property does not accept the value.
@@ -184,7 +184,7 @@ class ViewerDisplay:
             rows = []
         if rows != self.status:
             self.status = rows
-            self.pages.publish(DisplayStatus(self.id, worst_level(rows), rows))
+            self.pages.publish(DisplayStatus(self.id, find_worst_level(rows), rows))
 
     def _reference_frames(self) -> list[str]:
         return [FIXED_FRAME, *sorted(self.host.frames.names)]
@@ -263,7 +263,7 @@ class DataDisplay(ViewerDisplay):
         self._mark_replaced(key)  # after `send_data`, which replaces the content in the queue
         self._data[key] = packed
 
-    def forget(self, key: str | None = None) -> None:
+    def remove_content(self, key: str | None = None) -> None:
         """Remove the content sent under a key, or all content, from the display and the pages."""
         for data_key in self._data if key is None else (key,):
             self._mark_replaced(data_key)

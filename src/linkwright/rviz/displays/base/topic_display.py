@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from linkwright.diagnostics import LinkwrightError, Phrase, foreign, joined, phrase
 from linkwright.graph import ExtrapolationException, QoSProfile, Subscription, TransformException
 from linkwright.page.protocol.message import DataContent
-from linkwright.rviz.config.property_store import qos_of
+from linkwright.rviz.config.property_store import qos_from_properties
 from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import FILTER_SIZE, Path, Schema, topic_spec
 from linkwright.rviz.displays.base.display import DataDisplay, DisplayHost, Pose
@@ -100,7 +100,7 @@ _WEAKEST_POLICIES = {
 }
 """The QoS rows of a topic, and the value in each row that matches every publisher, by policy."""
 
-_MIN_CLOCK_DIFFERENCE = 5.0
+_MIN_CLOCK_DIFFERENCE_S = 5.0
 """The difference in s of a stamp and the local time above which the clocks probably differ."""
 
 _MAX_SUGGESTED_TOPICS = 3
@@ -164,7 +164,7 @@ class TopicDisplay(DataDisplay, ABC):
 
     def reset(self) -> None:
         """Discard all content, because the topic or the Fixed Frame has changed or time was reset."""
-        self.forget()
+        self.remove_content()
 
     def on_transforms_received(self) -> None:
         """Handle new transforms.
@@ -186,10 +186,10 @@ class TopicDisplay(DataDisplay, ABC):
 
         The topic is empty if none is set.
         """
-        return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_of(self.properties)
+        return self.MESSAGE, self.properties.text(TOPIC).strip(), qos_from_properties(self.properties)
 
-    def most_waiting(self) -> int:
-        """Return the maximum number of messages that are queued until their transforms are available."""
+    def max_waiting_messages(self) -> int:
+        """Return the maximum number of messages that wait for their transforms."""
         return int(self.properties.number(TOPIC, FILTER_SIZE))
 
     # --- methods for subclasses --------------------------------------------------------------------------------
@@ -281,7 +281,7 @@ class TopicDisplay(DataDisplay, ABC):
             )
             return
         if self.TRANSFORMED or self.FOLLOWS_TRANSFORMS:
-            self._release = self.context.transforms.use(self.on_transforms_received)
+            self._release = self.context.transforms.add_listener(self.on_transforms_received)
         self._report_count()
 
     def _unsubscribe(self) -> None:
@@ -332,7 +332,7 @@ class TopicDisplay(DataDisplay, ABC):
         self.set_status_row(
             self.TOPIC_ROW,
             "ok" if self._may_be_silent() else "warn",
-            self._incompatibility or phrase("No messages received: {reason}", reason=self._silence_reason()),
+            self._incompatibility or phrase("No messages received: {reason}", reason=self._explain_silence()),
         )
         self._report_count_later()
 
@@ -350,7 +350,7 @@ class TopicDisplay(DataDisplay, ABC):
         if self._report_timer is None:
             self._report_timer = asyncio.get_running_loop().call_later(_COUNT_PERIOD_S, report)
 
-    def _silence_reason(self) -> Phrase:
+    def _explain_silence(self) -> Phrase:
         """Return the reason why no messages arrive.
 
         If the topic has no publisher, the reason names published topics of the same type.
@@ -399,7 +399,7 @@ class TopicDisplay(DataDisplay, ABC):
             return
         if self._waiting or not self._show_if_placed(message):
             self._waiting.append(message)
-            while len(self._waiting) > self.most_waiting():
+            while len(self._waiting) > self.max_waiting_messages():
                 self._waiting.popleft()
 
     def _show_placeable(self) -> None:
@@ -440,7 +440,7 @@ class TopicDisplay(DataDisplay, ABC):
     def _add_clock_advice(self, reason: Phrase, stamp_ns: int) -> Phrase:
         """Return the reason, preceded by advice on clocks if the stamp is far from the local time."""
         seconds_ahead = (stamp_ns - self.context.node.get_clock().now().nanoseconds) * 1e-9
-        if abs(seconds_ahead) < _MIN_CLOCK_DIFFERENCE:
+        if abs(seconds_ahead) < _MIN_CLOCK_DIFFERENCE_S:
             return reason
         if seconds_ahead > 0:
             return phrase(
@@ -535,7 +535,7 @@ class RecentDisplay(TopicDisplay):
         if self.IN_FIXED_FRAME:
             frame, pose = "", None
         self._shown_contents.append(_ShownContent(content, frame, pose, stamp_ns))
-        length = self._length()
+        length = self._get_length()
         if length and len(self._shown_contents) > length:
             self._shown_contents.popleft()
         self._send(self._shown_contents[-1])
@@ -544,7 +544,7 @@ class RecentDisplay(TopicDisplay):
         """Subscribe again if necessary, or apply a new number of messages to show."""
         super().on_property_changed(path)
         if path == self.LENGTH:
-            length = self._length()
+            length = self._get_length()
             recent_contents = list(self._shown_contents)[-length:]
             self.reset()
             for recent_content in recent_contents:
@@ -574,7 +574,7 @@ class RecentDisplay(TopicDisplay):
         return False
 
     def _send(self, shown_content: _ShownContent) -> None:
-        length = self._length()
+        length = self._get_length()
         key = str(self._number % length if length else self._number)
         self._number += 1
         self.send(
@@ -585,5 +585,5 @@ class RecentDisplay(TopicDisplay):
             stamp_ns=shown_content.stamp_ns,
         )
 
-    def _length(self) -> int:
+    def _get_length(self) -> int:
         return 1 if self.LENGTH is None else int(self.properties.number(*self.LENGTH))

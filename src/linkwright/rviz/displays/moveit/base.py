@@ -106,7 +106,7 @@ class MoveItDisplay(StoredMarkersDisplay):
         self._subscribe_description()
 
     def on_property_changed(self, path: Path) -> None:
-        """Apply a new topic, a new description topic or the check box for all links, and draw again."""
+        """Apply a new topic or description topic, or the check box for all links, and redraw."""
         if path == self.TOPIC:
             self._restart()
             self._subscribe_description()
@@ -179,7 +179,7 @@ class MoveItDisplay(StoredMarkersDisplay):
 
     def _report_frames(self) -> None:
         frames = {shape.frame for shapes in self._groups.values() for shape in shapes.values()}
-        problems = [problem for frame in sorted(frames) if (problem := self.host.frames.problem(frame))]
+        problems = [problem for frame in sorted(frames) if (problem := self.host.frames.find_problem(frame))]
         if problems:
             self.set_status_row(TRANSFORM, "error", joined(problems, "; "))
         elif frames:

@@ -11,8 +11,8 @@ from linkwright.rviz.config.schema import Path, PropertySpec, Schema
 from linkwright.rviz.displays.base.display import DisplayHost
 from linkwright.rviz.displays.base.topic_display import SideTopic
 from linkwright.rviz.displays.moveit.planning_scene import PlanningSceneDisplay
-from linkwright.rviz.displays.moveit.properties import PATH, TRAJECTORY_TOPIC, fraction, path_specs, rgb
-from linkwright.rviz.displays.moveit.robot import Look
+from linkwright.rviz.displays.moveit.properties import PATH, TRAJECTORY_TOPIC, fraction_spec, parse_rgb, path_specs
+from linkwright.rviz.displays.moveit.robot import Appearance
 from linkwright.rviz.displays.moveit.trajectory import MotionPlayer
 
 _REQUEST_GROUP = "Planning Request"
@@ -25,9 +25,9 @@ _REQUEST_SPEC = PropertySpec(
         PropertySpec("Query Start State", "bool", False, "Draw the first state."),
         PropertySpec("Query Goal State", "bool", True, "Draw the last state."),
         PropertySpec("Start State Color", "color", "#00ff00", "Color of the first state."),
-        fraction("Start State Alpha", 1.0, "Opacity of the first state."),
+        fraction_spec("Start State Alpha", 1.0, "Opacity of the first state."),
         PropertySpec("Goal State Color", "color", "#fa8000", "Color of the last state."),
-        fraction("Goal State Alpha", 1.0, "Opacity of the last state."),
+        fraction_spec("Goal State Alpha", 1.0, "Opacity of the last state."),
     ),
 )
 
@@ -65,7 +65,7 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
     def stop(self) -> None:
         """Unsubscribe, and stop playing."""
         self._motion_topic.close()
-        self._player.forget()
+        self._player.clear()
         super().stop()
 
     def on_enabled_changed(self) -> None:
@@ -76,10 +76,10 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
     def on_property_changed(self, path: Path) -> None:
         """Subscribe to another motion topic, or restart the motion if looping was just enabled."""
         if path == (PATH, TRAJECTORY_TOPIC):
-            self._player.forget()
+            self._player.clear()
             self._subscribe_motions()
         super().on_property_changed(path)
-        self._player.property_changed(path)
+        self._player.on_property_changed(path)
 
     def on_time_changed(self) -> None:
         """Show the messages that were queued while time was paused."""
@@ -89,11 +89,11 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
     def on_robot_changed(self) -> None:
         """Play the motion again with the new robot."""
         super().on_robot_changed()
-        self._player.begin_again()
+        self._player.restart()
 
     def reset(self) -> None:
         """Discard the scene and the motion."""
-        self._player.forget()
+        self._player.clear()
         super().reset()
 
     def draw(self) -> None:
@@ -113,13 +113,13 @@ class MotionPlanningDisplay(PlanningSceneDisplay):
         if robot is None or motion is None or not self.properties.flag(_REQUEST_GROUP, f"Query {end_name} State"):
             self.put(group, ())
             return
-        appearance = Look(
+        appearance = Appearance(
             group,
             alpha=self.properties.number(_REQUEST_GROUP, f"{end_name} State Alpha"),
-            color=rgb(self.properties.text(_REQUEST_GROUP, f"{end_name} State Color")),
+            color=parse_rgb(self.properties.text(_REQUEST_GROUP, f"{end_name} State Color")),
             only=robot.links_moved_by(motion.joints),
         )
-        self.put(group, robot.markers(motion.states[waypoint], appearance))
+        self.put(group, robot.make_markers(motion.states[waypoint], appearance))
 
     def _subscribe_motions(self) -> None:
         self._motion_topic.close()

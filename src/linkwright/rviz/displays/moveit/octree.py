@@ -53,7 +53,7 @@ class Cells:
     sizes: NDArray[np.float64]
     probabilities: NDArray[np.float64]
 
-    def chosen(self, mask: NDArray[np.bool_]) -> Cells:
+    def select(self, mask: NDArray[np.bool_]) -> Cells:
         """Return the cells that a boolean mask of shape (N,) selects."""
         return Cells(self.centers[mask], self.sizes[mask], self.probabilities[mask])
 
@@ -73,7 +73,7 @@ def read_octree(*, data: bytes, binary: bool, kind: str, resolution: float) -> C
     if not (math.isfinite(resolution) and resolution > 0.0):
         raise BadOctreeError(phrase("Invalid resolution of the octomap: {resolution}", resolution=resolution))
     if not data:
-        return _Leaves().cells(resolution, 0, data)
+        return _Leaves().to_cells(resolution, 0, data)
     try:
         return _read_binary(data, resolution) if binary else _read_full(data, kind, resolution)
     except (IndexError, struct.error):
@@ -95,16 +95,16 @@ def _read_binary(data: bytes, resolution: float) -> Cells:
         states.append(bits)
         inner_children = bits & bits >> 1 & 0x5555
         if inner_children:
-            pending += [_child(node, child) for child in reversed(range(8)) if inner_children >> 2 * child & 1]
+            pending += [_make_child(node, child) for child in reversed(range(8)) if inner_children >> 2 * child & 1]
         if len(inner_nodes) > MAX_CELLS:
             raise BadOctreeError(
                 phrase("The octomap has more than {maximum} cells, which are too many to draw", maximum=MAX_CELLS)
             )
     _check_is_at_end(offset, data)
-    return _leaf_cells(np.array(inner_nodes, dtype=np.int64), np.array(states, dtype=np.int64), resolution)
+    return _make_leaf_cells(np.array(inner_nodes, dtype=np.int64), np.array(states, dtype=np.int64), resolution)
 
 
-def _leaf_cells(inner_nodes: NDArray[np.int64], bits: NDArray[np.int64], resolution: float) -> Cells:
+def _make_leaf_cells(inner_nodes: NDArray[np.int64], bits: NDArray[np.int64], resolution: float) -> Cells:
     """Return the leaves among the children of inner nodes.
 
     Args:
@@ -154,8 +154,8 @@ def _read_full(data: bytes, kind: str, resolution: float) -> Cells:
         if not children:
             leaves.add(node, 1.0 / (1.0 + math.exp(-max(-50.0, min(50.0, log_odds)))))
         else:
-            pending += [_child(node, child) for child in reversed(range(8)) if children >> child & 1]
-    return leaves.cells(resolution, offset, data)
+            pending += [_make_child(node, child) for child in reversed(range(8)) if children >> child & 1]
+    return leaves.to_cells(resolution, offset, data)
 
 
 _Node = tuple[int, int, int, int]
@@ -164,7 +164,7 @@ _Node = tuple[int, int, int, int]
 _ROOT: _Node = (0, 0, 0, 2 << _MAX_DEPTH)
 
 
-def _child(node: _Node, child: int) -> _Node:
+def _make_child(node: _Node, child: int) -> _Node:
     x, y, z, edge = node
     if edge <= 2:
         raise BadOctreeError(phrase("The octomap has more than {depth} levels", depth=_MAX_DEPTH))
@@ -192,7 +192,7 @@ class _Leaves:
         self._nodes.append(node)
         self._probabilities.append(probability)
 
-    def cells(self, resolution: float, offset: int, data: bytes) -> Cells:
+    def to_cells(self, resolution: float, offset: int, data: bytes) -> Cells:
         _check_is_at_end(offset, data)
         nodes = np.array(self._nodes, dtype=np.float64).reshape(-1, 4) * (resolution / 2.0)
         return Cells(nodes[:, :3], nodes[:, 3], np.array(self._probabilities, dtype=np.float64))

@@ -24,20 +24,20 @@ from linkwright.rviz.displays.moveit.properties import (
     ROBOT,
     SCENE_TOPIC,
     SCENE_TOPIC_SPEC,
-    look,
-    rgb,
+    parse_rgb,
+    read_appearance,
     scene_robot_spec,
 )
 from linkwright.rviz.displays.moveit.robot import JointPositions, UnusableStateError
 from linkwright.rviz.displays.moveit.scene import Scene
-from linkwright.rviz.displays.moveit.voxels import BY_PROBABILITY, octomap_markers, select_rendered
+from linkwright.rviz.displays.moveit.voxels import BY_PROBABILITY, make_octomap_markers, select_rendered
 
 _SERVICE_NAME = "get_planning_scene"
 _ATTACHED_NAMESPACE = "Scene Robot holds"
 
 
 class PlanningSceneDisplay(MoveItDisplay):
-    """A display of a planning scene: the robot, its attached objects, and the objects around it.
+    """A display of a planning scene: the robot, attached objects, and surrounding objects.
 
     The topic carries only changes. The display therefore requests the full scene from move_group, when the display
     starts or as soon as move_group is available.
@@ -127,7 +127,7 @@ class PlanningSceneDisplay(MoveItDisplay):
         if state.joint_state.name or state.multi_dof_joint_state.joint_names:
             self._state = state
             self._apply_state(state)
-        self._draw_soon()
+        self._schedule_draw()
 
     def draw(self) -> None:
         """Draw the robot and the objects of the scene."""
@@ -143,7 +143,7 @@ class PlanningSceneDisplay(MoveItDisplay):
 
     # --- drawing -----------------------------------------------------------------------------------------------
 
-    def _draw_soon(self) -> None:
+    def _schedule_draw(self) -> None:
         if self._draw_timer is None:
             delay = self.properties.number(GEOMETRY, "Scene Display Time")
             self._draw_timer = asyncio.get_running_loop().call_later(delay, self.draw)
@@ -151,15 +151,15 @@ class PlanningSceneDisplay(MoveItDisplay):
     def _draw_geometry(self) -> None:
         is_shown = self.properties.flag(GEOMETRY, "Show Scene Geometry")
         alpha = self.properties.number(GEOMETRY, "Scene Alpha")
-        color = (*rgb(self.properties.text(GEOMETRY, "Scene Color")), alpha)
-        self.put("objects", self.scene.object_markers(GEOMETRY, color) if is_shown else ())
-        self.put("octomap", self._octomap(alpha) if is_shown else ())
+        color = (*parse_rgb(self.properties.text(GEOMETRY, "Scene Color")), alpha)
+        self.put("objects", self.scene.make_object_markers(GEOMETRY, color) if is_shown else ())
+        self.put("octomap", self._make_octomap_markers(alpha) if is_shown else ())
 
-    def _octomap(self, alpha: float) -> list[MarkerShape]:
+    def _make_octomap_markers(self, alpha: float) -> list[MarkerShape]:
         octomap = self.scene.octomap
         if octomap is None:
             return []
-        return octomap_markers(
+        return make_octomap_markers(
             select_rendered(octomap.cells, self.properties.text(GEOMETRY, "Voxel Rendering")),
             GEOMETRY,
             frame=octomap.frame,
@@ -172,14 +172,16 @@ class PlanningSceneDisplay(MoveItDisplay):
         if self.robot is None:
             return
         alpha = self.properties.number(ROBOT, "Robot Alpha")
-        color = (*rgb(self.properties.text(ROBOT, "Attached Body Color")), alpha)
+        color = (*parse_rgb(self.properties.text(ROBOT, "Attached Body Color")), alpha)
         has_state = self._state is not None
-        appearance = look(self.properties, self.robot, ROBOT, (ROBOT,))
-        self.put("robot", self.robot.markers(self.scene.state, appearance) if has_state else ())
+        appearance = read_appearance(self.properties, self.robot, ROBOT, (ROBOT,))
+        self.put("robot", self.robot.make_markers(self.scene.state, appearance) if has_state else ())
         is_shown = has_state and alpha > 0.0
         self.put(
             "held",
-            self.scene.attached_markers(self.robot, self.scene.state, _ATTACHED_NAMESPACE, color) if is_shown else (),
+            self.scene.make_attached_markers(self.robot, self.scene.state, _ATTACHED_NAMESPACE, color)
+            if is_shown
+            else (),
         )
 
     def _apply_state(self, message: Any) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from linkwright.rviz.config.property_store import PropertyStore
 from linkwright.rviz.config.schema import Path, PropertySpec, alpha
-from linkwright.rviz.displays.moveit.robot import Look, PosableRobot
+from linkwright.rviz.displays.moveit.robot import Appearance, PosableRobot
 from linkwright.rviz.displays.moveit.solids import Color
 from linkwright.rviz.displays.moveit.voxels import VOXEL_COLORING, VOXEL_RENDERING
 
@@ -22,7 +22,7 @@ SCENE_TOPIC = "Planning Scene Topic"
 TRAJECTORY_TOPIC = "Trajectory Topic"
 
 
-def fraction(name: str, default: float, description: str) -> PropertySpec:
+def fraction_spec(name: str, default: float, description: str) -> PropertySpec:
     """Return the declaration of a property with a value from 0 to 1, such as an opacity."""
     return PropertySpec(name, "float", default, description, minimum=0.0, maximum=1.0)
 
@@ -50,7 +50,7 @@ GEOMETRY_SPEC = PropertySpec(
     children=(
         PropertySpec("Scene Name", "string", "(noname)", "The name of the scene.", read_only=True),
         PropertySpec("Show Scene Geometry", "bool", True, "Draw the objects and the octomap."),
-        fraction("Scene Alpha", 0.9, "Opacity of objects that have no color, and of the octomap."),
+        fraction_spec("Scene Alpha", 0.9, "Opacity of objects that have no color, and of the octomap."),
         PropertySpec("Scene Color", "color", "#32e632", "Color of objects that have no color."),
         VOXEL_RENDERING,
         VOXEL_COLORING,
@@ -64,7 +64,7 @@ ATTACHED_COLOR_SPEC = PropertySpec(
 )
 
 
-def visibility(visual: str, collision: str) -> tuple[PropertySpec, ...]:
+def visibility_specs(visual: str, collision: str) -> tuple[PropertySpec, ...]:
     """Return the declarations of the check boxes for the visuals and the collisions of links."""
     return (
         PropertySpec(visual, "bool", True, "Draw the visual geometry."),
@@ -72,7 +72,7 @@ def visibility(visual: str, collision: str) -> tuple[PropertySpec, ...]:
     )
 
 
-VISIBILITY_SPECS = visibility("Show Robot Visual", "Show Robot Collision")
+VISIBILITY_SPECS = visibility_specs("Show Robot Visual", "Show Robot Collision")
 
 
 def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
@@ -83,7 +83,7 @@ def scene_robot_spec(links: Sequence[str]) -> PropertySpec:
         description="The robot, in the state of the scene.",
         children=(
             *VISIBILITY_SPECS,
-            fraction("Robot Alpha", 1.0, "Opacity of the robot."),
+            fraction_spec("Robot Alpha", 1.0, "Opacity of the robot."),
             ATTACHED_COLOR_SPEC,
             links_spec(links),
         ),
@@ -101,7 +101,7 @@ def path_specs(links: Sequence[str]) -> tuple[PropertySpec, ...]:
             messages=("moveit_msgs/msg/DisplayTrajectory",),
         ),
         *VISIBILITY_SPECS,
-        fraction("Robot Alpha", 0.5, "Opacity of the robot that moves."),
+        fraction_spec("Robot Alpha", 0.5, "Opacity of the robot that moves."),
         PropertySpec(
             "State Display Time",
             "string",
@@ -132,20 +132,20 @@ def links_spec(links: Sequence[str]) -> PropertySpec:
     return PropertySpec(LINKS, "group", description="The links of the robot.", children=(all_spec, *link_specs))
 
 
-def rgb(text: str) -> tuple[float, float, float]:
+def parse_rgb(text: str) -> tuple[float, float, float]:
     """Return the RGB components, 0 to 1, of a color such as ``#32e632``."""
     red, green, blue = (int(text[start : start + 2], 16) / 255.0 for start in (1, 3, 5))
     return red, green, blue
 
 
-def rgba(message: object) -> Color:
+def rgba_from_message(message: object) -> Color:
     """Return the red, green, blue and alpha components of a std_msgs/msg/ColorRGBA."""
     components = (getattr(message, part) for part in "rgba")
     red, green, blue, opacity = (min(max(float(part), 0.0), 1.0) for part in components)
     return red, green, blue, opacity
 
 
-def link_alphas(properties: PropertyStore, robot: PosableRobot, group_path: Path = ()) -> dict[str, float]:
+def read_link_alphas(properties: PropertyStore, robot: PosableRobot, group_path: Path = ()) -> dict[str, float]:
     """Return the opacity of each link by name.
 
     It is 0 if the check box of the link is off.
@@ -158,9 +158,9 @@ def link_alphas(properties: PropertyStore, robot: PosableRobot, group_path: Path
     return alphas
 
 
-def look(
+def read_appearance(
     properties: PropertyStore, robot: PosableRobot, namespace: str, group_path: Path = (), color: str | None = None
-) -> Look:
+) -> Appearance:
     """Return the appearance of a robot that the properties below a path describe.
 
     Args:
@@ -170,11 +170,11 @@ def look(
         group_path: the path of the group that contains the properties.
         color: the color of all links, such as ``#963296``; None to use the colors in the description.
     """
-    return Look(
+    return Appearance(
         namespace,
         visual=properties.flag(*group_path, "Show Robot Visual"),
         collision=properties.flag(*group_path, "Show Robot Collision"),
         alpha=properties.number(*group_path, "Robot Alpha"),
-        alphas=link_alphas(properties, robot, group_path),
-        color=None if color is None else rgb(color),
+        alphas=read_link_alphas(properties, robot, group_path),
+        color=None if color is None else parse_rgb(color),
     )

@@ -16,7 +16,7 @@ from linkwright.page.files import MeshIndex
 from linkwright.page.protocol.markers import MarkerKind, MarkerMesh, MarkerShape
 from linkwright.page.protocol.robot import LinkScene, Shape
 from linkwright.rviz.displays.moveit.solids import Color
-from linkwright.rviz.markers.shapes import make_marker, pose_of
+from linkwright.rviz.markers.shapes import make_marker, pose_to_values
 from linkwright.rviz.robot import SceneBuilder
 from linkwright.urdf import Robot
 
@@ -44,7 +44,7 @@ class JointPositions:
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class Appearance:
     """The appearance of a robot: colors, opacity, and the links and shapes to draw.
 
     Attributes:
@@ -161,7 +161,7 @@ class PosableRobot:
         ):
             raise UnusableStateError(phrase("The state has invalid floating point values (nans or infs)"))
         state.frame = frame.removeprefix("/")
-        x, y, z, qx, qy, qz, qw = pose_of(_TransformAsPose(translation, rotation))
+        x, y, z, qx, qy, qz, qw = pose_to_values(_TransformAsPose(translation, rotation))
         state.root_in_frame = (x, y, z, qx, qy, qz, qw)
 
     def set_joints(self, state: JointPositions, names: Any, positions: Any) -> list[str]:
@@ -211,25 +211,27 @@ class PosableRobot:
         """Return the reference frame of the link poses of a state."""
         return state.frame or self.root
 
-    def markers(self, state: JointPositions, look: Look) -> list[MarkerShape]:
+    def make_markers(self, state: JointPositions, appearance: Appearance) -> list[MarkerShape]:
         """Return the markers that draw the robot in a state."""
         frame = self.frame_of(state)
         shape_markers: list[MarkerShape] = []
         for name, pose in self.link_poses(state).items():
             link = self._links[name]
-            alpha = look.alpha * look.alphas.get(name, 1.0)
-            if alpha == 0.0 or (look.only is not None and name not in look.only):
+            alpha = appearance.alpha * appearance.alphas.get(name, 1.0)
+            if alpha == 0.0 or (appearance.only is not None and name not in appearance.only):
                 continue
-            shapes = [*(link.visuals if look.visual else ()), *(link.collisions if look.collision else ())]
-            color = look.links.get(name)
-            if color is None and look.color is not None:
-                color = (*look.color, 1.0)
+            shapes = [*(link.visuals if appearance.visual else ()), *(link.collisions if appearance.collision else ())]
+            color = appearance.links.get(name)
+            if color is None and appearance.color is not None:
+                color = (*appearance.color, 1.0)
             for index, shape in enumerate(shapes):
                 marker_name = f"{name} {index}" if index else name
-                red, green, blue, opacity = color or _description_color(shape)
+                red, green, blue, opacity = color or _get_description_color(shape)
                 rgba = (red, green, blue, opacity * alpha)
-                placement = _MarkerPlacement(look.namespace, marker_name, frame, compose(pose, _pose_in_link(shape)))
-                shape_markers += _shape_markers(shape, placement, rgba, is_painted=color is not None)
+                placement = _MarkerPlacement(
+                    appearance.namespace, marker_name, frame, compose(pose, _compute_pose_in_link(shape))
+                )
+                shape_markers += _make_shape_markers(shape, placement, rgba, is_painted=color is not None)
         return shape_markers
 
 
@@ -258,7 +260,9 @@ class _MarkerPlacement:
         return _MarkerPlacement(self.namespace, f"{self.name} end {index}", self.frame, pose)
 
 
-def _shape_markers(shape: Shape, placement: _MarkerPlacement, color: Color, *, is_painted: bool) -> list[MarkerShape]:
+def _make_shape_markers(
+    shape: Shape, placement: _MarkerPlacement, color: Color, *, is_painted: bool
+) -> list[MarkerShape]:
     if shape.kind == "mesh":
         mesh = MarkerMesh(shape.format or "", shape.url, None, embedded=not is_painted)
         return [placement.marker("mesh", shape.size, color, mesh)]
@@ -276,13 +280,13 @@ def _shape_markers(shape: Shape, placement: _MarkerPlacement, color: Color, *, i
     return [cylinder, *(at_end.marker("sphere", sphere_size, color) for at_end in ends)]
 
 
-def _pose_in_link(shape: Shape) -> Transform:
+def _compute_pose_in_link(shape: Shape) -> Transform:
     x, y, z = shape.position
     qx, qy, qz, qw = shape.quaternion
     return (x, y, z, qx, qy, qz, qw)
 
 
-def _description_color(shape: Shape) -> Color:
+def _get_description_color(shape: Shape) -> Color:
     """Return the color of a shape in the description, by default red.
 
     The color of a mesh is white, because it is multiplied by the materials of the mesh. STL meshes have no materials,

@@ -12,14 +12,14 @@ from linkwright.rviz.displays.moveit.base import STATE, MoveItDisplay
 from linkwright.rviz.displays.moveit.properties import (
     ATTACHED_COLOR_SPEC,
     DESCRIPTION_SPEC,
-    fraction,
-    link_alphas,
+    fraction_spec,
     links_spec,
-    rgb,
-    rgba,
-    visibility,
+    parse_rgb,
+    read_link_alphas,
+    rgba_from_message,
+    visibility_specs,
 )
-from linkwright.rviz.displays.moveit.robot import JointPositions, Look, UnusableStateError
+from linkwright.rviz.displays.moveit.robot import Appearance, JointPositions, UnusableStateError
 from linkwright.rviz.displays.moveit.scene import Scene
 
 _TOPIC = "Robot State Topic"
@@ -45,8 +45,8 @@ class RobotStateDisplay(MoveItDisplay):
         return (
             DESCRIPTION_SPEC,
             PropertySpec(_TOPIC, "topic", "display_robot_state", "The topic of states.", messages=(self.MESSAGE,)),
-            *visibility("Visual Enabled", "Collision Enabled"),
-            fraction("Robot Alpha", 1.0, "Opacity of the robot."),
+            *visibility_specs("Visual Enabled", "Collision Enabled"),
+            fraction_spec("Robot Alpha", 1.0, "Opacity of the robot."),
             ATTACHED_COLOR_SPEC,
             PropertySpec("Show Highlights", "bool", True, "Draw links in the colors that the message gives them."),
             links_spec(self.link_names),
@@ -78,19 +78,20 @@ class RobotStateDisplay(MoveItDisplay):
             return
         properties = self.properties
         alpha = properties.number("Robot Alpha")
-        highlights = {highlight.id: rgba(highlight.color) for highlight in message.highlight_links}
-        look = Look(
+        highlights = {highlight.id: rgba_from_message(highlight.color) for highlight in message.highlight_links}
+        appearance = Appearance(
             _ROBOT_NAMESPACE,
             visual=properties.flag("Visual Enabled"),
             collision=properties.flag("Collision Enabled"),
             alpha=alpha,
-            alphas=link_alphas(properties, robot),
+            alphas=read_link_alphas(properties, robot),
             links=highlights if properties.flag("Show Highlights") else {},
         )
-        self.put(_ROBOT_NAMESPACE, robot.markers(self._state, look))
-        color = (*rgb(properties.text("Attached Body Color")), alpha)
+        self.put(_ROBOT_NAMESPACE, robot.make_markers(self._state, appearance))
+        color = (*parse_rgb(properties.text("Attached Body Color")), alpha)
         self.put(
-            _ATTACHED_NAMESPACE, self._attached_objects.attached_markers(robot, self._state, _ATTACHED_NAMESPACE, color)
+            _ATTACHED_NAMESPACE,
+            self._attached_objects.make_attached_markers(robot, self._state, _ATTACHED_NAMESPACE, color),
         )
         for name, text in self._attached_objects.problems.items():
             self.set_status_row(name, "error", text)

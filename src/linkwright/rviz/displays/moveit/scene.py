@@ -12,10 +12,10 @@ from linkwright.diagnostics import Phrase, foreign, phrase
 from linkwright.geometry.single import IDENTITY, Transform
 from linkwright.page.protocol.markers import MarkerShape
 from linkwright.rviz.displays.moveit.octree import BadOctreeError, Cells, read_octree
-from linkwright.rviz.displays.moveit.properties import rgba
+from linkwright.rviz.displays.moveit.properties import rgba_from_message
 from linkwright.rviz.displays.moveit.robot import JointPositions, PosableRobot
-from linkwright.rviz.displays.moveit.solids import BadObjectError, Color, object_markers
-from linkwright.rviz.markers.shapes import pose_of
+from linkwright.rviz.displays.moveit.solids import BadObjectError, Color, make_object_markers
+from linkwright.rviz.markers.shapes import pose_to_values
 
 _REMOVE, _APPEND, _MOVE = b"\x01", b"\x02", b"\x03"
 
@@ -113,7 +113,7 @@ class Scene:
         if message.name:
             self.name = message.name
         for object_color in message.object_colors:
-            self._colors[object_color.id] = rgba(object_color.color)
+            self._colors[object_color.id] = rgba_from_message(object_color.color)
         if not message.robot_state.is_diff and not message.is_diff:
             self._attached.clear()
         for collision_object in message.world.collision_objects:
@@ -128,15 +128,15 @@ class Scene:
         for attached in messages:
             self._attach(attached)
 
-    def object_markers(self, namespace: str, color: Color) -> list[MarkerShape]:
+    def make_object_markers(self, namespace: str, color: Color) -> list[MarkerShape]:
         """Return the markers of the objects that are not attached to the robot."""
         shape_markers: list[MarkerShape] = []
         for scene_object in self._objects.values():
             object_color = self._colors.get(scene_object.id, color)
-            shape_markers += self._markers(scene_object, namespace, object_color, scene_object.frame, IDENTITY)
+            shape_markers += self._make_markers(scene_object, namespace, object_color, scene_object.frame, IDENTITY)
         return shape_markers
 
-    def attached_markers(
+    def make_attached_markers(
         self, robot: PosableRobot, state: JointPositions, namespace: str, color: Color
     ) -> list[MarkerShape]:
         """Return the markers of the attached objects, with the robot in the given state."""
@@ -152,16 +152,16 @@ class Scene:
                 )
                 continue
             object_color = self._colors.get(attached_object.id, color)
-            shape_markers += self._markers(
+            shape_markers += self._make_markers(
                 attached_object, namespace, object_color, robot.frame_of(state), links[frame]
             )
         return shape_markers
 
-    def _markers(
+    def _make_markers(
         self, scene_object: SceneObject, namespace: str, color: Color, frame: str, base: Transform
     ) -> list[MarkerShape]:
         try:
-            shape_markers = object_markers(scene_object, namespace, color, frame=frame, base=base)
+            shape_markers = make_object_markers(scene_object, namespace, color, frame=frame, base=base)
         except BadObjectError as error:
             self.problems[scene_object.id] = foreign(error)
             return []
@@ -224,6 +224,6 @@ class Scene:
             return
         self.problems.pop(OCTOMAP, None)
         if len(cells.sizes):
-            x, y, z, qx, qy, qz, qw = pose_of(message.origin)
+            x, y, z, qx, qy, qz, qw = pose_to_values(message.origin)
             frame = message.header.frame_id or octomap.header.frame_id
             self.octomap = PlacedCells(cells, frame.removeprefix("/"), (x, y, z, qx, qy, qz, qw))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import phrase
 from linkwright.geometry.single import Transform, compose
 from linkwright.page.protocol.markers import MarkerKind, MarkerShape
-from linkwright.rviz.markers.shapes import make_marker, pose_of
+from linkwright.rviz.markers.shapes import make_marker, pose_to_values
 
 Color = tuple[float, float, float, float]
 """Red, green, blue, alpha, from 0 to 1."""
@@ -37,7 +37,9 @@ class BadObjectError(ValueError):
     """
 
 
-def object_markers(message: Any, namespace: str, color: Color, *, frame: str, base: Transform) -> list[MarkerShape]:
+def make_object_markers(
+    message: Any, namespace: str, color: Color, *, frame: str, base: Transform
+) -> list[MarkerShape]:
     """Return the markers of a moveit_msgs/msg/CollisionObject.
 
     Args:
@@ -50,7 +52,7 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
     Raises:
         BadObjectError: a number is not finite, the numbers of shapes and poses differ, or a primitive is not valid.
     """
-    object_pose = compose(base, _pose(message.pose))
+    object_pose = compose(base, _to_transform(message.pose))
     groups: tuple[tuple[str, Sequence[Any], Sequence[Any], Callable[[Any], MarkerGeometry]], ...] = (
         ("primitive", message.primitives, message.primitive_poses, _primitive),
         ("mesh", message.meshes, message.mesh_poses, _mesh),
@@ -68,7 +70,7 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
                 )
             )
         for index, shape in enumerate(shapes):
-            pose = compose(object_pose, _pose(poses[index])) if poses else object_pose
+            pose = compose(object_pose, _to_transform(poses[index])) if poses else object_pose
             kind, scale, points = make_form(shape)
             if not all(map(math.isfinite, (*pose, *scale))) or not np.isfinite(points).all():
                 raise BadObjectError(phrase("Contains invalid floating point values (nans or infs)"))
@@ -77,8 +79,8 @@ def object_markers(message: Any, namespace: str, color: Color, *, frame: str, ba
     return shape_markers
 
 
-def _pose(message: Any) -> Transform:
-    x, y, z, qx, qy, qz, qw = pose_of(message)
+def _to_transform(message: Any) -> Transform:
+    x, y, z, qx, qy, qz, qw = pose_to_values(message)
     return (x, y, z, qx, qy, qz, qw)
 
 

@@ -14,11 +14,11 @@ from linkwright.rviz.config.rviz_config import DisplayConfig
 from linkwright.rviz.config.schema import Path, Schema
 from linkwright.rviz.displays.base.display import DisplayHost, Pose
 from linkwright.rviz.displays.moveit.base import STATE, MoveItDisplay
-from linkwright.rviz.displays.moveit.properties import DESCRIPTION_SPEC, TRAJECTORY_TOPIC, look, path_specs
+from linkwright.rviz.displays.moveit.properties import DESCRIPTION_SPEC, TRAJECTORY_TOPIC, path_specs, read_appearance
 from linkwright.rviz.displays.moveit.robot import JointPositions, PosableRobot, UnusableStateError
 
-_SECONDS = re.compile(r"([0-9]*\.?[0-9]+)\s*s?")
-_FACTOR = re.compile(r"([0-9]*\.?[0-9]+)\s*x")
+_SECONDS_PATTERN = re.compile(r"([0-9]*\.?[0-9]+)\s*s?")
+_FACTOR_PATTERN = re.compile(r"([0-9]*\.?[0-9]+)\s*x")
 _LOOP_PROPERTY = "Loop Animation"
 _MIN_DELAY_S = 0.005
 _MAX_STATES = 100_000
@@ -37,13 +37,13 @@ class Motion:
         states: the states, beginning with the start state.
         durations: the time from each state to the next, seconds.
         joints: the names of the joints that move.
-        unknown: the names of joints in the message that the robot does not have.
+        unknown_joints: the names of joints in the message that the robot does not have.
     """
 
     states: list[JointPositions]
     durations: list[float]
     joints: frozenset[str]
-    unknown: list[str]
+    unknown_joints: list[str]
 
 
 def read_motion(robot: PosableRobot, message: Any) -> Motion:
@@ -71,7 +71,7 @@ def read_motion(robot: PosableRobot, message: Any) -> Motion:
                 unknown += [name for name in unknown_names if name not in unknown]
             if root_point is not None:
                 _set_root(robot, state, root_trajectory, root_point)
-            times.append(_seconds((root_point if point is None else point).time_from_start))
+            times.append(_to_seconds((root_point if point is None else point).time_from_start))
             states.append(state.copy())
         durations += [max(0.0, after - before) for before, after in pairwise(times)]
     if len(states) < 2:
@@ -89,11 +89,11 @@ def _set_root(robot: PosableRobot, state: JointPositions, trajectory: Any, point
             robot.set_root(state, trajectory.header.frame_id, transform)
 
 
-def _seconds(duration: Any) -> float:
+def _to_seconds(duration: Any) -> float:
     return float(duration.sec) + float(duration.nanosec) * 1e-9
 
 
-def display_seconds(text: str, duration: float) -> float:
+def compute_display_time_s(text: str, duration: float) -> float:
     """Return how long a state is shown, in seconds.
 
     Args:
@@ -103,11 +103,11 @@ def display_seconds(text: str, duration: float) -> float:
     text = text.strip().lower()
     if text == "realtime":
         return duration
-    factor = _FACTOR.fullmatch(text)
+    factor = _FACTOR_PATTERN.fullmatch(text)
     if factor and float(factor[1]) > 0.0:
         return duration / float(factor[1])
-    fixed_seconds = _SECONDS.fullmatch(text)
-    return float(fixed_seconds[1]) if fixed_seconds else display_seconds(DEFAULT_DISPLAY_TIME, duration)
+    fixed_seconds = _SECONDS_PATTERN.fullmatch(text)
+    return float(fixed_seconds[1]) if fixed_seconds else compute_display_time_s(DEFAULT_DISPLAY_TIME, duration)
 
 
 class MotionPlayer:
@@ -151,17 +151,17 @@ class MotionPlayer:
         self._message = message
         self._begin()
 
-    def property_changed(self, path: Path) -> None:
+    def on_property_changed(self, path: Path) -> None:
         """Play the last motion again if looping was just enabled."""
         if path == (*self._group_path, _LOOP_PROPERTY) and self._flag(_LOOP_PROPERTY) and not self.is_playing:
-            self.begin_again()
+            self.restart()
 
-    def begin_again(self) -> None:
+    def restart(self) -> None:
         """Play the last motion from its beginning, with the display's current robot."""
         if self._message is not None:
             self._begin()
 
-    def forget(self) -> None:
+    def clear(self) -> None:
         """Stop playing and discard the motion."""
         self._stop()
         self._message = self._next_message = self.motion = None
@@ -174,13 +174,15 @@ class MotionPlayer:
             properties = self._display.properties
             color = properties.text(*self._group_path, "Robot Color") if self._flag("Color Enabled") else None
             if self.state is not None:
-                state_markers = robot.markers(self.state, look(properties, robot, group, self._group_path, color))
+                state_markers = robot.make_markers(
+                    self.state, read_appearance(properties, robot, group, self._group_path, color)
+                )
             if self._flag("Show Trail"):
                 step = int(properties.number(*self._group_path, "Trail Step Size"))
                 step = max(step, -(-len(motion.states) // _MAX_TRAIL_STATES))
                 for state_index in range(0, len(motion.states), step):
-                    appearance = look(properties, robot, f"{group} {state_index}", self._group_path, color)
-                    trail_markers += robot.markers(motion.states[state_index], appearance)
+                    appearance = read_appearance(properties, robot, f"{group} {state_index}", self._group_path, color)
+                    trail_markers += robot.make_markers(motion.states[state_index], appearance)
         self._display.put(group, state_markers)
         self._display.put(f"{group} trail", trail_markers)
 
@@ -197,7 +199,7 @@ class MotionPlayer:
             self._on_state()
             return
         self._display.delete_status_row(STATE)
-        self._display.report_unknown_joints(self.motion.unknown)
+        self._display.report_unknown_joints(self.motion.unknown_joints)
         self._state_index = 0
         self._wait()
         self._on_state()
@@ -206,7 +208,7 @@ class MotionPlayer:
         assert self.motion is not None
         text = self._display.properties.text(*self._group_path, "State Display Time")
         durations = self.motion.durations
-        seconds = display_seconds(text, durations[min(self._state_index, len(durations) - 1)])
+        seconds = compute_display_time_s(text, durations[min(self._state_index, len(durations) - 1)])
         self._timer = asyncio.get_running_loop().call_later(max(_MIN_DELAY_S, seconds), self._step)
 
     def _step(self) -> None:
@@ -260,20 +262,20 @@ class TrajectoryDisplay(MoveItDisplay):
     def on_property_changed(self, path: Path) -> None:
         """Apply a changed property, and play the last motion again if looping was just enabled."""
         super().on_property_changed(path)
-        self._player.property_changed(path)
+        self._player.on_property_changed(path)
 
     def on_robot_changed(self) -> None:
         """Play the motion again with the new robot."""
-        self._player.begin_again()
+        self._player.restart()
 
     def reset(self) -> None:
         """Discard the motion."""
-        self._player.forget()
+        self._player.clear()
         super().reset()
 
     def stop(self) -> None:
         """Unsubscribe, and stop playing."""
-        self._player.forget()
+        self._player.clear()
         super().stop()
 
     def draw(self) -> None:

@@ -34,10 +34,10 @@ def select_rendered(cells: Cells, rendering: str) -> Cells:
     """Return the cells that a value of `VOXEL_RENDERING` selects: all, occupied or free cells."""
     if rendering == _ALL:
         return cells
-    return cells.chosen((cells.probabilities > _OCCUPIED_THRESHOLD) == (rendering == _OCCUPIED))
+    return cells.select((cells.probabilities > _OCCUPIED_THRESHOLD) == (rendering == _OCCUPIED))
 
 
-def octomap_markers(
+def make_octomap_markers(
     cells: Cells, namespace: str, *, frame: str, base: Transform, alpha: float, by_probability: bool
 ) -> list[MarkerShape]:
     """Return cube markers for the visible cells of an octree, one marker for each cell size.
@@ -51,7 +51,7 @@ def octomap_markers(
         by_probability: whether the color of a cell shows the probability that the cell is occupied, instead of its
             height.
     """
-    cells = cells.chosen(_visible_mask(cells))
+    cells = cells.select(_find_visible_mask(cells))
     if not len(cells.sizes):
         return []
     colors = np.empty((len(cells.sizes), 4), dtype=np.float32)
@@ -90,12 +90,12 @@ def octomap_markers(
 _RAINBOW = np.array([colorsys.hsv_to_rgb(0.8 * (1.0 - step / 63.0), 1.0, 1.0) for step in range(64)], dtype=np.float32)
 
 
-def _visible_mask(cells: Cells) -> NDArray[np.bool_]:
+def _find_visible_mask(cells: Cells) -> NDArray[np.bool_]:
     """Return a mask of the cells with at least one side without a neighbor of the same size."""
     is_visible = np.ones(len(cells.sizes), dtype=np.bool_)
     for size in np.unique(cells.sizes):
         mask = cells.sizes == size
-        codes = _cell_codes(np.floor(cells.centers[mask] / size).astype(np.int64))
+        codes = _encode_cells(np.floor(cells.centers[mask] / size).astype(np.int64))
         sorted_codes = np.sort(codes)
         is_enclosed = np.ones(len(codes), dtype=np.bool_)
         for step in _NEIGHBOR_OFFSETS:
@@ -105,16 +105,23 @@ def _visible_mask(cells: Cells) -> NDArray[np.bool_]:
     return is_visible
 
 
-_BITS = 20
-_NEIGHBOR_OFFSETS = (1, -1, 1 << _BITS, -(1 << _BITS), 1 << 2 * _BITS, -(1 << 2 * _BITS))
+_BITS_PER_AXIS = 20
+_NEIGHBOR_OFFSETS = (
+    1,
+    -1,
+    1 << _BITS_PER_AXIS,
+    -(1 << _BITS_PER_AXIS),
+    1 << 2 * _BITS_PER_AXIS,
+    -(1 << 2 * _BITS_PER_AXIS),
+)
 """The differences between the codes of a cell's six neighbors and the code of the cell."""
 
 
-def _cell_codes(indices: NDArray[np.int64]) -> NDArray[np.int64]:
+def _encode_cells(indices: NDArray[np.int64]) -> NDArray[np.int64]:
     """Return an integer for each cell, unique among cells of the same size.
 
     The integer encodes the grid indices of the cell. There are at most 2^16 cells of one size along each axis.
     """
-    shifted = indices + (1 << (_BITS - 1))
-    codes: NDArray[np.int64] = shifted[:, 0] << 2 * _BITS | shifted[:, 1] << _BITS | shifted[:, 2]
+    shifted = indices + (1 << (_BITS_PER_AXIS - 1))
+    codes: NDArray[np.int64] = shifted[:, 0] << 2 * _BITS_PER_AXIS | shifted[:, 1] << _BITS_PER_AXIS | shifted[:, 2]
     return codes

@@ -81,8 +81,8 @@ class GzThruster(SimulatedPlugin[ThrusterParameters]):
         topic = f"{base}/cmd_vel" if parameters.use_angvel_cmd else f"{base}/cmd_thrust"
         if parameters.topic:
             topic = f"/{namespace}/{parameters.topic}"
-        commander = node.commander(self._stop_motion)
-        node.subscribe(_FLOAT_TYPE, topic, self._on_command, commander=commander, stop_motion=self._stop_motion)
+        command_guard = node.command_guard(self._stop_motion)
+        node.subscribe(_FLOAT_TYPE, topic, self._on_command, command_guard=command_guard, stop_motion=self._stop_motion)
         node.subscribe("std_msgs/msg/Bool", f"{base}/enable_deadband", self._on_deadband)
         feedback = "force" if parameters.use_angvel_cmd else "ang_vel"
         self._feedback = node.publisher(

@@ -72,12 +72,12 @@ class GzTrackController(SimulatedPlugin[TrackControllerParameters]):
         self._revision, self._normals = -1, dict[int, Array]()
         self.reset()
         base = f"/model/{self.context.path}/link/{parameters.link}"
-        commander = node.commander(self._stop_motion)
+        command_guard = node.command_guard(self._stop_motion)
         node.subscribe(
             "std_msgs/msg/Float64",
             parameters.velocity_topic or f"{base}/track_cmd_vel",
             self._on_command,
-            commander=commander,
+            command_guard=command_guard,
             stop_motion=self._stop_motion,
         )
         center_topic = parameters.center_of_rotation_topic or f"{base}/track_cmd_center_of_rotation"

@@ -13,12 +13,12 @@ from linkwright.graph.names.rules import NodeIdentity
 from linkwright.graph.time.clock import Clock
 from linkwright.process.nanoseconds import NANOSECONDS_PER_SECOND
 
-_GAP_S = 2.5
+_DISPUTE_END_S = 2.5
 """The seconds without a takeover after which a dispute ends.
 
 If two publishers each send once a second, each of them takes over twice in this time.
 """
-_QUIET_S = 10.0
+_REPORT_AGAIN_S = 10.0
 """The seconds without a takeover after which a dispute of the same parties is reported again."""
 
 
@@ -61,10 +61,10 @@ class DisputeDetector:
         if previous is None or previous[0] == publisher or previous[1] == command:
             return False
         gap_s = now_s - self._last_takeover_s
-        if not 0.0 <= gap_s <= _GAP_S:
-            self._dispute_start_s = previous[2] if 0.0 <= now_s - previous[2] <= _GAP_S else now_s
+        if not 0.0 <= gap_s <= _DISPUTE_END_S:
+            self._dispute_start_s = previous[2] if 0.0 <= now_s - previous[2] <= _DISPUTE_END_S else now_s
             self._takeovers = Counter([previous[0]])
-            if not 0.0 <= gap_s <= _QUIET_S:
+            if not 0.0 <= gap_s <= _REPORT_AGAIN_S:
                 self.parties = frozenset()
         self._last_takeover_s = now_s
         self._takeovers[publisher] += 1
@@ -78,7 +78,7 @@ class DisputeDetector:
 
 
 class KnownEndpoints(Protocol):
-    """The graph queries that `DriverWatch` needs."""
+    """The graph queries that `DisputeMonitor` needs."""
 
     def endpoints(self) -> Collection[EndpointInfo]:
         """Return all known endpoints."""
@@ -91,7 +91,7 @@ class KnownEndpoints(Protocol):
 
 
 class CommandedNode(Protocol):
-    """The part of a node that `DriverWatch` needs."""
+    """The part of a node that `DisputeMonitor` needs."""
 
     @property
     def graph(self) -> KnownEndpoints:
@@ -104,8 +104,8 @@ class CommandedNode(Protocol):
         """Return the node's clock."""
 
 
-class DriverWatch:
-    """Warns when several nodes command the same robot at the same time.
+class DisputeMonitor:
+    """A monitor that warns when several nodes command the same robot at the same time.
 
     It logs one warning, with the names of the nodes, whenever the set of these nodes changes. As in ROS and Gazebo,
     each message takes effect when it arrives. A dispute is reported, not prevented.
@@ -123,8 +123,8 @@ class DriverWatch:
         self._dispute = DisputeDetector()
 
     @classmethod
-    def of(cls, node: CommandedNode) -> DriverWatch:
-        """Create a watch that uses the clock, the logger and the graph of a node."""
+    def of(cls, node: CommandedNode) -> DisputeMonitor:
+        """Create a monitor that uses the clock, the logger and the graph of a node."""
         return cls(node.get_logger(), node.graph, node.get_clock().now_ns)
 
     def record_command(self, message: Any, info: MessageInfo) -> None:
@@ -139,14 +139,14 @@ class DriverWatch:
     def _warn(self) -> None:
         """Warn of the dispute, provided that the nodes of at least two parties are known."""
         publishers = find_publishers(self._graph, self._dispute.parties)
-        drivers = find_drivers(self._graph, publishers)
-        if len(drivers) > 1:
+        node_names = find_node_names(self._graph, publishers)
+        if len(node_names) > 1:
             topics = sorted({publisher.name for publisher in publishers})
             warning = phrase(
                 "several nodes drive the robot: {drivers} send commands on {topics}, and the robot jerks "
                 "because it follows each message in turn. Stop all but one of them, remap their topics (-r "
                 "{topic}:=...), or let twist_mux choose by priority",
-                drivers=quoted_names(drivers),
+                drivers=quoted_names(node_names),
                 topics=quoted_names(topics),
                 topic=topics[0],
             )
@@ -160,7 +160,7 @@ def find_publishers(graph: KnownEndpoints, gids: Collection[Hashable]) -> list[E
     ]
 
 
-def find_drivers(graph: KnownEndpoints, publishers: Iterable[EndpointInfo]) -> list[str]:
+def find_node_names(graph: KnownEndpoints, publishers: Iterable[EndpointInfo]) -> list[str]:
     """Return the sorted full names of the nodes that own the publishers.
 
     A name that two nodes share occurs twice. Publishers whose node has not been discovered are left out.

@@ -14,7 +14,7 @@ _RESPONSE_TIMEOUT_S = 5.0
 _POLL_INTERVAL_S = 0.05
 
 
-class NoAnswerError(Exception):
+class NoParameterResponseError(Exception):
     """Raised when a node does not respond in time.
 
     The message names the node.
@@ -25,13 +25,13 @@ async def wait_for_services(client: AsyncParameterClient) -> None:
     """Wait until a node's parameter services are available.
 
     Raises:
-        NoAnswerError: the services are not available in time.
+        NoParameterResponseError: the services are not available in time.
     """
     loop = asyncio.get_running_loop()
     deadline = loop.time() + _RESPONSE_TIMEOUT_S
     while not client.services_are_ready():
         if loop.time() > deadline:
-            raise NoAnswerError(f"node '{client.remote_node_name}' does not offer its parameters")
+            raise NoParameterResponseError(f"node '{client.remote_node_name}' does not offer its parameters")
         await asyncio.sleep(_POLL_INTERVAL_S)
 
 
@@ -39,7 +39,7 @@ async def wait_for_response(client: AsyncParameterClient, future: Awaitable[Any]
     """Return the response to a request, given the future that a method of the client returned.
 
     Raises:
-        NoAnswerError: there was no response in time.
+        NoParameterResponseError: there was no response in time.
     """
 
     async def wait() -> Any:
@@ -48,4 +48,6 @@ async def wait_for_response(client: AsyncParameterClient, future: Awaitable[Any]
     try:
         return await asyncio.wait_for(wait(), _RESPONSE_TIMEOUT_S)
     except asyncio.TimeoutError:
-        raise NoAnswerError(f"node '{client.remote_node_name}' did not answer in {_RESPONSE_TIMEOUT_S:g} s") from None
+        raise NoParameterResponseError(
+            f"node '{client.remote_node_name}' did not answer in {_RESPONSE_TIMEOUT_S:g} s"
+        ) from None

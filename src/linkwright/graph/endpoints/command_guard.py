@@ -10,11 +10,11 @@ from linkwright.diagnostics import phrase
 from linkwright.graph.endpoints.base import EndpointInfo, MessageInfo
 
 if TYPE_CHECKING:
-    from linkwright.graph.endpoints.drivers import DriverWatch
+    from linkwright.graph.endpoints.command_disputes import DisputeMonitor
     from linkwright.graph.endpoints.subscription import Subscription
 
 
-class Commander:
+class CommandGuard:
     """A guard that revokes the current command when the publisher of that command is lost.
 
     A publisher that leaves the graph has ended in an orderly way, and its last command stays in force. A lost publisher
@@ -23,13 +23,13 @@ class Commander:
 
     Args:
         revoke: called with the lost publisher, after its last command, in the same way as the subscription's callback.
-        drivers: receives each command that arrives through `tracking_callback`, to warn of several publishers that send
-            commands at the same time; None for no warning.
+        dispute_monitor: receives each command that arrives through `tracking_callback`, and warns if several publishers
+            send commands at the same time; None for no warning.
     """
 
-    def __init__(self, revoke: Callable[[EndpointInfo], object], drivers: DriverWatch | None = None) -> None:
+    def __init__(self, revoke: Callable[[EndpointInfo], object], dispute_monitor: DisputeMonitor | None = None) -> None:
         self._revoke = revoke
-        self._drivers = drivers
+        self._dispute_monitor = dispute_monitor
         self._gid: bytes | None = None
 
     def tracking_callback(self, callback: Callable[[Any], object]) -> Callable[[Any, MessageInfo], object]:
@@ -49,8 +49,8 @@ class Commander:
 
     def _accept(self, callback: Callable[[Any], object], message: Any, info: MessageInfo) -> None:
         self.note_publisher(info)
-        if self._drivers is not None:
-            self._drivers.record_command(message, info)
+        if self._dispute_monitor is not None:
+            self._dispute_monitor.record_command(message, info)
         callback(message)
 
     def _on_lost(self, publisher: EndpointInfo) -> None:
