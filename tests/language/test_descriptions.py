@@ -76,10 +76,10 @@ def offered(package: Path):
         text = text.replace(old, new, 1) if old else text
         offset = text.index("|")
         text, file = text.replace("|", "", 1), package / name
-        project = Workspace([package])
-        project.index.refresh()
+        workspace = Workspace([package])
+        workspace.index.refresh()
         texts = {file: text}
-        completions = complete(Document(project, texts, file, text), offset, project.names(file, texts))
+        completions = complete(Document(workspace, texts, file, text), offset, workspace.names(file, texts))
         assert len({item.label for item in completions}) == len(completions)
         return [item.label for item in completions if item.label.startswith(text[item.start : offset])]
 
@@ -199,9 +199,11 @@ def explained(package: Path):
         text = text.replace(old, new, 1) if old else text
         offset = text.index("|")
         text, file = text.replace("|", "", 1), package / name
-        project = Workspace([package])
-        project.index.refresh()
-        explanation = explain_at(Document(project, {file: text}, file, text), offset, project.names(file, {file: text}))
+        workspace = Workspace([package])
+        workspace.index.refresh()
+        explanation = explain_at(
+            Document(workspace, {file: text}, file, text), offset, workspace.names(file, {file: text})
+        )
         return "" if explanation is None else localized(explanation.text)
 
     return hover
@@ -263,16 +265,16 @@ def test_completion_does_not_wait_for_expansion(package: Path):
     file = package / "urdf/arm.urdf.xacro"
     text = ROBOT.replace("<!-- here -->", '<gazebo reference="left_wheel"/>')
     offset = text.index("left_wheel") + 2
-    project = Workspace([package])
-    project.index.refresh()
-    document = Document(project, {file: text}, file, text, waits=False)
+    workspace = Workspace([package])
+    workspace.index.refresh()
+    document = Document(workspace, {file: text}, file, text, waits=False)
     with pytest.raises(NotYetKnownError):
         complete(document, offset)
     waiting = [item.label for item in complete(replace(document, waits=True), offset)]
     assert waiting == [item.label for item in complete(document, offset)]
     assert not document.refreshes
     changed = text.replace('side="left"', 'side="right"')
-    document = Document(project, {file: changed}, file, changed, waits=False)
+    document = Document(workspace, {file: changed}, file, changed, waits=False)
     assert waiting == [item.label for item in complete(document, offset)]
     for refresh in document.refreshes:
         refresh()

@@ -35,11 +35,11 @@ def can_be_converted(text: str, file: Path) -> bool:
     return root is not None and root.name == "robot" and "xmlns:xacro" not in root.tag.text
 
 
-def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> NewFile:
+def convert_to_xacro(workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> NewFile:
     """Return a new xacro file that expands to the same elements as a URDF file.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the URDF file.
         text: its text.
@@ -51,7 +51,7 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
     new = file.with_name(f"{file.name}.xacro")
     if new.exists() or new in texts:
         raise UnprovedError(phrase("'{file}' already exists", file=display_path(str(new))))
-    if not project.contains(new):
+    if not workspace.contains(new):
         raise UnprovedError(phrase("'{file}' is outside the workspace", file=display_path(str(new))))
     root = next(iter(source_elements(text)), None)
     if root is None:
@@ -62,7 +62,7 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
     xacro_text = f'{_escape(text[:insertion_offset])} xmlns:xacro="{ADDRESS}"{_escape(text[insertion_offset:])}'
     try:
         overlay = Overlay({str(new): xacro_text})
-        expansion = str(expand(new, {}, packages=project.finder(file), overlay=overlay))
+        expansion = str(expand(new, {}, packages=workspace.finder(file), overlay=overlay))
         first, second = (_comparable_elements(parse(source, file.name).root) for source in (text, expansion))
     except LinkwrightError as error:
         raise UnprovedError(error.diagnostics[0].message, error.diagnostics[0].span) from None

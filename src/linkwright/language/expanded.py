@@ -60,12 +60,12 @@ class ExpandedText:
 
 
 def expanded_text(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
+    workspace: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
 ) -> ExpandedText:
     """Return the expansion of a description with the source of its elements.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         entry: the description.
         arguments: the values of its arguments, by name.
@@ -74,7 +74,7 @@ def expanded_text(
         LinkwrightError: the description cannot be expanded.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+    expansion = expand(entry, arguments, packages=workspace.finder(entry), overlay=overlay)
     text = str(expansion)
     expanded_root = parse(text, str(entry)).root
     elements = []
@@ -92,11 +92,11 @@ def _tag_range(element: Element) -> tuple[int, int] | None:
     return element.offset, start_tag_end(element.source.text, element.offset)
 
 
-def expanded_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[tuple[Path, Robot]]:
+def expanded_robots(workspace: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[tuple[Path, Robot]]:
     """Yield the robots of the descriptions that include a file, one for each valid argument set.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the file.
 
@@ -104,10 +104,10 @@ def expanded_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -
         The description and its robot.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    for entry in project.index.entries(file, texts):
-        for arguments, _ in project.argument_calls(entry):
+    for entry in workspace.index.entries(file, texts):
+        for arguments, _ in workspace.argument_calls(entry):
             try:
-                expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+                expansion = expand(entry, arguments, packages=workspace.finder(entry), overlay=overlay)
             except LinkwrightError:
                 continue
             robot = read(expansion.document).robot

@@ -171,12 +171,12 @@ def _component(attribute: str, value: str, start: int, end: int) -> str:
 
 
 def extract_property(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: ValueSelection
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: ValueSelection
 ) -> tuple[Edit, ...]:
     """Return the proved edits that replace a value by a new property.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the file.
         text: its text.
@@ -187,7 +187,7 @@ def extract_property(
     """
     element, tag = selection.element, selection.element.name.removeprefix(PREFIX)
     name = unique_name(
-        project, texts, file, "_".join(filter(None, (tag, selection.component or selection.attribute or "value")))
+        workspace, texts, file, "_".join(filter(None, (tag, selection.component or selection.attribute or "value")))
     )
     value = text[selection.start : selection.end]
     is_number = _NUMBER.fullmatch(value.lstrip("+-")) is not None
@@ -200,7 +200,7 @@ def extract_property(
         name.kind is NameKind.PARAMETER and selection.start <= name.start < selection.end and not name.is_definition
         for name in names
     )
-    proof = ExpansionProof(project, texts, file)
+    proof = ExpansionProof(workspace, texts, file)
     error: UnprovedError | None = None
     for insertion_offset in _definition_offsets(text, element, is_local=is_local):
         edits = (insertion_before(file, text, insertion_offset, definition), use)
@@ -257,11 +257,11 @@ def insertion_before(file: Path, text: str, start: int, new: str) -> Edit:
     return Edit(file, start, start, new + separator)
 
 
-def unique_name(project: Workspace, texts: Mapping[Path, str], file: Path, preferred: str) -> str:
+def unique_name(workspace: Workspace, texts: Mapping[Path, str], file: Path, preferred: str) -> str:
     """Return a name for a property or macro that no file of the description contains.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the file.
         preferred: the preferred name.
@@ -270,8 +270,8 @@ def unique_name(project: Workspace, texts: Mapping[Path, str], file: Path, prefe
     if base[0].isdigit():
         base = f"_{base}"
     used_names = {*keyword.kwlist, *dir(builtins), *MATHEMATICS, *_NAMESPACES}
-    for other in project.index.related_files(file, texts):
-        used_names.update(re.findall(r"\w+", project.text(other, texts) or ""))
+    for other in workspace.index.related_files(file, texts):
+        used_names.update(re.findall(r"\w+", workspace.text(other, texts) or ""))
     name, count = base, 1
     while name in used_names:
         count += 1

@@ -32,7 +32,7 @@ _PACKAGE = re.compile(r"(?:package://|\$\(find(?:-pkg-share)?\s+)([\w.-]+)")
 
 
 def facts_at(
-    project: Workspace,
+    workspace: Workspace,
     texts: Mapping[Path, str],
     file: Path,
     text: str,
@@ -42,14 +42,14 @@ def facts_at(
     """Return the facts about the link, joint, mesh or package at an offset, each as Markdown.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the file.
         text: its text.
         offset: the character offset.
         values: the values of the expressions in the file.
     """
-    finder = project.finder(file)
+    finder = workspace.finder(file)
     line_start, line_end = text.rfind("\n", 0, offset) + 1, text.find("\n", offset)
     for match in _PACKAGE.finditer(text, line_start, len(text) if line_end < 0 else line_end):
         if match.start(1) <= offset <= match.end(1):
@@ -61,11 +61,11 @@ def facts_at(
             if mesh is not None:
                 return [mesh]
     part = occurrence_at(text, file, offset)
-    return [] if part is None else [*_parts(project, texts, part, values)]
+    return [] if part is None else [*_parts(workspace, texts, part, values)]
 
 
 def _parts(
-    project: Workspace, texts: Mapping[Path, str], part: Occurrence, values: Sequence[EvaluatedText]
+    workspace: Workspace, texts: Mapping[Path, str], part: Occurrence, values: Sequence[EvaluatedText]
 ) -> Iterator[str]:
     """Yield the facts about the links or joints that a name denotes when it is evaluated."""
     if part.kind not in (NameKind.LINK, NameKind.JOINT):
@@ -74,8 +74,8 @@ def _parts(
     if "$" in part.name:
         whole_value = next((value for value in values if (value.start, value.end) == (part.start, part.end)), None)
         names = [] if whole_value is None else [name.strip("'\"") for name in whole_value.values()]
-    robots = [*robots_of(project, texts, part.file)]
-    source_robots = [robot for robot in robots if _is_made_by(robot, part, project.text(part.file, texts) or "")]
+    robots = [*robots_of(workspace, texts, part.file)]
+    source_robots = [robot for robot in robots if _is_made_by(robot, part, workspace.text(part.file, texts) or "")]
     if source_robots or part.is_definition:
         robots = source_robots  # Another file may define a link with this name for another robot.
     for name in names[:_MAX_PARTS]:
@@ -92,18 +92,18 @@ def _is_made_by(robot: Robot, part: Occurrence, text: str) -> bool:
     return any(is_source_of(part.file, start, element) for element in elements)
 
 
-def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[Robot]:
+def robots_of(workspace: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[Robot]:
     """Yield the robots of the descriptions that include a file, one for each valid argument set.
 
     If no description can be expanded, the robots are those in the valid parts of the descriptions and of the file.
     """
     is_found = False
-    for _, robot in expanded_robots(project, texts, file):
+    for _, robot in expanded_robots(workspace, texts, file):
         is_found = True
         yield robot
-    entries = project.index.entries(file, texts)
+    entries = workspace.index.entries(file, texts)
     for entry in () if is_found else dict.fromkeys((*entries, file)):
-        parts = valid_parts(project, texts, entry)
+        parts = valid_parts(workspace, texts, entry)
         partial_robot = None if parts is None else read(parts.document).robot
         if partial_robot is not None:
             yield partial_robot

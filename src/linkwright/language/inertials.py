@@ -34,7 +34,7 @@ def link_with_shapes_at(text: str, offset: int) -> SourceElement | None:
 
 
 def fill_in_inertia(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, link: SourceElement
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, link: SourceElement
 ) -> tuple[Edit, ...]:
     """Return the edits that set the inertia of a link to the inertia of its shapes.
 
@@ -42,7 +42,7 @@ def fill_in_inertia(
     the same shapes, as in `linkwright inertia`.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the file.
         text: its text.
@@ -52,8 +52,8 @@ def fill_in_inertia(
         UnprovedError: no expansion contains the link, its inertia is unknown or cannot be written, or something else
             would change.
     """
-    robot, entry, expanded_link = _expanded_link(project, texts, file, link)
-    finder = project.finder(entry)
+    robot, entry, expanded_link = _expanded_link(workspace, texts, file, link)
+    finder = workspace.finder(entry)
     properties = estimate(expanded_link, MeshLibrary(finder, entry.parent)).properties
     if properties is None:
         raise UnprovedError(phrase("no shape of the link '{name}' has a volume", name=expanded_link.name))
@@ -66,7 +66,7 @@ def fill_in_inertia(
     edits = tuple(Edit(file, replacement.start, replacement.end, replacement.text) for replacement in replacements)
     if not edits:
         raise UnprovedError(phrase("the link '{name}' already has this inertia", name=expanded_link.name))
-    for pair in ExpansionProof(project, texts, file).pairs(edits):
+    for pair in ExpansionProof(workspace, texts, file).pairs(edits):
         first, second = (_without_inertial(root, expanded_link.name) for root in (pair.before, pair.after))
         if first != second:
             raise UnprovedError(phrase("the robot of '{file}' would change", file=pair.entry.name))
@@ -74,9 +74,9 @@ def fill_in_inertia(
 
 
 def _expanded_link(
-    project: Workspace, texts: Mapping[Path, str], file: Path, link: SourceElement
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, link: SourceElement
 ) -> tuple[Robot, Path, Link]:
-    for entry, robot in expanded_robots(project, texts, file):
+    for entry, robot in expanded_robots(workspace, texts, file):
         expanded_link = next(
             (candidate for candidate in robot.links.values() if is_source_of(file, link.start, candidate.element)), None
         )

@@ -49,11 +49,11 @@ def property_at(text: str, file: Path, offset: int) -> Occurrence | None:
     return name if name is not None and name.kind is NameKind.PROPERTY else None
 
 
-def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> tuple[Edit, ...]:
+def inline_property(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence) -> tuple[Edit, ...]:
     """Return the proved edits that replace all uses of a property with its value.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         name: a use or the definition of the property.
 
@@ -61,24 +61,24 @@ def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurre
         UnprovedError: the property does not have exactly one definition, a use cannot be replaced, or the expansions
             would differ.
     """
-    uses = references(project, texts, name)
+    uses = references(workspace, texts, name)
     definitions = [use for use in uses if use.is_definition]
     if len(definitions) != 1:
         raise UnprovedError(
             phrase("'{name}' has {count} definitions instead of one", name=name.name, count=len(definitions))
         )
     definition = definitions[0]
-    source = project.text(definition.file, texts) or ""
+    source = workspace.text(definition.file, texts) or ""
     element = innermost_element(source_elements(source), definition.start)
     value = None if element is None else _value(element)
     if element is None or value is None:
         raise UnprovedError(phrase("'{name}' is not defined by a value alone", name=name.name))
     lines = whole_lines(source, element.start, element.end)
     removal = Edit(definition.file, *lines, "")
-    proof = ExpansionProof(project, texts, definition.file)
+    proof = ExpansionProof(workspace, texts, definition.file)
     error: UnprovedError | None = None
     for is_raw in (True, False):
-        edits = [removal, *_generate_replacements(project, texts, uses, value, is_raw=is_raw)]
+        edits = [removal, *_generate_replacements(workspace, texts, uses, value, is_raw=is_raw)]
         try:
             proof.check_equal(edits)
         except UnprovedError as reason:
@@ -98,19 +98,19 @@ def _value(element: SourceElement) -> str | None:
 
 
 def _generate_replacements(
-    project: Workspace, texts: Mapping[Path, str], uses: Sequence[Occurrence], value: str, *, is_raw: bool
+    workspace: Workspace, texts: Mapping[Path, str], uses: Sequence[Occurrence], value: str, *, is_raw: bool
 ) -> Iterator[Edit]:
     """Yield the edits of the uses of a property.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         uses: the occurrences of the name.
         value: the value of the property as written.
         is_raw: whether the value as written replaces an expression that consists of the name alone.
     """
     for file in dict.fromkeys(use.file for use in uses):
-        text = project.text(file, texts) or ""
+        text = workspace.text(file, texts) or ""
         places = [use for use in uses if use.file == file and not use.is_definition]
         pieces = [*_pieces(text)] if places else []
         replaced_ranges: set[tuple[int, int]] = set()

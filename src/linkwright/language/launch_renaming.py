@@ -52,12 +52,12 @@ def launch_name_at(document: Document, offset: int) -> tuple[LaunchName, Path] |
 
 
 def rename_launch_argument(
-    project: Workspace, texts: Mapping[Path, str], owner: Path, old: str, new: str
+    workspace: Workspace, texts: Mapping[Path, str], owner: Path, old: str, new: str
 ) -> LaunchRenaming:
     """Return the edits that rename a launch argument.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         owner: the launch file that the argument belongs to.
         old: the name.
@@ -66,21 +66,21 @@ def rename_launch_argument(
     Raises:
         UnprovedError: the new name exists, or a file that cannot be edited shares the argument.
     """
-    return _Search(project, texts, old, new).run(owner)
+    return _Search(workspace, texts, old, new).run(owner)
 
 
 class _Search:
     """The launch files that share an argument.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         old: the name.
         new: the new name.
     """
 
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], old: str, new: str) -> None:
-        self._project, self._texts, self._old, self._new = project, texts, old, new
+    def __init__(self, workspace: Workspace, texts: Mapping[Path, str], old: str, new: str) -> None:
+        self._project, self._texts, self._old, self._new = workspace, texts, old, new
         self._names_by_file: dict[Path, LaunchNames] = {}
         self._result = LaunchRenaming()
 

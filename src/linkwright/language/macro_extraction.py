@@ -66,12 +66,12 @@ def _is_movable(element: SourceElement) -> bool:
 
 
 def extract_macro(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, siblings: Sequence[SourceElement]
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, siblings: Sequence[SourceElement]
 ) -> tuple[Edit, ...]:
     """Return the proved edits that move elements to a macro with parameters.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the file.
         text: its text.
@@ -82,13 +82,13 @@ def extract_macro(
     """
     start, end, top = siblings[0].start, siblings[-1].end, siblings[0].top
     assert top is not None
-    name = unique_name(project, texts, file, _macro_name(siblings[0]))
+    name = unique_name(workspace, texts, file, _macro_name(siblings[0]))
     newline, blanks = line_ending(text), indentation(text, top.start) or ""
-    proof = ExpansionProof(project, texts, file)
+    proof = ExpansionProof(workspace, texts, file)
     error: UnprovedError | None = None
     starts = dict.fromkeys((start, start_with_comments(text, start)))  # xacro drops comments above calls
     places = dict.fromkeys((start_with_comments(text, top.start), top.start))
-    lists = _parameter_lists(project, texts, file, text, (start, end))
+    lists = _parameter_lists(workspace, texts, file, text, (start, end))
     for parameters, begin, insertion_offset in product(lists, starts, places):
         if begin < insertion_offset:
             continue
@@ -125,12 +125,12 @@ def _macro_name(element: SourceElement) -> str:
 
 
 def _parameter_lists(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selected: tuple[int, int]
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, selected: tuple[int, int]
 ) -> Iterator[list[str]]:
     """Yield the lists of parameters to try: all used names, only macro parameters, none."""
     properties: set[str] = set()
-    for other in project.index.related_files(file, texts):
-        all_names = occurrences_in(project.text(other, texts) or "", other)
+    for other in workspace.index.related_files(file, texts):
+        all_names = occurrences_in(workspace.text(other, texts) or "", other)
         properties |= {
             candidate.name for candidate in all_names if candidate.kind is NameKind.PROPERTY and candidate.is_definition
         }

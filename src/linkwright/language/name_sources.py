@@ -106,14 +106,14 @@ class NameSources:
     """A generator of proposed edits for computed names.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         files: the files to search for properties, arguments and macros.
     """
 
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], files: list[Path]) -> None:
-        self._project, self._texts = project, texts
-        self._tags = {file: [*_start_tags(project.text(file, texts) or "")] for file in files}
+    def __init__(self, workspace: Workspace, texts: Mapping[Path, str], files: list[Path]) -> None:
+        self._project, self._texts = workspace, texts
+        self._tags = {file: [*_start_tags(workspace.text(file, texts) or "")] for file in files}
 
     def edits(self, source: SourceValue, value: str, new: str) -> Iterator[tuple[Edit, ...]]:
         """Yield proposals of edits that give a text a new value, the most likely first.

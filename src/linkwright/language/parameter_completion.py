@@ -161,7 +161,7 @@ def _offer_keys_of_other_files(
     """Yield the keys at this position in other parameter files, for an unknown node."""
     if not section.may_be_controller or section.node in section.controllers:
         return
-    for file in [*document.project.configuration_files(document.file)][:_MAX_FILES]:
+    for file in [*document.workspace.configuration_files(document.file)][:_MAX_FILES]:
         text = document.other(file) if file != document.file and file.name.endswith((".yaml", ".yml")) else ""
         for entry in sections(YamlOutline(text)) if f"{section.node}:" in text else ():
             section_entry: YamlEntry | None = entry if node_of(entry) == section.node else None

@@ -155,7 +155,7 @@ def part_explanation(document: Document, name: str, kinds: tuple[NameKind, ...])
     """Return the facts about a link or joint in the robots that a file probably means."""
     for part in robot_names(document):
         if part.name == name and part.kind in kinds:
-            robots = robots_of(document.project, document.texts, part.file)
+            robots = robots_of(document.workspace, document.texts, part.file)
             facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), "")
             return f"**{part.kind.value} {name}**, {part.file.name}\n\n{facts}"
     return ""

@@ -61,13 +61,13 @@ def plugin_classes(document: Document, base: str) -> list[PluginClass]:
 
 
 def _all_classes(document: Document) -> list[PluginClass]:
-    cached = _classes.get(document.project)
+    cached = _classes.get(document.workspace)
     if cached is not None and time.monotonic() - cached[0] <= _SECONDS:
         return cached[1]
     if document.waits:
-        folders = dict.fromkeys((*document.project.index.packages, *document.finder.packages().values()))
+        folders = dict.fromkeys((*document.workspace.index.packages, *document.finder.packages().values()))
         classes = {plugin.name: plugin for folder in folders for plugin in _exported_classes(folder)}
-        cached = _classes[document.project] = time.monotonic(), list(classes.values())
+        cached = _classes[document.workspace] = time.monotonic(), list(classes.values())
     elif cached is None:
         raise NotYetKnownError
     else:

@@ -53,7 +53,7 @@ def generate_probes(workspace: Workspace, texts: Mapping[Path, str], name: Occur
     Returns an empty dictionary outside macros.
 
     Args:
-        workspace: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         name: the name.
     """

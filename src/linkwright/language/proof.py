@@ -73,17 +73,17 @@ def apply_edits(text: str, edits: Collection[Edit]) -> str:
     return text
 
 
-def apply_edits_to_texts(project: Workspace, texts: Mapping[Path, str], edits: Collection[Edit]) -> dict[Path, str]:
+def apply_edits_to_texts(workspace: Workspace, texts: Mapping[Path, str], edits: Collection[Edit]) -> dict[Path, str]:
     """Return the texts of the open and edited files, with the edits applied.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         edits: the edits, which must not overlap.
     """
     changed = dict(texts)
     for file in {edit.file for edit in edits}:
-        text = project.text(file, texts) or ""
+        text = workspace.text(file, texts) or ""
         changed[file] = apply_edits(text, [edit for edit in edits if edit.file == file])
     return changed
 
@@ -92,7 +92,7 @@ class ExpansionProof:
     """The expansions of the descriptions that include a file, for comparison after edits.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the file.
         is_partial: whether the comparison includes descriptions that can be expanded only without some elements, and
@@ -104,11 +104,13 @@ class ExpansionProof:
         trials: the expansions without the edits.
     """
 
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path, *, is_partial: bool = False) -> None:
+    def __init__(
+        self, workspace: Workspace, texts: Mapping[Path, str], file: Path, *, is_partial: bool = False
+    ) -> None:
         self.entries: set[Path] = set()
         self.data: set[Path] = set()
         self.trials: list[Trial] = []
-        self._project, self._texts = project, texts
+        self._project, self._texts = workspace, texts
         self._is_partial = is_partial
         self._error: LinkwrightError | None = None
         self._names: dict[Path, set[str]] = {}

@@ -109,12 +109,12 @@ def _has_one_value(name: str, names: Iterable[NameDefinition]) -> bool:
 
 
 def refactor(
-    project: Workspace, texts: Mapping[Path, str], action: Action, file: Path, start: int, end: int
+    workspace: Workspace, texts: Mapping[Path, str], action: Action, file: Path, start: int, end: int
 ) -> Refactoring:
     """Return the proved edits of a refactoring.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         action: the refactoring.
         file: the file.
@@ -124,9 +124,9 @@ def refactor(
     Raises:
         LinkwrightError: LANG105, the edits cannot be proved.
     """
-    text = project.text(file, texts) or ""
+    text = workspace.text(file, texts) or ""
     try:
-        result = _ACTIONS[action](project, texts, file, text, (start, end))
+        result = _ACTIONS[action](workspace, texts, file, text, (start, end))
     except UnprovedError as error:
         message = phrase("the text is not changed: {reason}", reason=error.reason)
         raise LinkwrightError(Diagnostic("LANG105", message, error.span)) from None
@@ -138,45 +138,45 @@ _DOES_NOT_FIT = phrase("this refactoring is not available for the selection")
 
 
 def _extract_property(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
 ) -> Refactoring:
     value = selected_value(text, *selection)
     if value is None:
         raise UnprovedError(_DOES_NOT_FIT)
-    return Refactoring(extract_property(project, texts, file, text, value))
+    return Refactoring(extract_property(workspace, texts, file, text, value))
 
 
 def _extract_macro(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
 ) -> Refactoring:
     siblings = selected_elements(text, *selection)
     if not siblings:
         raise UnprovedError(_DOES_NOT_FIT)
-    return Refactoring(extract_macro(project, texts, file, text, siblings))
+    return Refactoring(extract_macro(workspace, texts, file, text, siblings))
 
 
 def _inline_property(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
 ) -> Refactoring:
     name = property_at(text, file, selection[0])
     if name is None:
         raise UnprovedError(_DOES_NOT_FIT)
-    return Refactoring(inline_property(project, texts, name))
+    return Refactoring(inline_property(workspace, texts, name))
 
 
 def _convert(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, _selection: _Selection
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, _selection: _Selection
 ) -> Refactoring:
-    return Refactoring(new_file=convert_to_xacro(project, texts, file, text))
+    return Refactoring(new_file=convert_to_xacro(workspace, texts, file, text))
 
 
 def _fill_in_inertia(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: _Selection
 ) -> Refactoring:
     link = link_with_shapes_at(text, selection[0])
     if link is None:
         raise UnprovedError(_DOES_NOT_FIT)
-    return Refactoring(fill_in_inertia(project, texts, file, text, link))
+    return Refactoring(fill_in_inertia(workspace, texts, file, text, link))
 
 
 _ACTIONS: dict[Action, Callable[[Workspace, Mapping[Path, str], Path, str, _Selection], Refactoring]] = {

@@ -81,7 +81,7 @@ def part_names(document: Document) -> list[NameDefinition]:
         NotYetKnownError: a description was not read, and the document does not wait.
     """
     robots: list[_Robot] = []
-    entries = document.project.index.entries(document.file, document.texts)[:_MAX_ENTRIES]
+    entries = document.workspace.index.entries(document.file, document.texts)[:_MAX_ENTRIES]
     for entry in dict.fromkeys((*entries, document.file)):
         if entry == document.file and entry not in entries and any(robot.is_expanded for robot in robots):
             continue  # The file alone counts only if no description that includes it can be expanded.
@@ -103,7 +103,7 @@ def mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
         NotYetKnownError: no description was read, and the document does not wait.
     """
     robot_names(document)  # reads them
-    cache = _robots.get(document.project, {})
+    cache = _robots.get(document.workspace, {})
     counts = {
         entry: len({name.name for name in cache[entry].names} & {*words})
         for entry in _list_likely_robots(document)
@@ -122,12 +122,12 @@ def _names(robots: Iterable[_Robot]) -> list[NameDefinition]:
 
 def _find_robot(document: Document, entry: Path) -> _Robot | None:
     """Return the names of a description, or None if they are unknown and must not be waited for."""
-    cache = _robots.setdefault(document.project, {})
+    cache = _robots.setdefault(document.workspace, {})
     robot = cache.get(entry)
     if robot is not None and robot.state == _state((path for path, _ in robot.state), document.texts):
         return robot
     if document.waits:
-        robot = _read(document.project, document.texts, entry, cache.pop(entry, None))
+        robot = _read(document.workspace, document.texts, entry, cache.pop(entry, None))
         cache[entry] = robot
         if len(cache) > _MAX_STORED:
             del cache[next(iter(cache))]
@@ -146,46 +146,46 @@ def _list_likely_robots(document: Document) -> list[Path]:
         shared = max(len(commonprefix([name, part])) for part in entry.parts)  # noqa: RUF071 - it compares characters
         return not entry.is_relative_to(folder), -shared
 
-    entries = [entry for entry in document.project.index.roots(document.texts) if entry.name.endswith(_ENDINGS)]
+    entries = [entry for entry in document.workspace.index.roots(document.texts) if entry.name.endswith(_ENDINGS)]
     return sorted(entries, key=distance)[:_MAX_ROBOTS]
 
 
-def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, cached: _Robot | None) -> _Robot:
+def _read(workspace: Workspace, texts: Mapping[Path, str], entry: Path, cached: _Robot | None) -> _Robot:
     """Return the names of a description.
 
     If its text cannot be expanded, these are its earlier names, the names in the saved files, in the valid parts, or in
     the text.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         entry: the description.
         cached: its earlier names, or None.
     """
-    robot = _expand_robot(project, texts, entry)
+    robot = _expand_robot(workspace, texts, entry)
     if robot is not None:
         return robot
-    related = dict.fromkeys((entry, *project.index.related_files(entry, texts)))
+    related = dict.fromkeys((entry, *workspace.index.related_files(entry, texts)))
     state = _state([*map(str, related), *(path for path, _ in (() if cached is None else cached.state))], texts)
     if cached is not None and cached.is_expanded:
         return replace(cached, state=state)
-    saved = _expand_robot(project, {}, entry) if texts else None
+    saved = _expand_robot(workspace, {}, entry) if texts else None
     if saved is not None:
         return replace(saved, state=state)
-    parts = valid_parts(project, texts, entry)
+    parts = valid_parts(workspace, texts, entry)
     if parts is not None:
         return _make_robot(parts, state, is_complete=False)
-    text = project.text(entry, texts) or ""
+    text = workspace.text(entry, texts) or ""
     literal = (name for name in definitions_in(text, entry) if "$" not in name.name)
     return _Robot(state, tuple(name for name in literal if name.kind in _KINDS.values()), is_expanded=False)
 
 
-def _expand_robot(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
+def _expand_robot(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
     """Return the names in the first expansion without errors, or None if there is none."""
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    for arguments, _ in project.argument_calls(entry)[:_MAX_ARGUMENT_SETS]:
+    for arguments, _ in workspace.argument_calls(entry)[:_MAX_ARGUMENT_SETS]:
         with suppress(LinkwrightError, OSError, RecursionError):
-            expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+            expansion = expand(entry, arguments, packages=workspace.finder(entry), overlay=overlay)
             return _make_robot(expansion, _state(map(str, expansion.dependencies), texts))
     return None
 

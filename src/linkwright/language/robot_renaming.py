@@ -36,7 +36,7 @@ class RobotRenaming:
     """The edits for a new name of a link, joint or material.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         name: the name.
         new: its new name.
@@ -49,16 +49,16 @@ class RobotRenaming:
     """
 
     def __init__(
-        self, project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str, proof: ExpansionProof
+        self, workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str, proof: ExpansionProof
     ) -> None:
         self.edits: set[Edit] = set()
         self.names: dict[tuple[NameKind, str], str] = {}
         self.unchanged: tuple[Mention, ...] = ()
-        self._project, self._texts, self._name, self._new = project, texts, name, new
+        self._project, self._texts, self._name, self._new = workspace, texts, name, new
         self._proof = proof
-        self._files = project.index.related_files(name.file, texts, computed=True)
-        self._sources = NameSources(project, texts, self._files)
-        self._others = OtherFiles(project, texts, name.file, proof)
+        self._files = workspace.index.related_files(name.file, texts, computed=True)
+        self._sources = NameSources(workspace, texts, self._files)
+        self._others = OtherFiles(workspace, texts, name.file, proof)
 
     def run(self, seeds: Iterable[Occurrence]) -> None:
         """Find all edits that follow from the edits of certain occurrences.

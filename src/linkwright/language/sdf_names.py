@@ -72,14 +72,14 @@ def sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
 
 
 def rename_in_sdf(
-    project: Workspace, texts: Mapping[Path, str], name: SdfName, new: str
+    workspace: Workspace, texts: Mapping[Path, str], name: SdfName, new: str
 ) -> tuple[set[Edit], list[Mention]]:
     """Return the edits that rename a link, joint, frame or model, and uncertain mentions.
 
     A mention in another file, such as a launch file that starts a model, may have another meaning.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         name: the name, as `sdf_name_at` returns it.
         new: the new name.
@@ -88,11 +88,11 @@ def rename_in_sdf(
         UnprovedError: the new name is not valid or exists, the file is outside the workspace, or values would lead
             to other elements.
     """
-    text = project.text(name.file, texts) or ""
+    text = workspace.text(name.file, texts) or ""
     span = SourceText(str(name.file), text).span(name.start, name.end)
     if not _NAME.fullmatch(new) or _SEPARATOR in new or (new.startswith("__") and new.endswith("__")):
         raise UnprovedError(phrase("'{new}' is not a valid name", new=new), span)
-    if not project.contains(name.file):
+    if not workspace.contains(name.file):
         raise UnprovedError(phrase("'{file}' is outside the workspace", file=name.file.name), span)
     definition = innermost_element(source_elements(text), name.definition)
     scope = None if definition is None else _find_scope(definition.parent)
@@ -105,14 +105,14 @@ def rename_in_sdf(
         for use in sdf_names(text, name.file)
         if use.definition == name.definition
     }
-    _check(project, texts, name.file, edits)
+    _check(workspace, texts, name.file, edits)
     path = _path_from_top(definition)
     unchanged: list[Mention] = []
-    configurations = project.configuration_files(name.file)
-    for file in dict.fromkeys((*project.files(_ENDINGS), *configurations)):
+    configurations = workspace.configuration_files(name.file)
+    for file in dict.fromkeys((*workspace.files(_ENDINGS), *configurations)):
         if file == name.file:
             continue
-        other = project.text(file, texts) or ""
+        other = workspace.text(file, texts) or ""
         file_edits: set[Edit] = set()
         if path is not None and file.name.endswith(_ENDINGS):
             file_edits = {*_edits_of_includer(other, file, name.file, path, new)}
@@ -124,15 +124,15 @@ def rename_in_sdf(
     return edits, unchanged
 
 
-def _check(project: Workspace, texts: Mapping[Path, str], file: Path, edits: set[Edit]) -> None:
+def _check(workspace: Workspace, texts: Mapping[Path, str], file: Path, edits: set[Edit]) -> None:
     """Check that the edits keep the number of references to elements in the file.
 
     For a xacro file, check its expansions, too.
     """
-    text = project.text(file, texts) or ""
+    text = workspace.text(file, texts) or ""
     pairs = [(text, apply_edits(text, edits))]
     if file.name.endswith(".xacro"):
-        proof = ExpansionProof(project, texts, file, is_partial=True)
+        proof = ExpansionProof(workspace, texts, file, is_partial=True)
         pairs += [(pair.text_before, pair.text_after) for pair in proof.pairs(edits)]
     for before, after in pairs:
         if len([*sdf_names(before, file)]) != len([*sdf_names(after, file)]):

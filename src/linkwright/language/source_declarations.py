@@ -145,11 +145,11 @@ def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
 
 def _list_known_sources(document: Document) -> dict[Path, _Source]:
     """Return the source files that declare parameters or topics, by path."""
-    sources = _sources.get(document.project)
+    sources = _sources.get(document.workspace)
     if sources is not None and time.monotonic() - sources.time <= _SECONDS:
         return sources.sources
     if document.waits:
-        sources = _sources[document.project] = _read(document.project, document.texts, sources)
+        sources = _sources[document.workspace] = _read(document.workspace, document.texts, sources)
     elif sources is None:
         raise NotYetKnownError
     else:
@@ -157,9 +157,9 @@ def _list_known_sources(document: Document) -> dict[Path, _Source]:
     return sources.sources
 
 
-def _read(project: Workspace, texts: Mapping[Path, str], cached: _Sources | None) -> _Sources:
+def _read(workspace: Workspace, texts: Mapping[Path, str], cached: _Sources | None) -> _Sources:
     """Read the sources that have changed since they were read before."""
-    files = [real_path(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
+    files = [real_path(file) for folder in workspace.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
     cache = {} if cached is None else cached.cache
     sources: dict[Path, _Source] = {}
     for file in files:
@@ -169,7 +169,7 @@ def _read(project: Workspace, texts: Mapping[Path, str], cached: _Sources | None
             continue
         entry = cache.get(file)
         if entry is None or entry[0] != state:
-            entry = cache[file] = state, _read_source(project.text(file, texts) or "", file)
+            entry = cache[file] = state, _read_source(workspace.text(file, texts) or "", file)
         if entry[1].text:
             sources[file] = entry[1]
     return _Sources(sources, time.monotonic(), cache)

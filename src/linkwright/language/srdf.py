@@ -52,18 +52,18 @@ class _Semantics:
 
     @cached_property
     def names(self) -> list[NameDefinition]:
-        return self.document.project.names(self.document.file, self.document.texts)
+        return self.document.workspace.names(self.document.file, self.document.texts)
 
     @cached_property
     def descriptions(self) -> list[Path]:
         """The descriptions of the robot, found by MoveIt's Setup Assistant or the robot's name."""
-        project, file = self.document.project, self.document.file
+        workspace, file = self.document.workspace, self.document.file
         package = enclosing_package(file.parent)
         descriptions = [*self._setup_assistant_descriptions(package[1])] if package is not None else []
         robot_name = _ROBOT.search(self.document.text)
         name = robot_name[1] if robot_name is not None else ""
-        neighbors = project.package_neighbors(file, ())
-        for other in dict.fromkeys((*neighbors, *project.index.files)):
+        neighbors = workspace.package_neighbors(file, ())
+        for other in dict.fromkeys((*neighbors, *workspace.index.files)):
             head = _ROBOT.search(self.document.other(other)[:_LONGEST_HEAD]) if name else None
             if head is not None and head[1] == name and not is_srdf(other):
                 descriptions.append(other)
@@ -84,7 +84,7 @@ class _Semantics:
 
     @cached_property
     def robots(self) -> list[Robot]:
-        robots = (self.document.project.robot(file, self.document.texts) for file in self.descriptions)
+        robots = (self.document.workspace.robot(file, self.document.texts) for file in self.descriptions)
         return [robot for robot in robots if robot is not None]
 
     def parts(self, kind: NameKind) -> list[str]:
@@ -164,8 +164,8 @@ def _explain(document: Document, offset: int) -> Explanation | None:
     explanation = explain_at(document, offset, semantics.names)
     if explanation is not None or not document.file.name.endswith(".xacro"):
         return explanation
-    values = values_in(document.project, document.texts, document.file)
-    further_facts = facts_at(document.project, document.texts, document.file, document.text, offset, values)
+    values = values_in(document.workspace, document.texts, document.file)
+    further_facts = facts_at(document.workspace, document.texts, document.file, document.text, offset, values)
     return Explanation("\n\n".join(further_facts), offset, offset) if further_facts else None
 
 
@@ -208,7 +208,7 @@ def _parts(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target
     """Yield the definitions of a link or joint, by its name or a name with expressions."""
     document = semantics.document
     for file in semantics.descriptions:
-        names = document.project.names(file, document.texts)
+        names = document.workspace.names(file, document.texts)
         names_of_kind = [name for name in names if name.kind is kind and _matches(name.name, value)]
         if kind is NameKind.JOINT:
             names_of_kind = [

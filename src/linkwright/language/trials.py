@@ -57,12 +57,12 @@ class Trial:
 
 
 def expand_with_gaps(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str], gaps: Gaps | None = None
+    workspace: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str], gaps: Gaps | None = None
 ) -> Expansion:
     """Return the expansion of a description without some elements.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         entry: the description.
         arguments: the values of its arguments.
@@ -73,8 +73,8 @@ def expand_with_gaps(
     """
     overlay_texts: dict[str | os.PathLike[str], str] = {str(path): text for path, text in texts.items()}
     for file, ranges in (gaps or {}).items():
-        overlay_texts[str(file)] = blank_out(project.text(file, texts) or "", ranges)
-    return expand(entry, arguments, packages=project.finder(entry), overlay=Overlay(overlay_texts))
+        overlay_texts[str(file)] = blank_out(workspace.text(file, texts) or "", ranges)
+    return expand(entry, arguments, packages=workspace.finder(entry), overlay=Overlay(overlay_texts))
 
 
 def blank_out(text: str, ranges: tuple[Range, ...]) -> str:
@@ -86,12 +86,12 @@ def blank_out(text: str, ranges: tuple[Range, ...]) -> str:
 
 
 def trials(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, *, is_partial: bool, is_switched: bool = True
+    workspace: Workspace, texts: Mapping[Path, str], entry: Path, *, is_partial: bool, is_switched: bool = True
 ) -> tuple[list[Trial], LinkwrightError | None]:
     """Return the expansions of a description, and the last error, or None.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         entry: the description.
         is_partial: whether elements that fail are left out if nothing can be expanded.
@@ -99,28 +99,28 @@ def trials(
     """
     distinct: dict[tuple[str, frozenset[str]], Trial] = {}
     error: LinkwrightError | None = None
-    for arguments, _ in project.argument_calls(entry):
+    for arguments, _ in workspace.argument_calls(entry):
         try:
-            expansion = expand_with_gaps(project, texts, entry, arguments)
+            expansion = expand_with_gaps(workspace, texts, entry, arguments)
         except LinkwrightError as reason:  # noqa: PERF203 - each may fail for itself
             error = reason
         else:
             distinct.setdefault((str(expansion), frozenset(arguments)), Trial(entry, arguments, expansion))
     expansions = [*distinct.values()]
     if is_partial and not expansions:
-        expansions += _with_gaps(project, texts, entry)
+        expansions += _with_gaps(workspace, texts, entry)
     if is_partial and is_switched and expansions:
         expansions += _generate_trials_with_other_values(
-            project, texts, expansions[0], {str(trial.expansion) for trial in expansions}
+            workspace, texts, expansions[0], {str(trial.expansion) for trial in expansions}
         )
     return expansions, error
 
 
-def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> Iterator[Trial]:
+def _with_gaps(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> Iterator[Trial]:
     """Yield at most `_MAX_WITH_GAPS` expansions without the failing elements."""
     count = 0
-    for arguments in project.possible_arguments(entry):
-        trial = _trial_with_gaps(project, texts, entry, arguments)
+    for arguments in workspace.possible_arguments(entry):
+        trial = _trial_with_gaps(workspace, texts, entry, arguments)
         if trial is not None:
             yield trial
             count += 1
@@ -129,7 +129,7 @@ def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> It
 
 
 def _trial_with_gaps(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
+    workspace: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
 ) -> Trial | None:
     """Return an expansion without the failing elements, or None if the description has none."""
     gaps: dict[Path, tuple[Range, ...]] = {}
@@ -137,7 +137,7 @@ def _trial_with_gaps(
     values = dict(arguments)
     for _ in range(_MAX_GAPS):
         try:
-            return Trial(entry, values, expand_with_gaps(project, texts, entry, values, gaps), gaps, reason)
+            return Trial(entry, values, expand_with_gaps(workspace, texts, entry, values, gaps), gaps, reason)
         except (Fault, RecursionError):
             return None
         except LinkwrightError as raised:
@@ -153,7 +153,7 @@ def _trial_with_gaps(
         if not gaps and numbers and not first.code.startswith(("PKG", "XML")):
             values |= numbers
             continue
-        element_range = None if first.span is None else _element_around(project, texts, first.span, gaps)
+        element_range = None if first.span is None else _element_around(workspace, texts, first.span, gaps)
         if element_range is None:
             return None
         reason = reason or first.message
@@ -161,10 +161,12 @@ def _trial_with_gaps(
     return None
 
 
-def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps) -> tuple[Path, Range] | None:
+def _element_around(
+    workspace: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps
+) -> tuple[Path, Range] | None:
     """Return the file and range of the element at a location, or None for the root."""
     file = real_path(span.file)
-    text = project.text(file, texts)
+    text = workspace.text(file, texts)
     if text is None:
         return None
     offset = SourceText(span.file, text).offset(span.line, span.column)
@@ -176,18 +178,18 @@ def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, g
 
 
 def _generate_trials_with_other_values(
-    project: Workspace, texts: Mapping[Path, str], base: Trial, seen_results: set[str]
+    workspace: Workspace, texts: Mapping[Path, str], base: Trial, seen_results: set[str]
 ) -> Iterator[Trial]:
     """Yield the new expansions that result from another value of a single argument."""
     begin = time.monotonic()
-    for name, value in _list_other_values(project, texts, base.entry):
+    for name, value in _list_other_values(workspace, texts, base.entry):
         if base.arguments.get(name) == value:
             continue
         if time.monotonic() - begin > _MAX_DURATION_S:
             return
         arguments = {**base.arguments, name: value}
         try:
-            expansion = expand_with_gaps(project, texts, base.entry, arguments, base.gaps)
+            expansion = expand_with_gaps(workspace, texts, base.entry, arguments, base.gaps)
         except (LinkwrightError, Fault, RecursionError):
             continue
         text = str(expansion)
@@ -196,12 +198,12 @@ def _generate_trials_with_other_values(
             yield Trial(base.entry, arguments, expansion, base.gaps, base.reason)
 
 
-def _list_other_values(project: Workspace, texts: Mapping[Path, str], entry: Path) -> list[tuple[str, str]]:
+def _list_other_values(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> list[tuple[str, str]]:
     """Return other values of arguments: opposites of defaults, and values in conditions."""
     values: dict[tuple[str, str], None] = {}
     documents = []
-    for file in project.index.related_files(entry, texts, computed=True):
-        text = project.text(file, texts) or ""
+    for file in workspace.index.related_files(entry, texts, computed=True):
+        text = workspace.text(file, texts) or ""
         for token in tokens(text):
             if token.kind is Kind.START and token.name == "xacro:arg":
                 attributes = {attribute.name: attribute.value or "" for attribute in token.attributes()}

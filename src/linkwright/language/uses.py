@@ -60,7 +60,7 @@ def _documents(document: Document, file: Path) -> Iterator[Document]:
         if index < _MAX_FILES:
             text = document.text if path == document.file else document.other(path)
             if path in (document.file, file) or file.name in text:
-                yield Document(document.project, document.texts, path, text)
+                yield Document(document.workspace, document.texts, path, text)
 
 
 def _uses(document: Document, file_format: Format, target: Target, name: str) -> Iterator[Target]:

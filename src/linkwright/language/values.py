@@ -42,21 +42,23 @@ class EvaluatedText:
         return list(dict.fromkeys(evaluation.value for evaluation, _ in self.evaluations))
 
 
-def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[EvaluatedText]:
+def values_in(workspace: Workspace, texts: Mapping[Path, str], file: Path) -> list[EvaluatedText]:
     """Return the values of the texts with expressions in a file, in no particular order.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the file.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
     evaluated_texts: dict[tuple[int, int], EvaluatedText] = {}
     calls = (
-        (entry, values) for entry in project.index.entries(file, texts) for values, _ in project.argument_calls(entry)
+        (entry, values)
+        for entry in workspace.index.entries(file, texts)
+        for values, _ in workspace.argument_calls(entry)
     )
     for _, (entry, values) in zip(range(_MAX_EXPANSIONS), calls, strict=False):
-        inputs = Inputs(str(entry), values, project.finder(entry), overlay=overlay)
+        inputs = Inputs(str(entry), values, workspace.finder(entry), overlay=overlay)
         for expression in evaluated_expressions(inputs):
             if real_path(expression.file) == file:
                 key = expression.start, expression.end

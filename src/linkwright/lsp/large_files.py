@@ -58,8 +58,8 @@ async def findings_of_process(
 
 def _check(sender: Connection, folders: list[Path], subject: Path, texts: dict[Path, str]) -> None:
     """Send the findings about a subject."""
-    project = Workspace(folders)
+    workspace = Workspace(folders)
     with redirect_stdout(sys.stderr):  # Standard output carries only the responses of the server.
-        project.index.refresh()
-        sender.send(project.check_subject(subject, texts))
+        workspace.index.refresh()
+        sender.send(workspace.check_subject(subject, texts))
     sender.close()

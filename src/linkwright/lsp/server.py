@@ -63,7 +63,7 @@ class LinkwrightServer(LanguageServer):
     """The language server for one editor.
 
     Attributes:
-        project: the workspace, or None before the editor has opened its folders.
+        project: the checked folders, or None before the editor has opened its folders.
         robot_views: the pages that show robots.
     """
 
@@ -202,13 +202,13 @@ class LinkwrightServer(LanguageServer):
 
     async def expression_values(self, path: Path) -> list[EvaluatedText]:
         """Wait for the index, and return the values of the expressions in a file."""
-        project, file, texts = self.project, real_path(path), self.texts()
-        if project is None:
+        workspace, file, texts = self.project, real_path(path), self.texts()
+        if workspace is None:
             return []
         await self.when_indexed()
         cached = self._values.get(file)
         if cached is None or cached[0] != texts:
-            cached = texts, await self.run_in_check_thread(partial(values_in, project, texts, file))
+            cached = texts, await self.run_in_check_thread(partial(values_in, workspace, texts, file))
             self._values = {file: cached}
         return cached[1]
 
@@ -287,12 +287,12 @@ class LinkwrightServer(LanguageServer):
 
     # --- checks -----------------------------------------------------------------------------------------------
 
-    async def _check_changes(self, project: Workspace) -> None:
+    async def _check_changes(self, workspace: Workspace) -> None:
         """Search the folders, then check files as they change, the newest first.
 
         A subject that waits for its check is checked once, however often it changes.
         """
-        search = asyncio.ensure_future(self._attempt(project.index.refresh, Path()))
+        search = asyncio.ensure_future(self._attempt(workspace.index.refresh, Path()))
         title = phrase("Linkwright: searching the folders for robot descriptions")
         self._progress_task = asyncio.ensure_future(show_progress(self, title, search))
         await search
@@ -310,13 +310,13 @@ class LinkwrightServer(LanguageServer):
             changed, self._changed = self._changed, {}
             texts = self.texts()
             for file in changed:
-                subjects = await self._attempt(partial(project.subjects, file, texts), file) or []
+                subjects = await self._attempt(partial(workspace.subjects, file, texts), file) or []
                 pending = {subject: pending.get(subject, set()) for subject in (*subjects, *pending)}
                 for subject in subjects or [file]:
                     pending.setdefault(subject, set()).add(file)
             if pending:
                 subject = next(iter(pending))
-                await self._check(project, subject, texts, pending.pop(subject))
+                await self._check(workspace, subject, texts, pending.pop(subject))
                 check_count += 1
 
     async def _is_idle(self) -> bool:
@@ -327,32 +327,32 @@ class LinkwrightServer(LanguageServer):
             return True
         return False
 
-    async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
+    async def _check(self, workspace: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
         """Check one subject, and publish its findings.
 
         A subject with a large file is checked in another process, which does not delay other checks.
         """
-        if any(project.is_large(file, texts) for file in (subject, *changed)):
+        if any(workspace.is_large(file, texts) for file in (subject, *changed)):
             previous = self._large_checks.get(subject)
             if previous is not None:
                 previous.cancel()
-            check = self._check_in_process(project, subject, texts, changed)
+            check = self._check_in_process(workspace, subject, texts, changed)
             self._large_checks[subject] = asyncio.get_running_loop().create_task(check)
             return
-        self._publish(await self._attempt(partial(project.check, subject, texts, changed), subject) or {}, texts)
+        self._publish(await self._attempt(partial(workspace.check, subject, texts, changed), subject) or {}, texts)
 
     async def _check_in_process(
-        self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]
+        self, workspace: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]
     ) -> None:
         """Check one subject in a separate process, and publish its findings."""
         await asyncio.sleep(_PAUSE_S)
-        findings = await findings_of_process(project.folders, subject, texts)
+        findings = await findings_of_process(workspace.folders, subject, texts)
         if self._large_checks.get(subject) is asyncio.current_task():
             del self._large_checks[subject]
         if findings is None:
             _log.error("The check of '%s' failed", subject)
             return
-        findings_by_file = await self._attempt(partial(project.record, subject, findings, texts, changed), subject)
+        findings_by_file = await self._attempt(partial(workspace.record, subject, findings, texts, changed), subject)
         self._publish(findings_by_file or {}, texts)
 
     def _cancel_checks(self) -> None:

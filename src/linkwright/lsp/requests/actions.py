@@ -80,10 +80,10 @@ async def _prove_refactoring(
         LinkwrightError: LANG105, the edits cannot be proved.
         JsonRpcException: ContentModified, a text has changed meanwhile.
     """
-    project = server.project
-    assert project is not None
+    workspace = server.project
+    assert workspace is not None
     await server.when_indexed()
-    result = await server.run_in_check_thread(lambda: refactor(project, texts, action, real_path(path), start, end))
+    result = await server.run_in_check_thread(lambda: refactor(workspace, texts, action, real_path(path), start, end))
     if server.texts() != texts:
         raise _content_modified_error()
     return _workspace_edit(server, result)
@@ -148,14 +148,14 @@ def add_requests(server: LinkwrightServer) -> None:
     async def code_action(server: LinkwrightServer, params: types.CodeActionParams) -> list[types.CodeAction] | None:
         path = path_of(params.text_document.uri)
         positions = None if path is None else server.positions(path)
-        project, only = server.project, params.context.only
-        if path is None or positions is None or project is None:
+        workspace, only = server.project, params.context.only
+        if path is None or positions is None or workspace is None:
             return None
         texts = server.texts()
         actions: list[types.CodeAction] = []
         if _may_be_requested(_ACTION_KINDS[:2], only):
-            actions += quick_fixes(server, project.fixable_findings(real_path(path), texts), params, positions)
-            actions += suppression_actions(server, project.findings(real_path(path), texts), params, path, positions)
+            actions += quick_fixes(server, workspace.fixable_findings(real_path(path), texts), params, positions)
+            actions += suppression_actions(server, workspace.findings(real_path(path), texts), params, path, positions)
         if _may_be_requested(_ACTION_KINDS[2:], only):
             start, end = positions.offset(params.range.start), positions.offset(params.range.end)
             names = await server.defined_names(path)

@@ -49,35 +49,35 @@ def description_of(uri: str) -> tuple[Path, dict[str, str]] | None:
 
 
 def _expansions(
-    project: Workspace, texts: Mapping[Path, str], file: Path
+    workspace: Workspace, texts: Mapping[Path, str], file: Path
 ) -> Iterator[tuple[Path, Mapping[str, str], ExpandedText]]:
     """Yield one expansion of each description that includes a file.
 
     The expansion uses the first argument set without an error.
     """
-    for entry in project.index.entries(file, texts):
-        for arguments, _ in project.argument_calls(entry):
+    for entry in workspace.index.entries(file, texts):
+        for arguments, _ in workspace.argument_calls(entry):
             try:
-                yield entry, arguments, expanded_text(project, texts, entry, arguments)
+                yield entry, arguments, expanded_text(workspace, texts, entry, arguments)
             except LinkwrightError:
                 continue
             break
 
 
 def implementations(
-    project: Workspace, texts: Mapping[Path, str], file: Path, offset: int, encoding: types.PositionEncodingKind | str
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, offset: int, encoding: types.PositionEncodingKind | str
 ) -> list[types.Location]:
     """Return the expansions of the element at an offset of a file.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the file.
         offset: the character offset in its text.
         encoding: the encoding of the positions.
     """
     locations = []
-    for entry, arguments, expansion in _expansions(project, texts, file):
+    for entry, arguments, expansion in _expansions(workspace, texts, file):
         positions = TextPositions(expansion.text, encoding)
         uri = expansion_uri(entry, arguments)
         locations += [
@@ -110,11 +110,11 @@ async def expansion_content(server: LinkwrightServer, uri: str) -> str | None:
     Raises:
         JsonRpcException: RequestFailed, the description cannot be expanded.
     """
-    description, project, texts = description_of(uri), server.project, server.texts()
-    if description is None or project is None:
+    description, workspace, texts = description_of(uri), server.project, server.texts()
+    if description is None or workspace is None:
         return None
     try:
-        expansion = await server.run_in_check_thread(lambda: expanded_text(project, texts, *description))
+        expansion = await server.run_in_check_thread(lambda: expanded_text(workspace, texts, *description))
     except LinkwrightError as error:
         message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
         raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
@@ -129,11 +129,11 @@ def add_requests(server: LinkwrightServer) -> None:
         server: LinkwrightServer, params: types.ImplementationParams
     ) -> list[types.Location] | None:
         path, positions = server.xml_text(params.text_document)
-        project, texts = server.project, server.texts()
-        if positions is None or project is None or not is_expanded(path) or not server.opens_virtual_documents:
+        workspace, texts = server.project, server.texts()
+        if positions is None or workspace is None or not is_expanded(path) or not server.opens_virtual_documents:
             return None
         await server.when_indexed()
         offset, encoding = positions.offset(params.position), server.workspace.position_encoding or UTF_16
         return await server.run_in_check_thread(
-            lambda: implementations(project, texts, real_path(path), offset, encoding)
+            lambda: implementations(workspace, texts, real_path(path), offset, encoding)
         )

@@ -77,13 +77,13 @@ async def _with_use_count(server: LinkwrightServer, lens: types.CodeLens) -> typ
     """Return a lens with the number of uses of its name, and their locations."""
     data: dict[str, Any] = lens.data if isinstance(lens.data, dict) else {}
     path, positions = server.xml_text(types.TextDocumentIdentifier(str(data.get("uri", ""))))
-    project = server.project
-    if positions is None or project is None:
+    workspace = server.project
+    if positions is None or workspace is None:
         return lens
     await server.when_indexed()
     texts, file = server.texts(), real_path(path)
     name = next((name for name in occurrences_in(positions.text, file) if name.start == data.get("offset")), None)
-    uses = [] if name is None else await server.run_in_check_thread(lambda: references(project, texts, name))
+    uses = [] if name is None else await server.run_in_check_thread(lambda: references(workspace, texts, name))
     locations = []
     for use in uses:
         use_positions = None if use.is_definition else server.positions(use.file)

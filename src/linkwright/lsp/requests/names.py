@@ -146,12 +146,12 @@ async def parameter_definitions(
     server: LinkwrightServer, path: Path, positions: TextPositions, position: types.Position
 ) -> list[types.Location]:
     """Return the declaration of the macro parameter at a position, or an empty list."""
-    project, texts = server.project, server.texts()
+    workspace, texts = server.project, server.texts()
     name = occurrence_at(positions.text, real_path(path), positions.offset(position))
-    if project is None or name is None or name.kind is not NameKind.PARAMETER:
+    if workspace is None or name is None or name.kind is not NameKind.PARAMETER:
         return []
     await server.when_indexed()
-    uses = await server.run_in_check_thread(lambda: references(project, texts, name))
+    uses = await server.run_in_check_thread(lambda: references(workspace, texts, name))
     declared = (Target(use.file, use.start, use.end) for use in uses if use.is_definition)
     return [*target_locations(declared, server.positions, server.uri_of)]
 
@@ -232,16 +232,16 @@ def add_requests(server: LinkwrightServer) -> None:
         if context is not None:
             return await server.run_in_check_thread(lambda: format_hover(context, params.position))
         path, positions = server.xml_text(params.text_document)
-        project, texts = server.project, server.texts()
-        if positions is None or project is None:
+        workspace, texts = server.project, server.texts()
+        if positions is None or workspace is None:
             return None
         names, values = await server.defined_names(path), await server.expression_values(path)
         text, offset = positions.text, positions.offset(params.position)
         facts = await server.run_in_check_thread(
-            lambda: facts_at(project, texts, real_path(path), text, offset, values)
+            lambda: facts_at(workspace, texts, real_path(path), text, offset, values)
         )
         server.check_unchanged(path, positions)
-        document = Document(project, texts, real_path(path), text)
+        document = Document(workspace, texts, real_path(path), text)
         return hover(document, names, values, facts, positions, params.position)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)

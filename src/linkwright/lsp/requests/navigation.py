@@ -146,8 +146,8 @@ class _MacroCalls:
                 yield types.CallHierarchyOutgoingCall(item, ranges)
 
     def _definition(self, macro: str, file: Path) -> types.CallHierarchyItem | None:
-        project = self._server.project
-        for other in () if project is None else project.index.related_files(file, self._texts):
+        workspace = self._server.project
+        for other in () if workspace is None else workspace.index.related_files(file, self._texts):
             positions = self._server.positions(other)
             for name in occurrences_in("" if positions is None else positions.text, other):
                 if name.kind is NameKind.MACRO and name.is_definition and name.name == macro:
@@ -192,11 +192,11 @@ def add_requests(server: LinkwrightServer) -> None:
     async def workspace_symbol(
         server: LinkwrightServer, params: types.WorkspaceSymbolParams
     ) -> list[types.WorkspaceSymbol] | None:
-        project, texts = server.project, server.texts()
-        if project is None:
+        workspace, texts = server.project, server.texts()
+        if workspace is None:
             return None
         await server.when_indexed()
-        names = await server.run_in_check_thread(lambda: project.all_names(texts))
+        names = await server.run_in_check_thread(lambda: workspace.all_names(texts))
         return [*_symbols(server, matching_names(names, params.query)[:_MAX_SYMBOLS])]
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
@@ -226,14 +226,14 @@ def add_requests(server: LinkwrightServer) -> None:
         server: LinkwrightServer, params: types.CallHierarchyPrepareParams
     ) -> list[types.CallHierarchyItem] | None:
         path, positions = server.xml_text(params.text_document)
-        project, texts = server.project, server.texts()
-        if positions is None or project is None:
+        workspace, texts = server.project, server.texts()
+        if positions is None or workspace is None:
             return None
         name = occurrence_at(positions.text, real_path(path), positions.offset(params.position))
         if name is None or name.kind is not NameKind.MACRO:
             return None
         await server.when_indexed()
-        occurrences = await server.run_in_check_thread(lambda: references(project, texts, name))
+        occurrences = await server.run_in_check_thread(lambda: references(workspace, texts, name))
         return [item for use in occurrences if use.is_definition and (item := _macro_item(server, use)) is not None]
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)

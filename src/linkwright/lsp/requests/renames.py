@@ -95,22 +95,24 @@ def add_requests(server: LinkwrightServer) -> None:
         server: LinkwrightServer, document: types.TextDocumentIdentifier, position: types.Position
     ) -> RenamableName | None:
         path, positions = server.xml_text(document)
-        project = server.project
-        if positions is None or project is None:
+        workspace = server.project
+        if positions is None or workspace is None:
             return None
         await server.when_indexed()
         texts, offset = server.texts(), positions.offset(position)
-        return await server.run_in_check_thread(lambda: renamable_name_at(project, texts, real_path(path), offset))
+        return await server.run_in_check_thread(lambda: renamable_name_at(workspace, texts, real_path(path), offset))
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     async def rename_request(server: LinkwrightServer, params: types.RenameParams) -> types.WorkspaceEdit | None:
         texts = server.texts()
         renamable = await find_renamable_name(server, params.text_document, params.position)
-        project = server.project
-        if renamable is None or project is None:
+        workspace = server.project
+        if renamable is None or workspace is None:
             return None
         try:
-            renaming = await server.run_in_check_thread(lambda: rename_name(project, texts, renamable, params.new_name))
+            renaming = await server.run_in_check_thread(
+                lambda: rename_name(workspace, texts, renamable, params.new_name)
+            )
         except LinkwrightError as error:
             message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None

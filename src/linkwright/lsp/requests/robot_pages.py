@@ -44,10 +44,10 @@ class PageEditor:
 
     def replace_text(self, file: Path, version: int, text: str) -> None:
         """Replace the text of a file, or warn if it has another version or the editor cannot edit."""
-        server, workspace = self._server, self._server.client_capabilities.workspace
+        server, capabilities = self._server, self._server.client_capabilities.workspace
         document, positions = server.documents().get(file), server.positions(file)
         current_version = 0 if document is None else document.version or 0
-        if positions is None or current_version != version or workspace is None or not workspace.apply_edit:
+        if positions is None or current_version != version or capabilities is None or not capabilities.apply_edit:
             message = phrase("the edit in the page was not applied to '{file}'; repeat it", file=file.name)
             server.window_show_message(types.ShowMessageParams(types.MessageType.Warning, localized(message)))
             return
@@ -66,11 +66,11 @@ async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
     Raises:
         JsonRpcException: RequestFailed, the file is not a description, or its page cannot be served.
     """
-    path, project, texts = path_of(uri), server.project, server.texts()
-    if path is None or project is None or not path.name.endswith(DESCRIPTIONS):
+    path, workspace, texts = path_of(uri), server.project, server.texts()
+    if path is None or workspace is None or not path.name.endswith(DESCRIPTIONS):
         raise _failed(localized(phrase("only the robots of URDF, xacro and SDF files can be shown")))
     await server.when_indexed()
-    entry = (await server.run_in_check_thread(lambda: project.index.entries(real_path(path), texts)))[0]
+    entry = (await server.run_in_check_thread(lambda: workspace.index.entries(real_path(path), texts)))[0]
     try:
         address = await server.robot_views.address(entry, server.documents())
     except OSError as error:
