@@ -8,15 +8,15 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, display_path, phrase
 from linkwright.language.proof import UnprovedError
+from linkwright.language.source_elements import source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import source_elements
 from linkwright.lint.rules.xacro_tags import ADDRESS
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro import expand
 from linkwright.xmltree import Element, Overlay, parse
 from linkwright.xmltree.tokens import Kind, tokens
 
-_BEFORE_BRACKET = lazy_pattern(r"\$+(?=[{(])")
+_DOLLARS_BEFORE_BRACKET = lazy_pattern(r"\$+(?=[{(])")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,9 @@ def convert_to_xacro(workspace: Workspace, texts: Mapping[Path, str], file: Path
 def _escape(text: str) -> str:
     """Escape the dollar signs before brackets for xacro, except in comments."""
     return "".join(
-        token.text if token.kind is Kind.COMMENT else _BEFORE_BRACKET.sub(lambda dollars: f"${dollars[0]}", token.text)
+        token.text
+        if token.kind is Kind.COMMENT
+        else _DOLLARS_BEFORE_BRACKET.sub(lambda dollars: f"${dollars[0]}", token.text)
         for token in tokens(text)
     )
 

@@ -14,7 +14,7 @@ from linkwright.language.includes import real_path
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.mentions import Mention
 from linkwright.language.proof import Edit
-from linkwright.language.values import values_in
+from linkwright.language.values import evaluate_file
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import XML_FILES
 from linkwright.packages.share_layout import source_of
@@ -25,7 +25,7 @@ _SHARE_PATH = re.compile(
     r"(?:package://|model://|\$\((?:find|find-pkg-share)\s+)(?P<package>[\w-]+)(?:\s*\))?/(?P<path>[\w./-]+)"
 )
 _WORD = re.compile(r"(?<![\w./$-])[\w.-]+(?:/[\w.-]+)*")
-_MAX_TEXT = 1_000_000
+_MAX_TEXT_LENGTH = 1_000_000
 """The maximum length in characters. Longer files are data, not configuration."""
 
 
@@ -54,7 +54,7 @@ def rename_file(workspace: Workspace, texts: Mapping[Path, str], old: Path, new:
     unchanged: list[Mention] = []
     for file in dict.fromkeys((*workspace.index.files, *workspace.files((*XML_FILES, ".xml", *_OTHER_FILES)))):
         text = workspace.text(file, texts)
-        if text is None or len(text) > _MAX_TEXT or old.name not in text or not workspace.contains(file):
+        if text is None or len(text) > _MAX_TEXT_LENGTH or old.name not in text or not workspace.contains(file):
             continue
         certain = _reference_edits(workspace, texts, file, text, old, new)
         edits += certain
@@ -90,7 +90,7 @@ def _format_references(
         yield from format_.links(Document(workspace, texts, file, text))
     if file.name.endswith((*XML_FILES, ".xml")):
         try:
-            values = values_in(workspace, texts, file)
+            values = evaluate_file(workspace, texts, file)
         except LinkwrightError:
             values = []
         yield from file_references(text, file, workspace.finder(file), values)

@@ -54,7 +54,7 @@ class Target:
     """A location that a name refers to.
 
     Attributes:
-        file: the file.
+        file: the file that contains the location.
         start: the character offset of the location in its text.
         end: the offset after it.
     """
@@ -84,7 +84,7 @@ class Symbol:
     """A named part of a text.
 
     Attributes:
-        name: the name.
+        name: the name, as editors show it.
         kind: its kind.
         start: the character offset of the part.
         end: the offset after it.

@@ -16,7 +16,7 @@ class IncludeIndex:
     A file is read again only when it has changed.
 
     Args:
-        folders: the folders.
+        folders: the folders to search.
 
     Attributes:
         files: the descriptions, and the files with parts of them.
@@ -79,7 +79,7 @@ class IncludeIndex:
         The files that it includes are among them.
 
         Args:
-            file: the file.
+            file: the file, as `real_path` returns it.
             texts: texts that replace those of files.
             computed: whether an include with a computed path counts for each file that it can mean.
         """

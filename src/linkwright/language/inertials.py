@@ -9,18 +9,18 @@ from linkwright.diagnostics import phrase
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inertia.source_edits import EXPRESSION, NotWritableError
 from linkwright.inertia.writing import edits_of_link
-from linkwright.language.expanded import expanded_robots, is_source_of
+from linkwright.language.expanded import expand_to_robots, is_source_of
 from linkwright.language.grammar import PREFIX
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
+from linkwright.language.source_elements import SourceElement, find_innermost_element, source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import SourceElement, innermost_element, source_elements
 from linkwright.urdf import Link, Robot
 from linkwright.xmltree import Element
 
 
 def link_with_shapes_at(text: str, offset: int) -> SourceElement | None:
     """Return the link around an offset if it has shapes without expressions, or None."""
-    element = innermost_element(source_elements(text), offset)
+    element = find_innermost_element(source_elements(text), offset)
     link = (
         None
         if element is None
@@ -44,15 +44,15 @@ def fill_in_inertia(
     Args:
         workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: the file that contains the link.
         text: its text.
-        link: the link.
+        link: a link, as `link_with_shapes_at` returns it.
 
     Raises:
         UnprovedError: no expansion contains the link, its inertia is unknown or cannot be written, or something else
             would change.
     """
-    robot, entry, expanded_link = _expanded_link(workspace, texts, file, link)
+    robot, entry, expanded_link = _find_expanded_link(workspace, texts, file, link)
     finder = workspace.finder(entry)
     properties = estimate(expanded_link, MeshLibrary(finder, entry.parent)).properties
     if properties is None:
@@ -73,10 +73,10 @@ def fill_in_inertia(
     return edits
 
 
-def _expanded_link(
+def _find_expanded_link(
     workspace: Workspace, texts: Mapping[Path, str], file: Path, link: SourceElement
 ) -> tuple[Robot, Path, Link]:
-    for entry, robot in expanded_robots(workspace, texts, file):
+    for entry, robot in expand_to_robots(workspace, texts, file):
         expanded_link = next(
             (candidate for candidate in robot.links.values() if is_source_of(file, link.start, candidate.element)), None
         )

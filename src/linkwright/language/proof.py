@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, display_path, phrase
 from linkwright.language.includes import real_path
-from linkwright.language.trials import Trial, blank_out, expand_with_gaps, trials
+from linkwright.language.trials import Trial, blank_out, expand_with_gaps, run_trials
 from linkwright.language.workspace import Workspace
 from linkwright.lint.targets import DESCRIPTIONS
 from linkwright.loading.deferred import lazy_pattern
@@ -94,14 +94,14 @@ class ExpansionProof:
     Args:
         workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: the file that is edited.
         is_partial: whether the comparison includes descriptions that can be expanded only without some elements, and
             arguments that no caller passes.
 
     Attributes:
         entries: the descriptions that are compared.
         data: the files that their expansions read.
-        trials: the expansions without the edits.
+        run_trials: the expansions without the edits.
     """
 
     def __init__(
@@ -133,7 +133,7 @@ class ExpansionProof:
         """Yield the expansion of each description and argument set before and after edits.
 
         Args:
-            edits: the edits.
+            edits: the edits, which must not overlap.
             renamed: the new names of arguments of the descriptions, by old name.
 
         Raises:
@@ -164,7 +164,7 @@ class ExpansionProof:
         """Compare the expansions before and after edits, which must be equal.
 
         Args:
-            edits: the edits.
+            edits: the edits, which must not overlap.
             renamed: the new names of arguments of the descriptions, by old name.
 
         Raises:
@@ -186,7 +186,7 @@ class ExpansionProof:
         if entry in self.entries:
             return
         self.entries.add(entry)
-        expansions, error = trials(self._project, self._texts, entry, is_partial=self._is_partial)
+        expansions, error = run_trials(self._project, self._texts, entry, is_partial=self._is_partial)
         self._error = error or self._error
         self.trials += expansions
         for path in (path for trial in expansions for path in trial.expansion.dependencies):

@@ -26,7 +26,7 @@ from linkwright.language.robot_renaming import ROBOT_NAME_KINDS, RobotRenaming
 from linkwright.language.workspace import Workspace
 from linkwright.sdf.worlds import SDF
 
-_FORWARD = re.compile(r"\s*:?=\s*\^")
+_FORWARDED_DEFAULT = re.compile(r"\s*:?=\s*\^")
 _NAME = re.compile(r"[^\s<>&\"']+")
 
 
@@ -51,7 +51,7 @@ def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
     """Return the name at an offset, or None if there is no renamable name."""
     if root_of(file) is SDF:  # Names in SDF models have their own scopes.
         return None
-    return _innermost(occurrences_in(text, file), offset)
+    return _find_innermost(occurrences_in(text, file), offset)
 
 
 def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
@@ -59,21 +59,21 @@ def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
 
     It is the name of a macro, parameter, property or argument.
     """
-    return _innermost((name for name in occurrences_in(text, file) if name.kind not in ROBOT_NAME_KINDS), offset)
+    return _find_innermost((name for name in occurrences_in(text, file) if name.kind not in ROBOT_NAME_KINDS), offset)
 
 
-def _innermost(names: Iterable[Occurrence], offset: int) -> Occurrence | None:
+def _find_innermost(names: Iterable[Occurrence], offset: int) -> Occurrence | None:
     occurrences = [name for name in names if name.start <= offset <= name.end]
     return min(occurrences, key=lambda name: (name.end - name.start, not name.is_definition), default=None)
 
 
-def references(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence) -> list[Occurrence]:
+def find_references(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence) -> list[Occurrence]:
     """Return the definitions and uses of a name in all files of its descriptions.
 
     Args:
         workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        name: the name.
+        name: one of its occurrences.
     """
     occurrences: dict[Path, list[Occurrence]] = {}
     pending = [name.file]
@@ -101,22 +101,22 @@ def rename(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, ne
         LinkwrightError: LANG102, the new name is not valid; LANG103, it exists; LANG104, the edits cannot be proved.
     """
     _check_new_name(name, new)
-    seeds = references(workspace, texts, name)
+    seeds = find_references(workspace, texts, name)
     if not any(seed.is_definition for seed in seeds) and name.kind not in ROBOT_NAME_KINDS:
         raise _unproved_error(phrase("'{name}' is not defined in the files of the workspace", name=name.name), name)
     existing = next(
-        (other for other in references(workspace, texts, _with_name(name, new)) if other.is_definition), None
+        (other for other in find_references(workspace, texts, _with_name(name, new)) if other.is_definition), None
     )
     if existing is not None:
         message = phrase("{kind} '{name}' already exists", kind=term(name.kind.value), name=new)
         raise LinkwrightError(Diagnostic("LANG103", message, _span(workspace, texts, existing)))
     try:
-        return _proved_edits(workspace, texts, name, new)
+        return _prove_renaming(workspace, texts, name, new)
     except UnprovedError as error:
         raise _unproved_error(error.reason, name, error.span) from None
 
 
-def _proved_edits(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+def _prove_renaming(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
     """Return the edits of the occurrences of a name, and the edits that follow from them."""
     proof = ExpansionProof(workspace, texts, name.file, is_partial=True)
     notes: list[Phrase] = []
@@ -129,7 +129,7 @@ def _proved_edits(workspace: Workspace, texts: Mapping[Path, str], name: Occurre
         texts = {**texts, **probes}
         proof = ExpansionProof(workspace, texts, name.file, is_partial=True)
         notes.append(phrase("no description calls this macro, so the edits were checked with generated calls"))
-    seeds = references(workspace, texts, name)
+    seeds = find_references(workspace, texts, name)
     if name.kind in ROBOT_NAME_KINDS:
         renaming = RobotRenaming(workspace, texts, name, new, proof)
         renaming.run(seeds)
@@ -141,9 +141,9 @@ def _proved_edits(workspace: Workspace, texts: Mapping[Path, str], name: Occurre
         edits = {Edit(seed.file, seed.start, seed.end, new) for seed in seeds}
         renamed = {}
         if name.kind is NameKind.ARGUMENT:
-            edits |= _passed_arguments(workspace, texts, proof, name, new)
+            edits |= _edit_callers(workspace, texts, proof, name, new)
             renamed = {name.name: new}
-        edits = _equal(workspace, texts, proof, name, new, edits, renamed)
+        edits = _extend_until_equal(workspace, texts, proof, name, new, edits, renamed)
         names, unchanged = {}, ()
     if proof.gap_reason is not None:
         notes.append(
@@ -153,7 +153,7 @@ def _proved_edits(workspace: Workspace, texts: Mapping[Path, str], name: Occurre
     return Renaming(file_edits, {old: changed for (_, old), changed in names.items()}, unchanged, tuple(notes))
 
 
-def _equal(
+def _extend_until_equal(
     workspace: Workspace,
     texts: Mapping[Path, str],
     proof: ExpansionProof,
@@ -173,7 +173,7 @@ def _equal(
     try:
         proof.check_equal(edits, renamed)
     except UnprovedError:
-        extended_edits = edits | _visible_elsewhere(workspace, texts, name, new)
+        extended_edits = edits | _edit_related_parameters(workspace, texts, name, new)
         if extended_edits == edits:
             raise
         try:
@@ -186,15 +186,15 @@ def _equal(
     return edits
 
 
-def _visible_elsewhere(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> set[Edit]:
-    """Return the edits of properties with the name of a parameter, and of forwarding parameters."""
+def _edit_related_parameters(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> set[Edit]:
+    """Return the edits of forwarding parameters and of properties with a parameter's name."""
     if name.kind not in (NameKind.PARAMETER, NameKind.PROPERTY):
         return set()
     edits: set[Edit] = set()
     for file in workspace.index.related_files(name.file, texts, computed=True):
         text = workspace.text(file, texts) or ""
         uses = [use for use in occurrences_in(text, file) if use.name == name.name]
-        forwarding = {use.owner for use in uses if use.is_definition and _FORWARD.match(text, use.end)}
+        forwarding = {use.owner for use in uses if use.is_definition and _FORWARDED_DEFAULT.match(text, use.end)}
         edits |= {
             Edit(file, use.start, use.end, new)
             for use in uses
@@ -203,7 +203,7 @@ def _visible_elsewhere(workspace: Workspace, texts: Mapping[Path, str], name: Oc
     return edits
 
 
-def _passed_arguments(
+def _edit_callers(
     workspace: Workspace, texts: Mapping[Path, str], proof: ExpansionProof, name: Occurrence, new: str
 ) -> set[Edit]:
     """Return the edits of the calls that pass an argument to the descriptions.
@@ -220,7 +220,9 @@ def _passed_arguments(
                 continue
             file = real_path(span.file)
             text = workspace.text(file, texts) or ""
-            call_edits = {Edit(file, *match.span(), new) for match in passed.finditer(text, *_call_range(text, span))}
+            call_edits = {
+                Edit(file, *match.span(), new) for match in passed.finditer(text, *_find_call_range(text, span))
+            }
             if not call_edits:
                 raise UnprovedError(
                     phrase("a caller passes the argument, but its name is not written in the call"), span
@@ -263,7 +265,7 @@ def _span(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence) -> 
     return SourceText(str(name.file), workspace.text(name.file, texts) or "").span(name.start, name.end)
 
 
-def _call_range(text: str, span: Span) -> tuple[int, int]:
+def _find_call_range(text: str, span: Span) -> tuple[int, int]:
     """Return the start and end of a call in its file.
 
     In Python, the end is the end of the last line of the expression.

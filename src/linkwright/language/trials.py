@@ -16,8 +16,8 @@ from pathlib import Path
 from linkwright.descriptions.argument_sets import compared_values
 from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, Span
 from linkwright.language.includes import real_path
+from linkwright.language.source_elements import find_innermost_element, source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import innermost_element, source_elements
 from linkwright.xacro import Expansion, expand
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Overlay, parse
@@ -26,12 +26,12 @@ from linkwright.xmltree.tokens import Kind, tokens
 Range = tuple[int, int]
 Gaps = Mapping[Path, tuple[Range, ...]]
 
-_UNDECLARED = "XAC211"
+_UNDECLARED_ARGUMENT_CODE = "XAC211"
 _PLACEHOLDERS = ("value", "1")
 """The values of an argument that only a caller sets."""
 _MAX_GAPS = 60
-_MAX_WITH_GAPS = 3
-_MAX_SWITCHED = 10
+_MAX_TRIALS_WITH_GAPS = 3
+_MAX_SWITCHED_TRIALS = 10
 _MAX_DURATION_S = 2.0
 """The time after which no further arguments are switched."""
 _OPPOSITES = {"true": "false", "false": "true", "True": "False", "False": "True", "0": "1", "1": "0"}
@@ -44,7 +44,7 @@ class Trial:
     Attributes:
         entry: the description.
         arguments: the values of its arguments.
-        expansion: the expansion.
+        expansion: the result.
         gaps: the ranges of elements that were left out because they cannot be expanded, by file.
         reason: the error of the first omitted element, or None.
     """
@@ -85,7 +85,7 @@ def blank_out(text: str, ranges: tuple[Range, ...]) -> str:
     return text
 
 
-def trials(
+def run_trials(
     workspace: Workspace, texts: Mapping[Path, str], entry: Path, *, is_partial: bool, is_switched: bool = True
 ) -> tuple[list[Trial], LinkwrightError | None]:
     """Return the expansions of a description, and the last error, or None.
@@ -108,7 +108,7 @@ def trials(
             distinct.setdefault((str(expansion), frozenset(arguments)), Trial(entry, arguments, expansion))
     expansions = [*distinct.values()]
     if is_partial and not expansions:
-        expansions += _with_gaps(workspace, texts, entry)
+        expansions += _generate_trials_with_gaps(workspace, texts, entry)
     if is_partial and is_switched and expansions:
         expansions += _generate_trials_with_other_values(
             workspace, texts, expansions[0], {str(trial.expansion) for trial in expansions}
@@ -116,19 +116,19 @@ def trials(
     return expansions, error
 
 
-def _with_gaps(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> Iterator[Trial]:
-    """Yield at most `_MAX_WITH_GAPS` expansions without the failing elements."""
+def _generate_trials_with_gaps(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> Iterator[Trial]:
+    """Yield at most `_MAX_TRIALS_WITH_GAPS` expansions without the failing elements."""
     count = 0
     for arguments in workspace.possible_arguments(entry):
-        trial = _trial_with_gaps(workspace, texts, entry, arguments)
+        trial = _run_trial_with_gaps(workspace, texts, entry, arguments)
         if trial is not None:
             yield trial
             count += 1
-        if count == _MAX_WITH_GAPS:
+        if count == _MAX_TRIALS_WITH_GAPS:
             return
 
 
-def _trial_with_gaps(
+def _run_trial_with_gaps(
     workspace: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
 ) -> Trial | None:
     """Return an expansion without the failing elements, or None if the description has none."""
@@ -142,7 +142,7 @@ def _trial_with_gaps(
             return None
         except LinkwrightError as raised:
             error = raised
-        undeclared = [diagnostic for diagnostic in error.diagnostics if diagnostic.code == _UNDECLARED]
+        undeclared = [diagnostic for diagnostic in error.diagnostics if diagnostic.code == _UNDECLARED_ARGUMENT_CODE]
         names = [str(name) for finding in undeclared if (name := finding.message.arguments.get("name"))]
         added = {name: _PLACEHOLDERS[0] for name in names if name not in values}
         if added:
@@ -153,7 +153,7 @@ def _trial_with_gaps(
         if not gaps and numbers and not first.code.startswith(("PKG", "XML")):
             values |= numbers
             continue
-        element_range = None if first.span is None else _element_around(workspace, texts, first.span, gaps)
+        element_range = None if first.span is None else _find_element_around(workspace, texts, first.span, gaps)
         if element_range is None:
             return None
         reason = reason or first.message
@@ -161,7 +161,7 @@ def _trial_with_gaps(
     return None
 
 
-def _element_around(
+def _find_element_around(
     workspace: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps
 ) -> tuple[Path, Range] | None:
     """Return the file and range of the element at a location, or None for the root."""
@@ -170,7 +170,7 @@ def _element_around(
     if text is None:
         return None
     offset = SourceText(span.file, text).offset(span.line, span.column)
-    element = innermost_element(source_elements(text), offset)
+    element = find_innermost_element(source_elements(text), offset)
     if element is None or element.parent is None or element.end < 0:
         return None
     element_range = element.start, element.end
@@ -216,4 +216,4 @@ def _list_other_values(workspace: Workspace, texts: Mapping[Path, str], entry: P
             continue
     for compared in compared_values(documents):
         values.update(dict.fromkeys(compared.values.items()))
-    return [*values][:_MAX_SWITCHED]
+    return [*values][:_MAX_SWITCHED_TRIALS]

@@ -14,7 +14,7 @@ from linkwright.xacro.session import Inputs
 from linkwright.xmltree import Overlay
 
 
-def valid_parts(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> Expansion | None:
+def expand_valid_parts(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> Expansion | None:
     """Expand a description with default arguments, or only its valid parts if it has errors.
 
     Returns None if nothing can be expanded.

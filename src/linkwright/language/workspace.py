@@ -9,7 +9,7 @@ from typing import NamedTuple
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span
 from linkwright.language.definitions import NameDefinition, definitions_in
 from linkwright.language.includes import IncludeIndex, real_path
-from linkwright.language.mentions import FILES as MENTIONING_FILES
+from linkwright.language.mentions import FILE_SUFFIXES as MENTIONING_FILES
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.finding import Finding, without_element
@@ -51,7 +51,7 @@ class _Result(NamedTuple):
     text_hashes: Mapping[Path, int]
 
 
-_NOTHING = _Result((), {})
+_NO_RESULT = _Result((), {})
 
 
 def hash_texts(texts: Mapping[Path, str]) -> dict[Path, int]:
@@ -69,7 +69,7 @@ class Workspace:
         folders: the folders of the workspace.
 
     Attributes:
-        folders: the folders.
+        folders: the folders, with symbolic links resolved.
         index: the descriptions in the folders.
         cached_results: results about files until a file changes, each with the hashes of the open texts.
     """
@@ -151,7 +151,7 @@ class Workspace:
         """Return the names defined in a file, and in the descriptions that include it.
 
         Args:
-            file: the file.
+            file: the file of the request.
             texts: the texts of the open files.
         """
         return [name for other in self.index.related_files(file, texts) for name in self._names_in(other, texts)]
@@ -229,7 +229,7 @@ class Workspace:
         descriptions = self.index.entries(file, texts) if is_description else []
         subjects = [*descriptions, *([] if package is None else [real_path(package[1])])]
         if subjects and file not in subjects:
-            self._results.pop(file, None)  # findings about the file alone, before it had subjects
+            self._results.pop(file, None)  # These are findings about the file alone, from before it had subjects.
         return subjects
 
     def check(
@@ -257,7 +257,7 @@ class Workspace:
             texts: the texts of the open files that were checked.
             changed: files that are included in the result even if there is no finding about them.
         """
-        old_findings = self._results.pop(subject, _NOTHING).findings
+        old_findings = self._results.pop(subject, _NO_RESULT).findings
         if findings:
             self._results[subject] = _Result(findings, hash_texts(texts))
         return self._findings_by_file(
@@ -273,7 +273,7 @@ class Workspace:
         """Return the findings about a file with a fix that applies to the current texts.
 
         Args:
-            file: the file.
+            file: the file of the request.
             texts: the texts of the open files.
         """
         unique_findings = UniqueFindings()
@@ -290,7 +290,7 @@ class Workspace:
         """Return the findings with a location in a file, if its text has not changed since.
 
         Args:
-            file: the file.
+            file: the file of the request.
             texts: the texts of the open files.
         """
         unique_findings = UniqueFindings()

@@ -25,12 +25,12 @@ from linkwright.language.definitions import NameDefinition
 from linkwright.language.format import Document, Format
 from linkwright.language.formats import format_of
 from linkwright.language.includes import real_path
-from linkwright.language.values import EvaluatedText, values_in
+from linkwright.language.values import EvaluatedText, evaluate_file
 from linkwright.language.workspace import MAX_CHARACTERS, Workspace
 from linkwright.lint.targets import XML_FILES
+from linkwright.lsp.client_features import show_progress
 from linkwright.lsp.findings import as_diagnostics
-from linkwright.lsp.folders import show_progress
-from linkwright.lsp.large_files import findings_of_process
+from linkwright.lsp.large_files import check_in_process
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
 from linkwright.lsp.robot_views import RobotViews
@@ -41,11 +41,11 @@ from linkwright.xmltree.reader import read_bytes
 T = TypeVar("T")
 
 _log = logging.getLogger(__name__)
-_MAX_TEXTS = 200
+_MAX_SAVED_TEXTS = 200
 """The maximum number of saved texts that are stored, for the positions of findings."""
 _CACHE_DIVISOR = 8
 _CHECKS_PER_COLLECTION = 50
-_PAUSE_S = 0.3
+_LARGE_FILE_DELAY_S = 0.3
 """The time without a change of a large file after which a process checks the file."""
 _IDLE_S = 1.0
 """The time without a change after which the server collects garbage."""
@@ -108,7 +108,7 @@ class LinkwrightServer(LanguageServer):
 
     def file_opened(self, uri: str) -> None:
         """Store the URI of an opened file, schedule its check, and prepare its format."""
-        path = path_of(uri)
+        path = path_from_uri(uri)
         if path is not None:
             self._uris[real_path(path)] = uri
             self.file_changed(uri)
@@ -122,8 +122,11 @@ class LinkwrightServer(LanguageServer):
                 self.window_show_message(types.ShowMessageParams(types.MessageType.Info, localized(notice)))
 
     def file_changed(self, uri: str) -> None:
-        """Schedule checks of a file and of the descriptions that include it, and update robot pages."""
-        path = path_of(uri)
+        """Schedule checks of a file and of the descriptions that include it.
+
+        The robot pages receive the new text.
+        """
+        path = path_from_uri(uri)
         if path is not None:
             self._changed[real_path(path)] = None
             self._has_changes.set()
@@ -131,7 +134,7 @@ class LinkwrightServer(LanguageServer):
 
     def file_saved(self, uri: str) -> None:
         """Update the workspace after a file on the disk has changed."""
-        path = path_of(uri)
+        path = path_from_uri(uri)
         if path is not None and self.project is not None:
             self.project.file_saved(real_path(path))
             self._values.clear()
@@ -142,20 +145,20 @@ class LinkwrightServer(LanguageServer):
 
         For other documents, the path is empty and the text is None.
         """
-        path = path_of(document.uri)
+        path = path_from_uri(document.uri)
         if path is None or not path.name.endswith((*XML_FILES, ".xml")):
             return Path(), None
-        return path, self._usual_positions(path)
+        return path, self._positions_unless_large(path)
 
     def supported_text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
         """Return the path and the text of a document in a supported format.
 
         The text is None if it is large or unreadable. For other documents, the path is empty and the text is None.
         """
-        path = path_of(document.uri)
+        path = path_from_uri(document.uri)
         if path is None or (format_of(path) is None and not path.name.endswith((*XML_FILES, ".xml"))):
             return Path(), None
-        return path, self._usual_positions(path)
+        return path, self._positions_unless_large(path)
 
     async def when_prepared(self, path: Path) -> None:
         """Wait for the index, and for the imports that the format of a file needs."""
@@ -184,11 +187,11 @@ class LinkwrightServer(LanguageServer):
 
         The result is None if the file has no format of its own, or is too large or unreadable.
         """
-        path = path_of(document.uri)
+        path = path_from_uri(document.uri)
         format_ = None if path is None else format_of(path)
         if path is None or format_ is None or self.project is None:
             return None
-        positions = self._usual_positions(path)
+        positions = self._positions_unless_large(path)
         if positions is None:
             return None
         return FormatContext(format_, Document(self.project, self.texts(), real_path(path), positions.text), positions)
@@ -208,7 +211,7 @@ class LinkwrightServer(LanguageServer):
         await self.when_indexed()
         cached = self._values.get(file)
         if cached is None or cached[0] != texts:
-            cached = texts, await self.run_in_check_thread(partial(values_in, workspace, texts, file))
+            cached = texts, await self.run_in_check_thread(partial(evaluate_file, workspace, texts, file))
             self._values = {file: cached}
         return cached[1]
 
@@ -260,13 +263,13 @@ class LinkwrightServer(LanguageServer):
             if cached is None or cached[0] != changed_ns:
                 cached = changed_ns, TextPositions(decode(read_bytes(file), str(file)), encoding)
                 self._saved_texts[file] = cached
-                if len(self._saved_texts) > _MAX_TEXTS:
+                if len(self._saved_texts) > _MAX_SAVED_TEXTS:
                     del self._saved_texts[next(iter(self._saved_texts))]
         except (OSError, LinkwrightError):
             return None
         return cached[1]
 
-    def _usual_positions(self, path: Path) -> TextPositions | None:
+    def _positions_unless_large(self, path: Path) -> TextPositions | None:
         """Return the positions of a file's text, or None if it is large or unreadable."""
         positions = self.positions(path)
         return None if positions is None or len(positions.text) > MAX_CHARACTERS else positions
@@ -345,8 +348,8 @@ class LinkwrightServer(LanguageServer):
         self, workspace: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]
     ) -> None:
         """Check one subject in a separate process, and publish its findings."""
-        await asyncio.sleep(_PAUSE_S)
-        findings = await findings_of_process(workspace.folders, subject, texts)
+        await asyncio.sleep(_LARGE_FILE_DELAY_S)
+        findings = await check_in_process(workspace.folders, subject, texts)
         if self._large_checks.get(subject) is asyncio.current_task():
             del self._large_checks[subject]
         if findings is None:
@@ -378,7 +381,7 @@ class LinkwrightServer(LanguageServer):
             )
 
     async def _attempt(self, work: Callable[[], T], path: Path) -> T | None:
-        """Return the result of work in the check thread, or log an unexpected error and return None."""
+        """Return the result of work in the check thread, or log an error and return None."""
         try:
             return await self.run_in_check_thread(work)
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
@@ -396,7 +399,7 @@ class LinkwrightServer(LanguageServer):
         return await asyncio.get_running_loop().run_in_executor(self._check_thread, work)
 
 
-def path_of(uri: str) -> Path | None:
+def path_from_uri(uri: str) -> Path | None:
     """Return the path of a file's URI, or None for other URIs."""
     parts = urlsplit(uri)
     return Path(url2pathname(unquote(parts.path))) if parts.scheme == "file" else None

@@ -10,7 +10,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from linkwright.diagnostics import phrase
-from linkwright.lsp.folders import WATCHED_FILES, show_progress
+from linkwright.lsp.client_features import WATCHED_FILES, show_progress
 from tests.lsp.conftest import MAIN, MANIFEST, PARTS, connected
 from tests.waiting import SECONDS
 
