@@ -17,7 +17,7 @@ from pathlib import Path
 from babel.messages.pofile import read_po
 
 from linkwright.diagnostics.phrase import RULES
-from linkwright.lint.explain import PAGES, Page, room_pages, rule_page
+from linkwright.lint.explain import PAGES, Page, make_rule_page, read_room_pages
 from linkwright.lint.registry import all_rules
 from linkwright.lint.rule import Rule
 
@@ -79,7 +79,7 @@ def chinese_titles() -> dict[str, str]:
     """Return the Chinese titles of rules, by code."""
     with CATALOG.open("rb") as file:
         catalog = read_po(file)
-    titles = {rule.code: catalog.get(rule_page(rule).title, RULES) for rule in all_rules()}
+    titles = {rule.code: catalog.get(make_rule_page(rule).title, RULES) for rule in all_rules()}
     return {code: str(message.string) for code, message in titles.items() if message is not None}
 
 
@@ -91,7 +91,7 @@ def _index() -> str:
     parts = [INDEX]
     for start, (name, heading, _) in GROUPS.items():
         rows = [
-            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} | {_escaped(rule_page(rule).title)} "
+            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} | {_escaped(make_rule_page(rule).title)} "
             f"| {rule.severity.value} | {'' if rule.default else 'off'} |"
             for rule in _rules(start)
         ]
@@ -123,7 +123,7 @@ def _chinese_index() -> str:
 def _group(heading: str, rules: list[Rule]) -> str:
     parts = [f"# {heading}\n\n{_MARK}\n"]
     for rule in rules:
-        page = rule_page(rule)
+        page = make_rule_page(rule)
         parts.append(
             f"## {rule.code}: {rule.name} {{#{rule.code.lower()}}}\n\n{page.title}.\n\n{_demoted(page.text)}\n"
         )
@@ -141,7 +141,7 @@ def _others() -> str:
 
 def _sections(file: Path) -> Iterator[str]:
     text = file.read_text(encoding="utf-8")
-    for page in room_pages().values():
+    for page in read_room_pages().values():
         if f"\n## {page.code}: " in text:
             yield _other(page)
 

@@ -16,7 +16,7 @@ from linkwright.language.simulator_plugins import simulator_plugins
 from linkwright.language.workspace import Workspace
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
-from linkwright.lint.extension_names import CHILDREN
+from linkwright.lint.extension_names import CHILD_TAGS
 from linkwright.loading.extensions import extensions
 from linkwright.simulation.plugins.registry import PLUGINS
 from linkwright.xacro.expressions.builtin_names import global_names
@@ -113,7 +113,7 @@ def test_expression_completion_offers_parameters_then_properties(offered):
 
 def test_expression_completion_offers_xacro_functions(offered):
     assert offered("<!-- here -->", '<origin xyz="${xacro.lo|}"/>') == ["xacro.load_yaml"]
-    names = global_names(Inputs("a.xacro", {}).session())
+    names = global_names(Inputs("a.xacro", {}).create_session())
     assert {*FUNCTIONS} <= {*names}
     assert {name.removeprefix("xacro.") for name in XACRO_FUNCTIONS} == {*names["xacro"].values}
 
@@ -247,7 +247,7 @@ def test_hover_shows_angle_in_degrees(explained):
 
 
 def test_completion_tables_cover_rules():
-    for path, tags in CHILDREN.items():
+    for path, tags in CHILD_TAGS.items():
         rule = DESCRIPTION
         for tag in path.split("/"):
             rule = rule.child_rules.get(tag) or rule

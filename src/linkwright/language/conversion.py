@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError, display_path, phrase
 from linkwright.language.proof import UnprovedError
 from linkwright.language.source_elements import source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.lint.rules.xacro_tags import ADDRESS
+from linkwright.lint.rules.xacro_tags import NAMESPACE_URI
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro import expand
 from linkwright.xmltree import Element, Overlay, parse
@@ -59,7 +59,7 @@ def convert_to_xacro(workspace: Workspace, texts: Mapping[Path, str], file: Path
     insertion_offset = root.tag.name_start + len(root.name)
     name = next((attribute for attribute in root.tag.attributes() if attribute.name == "name"), None)
     insertion_offset = insertion_offset if name is None else name.end
-    xacro_text = f'{_escape(text[:insertion_offset])} xmlns:xacro="{ADDRESS}"{_escape(text[insertion_offset:])}'
+    xacro_text = f'{_escape(text[:insertion_offset])} xmlns:xacro="{NAMESPACE_URI}"{_escape(text[insertion_offset:])}'
     try:
         overlay = Overlay({str(new): xacro_text})
         expansion = str(expand(new, {}, packages=workspace.finder(file), overlay=overlay))

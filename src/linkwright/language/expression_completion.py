@@ -13,11 +13,11 @@ from linkwright.language.cursor import Cursor
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document
 from linkwright.language.loaded_yaml import find_yaml_value
-from linkwright.xacro.expressions.builtin_names import BARE, MATHEMATICS
+from linkwright.xacro.expressions.builtin_names import BARE_NAMES, MATHEMATICS
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 
-FUNCTIONS = tuple(sorted({*MATHEMATICS, *BARE}))
+FUNCTIONS = tuple(sorted({*MATHEMATICS, *BARE_NAMES}))
 """The names of the functions and constants in expressions (ros/xacro 2.1)."""
 XACRO_FUNCTIONS = {
     "xacro.load_yaml": "the content of a YAML file",

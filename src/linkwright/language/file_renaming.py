@@ -16,7 +16,7 @@ from linkwright.language.mentions import Mention
 from linkwright.language.proof import Edit
 from linkwright.language.values import evaluate_file
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import XML_FILES
+from linkwright.lint.targets import XML_SUFFIXES
 from linkwright.packages.share_layout import source_of
 
 _OTHER_FILES = (".py", ".yaml", ".yml", ".rviz", "CMakeLists.txt")
@@ -52,7 +52,7 @@ def rename_file(workspace: Workspace, texts: Mapping[Path, str], old: Path, new:
     """
     edits: list[Edit] = []
     unchanged: list[Mention] = []
-    for file in dict.fromkeys((*workspace.index.files, *workspace.files((*XML_FILES, ".xml", *_OTHER_FILES)))):
+    for file in dict.fromkeys((*workspace.index.files, *workspace.files((*XML_SUFFIXES, ".xml", *_OTHER_FILES)))):
         text = workspace.text(file, texts)
         if text is None or len(text) > _MAX_TEXT_LENGTH or old.name not in text or not workspace.contains(file):
             continue
@@ -88,7 +88,7 @@ def _format_references(
     format_ = format_of(file)
     if format_ is not None:
         yield from format_.links(Document(workspace, texts, file, text))
-    if file.name.endswith((*XML_FILES, ".xml")):
+    if file.name.endswith((*XML_SUFFIXES, ".xml")):
         try:
             values = evaluate_file(workspace, texts, file)
         except LinkwrightError:

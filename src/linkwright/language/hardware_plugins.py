@@ -9,7 +9,7 @@ from pathlib import Path
 
 from linkwright.language.format import Document, Target
 from linkwright.language.plugin_classes import PluginClass, plugin_classes
-from linkwright.lint.targets import walk
+from linkwright.lint.targets import find_files_and_packages
 from linkwright.loading.extensions import extensions
 from linkwright.xmltree.tokens import Kind, tokens
 
@@ -97,7 +97,7 @@ def hardware_parameters(document: Document, name: str, excluded_offset: int = -1
 
 
 def _find_parameters_in_sources(folder: Path, document: Document) -> Iterator[HardwareParameter]:
-    for file in walk(folder, _SOURCE_SUFFIXES)[0][:_MAX_FILES]:
+    for file in find_files_and_packages(folder, _SOURCE_SUFFIXES)[0][:_MAX_FILES]:
         text = document.other(file)
         for use in _PARAMETER_ACCESS.finditer(text) if len(text) <= _MAX_TEXT_LENGTH else ():
             yield HardwareParameter(use[1], f"`{file.name}`", Target(file, *use.span(1)))

@@ -16,7 +16,7 @@ from linkwright.language.renaming import find_references, occurrence_at
 from linkwright.language.source_elements import SourceElement, find_innermost_element, source_elements
 from linkwright.language.workspace import Workspace
 from linkwright.loading.deferred import lazy_pattern
-from linkwright.xacro.expressions.scope import literal
+from linkwright.xacro.expressions.scope import parse_literal
 from linkwright.xmltree.patches import whole_lines
 from linkwright.xmltree.tokens import Kind, tokens
 
@@ -191,7 +191,7 @@ def _to_expression(value: str, quote: str) -> str | None:
         return parts[0].source.strip()
     if not _LITERAL.fullmatch(value):
         return None
-    python = literal(decode_entities(value))
+    python = parse_literal(decode_entities(value))
     if isinstance(python, bool):
         return str(python)
     if isinstance(python, (int, float)):

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from linkwright.language.format import Target
 from linkwright.launch.ros.executables import builtin_packages, hosted_executables
-from linkwright.lint.targets import walk
+from linkwright.lint.targets import find_files_and_packages
 from linkwright.nodes import COMPONENTS
 from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
 from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
@@ -65,7 +65,7 @@ class Program:
 
 def find_used_packages(folder: Path) -> list[str]:
     """Return the packages that the files of a package use, the most used first."""
-    files, _ = walk(folder, _FILES_WITH_PACKAGES)
+    files, _ = find_files_and_packages(folder, _FILES_WITH_PACKAGES)
     use_counts: Counter[str] = Counter()
     for file in files[:_MAX_FILES]:
         try:

@@ -16,7 +16,7 @@ from linkwright.diagnostics import LinkwrightError, Phrase, Span, display_path, 
 from linkwright.language.includes import real_path
 from linkwright.language.trials import Trial, blank_out, expand_with_gaps, run_trials
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro import Expansion
 from linkwright.xmltree import Element
@@ -142,7 +142,7 @@ class ExpansionProof:
         for file in sorted({edit.file for edit in edits}):
             if not self._project.contains(file):
                 raise UnprovedError(phrase("'{file}' is outside the workspace", file=display_path(str(file))))
-            if file.name.endswith(DESCRIPTIONS):
+            if file.name.endswith(DESCRIPTION_SUFFIXES):
                 self._add_entries(file)
         if not self.trials:
             reason = self._error.diagnostics[0].message if self._error else phrase("no description includes the file")

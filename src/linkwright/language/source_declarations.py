@@ -14,7 +14,7 @@ from weakref import WeakKeyDictionary
 from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import walk
+from linkwright.lint.targets import find_files_and_packages
 
 _SOURCE_SUFFIXES = (".py", ".cpp", ".hpp", ".cc", ".cxx", ".h")
 _MAX_FILES = 3000
@@ -159,9 +159,11 @@ def _list_known_sources(document: Document) -> dict[Path, _Source]:
 
 def _read_sources(workspace: Workspace, texts: Mapping[Path, str], cached: _Sources | None) -> _Sources:
     """Read the sources that have changed since they were read before."""
-    files = [real_path(file) for folder in workspace.index.packages for file in walk(folder, _SOURCE_SUFFIXES)[0]][
-        :_MAX_FILES
-    ]
+    files = [
+        real_path(file)
+        for folder in workspace.index.packages
+        for file in find_files_and_packages(folder, _SOURCE_SUFFIXES)[0]
+    ][:_MAX_FILES]
     cache = {} if cached is None else cached.cache
     sources: dict[Path, _Source] = {}
     for file in files:

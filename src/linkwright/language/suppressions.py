@@ -12,8 +12,8 @@ import yaml
 from linkwright.diagnostics import SourceText
 from linkwright.language.proof import Edit, apply_edits
 from linkwright.language.source_elements import find_innermost_element, source_elements
-from linkwright.lint.suppression import directives
-from linkwright.lint.targets import XML_FILES
+from linkwright.lint.suppression import find_directives
+from linkwright.lint.targets import XML_SUFFIXES
 from linkwright.packages.readers.cmake_syntax import statements
 from linkwright.xmltree.patches import line_ending
 from linkwright.xmltree.tokens import Kind, tokens
@@ -40,7 +40,7 @@ def make_suppression(text: str, file: Path, code: str, offset: int) -> Edit | No
     """
     if file.name.endswith(_WITHOUT_SUPPRESSION) or not 0 <= offset <= len(text) <= _MAX_TEXT_LENGTH:
         return None
-    is_xml = file.name.endswith((*XML_FILES, ".xml"))
+    is_xml = file.name.endswith((*XML_SUFFIXES, ".xml"))
     if is_xml != text.lstrip("\ufeff \t\r\n").startswith("<"):
         return None
     if is_xml:
@@ -56,7 +56,7 @@ def find_code_at(text: str, offset: int) -> tuple[str, int] | None:
     """Return the code in a suppression comment at an offset and its start, or None."""
     if "linkwright:" not in text:
         return None
-    for directive in directives(SourceText("", text)):
+    for directive in find_directives(SourceText("", text)):
         if directive.start <= offset <= directive.end:
             for selector, start in directive.selectors:
                 if start <= offset <= start + len(selector):
@@ -112,7 +112,7 @@ def _find_line_end(text: str, offset: int) -> int:
 def _suppresses(text: str, edit: Edit, code: str, offset: int) -> bool:
     moved_offset = offset + (len(edit.text) if edit.start <= offset else 0)
     new_text = apply_edits(text, [edit])
-    return any(directive.suppresses(code, moved_offset) for directive in directives(SourceText("", new_text)))
+    return any(directive.suppresses(code, moved_offset) for directive in find_directives(SourceText("", new_text)))
 
 
 def _is_harmless(text: str, edit: Edit) -> bool:

@@ -10,7 +10,7 @@ from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xacro.session import Inputs
-from linkwright.xacro.tracing.values import Evaluation, evaluated_expressions
+from linkwright.xacro.tracing.values import Evaluation, evaluate_expressions
 from linkwright.xmltree import Overlay
 
 _MAX_EXPANSIONS = 12
@@ -59,7 +59,7 @@ def evaluate_file(workspace: Workspace, texts: Mapping[Path, str], file: Path) -
     )
     for _, (entry, values) in zip(range(_MAX_EXPANSIONS), calls, strict=False):
         inputs = Inputs(str(entry), values, workspace.finder(entry), overlay=overlay)
-        for expression in evaluated_expressions(inputs):
+        for expression in evaluate_expressions(inputs):
             if real_path(expression.file) == file:
                 key = expression.start, expression.end
                 text = evaluated_texts.setdefault(key, EvaluatedText(*key))

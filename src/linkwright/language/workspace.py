@@ -13,8 +13,8 @@ from linkwright.language.mentions import FILE_SUFFIXES as MENTIONING_FILES
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.finding import Finding, without_element
-from linkwright.lint.folders import Examined, relevant_findings, relevant_package_findings
-from linkwright.lint.targets import DESCRIPTIONS, XML_FILES, Targets, walk
+from linkwright.lint.folders import Examined, select_relevant_findings, select_relevant_package_findings
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES, XML_SUFFIXES, Targets, find_files_and_packages
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.urdf import Robot, read
@@ -131,12 +131,12 @@ class Workspace:
 
     def configurations_below(self, folder: Path) -> list[Path]:
         """Return the files below a folder that may mention links and joints."""
-        paths, _ = walk(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
+        paths, _ = find_files_and_packages(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
         return [real_path(path) for path in paths]
 
     def files(self, suffixes: tuple[str, ...]) -> list[Path]:
         """Return the files of the workspace with some suffixes, inside packages or not."""
-        paths = (path for folder in self.folders for path in walk(folder, suffixes)[0])
+        paths = (path for folder in self.folders for path in find_files_and_packages(folder, suffixes)[0])
         return [*dict.fromkeys(map(real_path, paths))]
 
     def package_neighbors(self, file: Path, known_files: Container[Path]) -> list[Path]:
@@ -164,7 +164,9 @@ class Workspace:
             texts: the texts of the open files. The result is cached until the text of a description changes.
         """
         texts = {
-            file: text for file, text in texts.items() if file.name.endswith(DESCRIPTIONS) and file in self.index.files
+            file: text
+            for file, text in texts.items()
+            if file.name.endswith(DESCRIPTION_SUFFIXES) and file in self.index.files
         }
         text_hashes = hash_texts(texts)
         cached = self._robots.pop(entry, None)
@@ -214,7 +216,7 @@ class Workspace:
             file: the changed file.
             texts: the texts of the open files.
         """
-        is_description = file.name.endswith(DESCRIPTIONS)
+        is_description = file.name.endswith(DESCRIPTION_SUFFIXES)
         if (is_description and file not in texts and file.exists() != (file in self.index.files)) or (
             file.name == MANIFEST and file.exists() != (file.parent in self.index.packages)
         ):
@@ -320,18 +322,18 @@ class Workspace:
         overlay = Overlay({str(path): text for path, text in texts.items()})
         if subject.is_dir():
             diagnostics, problems = self._checker.check_package(subject, overlay, Contexts())
-            return (*problems, *relevant_package_findings(diagnostics, [subject]))
+            return (*problems, *select_relevant_package_findings(diagnostics, [subject]))
         if not self._is_xml(subject, texts):
             return ()
         open_subjects = frozenset({subject}) if subject in texts else frozenset()
         targets = Targets((subject,), self.index.packages, open_subjects)
         checked_file, problems = self._checker.check_file(subject, targets, overlay, Contexts())
         examined = Examined.of(checked_file, subject)
-        return (*problems, *relevant_findings(examined, [examined], targets, [subject]))
+        return (*problems, *select_relevant_findings(examined, [examined], targets, [subject]))
 
     def _is_xml(self, file: Path, texts: Mapping[Path, str]) -> bool:
         """Return whether a file is XML by its name, or else by its text."""
-        return file.name.endswith((*XML_FILES, ".xml")) or (self.text(file, texts) or "").lstrip().startswith("<")
+        return file.name.endswith((*XML_SUFFIXES, ".xml")) or (self.text(file, texts) or "").lstrip().startswith("<")
 
     def _findings_by_file(self, files: set[Path]) -> dict[Path, list[Diagnostic]]:
         """Return the findings about some files, of all subjects, without duplicates."""

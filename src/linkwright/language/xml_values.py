@@ -30,7 +30,7 @@ from linkwright.language.occurrences import kinds_of_reference, kinds_of_text
 from linkwright.language.outline import Outline, OutlineElement
 from linkwright.language.robot_names import part_names
 from linkwright.language.simulator_plugins import find_plugin, simulator_plugins
-from linkwright.lint.extension_names import INTERFACES
+from linkwright.lint.extension_names import INTERFACE_NAMES
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.values import TRUTH
 from linkwright.urdf.values import JOINT_TYPE, JOINT_TYPES
@@ -203,7 +203,7 @@ def _offer_interfaces(document: Document, cursor: Cursor, start: int) -> Iterato
         _attribute_value(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start
     }
     is_joint = len(cursor.tags) < 2 or cursor.tags[-2] == "joint"
-    likely = INTERFACES if is_joint else (*_find_names_in_text(document.text, tag), *INTERFACES)
+    likely = INTERFACE_NAMES if is_joint else (*_find_names_in_text(document.text, tag), *INTERFACE_NAMES)
     yield from _offer_values((name for name in dict.fromkeys(likely) if name not in present_names), start)
 
 

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 
 from pygls.workspace import TextDocument
 
-from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES
 
 _ADDRESS = re.compile(rb"https?://\S+")
 _LOADED_FILE_SUFFIXES = (".yaml", ".yml")
@@ -170,6 +170,6 @@ def _texts(documents: Mapping[Path, TextDocument | None]) -> dict[str, Any]:
         "texts": {
             str(file): None if document is None else {"number": document.version or 0, "text": document.source}
             for file, document in documents.items()
-            if file.name.endswith((*DESCRIPTIONS, *_LOADED_FILE_SUFFIXES))
+            if file.name.endswith((*DESCRIPTION_SUFFIXES, *_LOADED_FILE_SUFFIXES))
         }
     }

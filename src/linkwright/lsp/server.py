@@ -27,7 +27,7 @@ from linkwright.language.formats import format_of
 from linkwright.language.includes import real_path
 from linkwright.language.values import EvaluatedText, evaluate_file
 from linkwright.language.workspace import MAX_CHARACTERS, Workspace
-from linkwright.lint.targets import XML_FILES
+from linkwright.lint.targets import XML_SUFFIXES
 from linkwright.lsp.client_features import show_progress
 from linkwright.lsp.findings import as_diagnostics
 from linkwright.lsp.large_files import check_in_process
@@ -146,7 +146,7 @@ class LinkwrightServer(LanguageServer):
         For other documents, the path is empty and the text is None.
         """
         path = path_from_uri(document.uri)
-        if path is None or not path.name.endswith((*XML_FILES, ".xml")):
+        if path is None or not path.name.endswith((*XML_SUFFIXES, ".xml")):
             return Path(), None
         return path, self._positions_unless_large(path)
 
@@ -156,7 +156,7 @@ class LinkwrightServer(LanguageServer):
         The text is None if it is large or unreadable. For other documents, the path is empty and the text is None.
         """
         path = path_from_uri(document.uri)
-        if path is None or (format_of(path) is None and not path.name.endswith((*XML_FILES, ".xml"))):
+        if path is None or (format_of(path) is None and not path.name.endswith((*XML_SUFFIXES, ".xml"))):
             return Path(), None
         return path, self._positions_unless_large(path)
 

@@ -19,7 +19,7 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.expanded import ExpandedText, expand_to_text
 from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.server import LinkwrightServer, path_from_uri
 
@@ -28,7 +28,7 @@ SCHEME = "linkwright-expansion"
 
 def is_expandable(file: Path) -> bool:
     """Return whether a file has the suffix of a description, which can be expanded."""
-    return file.name.endswith(DESCRIPTIONS)
+    return file.name.endswith(DESCRIPTION_SUFFIXES)
 
 
 def expansion_uri(entry: Path, arguments: Mapping[str, str]) -> str:

@@ -13,7 +13,7 @@ from pygls.exceptions import JsonRpcException
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.includes import real_path
-from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES
 from linkwright.lsp.edits import make_replacement, to_workspace_edit
 from linkwright.lsp.server import LinkwrightServer, path_from_uri
 
@@ -67,7 +67,7 @@ async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
         JsonRpcException: RequestFailed, the file is not a description, or its page cannot be served.
     """
     path, workspace, texts = path_from_uri(uri), server.project, server.texts()
-    if path is None or workspace is None or not path.name.endswith(DESCRIPTIONS):
+    if path is None or workspace is None or not path.name.endswith(DESCRIPTION_SUFFIXES):
         raise _request_failed_error(localized(phrase("only the robots of URDF, xacro and SDF files can be shown")))
     await server.when_indexed()
     entry = (await server.run_in_check_thread(lambda: workspace.index.entries(real_path(path), texts)))[0]

@@ -10,7 +10,7 @@ from lsprotocol import types
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.format import Symbol
 from linkwright.language.outline import Outline, OutlineElement
-from linkwright.lint.configuration import settings_for
+from linkwright.lint.configuration import find_settings
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.server import LinkwrightServer
 from linkwright.xmltree.formatting import changes, format_text
@@ -46,7 +46,7 @@ def format_edits(
     """
     text = positions.text
     try:
-        formatted = format_text(text, str(path), settings_for(path)[0].style)
+        formatted = format_text(text, str(path), find_settings(path)[0].style)
     except LinkwrightError:
         return None
     starts = [0]
