@@ -79,7 +79,7 @@ def clear_caches() -> None:
     ):
         values.clear()
     macros.parse_parameters.cache_clear()
-    scope.number_or_boolean.cache_clear()
+    scope.parse_number_or_boolean.cache_clear()
     gc.collect()
 
 

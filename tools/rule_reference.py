@@ -19,7 +19,7 @@ from pathlib import Path
 from babel.messages.pofile import read_po
 
 from linkwright.diagnostics.phrase import RULES
-from linkwright.lint.explain import PAGES, Page, room_pages, rule_page
+from linkwright.lint.explain import PAGES, Page, make_rule_page, read_room_pages
 from linkwright.lint.registry import all_rules
 from linkwright.lint.rule import Rule
 
@@ -81,7 +81,7 @@ def read_chinese_titles() -> dict[str, str]:
     """Return the Chinese titles of rules, by code."""
     with CATALOG.open("rb") as file:
         catalog = read_po(file)
-    titles = {rule.code: catalog.get(rule_page(rule).title, RULES) for rule in all_rules()}
+    titles = {rule.code: catalog.get(make_rule_page(rule).title, RULES) for rule in all_rules()}
     return {code: str(message.string) for code, message in titles.items() if message is not None}
 
 
@@ -93,7 +93,7 @@ def _format_index() -> str:
     parts = [INDEX]
     for start, (name, heading, _) in GROUPS.items():
         rows = [
-            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} | {_escape(rule_page(rule).title)} "
+            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} | {_escape(make_rule_page(rule).title)} "
             f"| {rule.severity.value} | {'' if rule.default else 'off'} |"
             for rule in _list_rules(start)
         ]
@@ -125,7 +125,7 @@ def _format_chinese_index() -> str:
 def _format_group(heading: str, rules: list[Rule]) -> str:
     parts = [f"# {heading}\n\n{_MARK}\n"]
     for rule in rules:
-        page = rule_page(rule)
+        page = make_rule_page(rule)
         parts.append(
             f"## {rule.code}: {rule.name} {{#{rule.code.lower()}}}\n\n{page.title}.\n\n{_demote_headings(page.text)}\n"
         )
@@ -143,7 +143,7 @@ def _format_others() -> str:
 
 def _iterate_sections(file: Path) -> Iterator[str]:
     text = file.read_text(encoding="utf-8")
-    for page in room_pages().values():
+    for page in read_room_pages().values():
         if f"\n## {page.code}: " in text:
             yield _format_other(page)
 

@@ -126,8 +126,8 @@ def test_changed_outside_repository_suggests_baseline(tmp_path, monkeypatch, cap
 
 def test_finding_with_fewer_items_is_not_new(tmp_path):
     from linkwright.diagnostics import Diagnostic
-    from linkwright.lint.known_findings import count_keys, new_findings
+    from linkwright.lint.known_findings import count_keys, find_new_findings
 
     shorter, longer = Diagnostic("LW848", "not declared: 'a'"), Diagnostic("LW848", "not declared: 'a', 'b'")
-    assert new_findings([shorter], tmp_path, count_keys([longer], tmp_path)) == []
-    assert new_findings([longer], tmp_path, count_keys([shorter], tmp_path)) == [longer]
+    assert find_new_findings([shorter], tmp_path, count_keys([longer], tmp_path)) == []
+    assert find_new_findings([longer], tmp_path, count_keys([shorter], tmp_path)) == [longer]

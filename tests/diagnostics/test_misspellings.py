@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from linkwright.diagnostics.misspellings import find_misspelled
-from linkwright.lint.extension_names import CHILDREN
+from linkwright.lint.extension_names import CHILD_TAGS
 
 
 @pytest.mark.parametrize(
@@ -50,9 +50,9 @@ def test_spellings_of_same_name_are_not_ambiguous():
     assert find_misspelled("slefCollide", ["selfCollide", "self_collide"]) == "selfCollide"
 
 
-@pytest.mark.parametrize("path", CHILDREN)
+@pytest.mark.parametrize("path", CHILD_TAGS)
 def test_known_elements_are_not_misspellings_of_each_other(path):
-    names = CHILDREN[path]
+    names = CHILD_TAGS[path]
     spellings = {name: "".join(filter(str.isalpha, name)).casefold() for name in names}
     for name in names:
         others = [other for other in names if spellings[other] != spellings[name]]

@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.language.files import PATTERNS
 from linkwright.language.formats import FORMATS
-from linkwright.lint.targets import XML_FILES
+from linkwright.lint.targets import XML_SUFFIXES
 from tests.docs.pages import DOCS, read_blocks
 
 SHOWN = {block.title: block.text for block in read_blocks(DOCS / "howto-editor.md") if block.title}
@@ -88,7 +88,7 @@ def test_vscode_extension_sends_all_files():
 
 
 def test_patterns_match_supported_formats():
-    for suffix in XML_FILES:
+    for suffix in XML_SUFFIXES:
         assert any(fnmatch.fnmatch(f"a{suffix}", pattern) or suffix == pattern for pattern in PATTERNS["xml"]), suffix
     for pattern in (*PATTERNS["yaml"], *PATTERNS["interface"], "package.xml", "*.srdf", "*launch.py", "*/launch/*.py"):
         assert (

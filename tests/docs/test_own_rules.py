@@ -39,7 +39,7 @@ def installed_rule(request, tmp_path, monkeypatch):
 
 def _forget() -> None:
     sys.modules.pop("team_rules", None)
-    for function in (extensions._read_all_groups, registry._all_rules, registry._index):
+    for function in (extensions._read_all_groups, registry._all_rules, registry._index_rules):
         function.cache_clear()
 
 

@@ -9,21 +9,21 @@ from hypothesis import strategies as st
 
 from linkwright.language.colors import colors_in
 from linkwright.language.definitions import definitions_in
-from linkwright.language.extraction import selected_value
+from linkwright.language.extraction import find_selected_value
 from linkwright.language.format import Document
 from linkwright.language.formats import format_of
 from linkwright.language.highlighting import highlights_in
 from linkwright.language.hover import definitions_at
 from linkwright.language.links import file_references
 from linkwright.language.macro_extraction import selected_elements
-from linkwright.language.refactoring import offers_at
-from linkwright.language.suppressing import code_at, suppression
+from linkwright.language.refactoring import find_offers
+from linkwright.language.suppressions import find_code_at, make_suppression
 from linkwright.language.workspace import Workspace
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
 from linkwright.lsp.positions import TextPositions
-from linkwright.lsp.requests.navigation import uses_in_file
-from linkwright.lsp.requests.texts import folds, format_edits, linked_tags, selections, symbols
+from linkwright.lsp.requests.navigation import find_uses_in_file
+from linkwright.lsp.requests.texts import find_folds, find_linked_tags, find_selections, format_edits, list_symbols
 from linkwright.packages import PackageFinder
 
 ROBOT = (Path(__file__).parents[2] / "robots/my_robot_description/urdf/mbot_gazebo.xacro").read_text(encoding="utf-8")
@@ -47,8 +47,8 @@ def test_requests_survive_any_incomplete_description(cut, name):
     positions = TextPositions(text)
     place = positions.position(offset)
     assert positions.offset(place) == offset
-    assert all(fold.start_line < fold.end_line for fold in folds(positions))
-    (selection,) = selections(positions, [place])
+    assert all(fold.start_line < fold.end_line for fold in find_folds(positions))
+    (selection,) = find_selections(positions, [place])
     while selection.parent is not None:
         inner, outer = selection.range, selection.parent.range
         assert outer.start <= inner.start
@@ -58,18 +58,18 @@ def test_requests_survive_any_incomplete_description(cut, name):
     assert ends == sorted(set(ends))
     assert all(0 <= color.start < color.end <= len(text) for color in colors_in(text))
     assert all(text[link.start : link.end] for link in file_references(text, file, FINDER))
-    assert all(use.start <= use.end <= len(text) for use in uses_in_file(text, file, offset))
+    assert all(use.start <= use.end <= len(text) for use in find_uses_in_file(text, file, offset))
     other = min(offset + 30, len(text))
     for start, end in ((offset, offset), (offset, other)):
-        value = selected_value(text, start, end)
+        value = find_selected_value(text, start, end)
         assert value is None or start <= value.start < value.end <= end or start == end
         assert all(element.end <= end for element in selected_elements(text, start, end))
-        assert all(offer.title for offer in offers_at(text, file, start, end, names))
-    comment = suppression(text, file, "LW104", offset)
+        assert all(offer.title for offer in find_offers(text, file, start, end, names))
+    comment = make_suppression(text, file, "LW104", offset)
     assert comment is None or 0 <= comment.start <= len(text)
-    code_at(text, offset)
-    symbols(positions)
-    linked_tags(positions, place)
+    find_code_at(text, offset)
+    list_symbols(positions)
+    find_linked_tags(positions, place)
     format_edits(positions, file)
 
 

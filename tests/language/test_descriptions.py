@@ -16,7 +16,7 @@ from linkwright.language.simulator_plugins import simulator_plugins
 from linkwright.language.workspace import Workspace
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
-from linkwright.lint.extension_names import CHILDREN
+from linkwright.lint.extension_names import CHILD_TAGS
 from linkwright.loading.extensions import extensions
 from linkwright.simulation.plugins.registry import PLUGIN_GROUP
 from linkwright.xacro.expressions.builtin_names import global_names
@@ -79,10 +79,10 @@ def offered(package: Path):
         text = text.replace(old, new, 1) if old else text
         offset = text.index("|")
         text, file = text.replace("|", "", 1), package / name
-        project = Workspace([package])
-        project.index.refresh()
+        workspace = Workspace([package])
+        workspace.index.refresh()
         texts = {file: text}
-        completions = complete(Document(project, texts, file, text), offset, project.names(file, texts))
+        completions = complete(Document(workspace, texts, file, text), offset, workspace.names(file, texts))
         assert len({item.label for item in completions}) == len(completions)
         return [item.label for item in completions if item.label.startswith(text[item.start : offset])]
 
@@ -116,7 +116,7 @@ def test_expression_completion_offers_parameters_then_properties(offered):
 
 def test_expression_completion_offers_xacro_functions(offered):
     assert offered("<!-- here -->", '<origin xyz="${xacro.lo|}"/>') == ["xacro.load_yaml"]
-    names = global_names(Inputs("a.xacro", {}).session())
+    names = global_names(Inputs("a.xacro", {}).create_session())
     assert {*FUNCTIONS} <= {*names}
     assert {name.removeprefix("xacro.") for name in XACRO_FUNCTIONS} == {*names["xacro"].values}
 
@@ -202,9 +202,11 @@ def explained(package: Path):
         text = text.replace(old, new, 1) if old else text
         offset = text.index("|")
         text, file = text.replace("|", "", 1), package / name
-        project = Workspace([package])
-        project.index.refresh()
-        explanation = explain_at(Document(project, {file: text}, file, text), offset, project.names(file, {file: text}))
+        workspace = Workspace([package])
+        workspace.index.refresh()
+        explanation = explain_at(
+            Document(workspace, {file: text}, file, text), offset, workspace.names(file, {file: text})
+        )
         return "" if explanation is None else localized(explanation.text)
 
     return hover
@@ -248,7 +250,7 @@ def test_hover_shows_angle_in_degrees(explained):
 
 
 def test_completion_tables_cover_rules():
-    for path, tags in CHILDREN.items():
+    for path, tags in CHILD_TAGS.items():
         rule = DESCRIPTION
         for tag in path.split("/"):
             rule = rule.child_rules.get(tag) or rule
@@ -266,16 +268,16 @@ def test_completion_does_not_wait_for_expansion(package: Path):
     file = package / "urdf/arm.urdf.xacro"
     text = ROBOT.replace("<!-- here -->", '<gazebo reference="left_wheel"/>')
     offset = text.index("left_wheel") + 2
-    project = Workspace([package])
-    project.index.refresh()
-    document = Document(project, {file: text}, file, text, waits=False)
+    workspace = Workspace([package])
+    workspace.index.refresh()
+    document = Document(workspace, {file: text}, file, text, waits=False)
     with pytest.raises(NotYetKnownError):
         complete(document, offset)
     waiting = [item.label for item in complete(replace(document, waits=True), offset)]
     assert waiting == [item.label for item in complete(document, offset)]
     assert not document.refreshes
     changed = text.replace('side="left"', 'side="right"')
-    document = Document(project, {file: changed}, file, changed, waits=False)
+    document = Document(workspace, {file: changed}, file, changed, waits=False)
     assert waiting == [item.label for item in complete(document, offset)]
     for refresh in document.refreshes:
         refresh()

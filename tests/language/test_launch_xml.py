@@ -159,10 +159,10 @@ def test_remapping_completion_reads_sources_of_own_node(position_at):
     source.write_text(
         'def main():\n    node.create_publisher(Bool, "glow", 1)\n    ActionServer(self, Blink, "~/run", x)\n'
     )
-    place.document.project.index.refresh()
+    place.document.workspace.index.refresh()
     assert place.labels() == ["glow", "~/run"]
     document = position_at(node.format("gl|ow"))
-    document.document.project.index.refresh()
+    document.document.workspace.index.refresh()
     assert "publisher, blink.py" in document.hover()
     assert document.targets() == ["blink.py:glow"]
 

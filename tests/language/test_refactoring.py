@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.proof import apply_edits_to_texts
-from linkwright.language.refactoring import Action, offers_at, refactor
+from linkwright.language.refactoring import Action, find_offers, refactor
 from linkwright.language.workspace import Workspace
 
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n'
@@ -33,7 +33,7 @@ class Description:
         """Return the content of the root after a refactoring of a selected text."""
         start = self.text.index(before + place) + len(before)
         names = self.workspace.names(self.file, {})
-        offers = [*offers_at(self.text, self.file, start, start + len(place), names)]
+        offers = [*find_offers(self.text, self.file, start, start + len(place), names)]
         assert action in [offer.action for offer in offers]
         result = refactor(self.workspace, {}, action, self.file, start, start + len(place))
         changed = apply_edits_to_texts(self.workspace, {}, result.edits)[self.file]
@@ -72,7 +72,7 @@ def test_extract_property_with_parameters_stays_in_macro(tmp_path):
 def test_extract_property_is_not_offered_across_operator_precedence(tmp_path):
     description = Description(tmp_path, MACRO)
     start = description.text.index("0.5 + 0.1")
-    assert not [*offers_at(description.text, description.file, start, start + len("0.5 + 0.1"))]
+    assert not [*find_offers(description.text, description.file, start, start + len("0.5 + 0.1"))]
 
 
 def test_extracted_number_is_named_after_its_axis(tmp_path):

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.language.renaming import Renaming, occurrence_at, references, rename
+from linkwright.language.renaming import Renaming, find_references, occurrence_at, rename
 from linkwright.language.workspace import Workspace
 from linkwright.xacro import expand
 
@@ -247,5 +247,5 @@ def test_chinese_text_and_crlf_files_are_edited_at_correct_offsets(package: Pack
 
 def test_references_of_macro_parameter_are_in_its_scope(package: Package):
     name = package.name("urdf/parts.xacro", 'params="name ')
-    uses = [(use.file.name, use.is_definition) for use in references(package.workspace, {}, name)]
+    uses = [(use.file.name, use.is_definition) for use in find_references(package.workspace, {}, name)]
     assert sorted(uses) == [("arm.urdf.xacro", False), ("parts.xacro", False), ("parts.xacro", True)]

@@ -32,7 +32,7 @@ def position_at(tmp_path: Path):
 
     def place(text: str) -> Place:
         place_in_file = Place(folder / "config" / "lamp.srdf", f'<robot name="lamp">{text}</robot>')
-        place_in_file.document.project.index.refresh()
+        place_in_file.document.workspace.index.refresh()
         return place_in_file
 
     return place

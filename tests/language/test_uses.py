@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.language.uses import uses_at
+from linkwright.language.uses import find_uses
 from tests.language.formats import PARTS_XML, Place, make_packages
 
 
@@ -20,7 +20,7 @@ def folder(tmp_path: Path) -> Path:
 
 def uses(place: Place, **options) -> list[str]:
     """Return the uses, each as the file, the offset and the text."""
-    uses = uses_at(place.document, place.format, place.offset, **options)
+    uses = find_uses(place.document, place.format, place.offset, **options)
     return [f"{use.file.name}:{use.start}:{place.document.other(use.file)[use.start : use.end]}" for use in uses]
 
 

@@ -61,13 +61,13 @@ class Typing:
         self.folder = folder
         (folder / "package.xml").write_text(MANIFEST)
         (folder / "r.urdf.xacro").write_text(ROBOT)
-        self.project = Workspace([folder])
-        self.project.index.refresh()
+        self.workspace = Workspace([folder])
+        self.workspace.index.refresh()
 
     def document(self, marked: str, name: str) -> tuple[Document, int]:
         offset = marked.index("|")
         text = marked.replace("|", "", 1)
-        return Document(self.project, {}, self.folder / name, text), offset
+        return Document(self.workspace, {}, self.folder / name, text), offset
 
     def labels(self, marked: str, name: str = "a.yaml") -> list[str]:
         document, offset = self.document(marked, name)
@@ -249,7 +249,7 @@ def test_completion_follows_open_description(typing):
     text = "base_frame_id: |"
     document, offset = typing.document(DRIVE + text, "a.yaml")
     assert "trunk" not in typing.labels(DRIVE + text)
-    changed = Document(typing.project, {file: ROBOT.replace("base_link", "trunk")}, document.file, document.text)
+    changed = Document(typing.workspace, {file: ROBOT.replace("base_link", "trunk")}, document.file, document.text)
     assert "trunk" in [item.label for item in PARAMETER_FILES.complete(changed, offset)]
 
 

@@ -20,7 +20,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Span
 from linkwright.lint.apply import fix_file
-from linkwright.lint.configuration import settings_for
+from linkwright.lint.configuration import find_settings
 from linkwright.lint.engine import examine
 from linkwright.lint.settings import Settings
 from tests.markdown import Block, read_sections
@@ -65,7 +65,7 @@ class Case:
         return main.read_text(encoding="utf-8")
 
     def _settings(self, main: Path) -> Settings:
-        settings, trouble = settings_for(main)
+        settings, trouble = find_settings(main)
         assert not trouble
         return settings if settings.select is not None else replace(settings, select=self.selectors)
 

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from linkwright.diagnostics import SourceText
 from linkwright.lint import Settings, examine
-from linkwright.lint.suppression import directives
+from linkwright.lint.suppression import find_directives
 from tests.lint.cases import load_cases
 from tests.work import lines_run
 
@@ -79,7 +79,7 @@ def test_lint_survives_missing_and_duplicate_lines(tmp_path, monkeypatch, seed):
 @given(st.text(st.sampled_from("<>!-/ab \n#,()\"'=?[]"), max_size=60), st.text(max_size=40))
 def test_suppression_ranges_stay_within_arbitrary_text(before, after):
     text = f"<r>{before}<!-- linkwright: ignore {after}-->{before}<a>{after}"
-    for directive in directives(SourceText("f", text)):
+    for directive in find_directives(SourceText("f", text)):
         assert 0 <= directive.start < directive.end <= len(text)
         for start, end in directive.ranges or ():
             assert 0 <= start <= end <= len(text)

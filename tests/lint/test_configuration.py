@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import Severity
-from linkwright.lint.configuration import find_configuration, read_settings, settings_for
+from linkwright.lint.configuration import find_configuration, find_settings, read_settings
 from linkwright.lint.registry import find_rule
 from linkwright.lint.settings import Settings
 
@@ -41,7 +41,7 @@ def test_all_settings_are_read_from_toml(tmp_path):
         farthest = 100
         """
     )
-    settings, findings = settings_for(tmp_path / "urdf" / "robot.urdf")
+    settings, findings = find_settings(tmp_path / "urdf" / "robot.urdf")
     assert findings == ()
     assert settings.select == ("LW1", "LW201")
     assert settings.selects("LW104")
@@ -80,11 +80,11 @@ def test_nearest_configuration_file_is_used(tmp_path):
     assert find_configuration(inner_folder / "robot.urdf") == tmp_path / "linkwright.toml"
     (tmp_path / "package" / "pyproject.toml").write_text("[tool.linkwright]\nignore = ['LW2']\n")
     assert find_configuration(inner_folder / "robot.urdf") == tmp_path / "package" / "pyproject.toml"
-    assert settings_for(inner_folder / "robot.urdf")[0].ignore == ("LW2",)
+    assert find_settings(inner_folder / "robot.urdf")[0].ignore == ("LW2",)
 
 
 def test_missing_configuration_gives_default_settings(tmp_path):
-    assert settings_for(tmp_path / "robot.urdf") == (Settings(), ())
+    assert find_settings(tmp_path / "robot.urdf") == (Settings(), ())
 
 
 @pytest.mark.parametrize(
@@ -166,7 +166,7 @@ def test_arguments_are_read_as_sets_for_matching_files(tmp_path):
         "*.world.xacro" = { size = 2.5 }
         """
     )
-    settings, findings = settings_for(tmp_path / "urdf")
+    settings, findings = find_settings(tmp_path / "urdf")
     assert findings == ()
     assert settings.arguments_of(tmp_path / "urdf/arm.urdf.xacro") == (
         {"arm": "left"},

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import linkwright
-from linkwright.lint.explain import find_page, known_codes, nearest_codes, room_pages, rule_page
+from linkwright.lint.explain import find_page, find_similar_codes, known_codes, make_rule_page, read_room_pages
 from linkwright.lint.registry import all_rules
 
 ROOMS = Path(linkwright.__file__).parent
@@ -31,7 +31,7 @@ def test_every_reported_code_has_page():
 
 
 def test_every_page_belongs_to_reported_code():
-    assert set(room_pages()) - find_reported_codes() == set()
+    assert set(read_room_pages()) - find_reported_codes() == set()
 
 
 def test_every_file_of_pages_begins_with_title():
@@ -42,7 +42,7 @@ def test_every_file_of_pages_begins_with_title():
 
 @pytest.mark.parametrize("rule", all_rules(), ids=lambda rule: rule.code)
 def test_rule_page_has_title_why_example_and_use_instead(rule):
-    page = rule_page(rule)
+    page = make_rule_page(rule)
     assert page.title
     assert "\n" not in page.title
     headings = re.findall(r"^## (.+)$", page.text, re.MULTILINE)
@@ -57,5 +57,5 @@ def test_page_is_found_by_code_and_name_in_any_case():
 
 
 def test_similar_codes_are_suggested():
-    assert "limit-inverted" in nearest_codes("limit-invertd")
-    assert "URDF110" in nearest_codes("URDF111")
+    assert "limit-inverted" in find_similar_codes("limit-invertd")
+    assert "URDF110" in find_similar_codes("URDF111")

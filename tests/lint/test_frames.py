@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from linkwright.geometry.shapes import angle_between, placement, product, rotation, transposed
 from linkwright.kinematics import KinematicTree
-from linkwright.lint.frames import placements
+from linkwright.lint.frames import compute_placements
 from linkwright.urdf import Joint, Link, Pose, Robot
 
 _COORDINATES = st.floats(-10, 10)
@@ -29,7 +29,7 @@ def test_link_placements_match_kinematics(first, second):
     robot = Robot("r", "a", links, joints, {})
     tree = KinematicTree(robot)
     matrices = tree.forward(np.zeros(1))
-    for name, link_placement in placements(robot).items():
+    for name, link_placement in compute_placements(robot).items():
         matrix = matrices[tree.link_index(name)]
         np.testing.assert_allclose(link_placement.rotation, matrix[:3, :3], atol=1e-9)
         np.testing.assert_allclose(link_placement.position, matrix[:3, 3], atol=1e-9)

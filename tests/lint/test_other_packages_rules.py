@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from linkwright.lint import check, registry
-from linkwright.lint.configuration import settings_for
+from linkwright.lint.configuration import find_settings
 from linkwright.lint.explain import find_page
 from linkwright.loading import extensions
 
@@ -47,7 +47,7 @@ def installed(tmp_path, monkeypatch):
 
     def remove_module() -> None:
         sys.modules.pop("team_rules", None)
-        for cached in (extensions._read_all_groups, registry._all_rules, registry._index):
+        for cached in (extensions._read_all_groups, registry._all_rules, registry._index_rules):
             cached.cache_clear()
 
     yield install
@@ -71,7 +71,7 @@ def test_plugin_rules_run_beside_built_in_rules(installed, robot):
 def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
     installed(RULES)
     (robot.parent / "linkwright.toml").write_text('ignore = ["robot-of-no-team"]')
-    assert settings_for(robot)[1] == ()
+    assert find_settings(robot)[1] == ()
     assert check(robot) == []
     (robot.parent / "linkwright.toml").write_text('select = ["TEAM"]\nseverity = { TEAM001 = "error" }')
     assert [finding.severity.value for finding in check(robot)] == ["error"]

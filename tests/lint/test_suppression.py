@@ -6,18 +6,18 @@ import pytest
 
 from linkwright.diagnostics import SourceText
 from linkwright.lint import Settings, check
-from linkwright.lint.suppression import directives
+from linkwright.lint.suppression import find_directives
 
 
 def suppressed_ranges(text: str) -> list[list[str] | None]:
     return [
         None if directive.ranges is None else [text[start:end] for start, end in directive.ranges]
-        for directive in directives(SourceText("f", text))
+        for directive in find_directives(SourceText("f", text))
     ]
 
 
 def directive_words(text: str) -> list[list[str]]:
-    return [[word for word, _ in directive.selectors] for directive in directives(SourceText("f", text))]
+    return [[word for word, _ in directive.selectors] for directive in find_directives(SourceText("f", text))]
 
 
 @pytest.mark.parametrize(

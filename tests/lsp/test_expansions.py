@@ -8,7 +8,7 @@ import pytest
 from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
-from linkwright.lsp.requests.expansions import description_of, expansion_uri
+from linkwright.lsp.requests.expansions import expansion_uri, parse_expansion_uri
 from tests.lsp.conftest import MAIN, MANIFEST, PARTS
 from tests.lsp.test_hints import FILE, PARTS_FILE, position_after
 
@@ -22,8 +22,8 @@ def test_expansion_uri_contains_description_and_arguments(tmp_path: Path):
     file = tmp_path / "机 器.urdf.xacro"
     file.touch()
     arguments = {"side": "left & right", "path": "/a/b"}
-    assert description_of(expansion_uri(file.resolve(), arguments)) == (file.resolve(), arguments)
-    assert description_of(file.as_uri()) is None
+    assert parse_expansion_uri(expansion_uri(file.resolve(), arguments)) == (file.resolve(), arguments)
+    assert parse_expansion_uri(file.as_uri()) is None
 
 
 async def test_editor_without_virtual_documents_gets_no_expansion(editor):

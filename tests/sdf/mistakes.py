@@ -6,7 +6,7 @@ import tempfile
 from pathlib import Path
 
 from linkwright.descriptions import examine_world
-from linkwright.lint.engine import sorted_by_location
+from linkwright.lint.engine import sort_by_location
 from tests.urdf.mistakes import finding_lines
 
 
@@ -17,6 +17,6 @@ def describe_findings(text: str) -> str:
         path.write_text(text, encoding="utf-8")
         diagnostics = examine_world(path, environment={"HOME": folder}).diagnostics
         lines = [
-            line for diagnostic in sorted_by_location(diagnostics, str(path)) for line in finding_lines(diagnostic)
+            line for diagnostic in sort_by_location(diagnostics, str(path)) for line in finding_lines(diagnostic)
         ]
         return "\n".join(lines).replace(folder, "FOLDER")

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from linkwright.xacro.expressions.scope import literal, truth
+from linkwright.xacro.expressions.scope import evaluate_truth, parse_literal
 
 
 def convert_literal(value: str) -> Any:
@@ -36,22 +36,22 @@ def convert_literal(value: str) -> Any:
     ],
 )
 def test_literals_are_converted(text: str, value: object) -> None:
-    assert literal(text) == value
-    assert type(literal(text)) is type(value)
+    assert parse_literal(text) == value
+    assert type(parse_literal(text)) is type(value)
 
 
 @given(
     st.one_of(st.text(max_size=8), st.text(alphabet="0123456789.+-eE_'infatrueTF ", max_size=8), st.floats().map(str))
 )
 def test_literal_shortcuts_match_reference(text: str) -> None:
-    expected, value = convert_literal(text), literal(text)
+    expected, value = convert_literal(text), parse_literal(text)
     assert type(value) is type(expected)
     assert value == expected or (math.isnan(value) and math.isnan(expected))
 
 
 @given(st.one_of(st.integers(), st.booleans(), st.none(), st.lists(st.integers())))
 def test_value_that_is_not_a_string_is_unchanged(value: object) -> None:
-    assert literal(value) is value
+    assert parse_literal(value) is value
 
 
 TRUE = ["true", "True", "1", " 1 ", "-1", "2", 0.5, [0]]
@@ -60,10 +60,10 @@ FALSE = ["false", "False", "0", "00", 0.0, [], None]
 
 @pytest.mark.parametrize(("value", "holds"), [*((value, True) for value in TRUE), *((value, False) for value in FALSE)])
 def test_truth_values_are_evaluated(value: object, holds: bool) -> None:
-    assert truth(value) is holds
+    assert evaluate_truth(value) is holds
 
 
 @pytest.mark.parametrize("value", ["1.0", "", "yes", "TRUE", " true", "none"])
 def test_invalid_truth_value_is_an_error(value: str) -> None:
     with pytest.raises(ValueError):
-        truth(value)
+        evaluate_truth(value)

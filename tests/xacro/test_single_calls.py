@@ -55,8 +55,8 @@ def call_quickly(function: Callable[..., Any], *arguments: Any) -> None:
 
 
 def find_methods(kind: type) -> list[str]:
-    grown = {name for owner, name in sandbox._GROWING if owner is kind}
-    return sorted(sandbox._ATTRIBUTES[kind] | grown)
+    grown = {name for owner, name in sandbox._GROWING_METHODS if owner is kind}
+    return sorted(sandbox._ALLOWED_ATTRIBUTES[kind] | grown)
 
 
 @pytest.mark.parametrize("name", find_methods(str))

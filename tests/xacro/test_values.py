@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.xacro.session import Inputs
-from linkwright.xacro.tracing.values import evaluated_expressions
+from linkwright.xacro.tracing.values import evaluate_expressions
 
 HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
@@ -15,7 +15,7 @@ HEAD = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 def find_values(text: str, **arguments: str) -> dict[str, tuple[str, ...]]:
     """Return the values of each text with expressions, by its position."""
     document_text = f"{HEAD}{text}</robot>"
-    expressions = evaluated_expressions(Inputs("r.xacro", arguments, text=document_text))
+    expressions = evaluate_expressions(Inputs("r.xacro", arguments, text=document_text))
     return {document_text[part.start : part.end]: part.values for part in expressions}
 
 
@@ -29,7 +29,7 @@ def test_evaluation_has_call_and_names():
         f'{HEAD}<xacro:property name="w" value="2"/><xacro:macro name="m" params="n">'
         '<link name="l${n * w}"/></xacro:macro>\n<xacro:m n="3"/></robot>'
     )
-    expressions = evaluated_expressions(Inputs("r.xacro", {}, text=text))
+    expressions = evaluate_expressions(Inputs("r.xacro", {}, text=text))
     (part,) = (part for part in expressions if text[part.start : part.end] == "${n * w}")
     (evaluation,) = part.evaluations
     assert evaluation.value == "6"
@@ -76,7 +76,7 @@ def test_included_files_have_values(tmp_path: Path):
     (tmp_path / "part.xacro").write_text(f'{HEAD}<link name="${{p}}"/></robot>')
     main = tmp_path / "main.xacro"
     main.write_text(f'{HEAD}<xacro:property name="p" value="x"/><xacro:include filename="part.xacro"/></robot>')
-    (expression,) = evaluated_expressions(Inputs(str(main), {}))
+    (expression,) = evaluate_expressions(Inputs(str(main), {}))
     assert (Path(expression.file).name, expression.values) == ("part.xacro", ("'x'",))
 
 

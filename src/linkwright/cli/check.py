@@ -221,7 +221,7 @@ def _check_changed(
         LinkwrightError: CLI341 to CLI346, git cannot find or read the commit.
     """
     from linkwright.lint.changed_since import WorkingTreeChanges
-    from linkwright.lint.known_findings import new_findings
+    from linkwright.lint.known_findings import find_new_findings
 
     changed = WorkingTreeChanges(paths, arguments.changed, with_packages=arguments.package)
     targets = changed.targets()
@@ -229,7 +229,7 @@ def _check_changed(
         return []
     diagnostics = checker.check(targets, paths)[0]
     known_counts = changed.known_findings(lambda targets, paths: checker.for_folders(paths).check(targets, paths)[0])
-    return new_findings(diagnostics, changed.root, known_counts)
+    return find_new_findings(diagnostics, changed.root, known_counts)
 
 
 def _remove_baseline_findings(file: str, diagnostics: Sequence[Diagnostic]) -> list[Diagnostic]:
@@ -238,9 +238,9 @@ def _remove_baseline_findings(file: str, diagnostics: Sequence[Diagnostic]) -> l
     Raises:
         LinkwrightError: LINT311, the file cannot be read or is not a baseline.
     """
-    from linkwright.lint.known_findings import new_findings, read_baseline
+    from linkwright.lint.known_findings import find_new_findings, read_baseline
 
-    return new_findings(diagnostics, Path(file).absolute().parent, read_baseline(Path(file)))
+    return find_new_findings(diagnostics, Path(file).absolute().parent, read_baseline(Path(file)))
 
 
 def _write_baseline(file: str, diagnostics: Sequence[Diagnostic]) -> int:
@@ -264,11 +264,11 @@ def _write_baseline(file: str, diagnostics: Sequence[Diagnostic]) -> int:
 
 def _unknown_selector_error(words: Iterable[str]) -> str | None:
     """Return the usage error for the first selector that matches no rule, or None."""
-    from linkwright.lint.selector_words import is_selector, selector_hint
+    from linkwright.lint.selector_words import is_selector, make_selector_hint
 
     for selector in words:
         if not is_selector(selector):
-            return f"there is no rule '{selector}'; {selector_hint(selector)}"
+            return f"there is no rule '{selector}'; {make_selector_hint(selector)}"
     return None
 
 

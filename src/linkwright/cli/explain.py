@@ -19,7 +19,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the explanation of a rule, diagnostic, element or attribute."""
-    from linkwright.lint.explain import find_page, nearest_codes
+    from linkwright.lint.explain import find_page, find_similar_codes
     from linkwright.urdf.vocabulary import meanings, names
 
     page = find_page(arguments.code)
@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     explanations = meanings(arguments.code)
     if not explanations:
-        suggestions = list(dict.fromkeys([*nearest_codes(arguments.code), *nearest(arguments.code, names(), 2)]))
+        suggestions = list(dict.fromkeys([*find_similar_codes(arguments.code), *nearest(arguments.code, names(), 2)]))
         hint = (
             phrase("did you mean {names}?", names=joined(suggestions, last=" or "))
             if suggestions

@@ -94,7 +94,7 @@ def _format_file(file: Path, arguments: argparse.Namespace, *, dry_run: bool) ->
 
 
 def _format_or_raise(file: Path, arguments: argparse.Namespace, *, dry_run: bool) -> bool:
-    from linkwright.lint.apply import unified_changes, write_text
+    from linkwright.lint.apply import make_unified_diff, write_text
     from linkwright.xmltree.decoding import decode_with_encoding
     from linkwright.xmltree.reader import read_bytes
 
@@ -103,7 +103,7 @@ def _format_or_raise(file: Path, arguments: argparse.Namespace, *, dry_run: bool
     if new_text == old_text:
         return False
     if arguments.diff:
-        sys.stdout.write(unified_changes(display_path(file), old_text, new_text))
+        sys.stdout.write(make_unified_diff(display_path(file), old_text, new_text))
     elif arguments.check:
         print(localized(phrase("would format {file}", file=display_path(file))))
     if not dry_run:
@@ -112,14 +112,14 @@ def _format_or_raise(file: Path, arguments: argparse.Namespace, *, dry_run: bool
 
 
 def _format_stdin(arguments: argparse.Namespace) -> int:
-    from linkwright.lint.apply import unified_changes
+    from linkwright.lint.apply import make_unified_diff
     from linkwright.xmltree.decoding import decode_with_encoding
 
     name = arguments.stdin_filename or "<stdin>"
     old_text = decode_with_encoding(sys.stdin.buffer.read(), name).text
     new_text = _format_text(old_text, Path(arguments.stdin_filename or Path.cwd() / "stdin.xacro"), arguments, name)
     if arguments.diff:
-        sys.stdout.write(unified_changes(name, old_text, new_text))
+        sys.stdout.write(make_unified_diff(name, old_text, new_text))
     elif not arguments.check:
         sys.stdout.buffer.write(new_text.encode("utf-8"))
     return _HAS_CHANGES if new_text != old_text and (arguments.check or arguments.diff) else FINE
@@ -134,9 +134,9 @@ def _format_text(text: str, file: Path, arguments: argparse.Namespace, name: str
 
 def _read_style(file: Path, arguments: argparse.Namespace) -> Style:
     """Return the formatting style from the settings file, overridden by the command line."""
-    from linkwright.lint.configuration import settings_for
+    from linkwright.lint.configuration import find_settings
 
-    settings, diagnostics = settings_for(file)
+    settings, diagnostics = find_settings(file)
     print_diagnostics(diagnostics, sys.stderr)
     style = settings.style
     return style._replace(indent=arguments.indent or style.indent, width=arguments.width or style.width)

@@ -39,8 +39,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Serve an editor until the connection is closed."""
     try:
         from linkwright.lsp.features import make_server
+        from linkwright.lsp.python.combined_server import serve
         from linkwright.lsp.python.programs import installed_programs
-        from linkwright.lsp.python.serving import serve
     except ModuleNotFoundError as error:
         raise missing_extra("CLI307", error) from None
     if arguments.python and (arguments.tcp is not None or arguments.ws is not None):

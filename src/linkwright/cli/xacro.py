@@ -176,14 +176,14 @@ def _expand_text(inputs: Inputs, verbosity: int, *, deps: bool) -> str:
 
 def _format_arguments(inputs: Inputs, verbosity: int, format_name: str) -> str:
     from linkwright.xacro.tracing.arguments import arguments_data, examine_arguments
-    from linkwright.xacro.tracing.arguments_text import arguments_text, incompleteness_remarks
+    from linkwright.xacro.tracing.arguments_text import find_incompleteness, format_arguments
 
     examination = examine_arguments(inputs)
     if verbosity > _QUIET:
-        print_diagnostics([*incompleteness_remarks(examination), *examination.unused_warnings], sys.stderr)
+        print_diagnostics([*find_incompleteness(examination), *examination.unused_warnings], sys.stderr)
     if format_name == "json":
         return _format_json({"arguments": arguments_data(examination.arguments)})
-    return arguments_text(examination.arguments)
+    return format_arguments(examination.arguments)
 
 
 def _format_provenance(inputs: Inputs, name: str, format_name: str) -> str:

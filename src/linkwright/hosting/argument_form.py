@@ -30,7 +30,7 @@ def create_argument_form(call: XacroCall, finder: PackageFinder, findings: Itera
         The form, or None if no argument is known to change the result.
     """
     from linkwright.descriptions.argument_sets import argument_sets
-    from linkwright.lint.argument_sets import undeclared_argument
+    from linkwright.lint.argument_sets import find_undeclared_argument
     from linkwright.page.protocol.description import ArgumentChoice, ArgumentForm
 
     if call.path.suffix == ".sdf":
@@ -41,7 +41,7 @@ def create_argument_form(call: XacroCall, finder: PackageFinder, findings: Itera
         values = {**given_values, **argument_set.values}
         if argument_set.values and values not in expandable_sets and _can_expand(call, values, finder):
             expandable_sets.append(values)
-    missing_names = [name for finding in findings if (name := undeclared_argument(finding))]
+    missing_names = [name for finding in findings if (name := find_undeclared_argument(finding))]
     names = list(
         dict.fromkeys(
             [

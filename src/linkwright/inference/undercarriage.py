@@ -17,7 +17,7 @@ from linkwright.geometry.single import length, scaled
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inference.results import Wheel
 from linkwright.inference.shapes import Shape, lowest_z, round_shape, shapes_of
-from linkwright.lint.frames import placements
+from linkwright.lint.frames import compute_placements
 from linkwright.urdf import Joint, Link, Mesh, Robot, parent_joints
 from linkwright.urdf.bodies import Bodies
 from linkwright.xacro.faults import Frame, frames
@@ -74,7 +74,7 @@ class Survey:
         self.meshes = meshes
         self.bodies = Bodies(robot)
         self.base_link = "base_link" if "base_link" in robot.links else robot.root
-        frames_in_root = placements(robot)
+        frames_in_root = compute_placements(robot)
         self.base_in_root = frames_in_root[self.base_link]
         self._frames = {name: frame.seen_from(self.base_in_root) for name, frame in frames_in_root.items()}
         self._parent_joints = parent_joints(robot)

@@ -17,7 +17,7 @@ from linkwright.language.programs import BUILD_DEPENDENCY
 from linkwright.packages.readers.entry_points import text_of
 from linkwright.packages.share_layout import source_of
 
-_NAME = "CMakeLists.txt"
+_FILE_NAME = "CMakeLists.txt"
 _COMMANDS = {
     "find_package": "finds a package that the build needs",
     "ament_target_dependencies": "adds the headers and libraries of packages to a target",
@@ -57,16 +57,16 @@ _KEYWORDS = {
     "rclcpp_components_register_node": ("PLUGIN", "EXECUTABLE"),
 }
 _DESTINATIONS = ("share/${PROJECT_NAME}", "lib/${PROJECT_NAME}", "include", "lib", "bin")
-_INTERFACES = (".msg", ".srv", ".action")
-_SOURCES = (".cpp", ".cc", ".cxx", ".c")
-_OPENING = re.compile(r"(\w+)\s{0,9}\(")
+_INTERFACE_SUFFIXES = (".msg", ".srv", ".action")
+_SOURCE_SUFFIXES = (".cpp", ".cc", ".cxx", ".c")
+_COMMAND_OPENING = re.compile(r"(\w+)\s{0,9}\(")
 _CALL = re.compile(r"(?i)\b([a-z_]\w*)\s{0,9}\(([^()]*)\)?")
 _COMMENT = re.compile(r"#[^\n]*")
 _WORD_BEFORE_CURSOR = re.compile(r"[^\s\"();#]*$")
 _WHOLE_WORD = re.compile(r"[^\s\"();#]+")
 _TARGET = re.compile(r"(?i)\badd_(?:executable|library)\s{0,9}\(\s{0,99}([\w-]+)")
 _FIND_PACKAGE = re.compile(r"(?i)\bfind_package\s{0,9}\(\s{0,99}([\w-]+)")
-_STATEMENT = re.compile(r"(?:^|\n)[ \t]*(\w*)$")
+_STATEMENT_START = re.compile(r"(?:^|\n)[ \t]*(\w*)$")
 _MAX_CHARACTERS_BEFORE = 20_000
 
 
@@ -90,7 +90,7 @@ class _CMakeCursor:
         start = self.before.rfind("(")
         if start < 0 or ")" in self.before[start:]:
             return None
-        opening = next((match for match in _OPENING.finditer(self.before) if match.end() == start + 1), None)
+        opening = next((match for match in _COMMAND_OPENING.finditer(self.before) if match.end() == start + 1), None)
         words = self.before[start + 1 : len(self.before) - len(self.typed)].split()
         return None if opening is None else (opening[1].lower(), [word.strip('"') for word in words])
 
@@ -121,7 +121,10 @@ class _CMakeCursor:
         return [*dict.fromkeys(_TARGET.findall(self.document.text))]
 
     def packages(self, start: int) -> Iterator[Completion]:
-        """Yield completions of packages that the file does not find yet, declared dependencies first."""
+        """Yield completions of packages that the file does not find yet.
+
+        Declared dependencies come first.
+        """
         found_packages = set(_FIND_PACKAGE.findall(self.document.text[:start] + self.document.text[self.offset :]))
         declared = BUILD_DEPENDENCY.findall(text_of(self.folder / "package.xml"))
         for name in dict.fromkeys(dependency for dependency in declared if dependency not in found_packages):
@@ -139,7 +142,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 def _offer_completions(build: _CMakeCursor) -> Iterator[Completion]:
     start = build.offset - len(build.typed)
     if build.call is None:
-        if _STATEMENT.search(build.before):
+        if _STATEMENT_START.search(build.before):
             for name, purpose in _COMMANDS.items():
                 yield Completion(name, ItemKind.FUNCTION, start, "", purpose, f"{name}($0)")
         return
@@ -156,7 +159,7 @@ def _offer_completions(build: _CMakeCursor) -> Iterator[Completion]:
         yield from _make_value_completions(_DESTINATIONS, start)
     elif command == "rosidl_generate_interfaces" and words and keyword != "DEPENDENCIES":
         yield from _make_value_completions(
-            (name for name in _interfaces(build.folder) if name not in words), start, ItemKind.FILE
+            (name for name in _list_interface_files(build.folder) if name not in words), start, ItemKind.FILE
         )
     elif command == "rosidl_generate_interfaces" and words:
         yield from build.packages(start)
@@ -189,10 +192,10 @@ def _make_value_completions(names: Iterable[str], start: int, kind: ItemKind = I
         yield Completion(name, kind, start)
 
 
-def _interfaces(folder: Path) -> list[str]:
+def _list_interface_files(folder: Path) -> list[str]:
     """Return the paths of the message, service and action files, relative to the package."""
     files = (file for part in ("msg", "srv", "action") for file in sorted((folder / part).glob("*")))
-    return [file.relative_to(folder).as_posix() for file in files if file.suffix in _INTERFACES]
+    return [file.relative_to(folder).as_posix() for file in files if file.suffix in _INTERFACE_SUFFIXES]
 
 
 # --- hover, definition and links --------------------------------------------------------------------------------------
@@ -206,13 +209,13 @@ def _explain(document: Document, offset: int) -> Explanation | None:
         purpose = _COMMANDS.get(word.lower())
         return None if purpose is None else Explanation(f"`{word}`: {purpose}", start, end)
     text = explain_package(document, word) if build.call[0] in _PACKAGE_COMMANDS and word.isidentifier() else None
-    path = _path(document, word)
+    path = _find_path(document, word)
     if text is None and path is not None:
         text = explain_file(path)
     return Explanation(text, start, end) if text else None
 
 
-def _path(document: Document, word: str) -> Path | None:
+def _find_path(document: Document, word: str) -> Path | None:
     """Return the existing file or folder that a word names, or None."""
     if not word or "$" in word or "\0" in word:
         return None
@@ -235,7 +238,7 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
         if match[1] == word:
             yield Target(document.file, *match.span(1))
             return
-    path = _path(document, word)
+    path = _find_path(document, word)
     if path is not None and path.is_file():
         yield Target(Path(source_of(str(path))))
 
@@ -244,7 +247,7 @@ def _links(document: Document) -> Iterator[FileReference]:
     text = _COMMENT.sub(lambda comment: " " * len(comment[0]), document.text)
     for call in _CALL.finditer(text):
         for word in _WHOLE_WORD.finditer(text, *call.span(2)):
-            path = _path(document, word[0])
+            path = _find_path(document, word[0])
             if path is not None and path.is_file():
                 yield FileReference(*word.span(), path)
 
@@ -254,5 +257,5 @@ def _symbols(document: Document) -> Iterator[Symbol]:
         yield Symbol(match[1], SymbolKind.FUNCTION, *match.span(1))
 
 
-CMAKE_FILES = Format(lambda file: file.name == _NAME, _complete, _explain, _define, _links, _symbols)
-"""``CMakeLists.txt``."""
+CMAKE_FILES = Format(lambda file: file.name == _FILE_NAME, _complete, _explain, _define, _links, _symbols)
+"""The format of ``CMakeLists.txt``."""

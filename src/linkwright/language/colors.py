@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from linkwright.xmltree.tokens import Kind, tokens
 
-_TAGS = frozenset({"ambient", "diffuse", "specular", "emissive", "background", "grid_color"})
+_COLOR_TAGS = frozenset({"ambient", "diffuse", "specular", "emissive", "background", "grid_color"})
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _COLOR = re.compile(rf"\s*({_NUMBER})\s+({_NUMBER})\s+({_NUMBER})(?:\s+({_NUMBER}))?\s*")
 
@@ -36,7 +36,7 @@ def colors_in(text: str) -> Iterator[ColorLiteral]:
             for attribute in token.attributes():
                 if attribute.name in ("rgba", "rgb"):
                     yield from _parse_color(attribute.value or "", attribute.value_start)
-        elif token.kind is Kind.TEXT and tag in _TAGS:
+        elif token.kind is Kind.TEXT and tag in _COLOR_TAGS:
             yield from _parse_color(token.text, token.start)
 
 

@@ -56,5 +56,5 @@ def definitions_of_kind(names: Sequence[NameDefinition], kind: NameKind) -> list
 
 
 def sorted_by_use(names: Iterable[NameDefinition], text: str) -> list[NameDefinition]:
-    """Return definitions sorted by the frequency of their names in a text, the most frequent first."""
+    """Return definitions sorted by the frequency of their names in a text, in descending order."""
     return sorted(names, key=lambda name: -text.count(name.name))

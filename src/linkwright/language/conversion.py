@@ -8,15 +8,15 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, display_path, phrase
 from linkwright.language.proof import UnprovedError
+from linkwright.language.source_elements import source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import source_elements
-from linkwright.lint.rules.xacro_tags import ADDRESS
+from linkwright.lint.rules.xacro_tags import NAMESPACE_URI
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro import expand
 from linkwright.xmltree import Element, Overlay, parse
 from linkwright.xmltree.tokens import Kind, tokens
 
-_BEFORE_BRACKET = lazy_pattern(r"\$+(?=[{(])")
+_DOLLARS_BEFORE_BRACKET = lazy_pattern(r"\$+(?=[{(])")
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +35,11 @@ def can_be_converted(text: str, file: Path) -> bool:
     return root is not None and root.name == "robot" and "xmlns:xacro" not in root.tag.text
 
 
-def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> NewFile:
+def convert_to_xacro(workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> NewFile:
     """Return a new xacro file that expands to the same elements as a URDF file.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: the URDF file.
         text: its text.
@@ -51,7 +51,7 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
     new = file.with_name(f"{file.name}.xacro")
     if new.exists() or new in texts:
         raise UnprovedError(phrase("'{file}' already exists", file=display_path(str(new))))
-    if not project.contains(new):
+    if not workspace.contains(new):
         raise UnprovedError(phrase("'{file}' is outside the workspace", file=display_path(str(new))))
     root = next(iter(source_elements(text)), None)
     if root is None:
@@ -59,10 +59,10 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
     insertion_offset = root.tag.name_start + len(root.name)
     name = next((attribute for attribute in root.tag.attributes() if attribute.name == "name"), None)
     insertion_offset = insertion_offset if name is None else name.end
-    xacro_text = f'{_escape(text[:insertion_offset])} xmlns:xacro="{ADDRESS}"{_escape(text[insertion_offset:])}'
+    xacro_text = f'{_escape(text[:insertion_offset])} xmlns:xacro="{NAMESPACE_URI}"{_escape(text[insertion_offset:])}'
     try:
         overlay = Overlay({str(new): xacro_text})
-        expansion = str(expand(new, {}, packages=project.finder(file), overlay=overlay))
+        expansion = str(expand(new, {}, packages=workspace.finder(file), overlay=overlay))
         first, second = (_comparable_elements(parse(source, file.name).root) for source in (text, expansion))
     except LinkwrightError as error:
         raise UnprovedError(error.diagnostics[0].message, error.diagnostics[0].span) from None
@@ -74,7 +74,9 @@ def convert_to_xacro(project: Workspace, texts: Mapping[Path, str], file: Path, 
 def _escape(text: str) -> str:
     """Escape the dollar signs before brackets for xacro, except in comments."""
     return "".join(
-        token.text if token.kind is Kind.COMMENT else _BEFORE_BRACKET.sub(lambda dollars: f"${dollars[0]}", token.text)
+        token.text
+        if token.kind is Kind.COMMENT
+        else _DOLLARS_BEFORE_BRACKET.sub(lambda dollars: f"${dollars[0]}", token.text)
         for token in tokens(text)
     )
 

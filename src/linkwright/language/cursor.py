@@ -79,7 +79,7 @@ def cursor_at(text: str, offset: int) -> Cursor:
             typed = text[token.start + 2 : offset]
             return Cursor(CursorSyntax.CLOSING_TAG, offset, tuple(tags), token, None, typed, tuple(elements))
         if is_inside and token.kind is Kind.START:
-            return _in_tag(text, offset, token, (*tags, token.name), (*elements, token))
+            return _cursor_in_tag(text, offset, token, (*tags, token.name), (*elements, token))
         if is_inside and token.kind is not Kind.TEXT:
             return Cursor(CursorSyntax.ELSEWHERE, offset, tuple(tags))
         if offset <= token.start or (token.kind is Kind.TEXT and offset <= token.end):
@@ -95,7 +95,7 @@ def cursor_at(text: str, offset: int) -> Cursor:
     return Cursor(CursorSyntax.TEXT, offset, tuple(tags), typed=text[begin:offset], elements=tuple(elements))
 
 
-def _in_tag(text: str, offset: int, token: Token, tags: tuple[str, ...], elements: tuple[Token, ...]) -> Cursor:
+def _cursor_in_tag(text: str, offset: int, token: Token, tags: tuple[str, ...], elements: tuple[Token, ...]) -> Cursor:
     if offset <= token.name_start + len(token.name):
         typed = text[token.name_start : offset]
         return Cursor(CursorSyntax.TAG, offset, tags[:-1], token, typed=typed, elements=elements[:-1])

@@ -25,7 +25,7 @@ class NameKind(Enum):
 
 
 _MACRO = "xacro:macro"
-_TAGS = {
+_KINDS_BY_TAG = {
     _MACRO: NameKind.MACRO,
     "xacro:property": NameKind.PROPERTY,
     "xacro:arg": NameKind.ARGUMENT,
@@ -34,7 +34,12 @@ _TAGS = {
     "material": NameKind.MATERIAL,
 }
 _COLOR = lazy_pattern(r"""(?:(?!</?material).){0,1000}?<color\b[^>]*?\brgba\s*=\s*["']([^"']*)["']""", re.DOTALL)
-_DETAILS = {NameKind.MACRO: "params", NameKind.PROPERTY: "value", NameKind.ARGUMENT: "default", NameKind.JOINT: "type"}
+_DETAIL_ATTRIBUTES = {
+    NameKind.MACRO: "params",
+    NameKind.PROPERTY: "value",
+    NameKind.ARGUMENT: "default",
+    NameKind.JOINT: "type",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +49,7 @@ class NameDefinition:
     Attributes:
         kind: the kind of the name.
         name: the name as written, which may contain expressions.
-        file: the file.
+        file: the file that contains the definition.
         start: the offset of the name in the text of the file.
         detail: the parameters of a macro, the value of a property, the default of an argument, the type of a
             joint, or the ``rgba`` of a material.
@@ -68,13 +73,13 @@ def definitions_in(text: str, file: Path) -> Iterator[NameDefinition]:
     for token in tokens(text):
         if token.name == _MACRO and token.kind is Kind.END and macros:
             macros.pop()
-        kind = _TAGS.get(token.name) if token.kind is Kind.START else None
+        kind = _KINDS_BY_TAG.get(token.name) if token.kind is Kind.START else None
         if kind is None:
             continue
         attributes: dict[str, TokenAttribute] = {attribute.name: attribute for attribute in token.attributes()}
         name = attributes.get("name")
         if name is not None and name.value and not (kind is NameKind.MATERIAL and token.is_empty_element):
-            detail, scope = attributes.get(_DETAILS.get(kind, "")), attributes.get("scope")
+            detail, scope = attributes.get(_DETAIL_ATTRIBUTES.get(kind, "")), attributes.get("scope")
             owner = "" if not macros or (scope is not None and scope.value) else macros[-1]
             detail_text = (detail.value or "") if detail else ""
             if kind is NameKind.MATERIAL:

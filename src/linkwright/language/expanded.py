@@ -59,13 +59,13 @@ class ExpandedText:
         ]
 
 
-def expanded_text(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
+def expand_to_text(
+    workspace: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
 ) -> ExpandedText:
     """Return the expansion of a description with the source of its elements.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         entry: the description.
         arguments: the values of its arguments, by name.
@@ -74,40 +74,42 @@ def expanded_text(
         LinkwrightError: the description cannot be expanded.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+    expansion = expand(entry, arguments, packages=workspace.finder(entry), overlay=overlay)
     text = str(expansion)
     expanded_root = parse(text, str(entry)).root
     elements = []
     for expanded_element, element in zip(expanded_root.walk(), expansion.document.root.walk(), strict=True):
-        expanded_range = _tag_range(expanded_element)
-        source = _tag_range(element)
+        expanded_range = _find_tag_range(expanded_element)
+        source = _find_tag_range(element)
         if expanded_range is not None and source is not None and element.source is not None:
             elements.append(ExpandedElement(*expanded_range, real_path(element.source.name), *source))
     return ExpandedText(text, tuple(elements))
 
 
-def _tag_range(element: Element) -> tuple[int, int] | None:
+def _find_tag_range(element: Element) -> tuple[int, int] | None:
     if element.source is None:
         return None
     return element.offset, start_tag_end(element.source.text, element.offset)
 
 
-def expanded_robots(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[tuple[Path, Robot]]:
-    """Yield the robots of the descriptions that include a file, one for each valid argument set.
+def expand_to_robots(workspace: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[tuple[Path, Robot]]:
+    """Yield the robots of the descriptions that include a file.
+
+    Each valid argument set gives a robot.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: a file that the descriptions include, or a description itself.
 
     Yields:
         The description and its robot.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    for entry in project.index.entries(file, texts):
-        for arguments, _ in project.argument_calls(entry):
+    for entry in workspace.index.entries(file, texts):
+        for arguments, _ in workspace.argument_calls(entry):
             try:
-                expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
+                expansion = expand(entry, arguments, packages=workspace.finder(entry), overlay=overlay)
             except LinkwrightError:
                 continue
             robot = read(expansion.document).robot

@@ -12,12 +12,12 @@ from linkwright.language.completion import Completion, ItemKind, definitions_of_
 from linkwright.language.cursor import Cursor
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document
-from linkwright.language.written_yaml import yaml_value
-from linkwright.xacro.expressions.builtin_names import BARE, MATHEMATICS
+from linkwright.language.loaded_yaml import find_yaml_value
+from linkwright.xacro.expressions.builtin_names import BARE_NAMES, MATHEMATICS
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 
-FUNCTIONS = tuple(sorted({*MATHEMATICS, *BARE}))
+FUNCTIONS = tuple(sorted({*MATHEMATICS, *BARE_NAMES}))
 """The names of the functions and constants in expressions (ros/xacro 2.1)."""
 XACRO_FUNCTIONS = {
     "xacro.load_yaml": "the content of a YAML file",
@@ -44,9 +44,11 @@ _COMMANDS = {
 _COMMON_FUNCTIONS = ("pi", "radians", "sin", "cos", "sqrt", "abs", "max", "min")
 _WORDS = re.compile(r"[A-Za-z_]\w*")
 _EXPRESSION = re.compile(r"\$\{([^{}]*)\}")
-_ITEM = re.compile(r"""([A-Za-z_]\w*)((?:\[\s*["'][^"'\]]*["']\s*\]|\.[A-Za-z_]\w*)*)(?:\[\s*["']|\.)([\w-]*)$""")
+_ITEM_ACCESS = re.compile(
+    r"""([A-Za-z_]\w*)((?:\[\s*["'][^"'\]]*["']\s*\]|\.[A-Za-z_]\w*)*)(?:\[\s*["']|\.)([\w-]*)$"""
+)
 _KEY = re.compile(r"""\[\s*["']([^"'\]]*)["']\s*\]|\.([A-Za-z_]\w*)""")
-_LONGEST_VALUE = 60
+_MAX_VALUE_LENGTH = 60
 
 
 def complete_expression(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Iterator[Completion]:
@@ -59,12 +61,12 @@ def complete_expression(document: Document, cursor: Cursor, names: Sequence[Name
         cursor: a cursor in ``${...}``.
         names: the names that the files of the description define.
     """
-    item = _ITEM.search(cursor.typed)
+    item = _ITEM_ACCESS.search(cursor.typed)
     if item is not None and item[1] not in ("xacro", "math", "python"):
         yield from _key_completions(document, item, cursor, names)
         return
     begin = cursor.offset - len(cursor.word)
-    uses = _word_counts(document.text)
+    uses = _count_words(document.text)
     for parameter in parameters_in_scope(cursor):
         detail = "" if parameter.default is None else f"= {parameter.default}"
         yield Completion(parameter.name, ItemKind.PROPERTY, begin, detail, f"**parameter {parameter.name}**")
@@ -84,7 +86,7 @@ def complete_expression(document: Document, cursor: Cursor, names: Sequence[Name
 
     for name in sorted(properties, key=rank):
         described = f"**property {name.name}** = `{name.detail}`, {name.file.name}"
-        yield Completion(name.name, ItemKind.PROPERTY, begin, _short(name.detail), described)
+        yield Completion(name.name, ItemKind.PROPERTY, begin, _shorten(name.detail), described)
     for function, purpose in XACRO_FUNCTIONS.items():
         yield Completion(function, ItemKind.FUNCTION, begin, purpose)
     for function in sorted(FUNCTIONS, key=lambda name: (name not in _COMMON_FUNCTIONS, -uses.get(name, 0))):
@@ -93,15 +95,15 @@ def complete_expression(document: Document, cursor: Cursor, names: Sequence[Name
 
 def parameters_in_scope(cursor: Cursor) -> list[Parameter]:
     """Return the parameters of the macro around a cursor, without block parameters."""
-    return [parameter for parameter in _parameters(cursor) if not parameter.is_block]
+    return [parameter for parameter in _parse_parameters(cursor) if not parameter.is_block]
 
 
 def blocks_in_scope(cursor: Cursor) -> list[Parameter]:
     """Return the block parameters of the macro around a cursor."""
-    return [parameter for parameter in _parameters(cursor) if parameter.is_block]
+    return [parameter for parameter in _parse_parameters(cursor) if parameter.is_block]
 
 
-def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
+def _parse_parameters(cursor: Cursor) -> tuple[Parameter, ...]:
     macro = cursor.macro
     params_values = (
         ()
@@ -114,7 +116,7 @@ def _parameters(cursor: Cursor) -> tuple[Parameter, ...]:
         return ()
 
 
-def _word_counts(text: str) -> Mapping[str, int]:
+def _count_words(text: str) -> Mapping[str, int]:
     """Return the number of occurrences of each word in the expressions of a text."""
     use_counts: dict[str, int] = {}
     for expression in _EXPRESSION.finditer(text):
@@ -127,12 +129,12 @@ def _key_completions(
     document: Document, item: re.Match[str], cursor: Cursor, names: Sequence[NameDefinition]
 ) -> Iterator[Completion]:
     """Yield completions of the keys of a mapping that a property loads from a YAML file."""
-    value: Any = yaml_value(document, item[1], names)
+    value: Any = find_yaml_value(document, item[1], names)
     for key in _KEY.finditer(item[2]):
         value = value.get(key[1] or key[2]) if isinstance(value, Mapping) else None
     for key_name, inner in value.items() if isinstance(value, Mapping) else ():
         detail = ", ".join(map(str, inner)) if isinstance(inner, Mapping) else str(inner)
-        yield Completion(str(key_name), ItemKind.PROPERTY, cursor.offset - len(item[3]), _short(detail))
+        yield Completion(str(key_name), ItemKind.PROPERTY, cursor.offset - len(item[3]), _shorten(detail))
 
 
 def complete_substitution(document: Document, cursor: Cursor, names: Sequence[NameDefinition]) -> Iterator[Completion]:
@@ -156,7 +158,7 @@ def complete_substitution(document: Document, cursor: Cursor, names: Sequence[Na
     if command == "arg":
         for definition in definitions_of_kind(names, NameKind.ARGUMENT):
             described = f"**argument {definition.name}** = `{definition.detail}`, {definition.file.name}"
-            yield Completion(definition.name, ItemKind.NAME, begin, _short(definition.detail), described)
+            yield Completion(definition.name, ItemKind.NAME, begin, _shorten(definition.detail), described)
     elif command == "find":
         yield from package_completions(document, begin)
 
@@ -173,9 +175,9 @@ def package_completions(document: Document, start: int) -> Iterator[Completion]:
         yield Completion(name, ItemKind.PACKAGE, start, str(packages[name]))
 
 
-def _short(text: str) -> str:
+def _shorten(text: str) -> str:
     line = " ".join(text.split())
-    return line if len(line) <= _LONGEST_VALUE else f"{line[: _LONGEST_VALUE - 3]}..."
+    return line if len(line) <= _MAX_VALUE_LENGTH else f"{line[: _MAX_VALUE_LENGTH - 3]}..."
 
 
 def function_purpose(function: str) -> str:

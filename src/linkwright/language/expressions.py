@@ -36,7 +36,7 @@ class SourceExpression(NamedTuple):
 
 
 def decode_entities(text: str) -> str:
-    """Replace each XML entity with its character, padded with spaces to the length of the entity."""
+    """Replace each XML entity with its character, padded with spaces to the same length."""
     return _ENTITY.sub(lambda entity: _CHARACTERS[entity[0]].ljust(len(entity[0])), text)
 
 

@@ -15,8 +15,8 @@ from linkwright.language.expressions import expressions_in, is_subexpression
 from linkwright.language.grammar import PREFIX
 from linkwright.language.occurrences import occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
+from linkwright.language.source_elements import MACRO, SourceElement, find_innermost_element, source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import MACRO, SourceElement, innermost_element, source_elements
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro.expressions.builtin_names import MATHEMATICS
 from linkwright.xmltree.patches import indentation, line_ending
@@ -54,7 +54,7 @@ class ValueSelection:
     component: str = ""
 
 
-def selected_value(text: str, start: int, end: int) -> ValueSelection | None:
+def find_selected_value(text: str, start: int, end: int) -> ValueSelection | None:
     """Return the selected value, or the number at a cursor.
 
     Args:
@@ -66,7 +66,7 @@ def selected_value(text: str, start: int, end: int) -> ValueSelection | None:
         The value, or None if it cannot become a property.
     """
     elements = source_elements(text)
-    element = innermost_element(elements, start)
+    element = find_innermost_element(elements, start)
     if element is None or element.top is None:
         return None
     if start < element.tag.end:
@@ -80,11 +80,11 @@ def selected_value(text: str, start: int, end: int) -> ValueSelection | None:
         )
         if attribute is None or attribute.value is None or not _is_evaluated(element, attribute):
             return None
-        return _selection(element, attribute.name, attribute.value, attribute.value_start, (start, end))
+        return _select_part(element, attribute.name, attribute.value, attribute.value_start, (start, end))
     for token in tokens(text[element.tag.end : element.end]):
         first = element.tag.end + token.start
         if token.kind is Kind.TEXT and first <= start <= first + len(token.text) and not element.children:
-            return _selection(element, "", token.text, first, (start, end))
+            return _select_part(element, "", token.text, first, (start, end))
     return None
 
 
@@ -95,15 +95,15 @@ def _is_evaluated(element: SourceElement, attribute: TokenAttribute) -> bool:
     return key != "name" or element.name not in _UNEVALUATED_NAMES
 
 
-def _selection(
+def _select_part(
     element: SourceElement, attribute: str, value: str, value_start: int, selected: tuple[int, int]
 ) -> ValueSelection | None:
     """Return the selected part of a value without surrounding spaces, or None.
 
     Args:
-        element: the element.
+        element: the element that has the value.
         attribute: the name of the attribute, or empty for the text of the element.
-        value: the value.
+        value: the whole value, as written.
         value_start: the offset of the value in the file.
         selected: the start and end offset of the selection in the file.
     """
@@ -143,7 +143,7 @@ def _selection(
         value_start + start,
         value_start + end,
         enclosing is not None,
-        _component(attribute, value, start, end),
+        _component_name(attribute, value, start, end),
     )
 
 
@@ -162,7 +162,7 @@ def _is_plain_part(value: str, start: int, end: int) -> bool:
     return not ends_in_number and not (re.search(r"[\w.]$", part) and re.match(r"[\d.]", value[end:]))
 
 
-def _component(attribute: str, value: str, start: int, end: int) -> str:
+def _component_name(attribute: str, value: str, start: int, end: int) -> str:
     names, words = _COMPONENTS.get(attribute, ()), value.split()
     if "$" in value or len(words) != len(names) or value.split() == [value[start:end]]:
         return ""
@@ -171,23 +171,23 @@ def _component(attribute: str, value: str, start: int, end: int) -> str:
 
 
 def extract_property(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: ValueSelection
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, selection: ValueSelection
 ) -> tuple[Edit, ...]:
     """Return the proved edits that replace a value by a new property.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: the file that contains the value.
         text: its text.
-        selection: the value.
+        selection: the value that becomes a property.
 
     Raises:
         UnprovedError: the expansions would differ wherever the property is defined.
     """
     element, tag = selection.element, selection.element.name.removeprefix(PREFIX)
-    name = unique_name(
-        project, texts, file, "_".join(filter(None, (tag, selection.component or selection.attribute or "value")))
+    name = make_unique_name(
+        workspace, texts, file, "_".join(filter(None, (tag, selection.component or selection.attribute or "value")))
     )
     value = text[selection.start : selection.end]
     is_number = _NUMBER.fullmatch(value.lstrip("+-")) is not None
@@ -200,10 +200,10 @@ def extract_property(
         name.kind is NameKind.PARAMETER and selection.start <= name.start < selection.end and not name.is_definition
         for name in names
     )
-    proof = ExpansionProof(project, texts, file)
+    proof = ExpansionProof(workspace, texts, file)
     error: UnprovedError | None = None
     for insertion_offset in _definition_offsets(text, element, is_local=is_local):
-        edits = (insertion_before(file, text, insertion_offset, definition), use)
+        edits = (make_insertion_before(file, text, insertion_offset, definition), use)
         try:
             proof.check_equal(edits)
         except UnprovedError as reason:
@@ -229,15 +229,15 @@ def _definition_offsets(text: str, element: SourceElement, *, is_local: bool) ->
     if macro is not None:
         places.append(element.child_of(macro))
     places.append(element)
-    offsets = [offset for anchor in places for offset in (start_with_comments(text, anchor.start), anchor.start)]
+    offsets = [offset for anchor in places for offset in (find_start_with_comments(text, anchor.start), anchor.start)]
     yield from dict.fromkeys(offsets)
 
 
-def start_with_comments(text: str, start: int) -> int:
+def find_start_with_comments(text: str, start: int) -> int:
     """Return the start of an element, including the comments directly above it.
 
     Args:
-        text: the text.
+        text: the text of a file.
         start: the character offset of the element.
     """
     while True:
@@ -250,28 +250,28 @@ def start_with_comments(text: str, start: int) -> int:
         start = begin
 
 
-def insertion_before(file: Path, text: str, start: int, new: str) -> Edit:
+def make_insertion_before(file: Path, text: str, start: int, new: str) -> Edit:
     """Return the edit that inserts lines before an offset, with the indentation of that line."""
     blanks = indentation(text, start)
     separator = "" if blanks is None else f"{line_ending(text)}{blanks}"
     return Edit(file, start, start, new + separator)
 
 
-def unique_name(project: Workspace, texts: Mapping[Path, str], file: Path, preferred: str) -> str:
+def make_unique_name(workspace: Workspace, texts: Mapping[Path, str], file: Path, preferred: str) -> str:
     """Return a name for a property or macro that no file of the description contains.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
-        preferred: the preferred name.
+        file: a file of the description.
+        preferred: the name to which a number is appended if a file contains it.
     """
     base = re.sub(r"\W+", "_", preferred).strip("_") or "value"
     if base[0].isdigit():
         base = f"_{base}"
     used_names = {*keyword.kwlist, *dir(builtins), *MATHEMATICS, *_NAMESPACES}
-    for other in project.index.related_files(file, texts):
-        used_names.update(re.findall(r"\w+", project.text(other, texts) or ""))
+    for other in workspace.index.related_files(file, texts):
+        used_names.update(re.findall(r"\w+", workspace.text(other, texts) or ""))
     name, count = base, 1
     while name in used_names:
         count += 1

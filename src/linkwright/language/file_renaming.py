@@ -14,9 +14,9 @@ from linkwright.language.includes import real_path
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.mentions import Mention
 from linkwright.language.proof import Edit
-from linkwright.language.values import values_in
+from linkwright.language.values import evaluate_file
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import XML_FILES
+from linkwright.lint.targets import XML_SUFFIXES
 from linkwright.packages.share_layout import source_of
 
 _OTHER_FILES = (".py", ".yaml", ".yml", ".rviz", "CMakeLists.txt")
@@ -25,7 +25,7 @@ _SHARE_PATH = re.compile(
     r"(?:package://|model://|\$\((?:find|find-pkg-share)\s+)(?P<package>[\w-]+)(?:\s*\))?/(?P<path>[\w./-]+)"
 )
 _WORD = re.compile(r"(?<![\w./$-])[\w.-]+(?:/[\w.-]+)*")
-_MAX_TEXT = 1_000_000
+_MAX_TEXT_LENGTH = 1_000_000
 """The maximum length in characters. Longer files are data, not configuration."""
 
 
@@ -41,22 +41,22 @@ class FileRenaming(NamedTuple):
     unchanged: tuple[Mention, ...]
 
 
-def rename_file(project: Workspace, texts: Mapping[Path, str], old: Path, new: Path) -> FileRenaming:
+def rename_file(workspace: Workspace, texts: Mapping[Path, str], old: Path, new: Path) -> FileRenaming:
     """Return the edits of the files that refer to a renamed file.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         old: the present path of the file.
         new: its path after the renaming.
     """
     edits: list[Edit] = []
     unchanged: list[Mention] = []
-    for file in dict.fromkeys((*project.index.files, *project.files((*XML_FILES, ".xml", *_OTHER_FILES)))):
-        text = project.text(file, texts)
-        if text is None or len(text) > _MAX_TEXT or old.name not in text or not project.contains(file):
+    for file in dict.fromkeys((*workspace.index.files, *workspace.files((*XML_SUFFIXES, ".xml", *_OTHER_FILES)))):
+        text = workspace.text(file, texts)
+        if text is None or len(text) > _MAX_TEXT_LENGTH or old.name not in text or not workspace.contains(file):
             continue
-        certain = _reference_edits(project, texts, file, text, old, new)
+        certain = _reference_edits(workspace, texts, file, text, old, new)
         edits += certain
         mentions = re.finditer(rf"(?<![\w.-]){re.escape(old.name)}(?![\w-])", text)
         starts = (mention.start() for mention in mentions)
@@ -69,11 +69,11 @@ def rename_file(project: Workspace, texts: Mapping[Path, str], old: Path, new: P
 
 
 def _reference_edits(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, old: Path, new: Path
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, old: Path, new: Path
 ) -> list[Edit]:
     """Return the edits of the references to the old file in a text."""
     edits: dict[int, Edit] = {}
-    for link in (*_format_references(project, texts, file, text), *_path_references(project, file, text)):
+    for link in (*_format_references(workspace, texts, file, text), *_path_references(workspace, file, text)):
         if real_path(link.file) == old:
             edit = _reference_edit(file, text, link.start, link.end, old, new)
             if edit is not None:
@@ -81,23 +81,25 @@ def _reference_edits(
     return [*edits.values()]
 
 
-def _format_references(project: Workspace, texts: Mapping[Path, str], file: Path, text: str) -> Iterator[FileReference]:
+def _format_references(
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str
+) -> Iterator[FileReference]:
     """Yield the references in a file that its format defines."""
     format_ = format_of(file)
     if format_ is not None:
-        yield from format_.links(Document(project, texts, file, text))
-    if file.name.endswith((*XML_FILES, ".xml")):
+        yield from format_.links(Document(workspace, texts, file, text))
+    if file.name.endswith((*XML_SUFFIXES, ".xml")):
         try:
-            values = values_in(project, texts, file)
+            values = evaluate_file(workspace, texts, file)
         except LinkwrightError:
             values = []
-        yield from file_references(text, file, project.finder(file), values)
+        yield from file_references(text, file, workspace.finder(file), values)
 
 
-def _path_references(project: Workspace, file: Path, text: str) -> Iterator[FileReference]:
+def _path_references(workspace: Workspace, file: Path, text: str) -> Iterator[FileReference]:
     """Yield the references into share folders, and the paths in build files."""
     for match in _SHARE_PATH.finditer(text):
-        share = project.finder(file).find(match["package"])
+        share = workspace.finder(file).find(match["package"])
         if share is not None:
             yield FileReference(match.start("path"), match.end("path"), Path(source_of(str(share / match["path"]))))
     if file.name in _BUILD_FILES:

@@ -23,7 +23,7 @@ class Document:
     """A text that an editor shows.
 
     Attributes:
-        project: the files of the editor.
+        workspace: the folders that the editor has opened.
         texts: the texts of all open files.
         file: the file, as `linkwright.language.includes.real_path` returns it.
         text: its text, which may be incomplete.
@@ -32,7 +32,7 @@ class Document:
         refreshes: the functions to call in the check thread after a request, so that the next one has current results.
     """
 
-    project: Workspace
+    workspace: Workspace
     texts: Mapping[Path, str]
     file: Path
     text: str
@@ -42,11 +42,11 @@ class Document:
     @property
     def finder(self) -> PackageFinder:
         """The finder of packages for the file."""
-        return self.project.finder(self.file)
+        return self.workspace.finder(self.file)
 
     def other(self, file: Path) -> str:
         """Return the text of another file, open or not, or empty if it cannot be read."""
-        return self.project.text(file, self.texts) or ""
+        return self.workspace.text(file, self.texts) or ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class Target:
     """A location that a name refers to.
 
     Attributes:
-        file: the file.
+        file: the file that contains the location.
         start: the character offset of the location in its text.
         end: the offset after it.
     """
@@ -84,7 +84,7 @@ class Symbol:
     """A named part of a text.
 
     Attributes:
-        name: the name.
+        name: the name, as editors show it.
         kind: its kind.
         start: the character offset of the part.
         end: the offset after it.

@@ -8,7 +8,7 @@ from pathlib import Path
 from linkwright.language.extension_schema import DESCRIPTION
 from linkwright.language.launch_schema import LAUNCH
 from linkwright.language.manifest_schema import PACKAGE
-from linkwright.language.simulator_plugins import plugin_of
+from linkwright.language.simulator_plugins import find_plugin
 from linkwright.language.srdf_schema import SRDF
 from linkwright.packages.manifest import MANIFEST
 from linkwright.schema import AttributeRule, ElementRule, ValueType
@@ -145,7 +145,7 @@ def rule_at(root: ElementRule, tags: Sequence[str], elements: Sequence[Token] = 
 
 def _rule_of_plugin(element: Token) -> ElementRule | None:
     attributes = {attribute.name: attribute.value or "" for attribute in element.attributes()}
-    plugin = plugin_of(attributes.get("filename", ""), attributes.get("name", ""))
+    plugin = find_plugin(attributes.get("filename", ""), attributes.get("name", ""))
     return None if plugin is None else plugin.rule
 
 

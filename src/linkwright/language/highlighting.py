@@ -100,7 +100,7 @@ def _highlight_value(value: str, start: int) -> Iterator[Highlight]:
         begin, end = start + part.start, start + part.end
         yield Highlight(begin, begin + 2, HighlightKind.OPERATOR)
         if part.kind is TokenKind.EXPRESSION:
-            yield from _in_expression(part.text, begin + 2)
+            yield from _highlight_expression(part.text, begin + 2)
         else:
             command = re.match(r"\s*(\w+)", part.text)
             if command is not None:
@@ -108,7 +108,7 @@ def _highlight_value(value: str, start: int) -> Iterator[Highlight]:
         yield Highlight(end - 1, end, HighlightKind.OPERATOR)
 
 
-def _in_expression(source: str, start: int) -> Iterator[Highlight]:
+def _highlight_expression(source: str, start: int) -> Iterator[Highlight]:
     for match in _WORDS.finditer(source):
         begin, end = start + match.start(), start + match.end()
         if match["string"]:

@@ -10,11 +10,11 @@ from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.inertia.mesh_library import MeshLibrary
 from linkwright.language.definitions import NameKind
-from linkwright.language.expanded import expanded_robots, is_source_of
+from linkwright.language.expanded import expand_to_robots, is_source_of
 from linkwright.language.links import file_references
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.renaming import occurrence_at
-from linkwright.language.valid_parts import valid_parts
+from linkwright.language.valid_parts import expand_valid_parts
 from linkwright.language.values import EvaluatedText
 from linkwright.language.workspace import Workspace
 from linkwright.packages import PackageFinder
@@ -26,13 +26,13 @@ from linkwright.xmltree import parse
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.reader import read_bytes
 
-_MESH_FILES = (".stl", ".obj", ".dae")
+_MESH_SUFFIXES = (".stl", ".obj", ".dae")
 _MAX_PARTS = 2
 _PACKAGE = re.compile(r"(?:package://|\$\(find(?:-pkg-share)?\s+)([\w.-]+)")
 
 
 def facts_at(
-    project: Workspace,
+    workspace: Workspace,
     texts: Mapping[Path, str],
     file: Path,
     text: str,
@@ -42,30 +42,30 @@ def facts_at(
     """Return the facts about the link, joint, mesh or package at an offset, each as Markdown.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: the file of the request.
         text: its text.
-        offset: the character offset.
+        offset: the character offset of the cursor.
         values: the values of the expressions in the file.
     """
-    finder = project.finder(file)
+    finder = workspace.finder(file)
     line_start, line_end = text.rfind("\n", 0, offset) + 1, text.find("\n", offset)
     for match in _PACKAGE.finditer(text, line_start, len(text) if line_end < 0 else line_end):
         if match.start(1) <= offset <= match.end(1):
-            package = package_facts(finder, match[1])
+            package = describe_package(finder, match[1])
             return [] if package is None else [package]
     for link in file_references(text, file, finder, values):
         if link.start <= offset <= link.end:
-            mesh = mesh_facts(link.file)
+            mesh = describe_mesh(link.file)
             if mesh is not None:
                 return [mesh]
     part = occurrence_at(text, file, offset)
-    return [] if part is None else [*_parts(project, texts, part, values)]
+    return [] if part is None else [*_describe_parts(workspace, texts, part, values)]
 
 
-def _parts(
-    project: Workspace, texts: Mapping[Path, str], part: Occurrence, values: Sequence[EvaluatedText]
+def _describe_parts(
+    workspace: Workspace, texts: Mapping[Path, str], part: Occurrence, values: Sequence[EvaluatedText]
 ) -> Iterator[str]:
     """Yield the facts about the links or joints that a name denotes when it is evaluated."""
     if part.kind not in (NameKind.LINK, NameKind.JOINT):
@@ -74,53 +74,54 @@ def _parts(
     if "$" in part.name:
         whole_value = next((value for value in values if (value.start, value.end) == (part.start, part.end)), None)
         names = [] if whole_value is None else [name.strip("'\"") for name in whole_value.values()]
-    robots = [*robots_of(project, texts, part.file)]
-    source_robots = [robot for robot in robots if _is_made_by(robot, part, project.text(part.file, texts) or "")]
+    robots = [*robots_of(workspace, texts, part.file)]
+    source_robots = [robot for robot in robots if _generates_part(robot, part, workspace.text(part.file, texts) or "")]
     if source_robots or part.is_definition:
         robots = source_robots  # Another file may define a link with this name for another robot.
     for name in names[:_MAX_PARTS]:
-        facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), None)
+        facts = next((facts for robot in robots if (facts := describe_part(robot, part.kind, name))), None)
         if facts is not None:
             yield f"**{part.kind.value} {name}**\n\n{facts}"
 
 
-def _is_made_by(robot: Robot, part: Occurrence, text: str) -> bool:
-    """Return whether the link or joint element around an occurrence generates a part of a robot."""
+def _generates_part(robot: Robot, part: Occurrence, text: str) -> bool:
+    """Return whether the element around an occurrence generates a link or joint of a robot."""
     start = max(text.rfind(tag, 0, part.start) for tag in ("<link", "<joint"))
     links, joints = robot.links.values(), robot.joints.values()
     elements = (*(link.element for link in links), *(joint.element for joint in joints))
     return any(is_source_of(part.file, start, element) for element in elements)
 
 
-def robots_of(project: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[Robot]:
-    """Yield the robots of the descriptions that include a file, one for each valid argument set.
+def robots_of(workspace: Workspace, texts: Mapping[Path, str], file: Path) -> Iterator[Robot]:
+    """Yield the robots of the descriptions that include a file.
 
-    If no description can be expanded, the robots are those in the valid parts of the descriptions and of the file.
+    Each valid argument set gives one robot. If no description can be expanded, the robots are those in the valid parts
+    of the descriptions and of the file.
     """
     is_found = False
-    for _, robot in expanded_robots(project, texts, file):
+    for _, robot in expand_to_robots(workspace, texts, file):
         is_found = True
         yield robot
-    entries = project.index.entries(file, texts)
+    entries = workspace.index.entries(file, texts)
     for entry in () if is_found else dict.fromkeys((*entries, file)):
-        parts = valid_parts(project, texts, entry)
+        parts = expand_valid_parts(workspace, texts, entry)
         partial_robot = None if parts is None else read(parts.document).robot
         if partial_robot is not None:
             yield partial_robot
 
 
-def part_facts(robot: Robot, kind: NameKind, name: str) -> str | None:
+def describe_part(robot: Robot, kind: NameKind, name: str) -> str | None:
     """Return the facts about a link or joint of a robot, or None if the robot lacks it."""
     if kind is NameKind.LINK and name in robot.links:
-        return "\n".join(_link_facts(robot, robot.links[name]))
+        return "\n".join(_describe_link(robot, robot.links[name]))
     if kind is NameKind.JOINT and name in robot.joints:
-        return "\n".join(_joint_facts(robot.joints[name]))
+        return "\n".join(_describe_joint(robot.joints[name]))
     return None
 
 
-def mesh_facts(file: Path) -> str | None:
+def describe_mesh(file: Path) -> str | None:
     """Return the size, triangle count and file size of a mesh, or None if it is unreadable."""
-    if file.suffix.lower() not in _MESH_FILES:
+    if file.suffix.lower() not in _MESH_SUFFIXES:
         return None
     try:
         outline = MeshLibrary(PackageFinder(), file.parent).outline(Mesh(str(file)))
@@ -132,7 +133,7 @@ def mesh_facts(file: Path) -> str | None:
     return f"`{file.name}`: {localized(facts)}"
 
 
-def package_facts(finder: PackageFinder, name: str) -> str | None:
+def describe_package(finder: PackageFinder, name: str) -> str | None:
     """Return the description and the folder of a package, or None if it is not found."""
     folder = finder.find(name)
     if folder is None:
@@ -144,7 +145,7 @@ def package_facts(finder: PackageFinder, name: str) -> str | None:
     return f"**{name}**" + (f": {description}" if description else "") + f"\n\n`{folder}`"
 
 
-def _link_facts(robot: Robot, link: Link) -> Iterator[str]:
+def _describe_link(robot: Robot, link: Link) -> Iterator[str]:
     parent = parent_joints(robot).get(link.name)
     if parent is None:
         yield "- " + localized(phrase("root of the link tree"))
@@ -168,7 +169,7 @@ def _link_facts(robot: Robot, link: Link) -> Iterator[str]:
         yield "- " + localized(phrase("center of mass {center} m; {moments} kg m²", center=center, moments=moments))
 
 
-def _joint_facts(joint: Joint) -> Iterator[str]:
+def _describe_joint(joint: Joint) -> Iterator[str]:
     yield "- " + localized(
         phrase("{type} joint from `{parent}` to `{child}`", type=joint.type, parent=joint.parent, child=joint.child)
     )

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from linkwright.lint.inclusions import Inclusion, folders_by_package, inclusions_in
-from linkwright.lint.targets import DESCRIPTIONS, walk
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES, find_files_and_packages
 
 
 class IncludeIndex:
@@ -16,7 +16,7 @@ class IncludeIndex:
     A file is read again only when it has changed.
 
     Args:
-        folders: the folders.
+        folders: the folders to search.
 
     Attributes:
         files: the descriptions, and the files with parts of them.
@@ -35,7 +35,7 @@ class IncludeIndex:
         files: dict[Path, None] = {}
         packages: dict[Path, None] = {}
         for folder in self._folders:
-            descriptions, package_folders = walk(folder, DESCRIPTIONS)
+            descriptions, package_folders = find_files_and_packages(folder, DESCRIPTION_SUFFIXES)
             files.update(dict.fromkeys(real_path(file) for file in descriptions))
             packages.update(dict.fromkeys(package_folders))
         self.files, self.packages = tuple(files), tuple(packages)
@@ -69,7 +69,7 @@ class IncludeIndex:
         Args:
             texts: texts that replace those of files.
         """
-        files = dict.fromkeys((*self.files, *(file for file in texts if file.name.endswith(DESCRIPTIONS))))
+        files = dict.fromkeys((*self.files, *(file for file in texts if file.name.endswith(DESCRIPTION_SUFFIXES))))
         includers = self._index_includers(texts)
         return [file for file in files if not self._find_includers(file, includers)]
 
@@ -79,7 +79,7 @@ class IncludeIndex:
         The files that it includes are among them.
 
         Args:
-            file: the file.
+            file: the file, as `real_path` returns it.
             texts: texts that replace those of files.
             computed: whether an include with a computed path counts for each file that it can mean.
         """

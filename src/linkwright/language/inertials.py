@@ -9,18 +9,18 @@ from linkwright.diagnostics import phrase
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inertia.source_edits import EXPRESSION, NotWritableError
 from linkwright.inertia.writing import edits_of_link
-from linkwright.language.expanded import expanded_robots, is_source_of
+from linkwright.language.expanded import expand_to_robots, is_source_of
 from linkwright.language.grammar import PREFIX
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
+from linkwright.language.source_elements import SourceElement, find_innermost_element, source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import SourceElement, innermost_element, source_elements
 from linkwright.urdf import Link, Robot
 from linkwright.xmltree import Element
 
 
 def link_with_shapes_at(text: str, offset: int) -> SourceElement | None:
     """Return the link around an offset if it has shapes without expressions, or None."""
-    element = innermost_element(source_elements(text), offset)
+    element = find_innermost_element(source_elements(text), offset)
     link = (
         None
         if element is None
@@ -34,7 +34,7 @@ def link_with_shapes_at(text: str, offset: int) -> SourceElement | None:
 
 
 def fill_in_inertia(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, link: SourceElement
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, link: SourceElement
 ) -> tuple[Edit, ...]:
     """Return the edits that set the inertia of a link to the inertia of its shapes.
 
@@ -42,18 +42,18 @@ def fill_in_inertia(
     the same shapes, as in `linkwright inertia`.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: the file that contains the link.
         text: its text.
-        link: the link.
+        link: a link, as `link_with_shapes_at` returns it.
 
     Raises:
         UnprovedError: no expansion contains the link, its inertia is unknown or cannot be written, or something else
             would change.
     """
-    robot, entry, expanded_link = _expanded_link(project, texts, file, link)
-    finder = project.finder(entry)
+    robot, entry, expanded_link = _find_expanded_link(workspace, texts, file, link)
+    finder = workspace.finder(entry)
     properties = estimate(expanded_link, MeshLibrary(finder, entry.parent)).properties
     if properties is None:
         raise UnprovedError(phrase("no shape of the link '{name}' has a volume", name=expanded_link.name))
@@ -66,17 +66,17 @@ def fill_in_inertia(
     edits = tuple(Edit(file, replacement.start, replacement.end, replacement.text) for replacement in replacements)
     if not edits:
         raise UnprovedError(phrase("the link '{name}' already has this inertia", name=expanded_link.name))
-    for pair in ExpansionProof(project, texts, file).pairs(edits):
+    for pair in ExpansionProof(workspace, texts, file).pairs(edits):
         first, second = (_without_inertial(root, expanded_link.name) for root in (pair.before, pair.after))
         if first != second:
             raise UnprovedError(phrase("the robot of '{file}' would change", file=pair.entry.name))
     return edits
 
 
-def _expanded_link(
-    project: Workspace, texts: Mapping[Path, str], file: Path, link: SourceElement
+def _find_expanded_link(
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, link: SourceElement
 ) -> tuple[Robot, Path, Link]:
-    for entry, robot in expanded_robots(project, texts, file):
+    for entry, robot in expand_to_robots(workspace, texts, file):
         expanded_link = next(
             (candidate for candidate in robot.links.values() if is_source_of(file, link.start, candidate.element)), None
         )

@@ -12,17 +12,17 @@ from linkwright.language.definitions import NameKind
 from linkwright.language.expressions import SourceExpression, decode_entities, expressions_in, substitute_name
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
-from linkwright.language.renaming import occurrence_at, references
+from linkwright.language.renaming import find_references, occurrence_at
+from linkwright.language.source_elements import SourceElement, find_innermost_element, source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import SourceElement, innermost_element, source_elements
 from linkwright.loading.deferred import lazy_pattern
-from linkwright.xacro.expressions.scope import literal
+from linkwright.xacro.expressions.scope import parse_literal
 from linkwright.xmltree.patches import whole_lines
 from linkwright.xmltree.tokens import Kind, tokens
 
 _LITERAL = lazy_pattern(r"[^$'\"&<\\]*")
 _PROPERTY = "xacro:property"
-_ATTRIBUTES = frozenset({"name", "value", "scope", "lazy_eval"})
+_PROPERTY_ATTRIBUTES = frozenset({"name", "value", "scope", "lazy_eval"})
 """The attributes that an inlinable definition may have.
 
 A ``default`` is not allowed, because its effect depends on other definitions.
@@ -43,17 +43,17 @@ class _Piece(NamedTuple):
     quote: str
 
 
-def property_at(text: str, file: Path, offset: int) -> Occurrence | None:
+def find_property_at(text: str, file: Path, offset: int) -> Occurrence | None:
     """Return the use or definition of a property at an offset, or None."""
     name = occurrence_at(text, file, offset)
     return name if name is not None and name.kind is NameKind.PROPERTY else None
 
 
-def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> tuple[Edit, ...]:
+def inline_property(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence) -> tuple[Edit, ...]:
     """Return the proved edits that replace all uses of a property with its value.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         name: a use or the definition of the property.
 
@@ -61,24 +61,24 @@ def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurre
         UnprovedError: the property does not have exactly one definition, a use cannot be replaced, or the expansions
             would differ.
     """
-    uses = references(project, texts, name)
+    uses = find_references(workspace, texts, name)
     definitions = [use for use in uses if use.is_definition]
     if len(definitions) != 1:
         raise UnprovedError(
             phrase("'{name}' has {count} definitions instead of one", name=name.name, count=len(definitions))
         )
     definition = definitions[0]
-    source = project.text(definition.file, texts) or ""
-    element = innermost_element(source_elements(source), definition.start)
-    value = None if element is None else _value(element)
+    source = workspace.text(definition.file, texts) or ""
+    element = find_innermost_element(source_elements(source), definition.start)
+    value = None if element is None else _find_literal_value(element)
     if element is None or value is None:
         raise UnprovedError(phrase("'{name}' is not defined by a value alone", name=name.name))
     lines = whole_lines(source, element.start, element.end)
     removal = Edit(definition.file, *lines, "")
-    proof = ExpansionProof(project, texts, definition.file)
+    proof = ExpansionProof(workspace, texts, definition.file)
     error: UnprovedError | None = None
     for is_raw in (True, False):
-        edits = [removal, *_generate_replacements(project, texts, uses, value, is_raw=is_raw)]
+        edits = [removal, *_generate_replacements(workspace, texts, uses, value, is_raw=is_raw)]
         try:
             proof.check_equal(edits)
         except UnprovedError as reason:
@@ -89,30 +89,30 @@ def inline_property(project: Workspace, texts: Mapping[Path, str], name: Occurre
     raise error
 
 
-def _value(element: SourceElement) -> str | None:
+def _find_literal_value(element: SourceElement) -> str | None:
     """Return the value in a property's definition, or None if the definition has more parts."""
     attributes = {attribute.name: attribute.value for attribute in element.tag.attributes()}
-    if element.name != _PROPERTY or element.children or element.end < 0 or not {*attributes} <= _ATTRIBUTES:
+    if element.name != _PROPERTY or element.children or element.end < 0 or not {*attributes} <= _PROPERTY_ATTRIBUTES:
         return None
     return attributes.get("value")
 
 
 def _generate_replacements(
-    project: Workspace, texts: Mapping[Path, str], uses: Sequence[Occurrence], value: str, *, is_raw: bool
+    workspace: Workspace, texts: Mapping[Path, str], uses: Sequence[Occurrence], value: str, *, is_raw: bool
 ) -> Iterator[Edit]:
     """Yield the edits of the uses of a property.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         uses: the occurrences of the name.
         value: the value of the property as written.
         is_raw: whether the value as written replaces an expression that consists of the name alone.
     """
     for file in dict.fromkeys(use.file for use in uses):
-        text = project.text(file, texts) or ""
+        text = workspace.text(file, texts) or ""
         places = [use for use in uses if use.file == file and not use.is_definition]
-        pieces = [*_pieces(text)] if places else []
+        pieces = [*_find_pieces(text)] if places else []
         replaced_ranges: set[tuple[int, int]] = set()
         for use in places:
             piece = next(
@@ -123,7 +123,7 @@ def _generate_replacements(
                 ),
                 None,
             )
-            expression = None if piece is None else _expression_around(piece, use)
+            expression = None if piece is None else _find_expression_around(piece, use)
             if piece is None or expression is None or text[: use.start].endswith("."):
                 line = text.count("\n", 0, use.start) + 1
                 message = phrase(
@@ -140,7 +140,7 @@ def _generate_replacements(
                 yield Edit(file, *span, _make_replacement(expression, piece, names, value, is_raw=is_raw))
 
 
-def _pieces(text: str) -> Iterator[_Piece]:
+def _find_pieces(text: str) -> Iterator[_Piece]:
     """Yield the values and character data of a text that contain expressions."""
     for token in tokens(text):
         if token.kind is Kind.START:
@@ -151,7 +151,7 @@ def _pieces(text: str) -> Iterator[_Piece]:
             yield _Piece(token.start, token.text, "")
 
 
-def _expression_around(piece: _Piece, use: Occurrence) -> SourceExpression | None:
+def _find_expression_around(piece: _Piece, use: Occurrence) -> SourceExpression | None:
     offset = use.start - piece.start
     return next(
         (expression for expression in expressions_in(piece.text) if expression.start < offset < expression.end), None
@@ -164,9 +164,9 @@ def _make_replacement(
     """Return the text that replaces an expression with the property."""
     quotes = {"'": "&apos;", '"': "&quot;"}
     source, low = expression.source, piece.start + expression.inner_range[0]
-    if source.strip() == names[0].name and (is_raw or _as_expression(value, piece.quote) is None):
+    if source.strip() == names[0].name and (is_raw or _to_expression(value, piece.quote) is None):
         return value.replace(piece.quote, quotes[piece.quote]) if piece.quote else value
-    new = _as_expression(value, piece.quote)
+    new = _to_expression(value, piece.quote)
     if new is None:
         raise UnprovedError(phrase("an expression cannot contain the value '{value}'", value=value))
     if piece.quote:
@@ -179,7 +179,7 @@ def _make_replacement(
     return f"${{{source}}}"
 
 
-def _as_expression(value: str, quote: str) -> str | None:
+def _to_expression(value: str, quote: str) -> str | None:
     """Return the value of a property as an expression, or None if it cannot be written as one.
 
     Args:
@@ -191,7 +191,7 @@ def _as_expression(value: str, quote: str) -> str | None:
         return parts[0].source.strip()
     if not _LITERAL.fullmatch(value):
         return None
-    python = literal(decode_entities(value))
+    python = parse_literal(decode_entities(value))
     if isinstance(python, bool):
         return str(python)
     if isinstance(python, (int, float)):

@@ -50,24 +50,24 @@ class _Message:
     target: Target
 
 
-def _line_at(text: str, offset: int) -> re.Match[str] | None:
+def _match_line_at(text: str, offset: int) -> re.Match[str] | None:
     """Return the line around an offset, or None if the offset is in a comment."""
     start = text.rfind("\n", 0, offset) + 1
     match = _FIELD.match(text, start)
     return None if match is None or "#" in text[start:offset] else match
 
 
-def _own_package(document: Document) -> str:
+def _find_own_package(document: Document) -> str:
     package = enclosing_package(document.file.parent)
     return "" if package is None else package[0]
 
 
 def _find_message(document: Document, type_name: str) -> _Message | None:
-    """Return the message type ``Name`` or ``package/Name`` of a field, or None if it is unknown."""
+    """Return the message with the type ``Name`` or ``package/Name``, or None if it is unknown."""
     package, slash, name = type_name.rpartition("/")
     if not slash and name == "Header":
         package = "std_msgs"
-    package = package.removesuffix("/msg") or _own_package(document)
+    package = package.removesuffix("/msg") or _find_own_package(document)
     share = document.finder.find(package) if package else None
     file = None if share is None else interface_file(share, "msg", name)
     if file is not None:
@@ -85,7 +85,7 @@ def _find_message(document: Document, type_name: str) -> _Message | None:
 
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
-    line = _line_at(document.text, offset)
+    line = _match_line_at(document.text, offset)
     if line is None:
         return
     if line["type"] is None or offset <= line.end("type"):
@@ -98,29 +98,29 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
 
 
 def _offer_types(document: Document, typed: str, start: int) -> Iterator[Completion]:
-    own_package = _own_package(document)
+    own_package = _find_own_package(document)
     package, slash, _ = typed.partition("/")
-    likely = [*dict.fromkeys((*_used_types(document, start), *_COMMON_TYPES))]
+    likely = [*dict.fromkeys((*_find_used_types(document, start), *_COMMON_TYPES))]
     if slash:
-        names = [f"{package}/{name}" for name in _names_in(document, package)]
+        names = [f"{package}/{name}" for name in _list_message_names(document, package)]
         ranks = {name: index for index, name in enumerate(likely)}
         for name in sorted(names, key=lambda name: (ranks.get(name, len(ranks)), name)):
             yield Completion(name, ItemKind.NAME, start)
         return
     for primitive in (*_COMMON_PRIMITIVES, *(name for name in PRIMITIVES if name not in _COMMON_PRIMITIVES)):
         yield Completion(primitive, ItemKind.VALUE, start, PRIMITIVES[primitive].idl_name)
-    for name in _names_in(document, own_package):
+    for name in _list_message_names(document, own_package):
         if name != document.file.stem or document.file.suffix != ".msg":
             yield Completion(name, ItemKind.NAME, start, own_package)
     for name in likely:
         yield Completion(name, ItemKind.NAME, start)
     for package in dict.fromkeys((*_COMMON_PACKAGES, *sorted({*catalog.packages(), *document.finder.packages()}))):
-        for name in _names_in(document, package) if package != own_package else ():
+        for name in _list_message_names(document, package) if package != own_package else ():
             if f"{package}/{name}" not in likely:
                 yield Completion(f"{package}/{name}", ItemKind.NAME, start)
 
 
-def _used_types(document: Document, excluded_offset: int) -> list[str]:
+def _find_used_types(document: Document, excluded_offset: int) -> list[str]:
     """Return the types from other packages that the package uses, the most used first.
 
     Args:
@@ -138,7 +138,7 @@ def _used_types(document: Document, excluded_offset: int) -> list[str]:
     return [name for name, _ in use_counts.most_common()]
 
 
-def _names_in(document: Document, package: str) -> list[str]:
+def _list_message_names(document: Document, package: str) -> list[str]:
     share = document.finder.find(package) if package else None
     own_messages = {} if share is None else interface_files(share, "msg")
     known_messages = [name.removeprefix("msg/") for name in catalog.texts(package) if name.startswith("msg/")]
@@ -149,7 +149,7 @@ def _names_in(document: Document, package: str) -> list[str]:
 
 
 def _explain(document: Document, offset: int) -> Explanation | None:
-    line = _line_at(document.text, offset)
+    line = _match_line_at(document.text, offset)
     if line is None or line["type"] is None or not line.start() <= offset <= line.end():
         return None
     type_name = line["type"]
@@ -158,12 +158,12 @@ def _explain(document: Document, offset: int) -> Explanation | None:
         return None
     start, end = line.span("name" if is_in_name else "type")
     if type_name in PRIMITIVES:
-        return Explanation(_primitive_description(type_name), start, end)
+        return Explanation(_describe_primitive(type_name), start, end)
     message = _find_message(document, type_name)
     return None if message is None else Explanation(f"**{type_name}**\n\n```\n{message.text.strip()}\n```", start, end)
 
 
-def _primitive_description(name: str) -> str:
+def _describe_primitive(name: str) -> str:
     primitive = PRIMITIVES[name]
     if primitive.is_integer:
         text = phrase("`{name}`: an integer from {low} to {high}", name=name, low=primitive.low, high=primitive.high)
@@ -175,7 +175,7 @@ def _primitive_description(name: str) -> str:
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
-    line = _line_at(document.text, offset)
+    line = _match_line_at(document.text, offset)
     if line is not None and line["type"] is not None and offset <= line.end("type"):
         message = None if line["type"] in PRIMITIVES else _find_message(document, line["type"])
         if message is not None:
@@ -188,7 +188,7 @@ def _symbols(document: Document) -> Iterator[Symbol]:
     bounds = [0, *(end for _, end in separators)], [*(start for start, _ in separators), len(text)]
     names = SECTIONS.get(document.file.suffix[1:], ("",))
     for index, (start, end) in enumerate(zip(*bounds, strict=True)):
-        fields = tuple(_fields(text, start, end))
+        fields = tuple(_find_fields(text, start, end))
         name = names[index].lstrip("_") if index < len(names) else ""
         if not name:
             yield from fields
@@ -196,7 +196,7 @@ def _symbols(document: Document) -> Iterator[Symbol]:
             yield Symbol(name, SymbolKind.GROUP, start, end, fields)
 
 
-def _fields(text: str, start: int, end: int) -> Iterator[Symbol]:
+def _find_fields(text: str, start: int, end: int) -> Iterator[Symbol]:
     for line in _FIELD.finditer(text, start, end):
         if line["type"] and line["name"]:
             kind = SymbolKind.CONSTANT if (line["rest"] or "").lstrip().startswith("=") else SymbolKind.FIELD
@@ -205,4 +205,4 @@ def _fields(text: str, start: int, end: int) -> Iterator[Symbol]:
 
 
 INTERFACES = Format(is_interface_file, _complete, _explain, _define, symbols=_symbols)
-"""Interface files: messages, services and actions."""
+"""The format of interface files: messages, services and actions."""

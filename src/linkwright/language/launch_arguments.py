@@ -16,10 +16,13 @@ _YAML_ARGUMENT = re.compile(r"^(?P<indent>[ ]*)-[ ]*(?:arg|let)[ ]*:[ ]*$", re.M
 _YAML_KEY = re.compile(
     r"^(?P<indent>[ ]+)(?P<key>name|default|value|description)[ ]*:[ ]*(?P<value>.*?)[ ]*$", re.MULTILINE
 )
-_LEVELS = ("info", "debug", "warn", "error", "fatal")
-_CAPITAL, _SMALL = re.compile(r"""["'](?:True|False)["']"""), re.compile(r"""["'](?:true|false)["']""")
-_MAX_TEXT = 1_000_000
-_LOOKED_BACK = 200
+_LOG_LEVELS = ("info", "debug", "warn", "error", "fatal")
+_CAPITALIZED_BOOLEAN, _LOWERCASE_BOOLEAN = (
+    re.compile(r"""["'](?:True|False)["']"""),
+    re.compile(r"""["'](?:true|false)["']"""),
+)
+_MAX_TEXT_LENGTH = 1_000_000
+_MAX_CHARACTERS_BEFORE = 200
 """The number of statements before a declaration that are searched for its loop."""
 
 
@@ -66,7 +69,7 @@ class LaunchArgument:
         return "\n\n".join(lines)
 
 
-def likely_values(argument: LaunchArgument | None, name: str, text: str) -> tuple[str, ...]:
+def list_likely_values(argument: LaunchArgument | None, name: str, text: str) -> tuple[str, ...]:
     """Return the likely values of an argument, in the spelling of a launch file.
 
     Args:
@@ -77,9 +80,9 @@ def likely_values(argument: LaunchArgument | None, name: str, text: str) -> tupl
     if argument is not None and argument.choices:
         return argument.choices
     if name.endswith("log_level"):
-        return _LEVELS
+        return _LOG_LEVELS
     if argument is None or argument.is_condition or argument.default is None:
-        capital = len(_CAPITAL.findall(text)) > len(_SMALL.findall(text))
+        capital = len(_CAPITALIZED_BOOLEAN.findall(text)) > len(_LOWERCASE_BOOLEAN.findall(text))
         small, large = ("true", "false"), ("True", "False")
         return (*large, *small) if capital else (*small, *large)
     default = argument.default.strip("'\"")
@@ -88,21 +91,21 @@ def likely_values(argument: LaunchArgument | None, name: str, text: str) -> tupl
 
 def arguments_in(text: str, file: Path) -> list[LaunchArgument]:
     """Return the arguments that a launch file declares, in text order, each name once."""
-    if len(text) > _MAX_TEXT:
+    if len(text) > _MAX_TEXT_LENGTH:
         return []
     if file.name.endswith(".py"):
-        arguments = _in_python(text, file)
+        arguments = _arguments_in_python(text, file)
     elif file.name.endswith((".yaml", ".yml")):
-        arguments = _in_yaml(text, file)
+        arguments = _arguments_in_yaml(text, file)
     else:
-        arguments = _in_xml(text, file)
+        arguments = _arguments_in_xml(text, file)
     by_name: dict[str, LaunchArgument] = {}
     for argument in arguments:
         by_name.setdefault(argument.name, argument)
     return list(by_name.values())
 
 
-def _in_xml(text: str, file: Path) -> Iterator[LaunchArgument]:
+def _arguments_in_xml(text: str, file: Path) -> Iterator[LaunchArgument]:
     inside: list[str] = []
     pending: tuple[Token, list[str]] | None = None
     for token in tokens(text):
@@ -139,13 +142,13 @@ def _argument_of_tag(token: Token, choices: list[str], file: Path) -> Iterator[L
         )
 
 
-def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
+def _arguments_in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
     python = python_text(text)
     for call in python.calls_of(*_DECLARATIONS):
         name = call.argument("name", 0)
         literal = _read_literal(name)
         default, description = call.argument("default_value"), call.argument("description")
-        default_text = None if default is None else _source_of(_resolve(python, default), text)
+        default_text = None if default is None else _source_text(_resolve(python, default), text)
         description_text = (
             "".join(part.value for part in description.parts if isinstance(part, Text)) if description else ""
         )
@@ -155,7 +158,7 @@ def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
             )
             yield LaunchArgument(literal.value, file, literal.start, default_text, description_text, choices)
         elif name is not None and len(name.parts) == 1 and isinstance(name.parts[0], Name):
-            for entry, values in _loop_values(python, call, name.parts[0].value):
+            for entry, values in _find_loop_values(python, call, name.parts[0].value):
                 computed = default is not None and bool(values)
                 yield LaunchArgument(
                     entry.value,
@@ -166,7 +169,7 @@ def _in_python(text: str, file: Path) -> Iterator[LaunchArgument]:
                 )
 
 
-def _loop_values(python: PythonText, call: Group, name: str) -> Iterator[tuple[Text, list[str]]]:
+def _find_loop_values(python: PythonText, call: Group, name: str) -> Iterator[tuple[Text, list[str]]]:
     """Yield each string that a loop around a call assigns to a name, with its entry's strings.
 
     The loop iterates over a list of strings, or over a dictionary whose values are strings or pairs of strings.
@@ -174,7 +177,9 @@ def _loop_values(python: PythonText, call: Group, name: str) -> Iterator[tuple[T
     item = call.parent
     following_items = [] if item is None else item.group.items[item.group.items.index(item) :]
     item_index = bisect_left(python.root.items, call.start, key=lambda other: other.start)
-    statements = (other.parts for other in reversed(python.root.items[max(0, item_index - _LOOKED_BACK) : item_index]))
+    statements = (
+        other.parts for other in reversed(python.root.items[max(0, item_index - _MAX_CHARACTERS_BEFORE) : item_index])
+    )
     for parts in ([part for other in following_items for part in other.parts], *statements):
         words = [part.value if isinstance(part, Name) else "" for part in parts]
         if "for" not in words or "in" not in words[words.index("for") :]:
@@ -182,11 +187,11 @@ def _loop_values(python: PythonText, call: Group, name: str) -> Iterator[tuple[T
         head = parts[words.index("for") : words.index("in", words.index("for"))]
         values = parts[words.index("in", words.index("for")) + 1 :]
         if values and any(isinstance(part, Name) and part.value == name for part in head):
-            yield from _entries(python, values[0])
+            yield from _list_loop_entries(python, values[0])
             return
 
 
-def _entries(python: PythonText, values: Part) -> Iterator[tuple[Text, list[str]]]:
+def _list_loop_entries(python: PythonText, values: Part) -> Iterator[tuple[Text, list[str]]]:
     bound = values.callee.partition(".")[0] if isinstance(values, Group) and values.callee else None
     bound = values.value if isinstance(values, Name) else bound
     if bound is not None:
@@ -229,7 +234,7 @@ def _resolve(python: PythonText, item: Item) -> Item:
     return item
 
 
-def _source_of(item: Item, text: str) -> str:
+def _source_text(item: Item, text: str) -> str:
     """Return the content of a string literal, or the source text of any other expression."""
     only = item.parts[0] if len(item.parts) == 1 else None
     if isinstance(only, Text):
@@ -242,7 +247,7 @@ def _source_of(item: Item, text: str) -> str:
     return " ".join(text[start : last.end].split())
 
 
-def _in_yaml(text: str, file: Path) -> Iterator[LaunchArgument]:
+def _arguments_in_yaml(text: str, file: Path) -> Iterator[LaunchArgument]:
     for entry in _YAML_ARGUMENT.finditer(text):
         values_by_key: dict[str, re.Match[str]] = {}
         offset = entry.end() + 1

@@ -19,10 +19,10 @@ from linkwright.packages.share_layout import source_of
 from linkwright.xmltree.tokens import Kind, tokens
 
 _USE = re.compile(r"\$\(\s*(?:var|arg)\s+(['\"]?)([\w./-]+)\1(?=[\s)])|\barg\(\s*(['\"])([\w./-]+)\3\s*\)")
-_DECLARING = ("DeclareLaunchArgument", "DeclareBooleanLaunchArgument")
-_SETTING = ("SetLaunchConfiguration", "UnsetLaunchConfiguration")
+_DECLARING_CLASSES = ("DeclareLaunchArgument", "DeclareBooleanLaunchArgument")
+_SETTING_CLASSES = ("SetLaunchConfiguration", "UnsetLaunchConfiguration")
 _CONTEXT = "launch_configurations"
-_MAX_TEXT = 300_000
+_MAX_TEXT_LENGTH = 300_000
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -30,9 +30,9 @@ class LaunchName:
     """An occurrence of the name of a launch argument or configuration.
 
     Attributes:
-        file: the file.
+        file: the launch file that contains it.
         start: the offset of the name.
-        name: the name.
+        name: the name as written.
         is_declared: whether the argument is declared or set here.
     """
 
@@ -54,13 +54,13 @@ class LaunchInclude:
     Attributes:
         target: the file, or None if it is unknown.
         path_text: the path as written or, in Python, the last string of it.
-        passed: the names of the arguments that are passed to it.
-        is_known: whether `passed` is complete.
+        passed_names: the names of the arguments that are passed to it.
+        is_known: whether `passed_names` is complete.
     """
 
     target: Path | None
     path_text: str
-    passed: list[LaunchName] = field(default_factory=list)
+    passed_names: list[LaunchName] = field(default_factory=list)
     is_known: bool = True
 
 
@@ -85,22 +85,22 @@ def is_launch_file(file: Path) -> bool:
     return is_markup or is_python_launch_file(file)
 
 
-def launch_names(document: Document) -> LaunchNames:
+def find_launch_names(document: Document) -> LaunchNames:
     """Return the launch arguments in a launch file, whose text may be incomplete."""
-    if len(document.text) > _MAX_TEXT:
+    if len(document.text) > _MAX_TEXT_LENGTH:
         return LaunchNames()
     if document.file.name.endswith(".py"):
-        return _in_python(document)
+        return _names_in_python(document)
     if document.file.name.endswith((".yaml", ".yml")):
-        return _in_yaml(document)
-    return _in_xml(document)
+        return _names_in_yaml(document)
+    return _names_in_xml(document)
 
 
-def _target(path: Path | None) -> Path | None:
+def _resolve_target(path: Path | None) -> Path | None:
     return None if path is None or not path.is_file() else real_path(source_of(str(path)))
 
 
-def _uses(text: str, start: int, file: Path) -> Iterator[LaunchName]:
+def _find_uses(text: str, start: int, file: Path) -> Iterator[LaunchName]:
     for match in _USE.finditer(text):
         group = 2 if match[2] else 4
         yield LaunchName(file, start + match.start(group), match[group])
@@ -109,7 +109,7 @@ def _uses(text: str, start: int, file: Path) -> Iterator[LaunchName]:
 # --- XML --------------------------------------------------------------------------------------------------------------
 
 
-def _in_xml(document: Document) -> LaunchNames:
+def _names_in_xml(document: Document) -> LaunchNames:
     names, launch, file = LaunchNames(), LaunchText(document), document.file
     includes: list[LaunchInclude | None] = []
     for token in tokens(document.text):
@@ -119,17 +119,17 @@ def _in_xml(document: Document) -> LaunchNames:
             continue
         attributes = {attribute.name: attribute for attribute in token.attributes() if attribute.value}
         for attribute in attributes.values():
-            names.names += _uses(attribute.value or "", attribute.value_start, file)
+            names.names += _find_uses(attribute.value or "", attribute.value_start, file)
         outer_include = next((include for include in reversed(includes) if include is not None), None)
         name = attributes.get("name")
         if token.name in ("arg", "bool_arg", "let") and name is not None and name.value:
             name_use = LaunchName(file, name.value_start, name.value, is_declared=True)
             if "$" not in name.value:
-                (names.names if outer_include is None else outer_include.passed).append(name_use)
+                (names.names if outer_include is None else outer_include.passed_names).append(name_use)
         include = None
         if token.name == "include" and "file" in attributes:
             path_text = attributes["file"].value or ""
-            include = LaunchInclude(_target(launch.path_of(path_text)), path_text)
+            include = LaunchInclude(_resolve_target(launch.path_of(path_text)), path_text)
             names.includes.append(include)
         if not token.is_empty_element:
             includes.append(include)
@@ -139,16 +139,16 @@ def _in_xml(document: Document) -> LaunchNames:
 # --- YAML -------------------------------------------------------------------------------------------------------------
 
 
-def _in_yaml(document: Document) -> LaunchNames:
+def _names_in_yaml(document: Document) -> LaunchNames:
     names, launch, file = LaunchNames(), LaunchText(document), document.file
     for entry in YamlOutline(document.text).root.all():
         if entry.value:
-            names.names += _uses(entry.value, entry.value_start, file)
+            names.names += _find_uses(entry.value, entry.value_start, file)
         if entry.key == "include" and entry.child("file") is not None:
             path_entry = entry.child("file")
             path = "" if path_entry is None else path_entry.scalar
-            passed_names = [*_passed_in_yaml(entry, file)]
-            names.includes.append(LaunchInclude(_target(launch.path_of(path)), path, passed_names))
+            passed_names = [*_passed_names_in_yaml(entry, file)]
+            names.includes.append(LaunchInclude(_resolve_target(launch.path_of(path)), path, passed_names))
         elif entry.key in ("arg", "let") and "include" not in entry.path[:-1]:
             names.names += _names_in_list(entry, file)
     return names
@@ -161,7 +161,7 @@ def _names_in_list(entry: YamlEntry, file: Path) -> Iterator[LaunchName]:
         yield LaunchName(file, start, name.scalar, is_declared=True)
 
 
-def _passed_in_yaml(include: YamlEntry, file: Path) -> Iterator[LaunchName]:
+def _passed_names_in_yaml(include: YamlEntry, file: Path) -> Iterator[LaunchName]:
     for entry in include.all():
         if entry.is_item and entry.parent is not None and entry.parent.key in ("arg", "let"):
             yield from _names_in_list(entry, file)
@@ -170,7 +170,7 @@ def _passed_in_yaml(include: YamlEntry, file: Path) -> Iterator[LaunchName]:
 # --- Python -----------------------------------------------------------------------------------------------------------
 
 
-def _in_python(document: Document) -> LaunchNames:
+def _names_in_python(document: Document) -> LaunchNames:
     names, file = LaunchNames(), document.file
     launch = PythonLaunchText(document)
     python = launch.python
@@ -183,22 +183,22 @@ def _in_python(document: Document) -> LaunchNames:
     for argument in arguments_in(document.text, file):
         names_by_offset[argument.start] = LaunchName(file, argument.start, argument.name, is_declared=True)
     for call in python.calls:
-        if call.function in _DECLARING:
-            add(_first_text(call.argument("name", 0)), is_declared=True)
+        if call.function in _DECLARING_CLASSES:
+            add(_find_first_text(call.argument("name", 0)), is_declared=True)
         elif call.function in CONFIGURATIONS:
             item = call.argument("variable_name", 0) or call.argument("launch_configuration_name", 0)
-            add(_first_text(item))
-        elif call.function in _SETTING:
-            add(_first_text(call.argument("name", 0)), is_declared=True)
+            add(_find_first_text(item))
+        elif call.function in _SETTING_CLASSES:
+            add(_find_first_text(call.argument("name", 0)), is_declared=True)
         elif call.function == "get" and call.callee.rpartition(".")[0].endswith(_CONTEXT):
-            add(_first_text(call.argument("key", 0)))
-    passed: set[int] = set()
+            add(_find_first_text(call.argument("key", 0)))
+    passed_starts: set[int] = set()
     for call in python.calls_of("IncludeLaunchDescription"):
         include = _read_include(launch, call, file)
-        passed.update(name.start for name in include.passed)
+        passed_starts.update(name.start for name in include.passed_names)
         names.includes.append(include)
     for text, item in python.strings:
-        if text.start in names_by_offset or text.start in passed or not text.value.isidentifier():
+        if text.start in names_by_offset or text.start in passed_starts or not text.value.isidentifier():
             continue
         if _is_subscript(item):
             add(text)
@@ -208,7 +208,7 @@ def _in_python(document: Document) -> LaunchNames:
     return names
 
 
-def _first_text(item: Item | None) -> Text | None:
+def _find_first_text(item: Item | None) -> Text | None:
     only = item.parts[0] if item is not None and len(item.parts) == 1 else None
     return only if isinstance(only, Text) else None
 
@@ -225,22 +225,22 @@ def _is_subscript(item: Item) -> bool:
 
 def _read_include(launch: PythonLaunchText, call: Group, file: Path) -> LaunchInclude:
     source = call.argument("launch_description_source", 0)
-    words = [] if source is None else [*_texts_in(source)]
-    include = LaunchInclude(_target(launch.included_file(call)), words[-1].value if words else "")
+    words = [] if source is None else [*_find_texts(source)]
+    include = LaunchInclude(_resolve_target(launch.find_included_file(call)), words[-1].value if words else "")
     arguments = call.argument("launch_arguments")
     if arguments is not None:
         include.is_known = False
         for part in arguments.parts:
-            for group in _argument_groups(launch, part):
+            for group in _find_argument_groups(launch, part):
                 is_dict = group.function == "dict" and bool(group.callee)
                 if is_dict or not group.callee:
                     include.is_known = True
                     text = launch.document.text
-                    include.passed += _keywords(group, text, file) if is_dict else _keys(group, file)
+                    include.passed_names += _read_keywords(group, text, file) if is_dict else _read_keys(group, file)
     return include
 
 
-def _argument_groups(launch: PythonLaunchText, part: object) -> list[Group]:
+def _find_argument_groups(launch: PythonLaunchText, part: object) -> list[Group]:
     """Return the brackets with launch arguments in an expression, or in its variable."""
     name = part.value if isinstance(part, Name) else part.callee if isinstance(part, Group) else ""
     bound = launch.python.bindings.get(name.partition(".")[0].strip()) if name else None
@@ -248,7 +248,7 @@ def _argument_groups(launch: PythonLaunchText, part: object) -> list[Group]:
     return [group for group in parts if isinstance(group, Group) and not group.callee.startswith(".")]
 
 
-def _keys(group: Group, file: Path) -> Iterator[LaunchName]:
+def _read_keys(group: Group, file: Path) -> Iterator[LaunchName]:
     """Yield the keys of a dictionary or of a list of pairs."""
     for item in group.items:
         first = item.parts[0] if item.parts else None
@@ -258,17 +258,17 @@ def _keys(group: Group, file: Path) -> Iterator[LaunchName]:
             yield LaunchName(file, first.start, first.value, is_declared=True)
 
 
-def _keywords(call: Group, text: str, file: Path) -> Iterator[LaunchName]:
+def _read_keywords(call: Group, text: str, file: Path) -> Iterator[LaunchName]:
     """Yield the names of the arguments in ``dict(name=value)``."""
     for item in call.items:
         if item.keyword:
             yield LaunchName(file, text.index(item.keyword, item.start), item.keyword, is_declared=True)
 
 
-def _texts_in(item: Item) -> Iterator[Text]:
+def _find_texts(item: Item) -> Iterator[Text]:
     for part in item.parts:
         if isinstance(part, Text):
             yield part
         elif isinstance(part, Group):
             for inner in part.items:
-                yield from _texts_in(inner)
+                yield from _find_texts(inner)

@@ -15,16 +15,16 @@ from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.cursor import name_at
 from linkwright.language.format import Document, Format, Symbol, SymbolKind, Target
 from linkwright.language.hover import Explanation
-from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
-from linkwright.language.launch_classes import class_arguments, describe_class, first_argument, load_classes
+from linkwright.language.launch_arguments import LaunchArgument, arguments_in, list_likely_values
+from linkwright.language.launch_classes import class_arguments, describe_class, find_first_argument, load_classes
 from linkwright.language.links import FileReference
 from linkwright.language.node_topics import (
     NodeProgram,
     explain_topic,
+    find_topic_targets,
     node_name,
     offer_topics,
     plain_name,
-    targets_of_topic,
 )
 from linkwright.language.offers import (
     explain_file,
@@ -52,10 +52,10 @@ _PROGRAM_KEYWORDS = frozenset({"executable", "node_executable"})
 CONFIGURATIONS = frozenset({"LaunchConfiguration", "LaunchConfigurationEquals", "LaunchConfigurationNotEquals"})
 """The classes whose first argument is the name of a launch configuration."""
 _ACTIONS = ("Node", "LifecycleNode", "ComposableNode", "ComposableNodeContainer", "IncludeLaunchDescription")
-_OUTPUTS = ("screen", "log", "both", "own_log", "full")
+_OUTPUT_CHOICES = ("screen", "log", "both", "own_log", "full")
 _REMAPPINGS, _PARAMETERS = re.compile(r"(?i)remap"), re.compile(r"(?i)^parameters$|_params$|_parameters$")
-_PAIR, _MAX_LIST_DEPTH = 2, 4
-_URI = "package://"
+_PAIR_LENGTH, _MAX_LIST_DEPTH = 2, 4
+_PACKAGE_SCHEME = "package://"
 _WORD_BEFORE = re.compile(r"[^\W\d]\w*\Z")
 
 
@@ -128,28 +128,28 @@ class PythonLaunchText:
         if group.function in CONFIGURATIONS and (index == 0 or keyword == "variable_name"):
             return _StringMeaning("configuration", text, arguments=self.arguments)
         if keyword == "output":
-            return _StringMeaning("output", text, choices=_OUTPUTS)
+            return _StringMeaning("output", text, choices=_OUTPUT_CHOICES)
         if keyword == "default_value":
             name = self.paths.text_of(group.argument("name", 0)) or ""
-            choices = self._choices(group) or likely_values(None, name, self.document.text)
-            return _StringMeaning("choice", text, base=self.paths.before(text, item), choices=choices)
+            choices = self._read_choices(group) or list_likely_values(None, name, self.document.text)
+            return _StringMeaning("choice", text, base=self.paths.path_before(text, item), choices=choices)
         node_meaning = self._meaning_in_node(text, item)
         if node_meaning is not None:
             return node_meaning
-        included = self._included_arguments(text, item)
+        included = self._meaning_in_include(text, item)
         if included is not None:
             return included
         if group.function == "DeclareLaunchArgument" and (index == 0 or keyword == "name"):
             own_arguments = tuple(argument for argument in self.arguments if argument.start == text.start)
             return _StringMeaning("argument", text, arguments=own_arguments)
-        return _StringMeaning("path", text, base=self.paths.before(text, item))
+        return _StringMeaning("path", text, base=self.paths.path_before(text, item))
 
     def _meaning_in_node(self, text: Text, item: Item) -> _StringMeaning | None:
         """Return the meaning of a name in a remapping or in the parameters of a node, or None."""
         group, outer = item.group, item.group.parent
         if outer is None or group.callee or not item.parts or item.parts[0] is not text:
             return None
-        if group.opening == "(" and _is_in_list_named(outer, _REMAPPINGS) and len(group.items) <= _PAIR:
+        if group.opening == "(" and _is_in_list_named(outer, _REMAPPINGS) and len(group.items) <= _PAIR_LENGTH:
             pairs = [sibling.parts[0] for sibling in outer.group.items if sibling is not outer and sibling.parts]
             first_parts = (pair.items[0].parts[:1] for pair in pairs if isinstance(pair, Group) and pair.items)
             remapped_names = frozenset(part.value for parts in first_parts for part in parts if isinstance(part, Text))
@@ -157,7 +157,7 @@ class PythonLaunchText:
             first = group.items[0].parts[0] if group.items[0].parts else None
             if item is not group.items[0]:  # This string is the new name.
                 old = first.value if isinstance(first, Text) else ""
-                return _StringMeaning("topic", text, choices=_new_names(old), programs=programs)
+                return _StringMeaning("topic", text, choices=_list_name_forms(old), programs=programs)
             return _StringMeaning("topic", text, programs=programs, excluded_names=remapped_names)
         if group.opening == "{" and _is_in_list_named(outer, _PARAMETERS):
             names = (sibling.parts[0] for sibling in group.items if sibling is not item and sibling.parts)
@@ -176,7 +176,7 @@ class PythonLaunchText:
                 return (self._read_program(current.group),)
             bound, current = current, current.group.parent
         names = {bound.keyword, *(part.value for part in bound.parts[:1] if isinstance(part, Name))}
-        users = [call for call in self.python.calls_of(*_ACTIONS) if _names_in(call.argument(keyword)) & names]
+        users = [call for call in self.python.calls_of(*_ACTIONS) if _collect_names(call.argument(keyword)) & names]
         programs = map(self._read_program, users or self.python.calls_of(*_ACTIONS))
         return tuple(dict.fromkeys(program for program in programs if any(program)))
 
@@ -208,19 +208,19 @@ class PythonLaunchText:
         declared = {argument.name for argument in self.arguments}
         return [name for name in names if name and name not in declared]
 
-    def _choices(self, call: Group) -> tuple[str, ...]:
+    def _read_choices(self, call: Group) -> tuple[str, ...]:
         choices = call.argument("choices")
         part = choices.parts[0] if choices is not None and choices.parts else None
         inner = part.items if isinstance(part, Group) else []
         return tuple(part_text.value for item in inner for part_text in item.parts[:1] if isinstance(part_text, Text))
 
-    def _included_arguments(self, text: Text, item: Item) -> _StringMeaning | None:
+    def _meaning_in_include(self, text: Text, item: Item) -> _StringMeaning | None:
         """Return the meaning of a key or value in the launch arguments of an include, or None."""
-        include = _include_around(item)
+        include = _find_include_around(item)
         if include is None:
             return None
-        path = self.included_file(include)
-        declared = tuple(self._declared_in(path)) if path is not None else self.arguments
+        path = self.find_included_file(include)
+        declared = tuple(self._read_declared_arguments(path)) if path is not None else self.arguments
         group = item.group
         is_pair = group.opening == "(" and not group.callee
         first = group.items[0].parts[:1] if is_pair else item.parts[:1]
@@ -230,16 +230,16 @@ class PythonLaunchText:
         if not is_pair and group.opening != "{":
             return None
         argument = next((candidate for candidate in declared if candidate.name == name), None)
-        choices = () if argument is None else likely_values(argument, name, self.document.text)
+        choices = () if argument is None else list_likely_values(argument, name, self.document.text)
         known_arguments = () if argument is None else (argument,)
-        return _StringMeaning("choice", text, None, known_arguments, self.paths.before(text, item), choices)
+        return _StringMeaning("choice", text, None, known_arguments, self.paths.path_before(text, item), choices)
 
-    def included_file(self, include: Group) -> Path | None:
-        """Return the file that an ``IncludeLaunchDescription`` includes, or None if it is unknown or missing."""
+    def find_included_file(self, include: Group) -> Path | None:
+        """Return the file of an ``IncludeLaunchDescription``, or None if it is unknown or missing."""
         value = self.paths.value_of(include.argument("launch_description_source", 0))
-        return None if value is None else self.file_of(value.text)
+        return None if value is None else self.find_file(value.text)
 
-    def file_of(self, path: str) -> Path | None:
+    def find_file(self, path: str) -> Path | None:
         """Return the existing file or folder of a path, or None."""
         try:
             file = self.document.file.parent / path
@@ -247,7 +247,7 @@ class PythonLaunchText:
         except (OSError, ValueError):
             return None
 
-    def _declared_in(self, path: Path) -> Iterator[LaunchArgument]:
+    def _read_declared_arguments(self, path: Path) -> Iterator[LaunchArgument]:
         path = Path(source_of(str(path)))
         for argument in arguments_in(self.document.other(path), path):
             if argument.is_argument:
@@ -274,18 +274,18 @@ def _is_in_list_named(item: Item, name_pattern: re.Pattern[str]) -> bool:
     return False
 
 
-def _names_in(item: Item | None) -> set[str]:
+def _collect_names(item: Item | None) -> set[str]:
     return {part.value for part in item.parts if isinstance(part, Name)} if item is not None else set()
 
 
-def _new_names(old: str) -> tuple[str, ...]:
+def _list_name_forms(old: str) -> tuple[str, ...]:
     """Return the other forms of a name: relative, absolute, and without namespaces."""
     name = plain_name(old)
     forms = dict.fromkeys((name, f"/{name}", name.rpartition("/")[2])) if name else ()
     return tuple(form for form in forms if form != old)
 
 
-def _include_around(item: Item) -> Group | None:
+def _find_include_around(item: Item) -> Group | None:
     """Return the ``IncludeLaunchDescription`` whose launch arguments contain an item, or None."""
     current: Item | None = item
     for _ in range(5):
@@ -304,7 +304,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     launch = PythonLaunchText(document)
     meaning = launch.meaning_at(offset)
     if meaning is None:
-        yield from _argument_completions(launch, offset)
+        yield from _offer_arguments(launch, offset)
         return
     start = meaning.text.start
     if meaning.kind == "package":
@@ -324,24 +324,24 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     elif meaning.kind == "parameter":
         for parameter in launch.parameters(meaning):
             if parameter.name not in meaning.excluded_names and "*" not in parameter.name:
-                detail = f"{parameter.type} {parameter.written_default}".strip()
+                detail = f"{parameter.type} {parameter.default_text}".strip()
                 yield Completion(parameter.name, ItemKind.NAME, start, detail, parameter.description)
     elif meaning.kind == "topic" and not meaning.choices:
         yield from offer_topics(document, meaning.programs, document.text[start:offset], start, meaning.excluded_names)
     else:
         yield from offer_values(meaning.choices, start)
-        yield from _path_completions(launch, meaning, offset)
+        yield from _offer_paths(launch, meaning, offset)
 
 
-def _path_completions(launch: PythonLaunchText, meaning: _StringMeaning, offset: int) -> Iterator[Completion]:
+def _offer_paths(launch: PythonLaunchText, meaning: _StringMeaning, offset: int) -> Iterator[Completion]:
     typed = meaning.text.value[: offset - meaning.text.start]
-    if typed.startswith(_URI):
-        name, slash, subpath = typed[len(_URI) :].partition("/")
+    if typed.startswith(_PACKAGE_SCHEME):
+        name, slash, subpath = typed[len(_PACKAGE_SCHEME) :].partition("/")
         share = launch.document.finder.find(name) if slash else None
         if share is not None:
             yield from offer_files(share, subpath, offset)
         elif not slash:
-            yield from offer_packages(launch.document, meaning.text.start + len(_URI))
+            yield from offer_packages(launch.document, meaning.text.start + len(_PACKAGE_SCHEME))
         return
     if meaning.base is None or not meaning.base.is_path:
         return
@@ -358,11 +358,11 @@ def _explain(document: Document, offset: int) -> Explanation | None:
     meaning = launch.meaning_at(offset)
     if meaning is None:
         return _explain_name(launch, offset)
-    text = _explanation(launch, meaning, offset) or _explain_argument(launch, meaning)
+    text = _explain_meaning(launch, meaning, offset) or _explain_argument(launch, meaning)
     return Explanation(text, meaning.text.start, meaning.text.end) if text else None
 
 
-def _explanation(launch: PythonLaunchText, meaning: _StringMeaning, offset: int) -> str | None:
+def _explain_meaning(launch: PythonLaunchText, meaning: _StringMeaning, offset: int) -> str | None:
     value = meaning.text.value
     if meaning.kind == "package":
         return explain_package(launch.document, value)
@@ -376,7 +376,7 @@ def _explanation(launch: PythonLaunchText, meaning: _StringMeaning, offset: int)
         parameter = next((candidate for candidate in launch.parameters(meaning) if candidate.matches(value)), None)
         return None if parameter is None else describe_parameter_info(parameter, value)
     path = launch.path_through(meaning, offset)
-    file = None if path is None else launch.file_of(path)
+    file = None if path is None else launch.find_file(path)
     if file is not None and (meaning.base is not None or "/" in value):
         return explain_file(file)
     is_path = meaning.base is not None and meaning.base.is_path and path is not None
@@ -394,7 +394,7 @@ def _explain_argument(launch: PythonLaunchText, string_meaning: _StringMeaning) 
     return f"`{string[1].keyword}`: {meaning}" if meaning else None
 
 
-def _argument_completions(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
+def _offer_arguments(launch: PythonLaunchText, offset: int) -> Iterator[Completion]:
     """Yield completions of the arguments that the call around an offset does not have yet."""
     text = launch.document.text
     typed = _WORD_BEFORE.search(text, text.rfind("\n", 0, offset) + 1, offset)
@@ -402,17 +402,17 @@ def _argument_completions(launch: PythonLaunchText, offset: int) -> Iterator[Com
     start = offset if typed is None else typed.start()
     if call is None or not text[:start].rstrip().endswith(("(", ",")):
         return
-    if any(item.start <= start and item.parts for item in call.items if _group_around(item, start) is not None):
+    if any(item.start <= start and item.parts for item in call.items if _find_group_around(item, start) is not None):
         return
     keywords = {item.keyword for item in call.items}
     if call.items[0].parts and not call.items[0].keyword and text[:start].rstrip().endswith(","):
-        keywords.add(first_argument(call.function) or "")
+        keywords.add(find_first_argument(call.function) or "")
     for name, meaning in class_arguments(call.function).items():
         if name not in keywords:
             yield Completion(f"{name}=", ItemKind.ATTRIBUTE, start, call.function, meaning)
 
 
-def _group_around(item: Item, offset: int) -> Group | None:
+def _find_group_around(item: Item, offset: int) -> Group | None:
     """Return the brackets directly inside an item that contain an offset, or None."""
     groups = (part for part in item.parts if isinstance(part, Group))
     return next((group for group in groups if group.start < offset < group.end), None)
@@ -448,28 +448,28 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
     elif meaning.kind == "component":
         yield from target_of_component(document, meaning.package, value)
     elif meaning.kind == "topic":
-        yield from targets_of_topic(document, meaning.programs, value)
+        yield from find_topic_targets(document, meaning.programs, value)
     elif meaning.kind in ("configuration", "argument"):
         for argument in meaning.arguments:
             if argument.name == value:
                 yield Target(argument.file, argument.start, argument.end)
     else:
         path = launch.path_through(meaning, meaning.text.end)
-        yield from target_of_file(None if path is None else launch.file_of(path))
+        yield from target_of_file(None if path is None else launch.find_file(path))
 
 
 def _links(document: Document) -> Iterator[FileReference]:
     launch = PythonLaunchText(document)
     for text, item in launch.python.strings:
-        if text.value and item.parts[-1] is text and not _continues(item):
-            base = launch.paths.before(text, item)
+        if text.value and item.parts[-1] is text and not _is_continued(item):
+            base = launch.paths.path_before(text, item)
             if base is not None and base.is_path:
-                file = launch.file_of(base.text.rstrip("/") + "/" + text.value.lstrip("/"))
+                file = launch.find_file(base.text.rstrip("/") + "/" + text.value.lstrip("/"))
                 if file is not None and file.is_file():
                     yield FileReference(text.start, text.end, Path(source_of(str(file))))
 
 
-def _continues(item: Item) -> bool:
+def _is_continued(item: Item) -> bool:
     """Return whether an item is a component of a joined path other than the last one."""
     return item.group.function in JOINS and item is not item.group.items[-1]
 
@@ -487,16 +487,18 @@ def _symbols(document: Document) -> Iterator[Symbol]:
         is_include = call.function == "IncludeLaunchDescription"
         kind = SymbolKind.FILE if is_include else SymbolKind.NODE
         detail = launch.paths.text_of(call.argument("package")) or ""
-        yield Symbol(_label(launch, call), kind, call.start - len(call.callee), max(call.end, call.start), (), detail)
+        yield Symbol(
+            _make_label(launch, call), kind, call.start - len(call.callee), max(call.end, call.start), (), detail
+        )
 
 
-def _label(launch: PythonLaunchText, call: Group) -> str:
+def _make_label(launch: PythonLaunchText, call: Group) -> str:
     if call.function == "IncludeLaunchDescription":
-        file = launch.included_file(call)
+        file = launch.find_included_file(call)
         return f"include {file.name}" if file is not None else "include"
     names = (launch.paths.text_of(call.argument(key)) for key in ("name", "executable", "plugin"))
     return f"{call.function} {next(filter(None, names), '')}".strip()
 
 
 LAUNCH_PYTHON = Format(is_python_launch_file, _complete, _explain, _define, _links, _symbols, prepare=load_classes)
-"""Launch files in Python."""
+"""The format of launch files in Python."""

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Phrase, SourceText, Span, display_path, phrase
 from linkwright.language.format import Document
-from linkwright.language.launch_names import LaunchInclude, LaunchName, LaunchNames, is_launch_file, launch_names
+from linkwright.language.launch_names import LaunchInclude, LaunchName, LaunchNames, find_launch_names, is_launch_file
 from linkwright.language.mentions import Mention
 from linkwright.language.proof import Edit, UnprovedError
 from linkwright.language.workspace import Workspace
@@ -28,7 +28,7 @@ class LaunchRenaming:
     """The edits for a new name of a launch argument.
 
     Attributes:
-        edits: the edits.
+        edits: the edits of all launch files that share the argument.
         unchanged: strings with the name that may mean the argument, and stay unchanged.
         notes: includes that cannot be followed.
     """
@@ -40,53 +40,53 @@ class LaunchRenaming:
 
 def launch_name_at(document: Document, offset: int) -> tuple[LaunchName, Path] | None:
     """Return the launch argument at an offset and the file that it belongs to, or None."""
-    names = launch_names(document)
+    names = find_launch_names(document)
     for name in names.names:
         if name.start <= offset <= name.end:
             return name, document.file
     for include in names.includes:
-        for name in include.passed:
+        for name in include.passed_names:
             if name.start <= offset <= name.end:
                 return (name, include.target) if include.target is not None else None
     return None
 
 
 def rename_launch_argument(
-    project: Workspace, texts: Mapping[Path, str], owner: Path, old: str, new: str
+    workspace: Workspace, texts: Mapping[Path, str], owner: Path, old: str, new: str
 ) -> LaunchRenaming:
     """Return the edits that rename a launch argument.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         owner: the launch file that the argument belongs to.
-        old: the name.
+        old: the present name.
         new: the new name.
 
     Raises:
         UnprovedError: the new name exists, or a file that cannot be edited shares the argument.
     """
-    return _Search(project, texts, old, new).run(owner)
+    return _ArgumentSearch(workspace, texts, old, new).run(owner)
 
 
-class _Search:
+class _ArgumentSearch:
     """The launch files that share an argument.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        old: the name.
+        old: the present name.
         new: the new name.
     """
 
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], old: str, new: str) -> None:
-        self._project, self._texts, self._old, self._new = project, texts, old, new
+    def __init__(self, workspace: Workspace, texts: Mapping[Path, str], old: str, new: str) -> None:
+        self._project, self._texts, self._old, self._new = workspace, texts, old, new
         self._names_by_file: dict[Path, LaunchNames] = {}
         self._result = LaunchRenaming()
 
     def run(self, owner: Path) -> LaunchRenaming:
         """Return the edits, from the file that the argument belongs to."""
-        includers = self._includers()
+        includers = self._index_includers()
         shared: dict[Path, None] = {}
         pending = [owner]
         while pending:
@@ -99,7 +99,7 @@ class _Search:
             for other, include in includers.get(file, ()):
                 key = self._find_passed_name(include)
                 if key is not None:
-                    self._edit(key)
+                    self._add_edit(key)
                 elif not include.is_known:
                     self._result.notes.append(
                         phrase(
@@ -118,7 +118,7 @@ class _Search:
                         phrase("'{file}' already uses '{name}'", file=file.name, name=self._new), self._span(name)
                     )
                 if name.name == self._old:
-                    self._edit(name)
+                    self._add_edit(name)
             self._result.unchanged += [
                 Mention(name.name, name.file, name.start) for name in names.texts if name.name == self._old
             ]
@@ -179,9 +179,9 @@ class _Search:
         )
 
     def _find_passed_name(self, include: LaunchInclude) -> LaunchName | None:
-        return next((name for name in include.passed if name.name == self._old), None)
+        return next((name for name in include.passed_names if name.name == self._old), None)
 
-    def _edit(self, name: LaunchName) -> None:
+    def _add_edit(self, name: LaunchName) -> None:
         if not self._project.contains(name.file):
             raise UnprovedError(
                 phrase("'{file}' is outside the workspace", file=display_path(str(name.file))), self._span(name)
@@ -191,7 +191,7 @@ class _Search:
     def _span(self, name: LaunchName) -> Span:
         return SourceText(str(name.file), self._project.text(name.file, self._texts) or "").span(name.start, name.end)
 
-    def _includers(self) -> dict[Path, list[tuple[Path, LaunchInclude]]]:
+    def _index_includers(self) -> dict[Path, list[tuple[Path, LaunchInclude]]]:
         """Return the launch files of the workspace that include a file, by the file."""
         includers: dict[Path, list[tuple[Path, LaunchInclude]]] = {}
         files = (file for file in self._project.files(_ENDINGS) if is_launch_file(file))
@@ -206,6 +206,6 @@ class _Search:
             text = self._project.text(file, self._texts) or ""
             is_launch = is_launch_file(file)
             self._names_by_file[file] = (
-                launch_names(Document(self._project, self._texts, file, text)) if is_launch else LaunchNames()
+                find_launch_names(Document(self._project, self._texts, file, text)) if is_launch else LaunchNames()
             )
         return self._names_by_file[file]

@@ -7,12 +7,12 @@ from linkwright.schema import AttributeRule, ElementRule, ValueType
 _TEXT = ValueType("text")
 _NAME = ValueType("name")
 _PATH = ValueType("path")
-_TRUTH = ValueType("true or false")
+_BOOLEAN = ValueType("true or false")
 _NUMBER = ValueType("number")
 _INTEGER = ValueType("integer")
 
 
-def _one(name: str, kind: ValueType, meaning: str, default: str | None = None, unit: str = "") -> AttributeRule:
+def _optional(name: str, kind: ValueType, meaning: str, default: str | None = None, unit: str = "") -> AttributeRule:
     return AttributeRule(name, kind, meaning, unit, default=default)
 
 
@@ -20,13 +20,13 @@ def _required(name: str, kind: ValueType, meaning: str) -> AttributeRule:
     return AttributeRule(name, kind, meaning, required=True)
 
 
-def _usually_written(name: str, kind: ValueType, meaning: str) -> AttributeRule:
+def _usual(name: str, kind: ValueType, meaning: str) -> AttributeRule:
     return AttributeRule(name, kind, meaning, usually_written=True)
 
 
 _CONDITIONS = (
-    _one("if", _TRUTH, "the condition under which the element has an effect", "true"),
-    _one("unless", _TRUTH, "the condition under which the element has no effect", "false"),
+    _optional("if", _BOOLEAN, "the condition under which the element has an effect", "true"),
+    _optional("unless", _BOOLEAN, "the condition under which the element has no effect", "false"),
 )
 
 
@@ -54,22 +54,22 @@ def _pair(tag: str, meaning: str, name: str = "the name", value: str = "the valu
     return _element(tag, meaning, _required("name", _NAME, name), _required("value", _TEXT, value))
 
 
-_PROCESS = (
-    _one("name", _NAME, "the name of the process in the log"),
-    _one("output", ValueType("screen, log or both"), "where the output of the process goes", "log"),
-    _one("cwd", _PATH, "the working folder of the process"),
-    _one("launch-prefix", _TEXT, "words before the command, such as gdb -ex run --args"),
-    _one("respawn", _TRUTH, "whether the process is started again when it ends", "false"),
-    _one("respawn_delay", _NUMBER, "the time before the process is started again", "0", "s"),
-    _one("respawn_max_retries", _INTEGER, "how often the process is started again; -1 for any number", "-1"),
-    _one("shell", _TRUTH, "whether a shell runs the command", "false"),
-    _one("emulate_tty", _TRUTH, "whether the process has a terminal", "false"),
-    _one("sigterm_timeout", _NUMBER, "the time from SIGINT to SIGTERM", "5", "s"),
-    _one("sigkill_timeout", _NUMBER, "the time from SIGTERM to SIGKILL", "5", "s"),
-    _one("on_exit", ValueType("shutdown"), "the actions that run when the process ends"),
-    _one("log_cmd", _TRUTH, "whether the log shows the command", "false"),
-    _one("cached_output", _TRUTH, "whether the output is kept for tests", "false"),
-    _one("split_arguments", _TRUTH, "whether arguments are split at spaces after substitution", "false"),
+_PROCESS_ATTRIBUTES = (
+    _optional("name", _NAME, "the name of the process in the log"),
+    _optional("output", ValueType("screen, log or both"), "where the output of the process goes", "log"),
+    _optional("cwd", _PATH, "the working folder of the process"),
+    _optional("launch-prefix", _TEXT, "words before the command, such as gdb -ex run --args"),
+    _optional("respawn", _BOOLEAN, "whether the process is started again when it ends", "false"),
+    _optional("respawn_delay", _NUMBER, "the time before the process is started again", "0", "s"),
+    _optional("respawn_max_retries", _INTEGER, "how often the process is started again; -1 for any number", "-1"),
+    _optional("shell", _BOOLEAN, "whether a shell runs the command", "false"),
+    _optional("emulate_tty", _BOOLEAN, "whether the process has a terminal", "false"),
+    _optional("sigterm_timeout", _NUMBER, "the time from SIGINT to SIGTERM", "5", "s"),
+    _optional("sigkill_timeout", _NUMBER, "the time from SIGTERM to SIGKILL", "5", "s"),
+    _optional("on_exit", ValueType("shutdown"), "the actions that run when the process ends"),
+    _optional("log_cmd", _BOOLEAN, "whether the log shows the command", "false"),
+    _optional("cached_output", _BOOLEAN, "whether the output is kept for tests", "false"),
+    _optional("split_arguments", _BOOLEAN, "whether arguments are split at spaces after substitution", "false"),
 )
 _ENV = _pair("env", "an environment variable of the process")
 _REMAP = _element(
@@ -81,65 +81,64 @@ _REMAP = _element(
 _PARAM = _element(
     "param",
     "a parameter of the node, a group of parameters, or a file with parameters",
-    _usually_written("name", _NAME, "the name of the parameter"),
-    _usually_written("value", _TEXT, "the value, whose type follows from its form as in YAML"),
-    _one("from", _PATH, "a YAML file with parameters, instead of name and value"),
-    _one("type", ValueType("type of a parameter"), "the type of the value, such as str"),
-    _one("allow_substs", _TRUTH, "whether the file may contain substitutions", "false"),
-    _one("value-sep", _TEXT, "the separator of a list in the value"),
+    _usual("name", _NAME, "the name of the parameter"),
+    _usual("value", _TEXT, "the value, whose type follows from its form as in YAML"),
+    _optional("from", _PATH, "a YAML file with parameters, instead of name and value"),
+    _optional("type", ValueType("type of a parameter"), "the type of the value, such as str"),
+    _optional("allow_substs", _BOOLEAN, "whether the file may contain substitutions", "false"),
+    _optional("value-sep", _TEXT, "the separator of a list in the value"),
     is_recursive=True,
 )
-_NODE = (
+_NODE_ATTRIBUTES = (
     _required("pkg", ValueType("name of a package"), "the package of the executable"),
     _required("exec", ValueType("name of an executable"), "the executable in the package"),
     AttributeRule("name", _NAME, "the name of the node", usually_written=True),
-    _one("namespace", _NAME, "the namespace of the node"),
-    *_PROCESS[1:],
-    _one("args", _TEXT, "the command line arguments"),
-    _one("ros_args", _TEXT, "the arguments after --ros-args"),
-    _one("exec_name", _NAME, "the name of the process in the log"),
+    _optional("namespace", _NAME, "the namespace of the node"),
+    *_PROCESS_ATTRIBUTES[1:],
+    _optional("args", _TEXT, "the command line arguments"),
+    _optional("ros_args", _TEXT, "the arguments after --ros-args"),
+    _optional("exec_name", _NAME, "the name of the process in the log"),
 )
-_NAMED_NODE = tuple(
-    _required(rule.name, rule.type, rule.meaning) if rule.name in ("name", "namespace") else rule for rule in _NODE
+_NAMED_NODE_ATTRIBUTES = tuple(
+    _required(rule.name, rule.type, rule.meaning) if rule.name in ("name", "namespace") else rule
+    for rule in _NODE_ATTRIBUTES
 )
-_IN_NODE = (_PARAM, _REMAP, _ENV)
+_NODE_CHILDREN = (_PARAM, _REMAP, _ENV)
 _COMPOSABLE = _action(
     "composable_node",
     "a node that the container loads as a component",
     _required("pkg", ValueType("name of a package"), "the package of the component"),
     _required("plugin", ValueType("name of a class"), "the class of the component"),
-    _usually_written("name", _NAME, "the name of the node"),
-    _one("namespace", _NAME, "the namespace of the node"),
+    _usual("name", _NAME, "the name of the node"),
+    _optional("namespace", _NAME, "the namespace of the node"),
     children=(
         _PARAM,
         _REMAP,
         _pair("extra_arg", "an option of the container for the node, such as use_intra_process_comms"),
     ),
 )
-_GZ_CONTAINER = tuple(
-    _one(name, kind, meaning, default)
+_GZ_CONTAINER_ATTRIBUTES = tuple(
+    _optional(name, kind, meaning, default)
     for name, kind, meaning, default in (
         ("container_name", _NAME, "the name of the container of the nodes", "ros_gz_container"),
-        ("create_own_container", _TRUTH, "whether a container is started", "false"),
-        ("use_composition", _TRUTH, "whether the node is loaded into a container", "false"),
+        ("create_own_container", _BOOLEAN, "whether a container is started", "false"),
+        ("use_composition", _BOOLEAN, "whether the node is loaded into a container", "false"),
     )
 )
-_PLAIN = (
+_SIMPLE_ACTIONS = (
     _action(
         "arg",
         "an argument of the launch file, which its caller can set",
         _required("name", _NAME, "the name in $(var NAME)"),
-        _usually_written(
-            "default", _TEXT, "the value if the caller passes none; without a default, the argument is required"
-        ),
-        _usually_written("description", _TEXT, "a description for --show-args"),
+        _usual("default", _TEXT, "the value if the caller passes none; without a default, the argument is required"),
+        _usual("description", _TEXT, "a description for --show-args"),
         children=(_element("choice", "an allowed value", _required("value", _TEXT, "the value")),),
     ),
     _action(
         "node",
         "starts a node",
-        *_NODE,
-        children=_IN_NODE,
+        *_NODE_ATTRIBUTES,
+        children=_NODE_CHILDREN,
     ),
     _action(
         "include",
@@ -160,7 +159,7 @@ _PLAIN = (
         "executable",
         "starts a program that is not a node",
         _required("cmd", _TEXT, "the command line"),
-        *_PROCESS,
+        *_PROCESS_ATTRIBUTES,
         children=(_ENV,),
     ),
     _action(
@@ -188,13 +187,13 @@ _PLAIN = (
     _action(
         "set_use_sim_time",
         "sets use_sim_time of all later nodes in the scope",
-        _required("value", _TRUTH, "whether nodes use simulated time"),
+        _required("value", _BOOLEAN, "whether nodes use simulated time"),
     ),
     _action(
         "node_container",
         "starts a container and loads nodes into it",
-        *_NAMED_NODE,
-        children=(_COMPOSABLE, *_IN_NODE),
+        *_NAMED_NODE_ATTRIBUTES,
+        children=(_COMPOSABLE, *_NODE_CHILDREN),
     ),
     _action(
         "load_composable_node",
@@ -205,9 +204,9 @@ _PLAIN = (
     _action(
         "lifecycle_node",
         "starts a managed node",
-        *_NAMED_NODE,
-        _one("autostart", _TRUTH, "whether the node is configured and activated", "false"),
-        children=_IN_NODE,
+        *_NAMED_NODE_ATTRIBUTES,
+        _optional("autostart", _BOOLEAN, "whether the node is configured and activated", "false"),
+        children=_NODE_CHILDREN,
     ),
     _action(
         "set_env",
@@ -221,8 +220,8 @@ _PLAIN = (
         "adds a value to an environment variable with a list",
         _required("name", _NAME, "the name of the variable"),
         _required("value", _TEXT, "the value"),
-        _one("prepend", _TRUTH, "whether the value comes first", "false"),
-        _one("separator", _TEXT, "the text between two values", ":"),
+        _optional("prepend", _BOOLEAN, "whether the value comes first", "false"),
+        _optional("separator", _TEXT, "the text between two values", ":"),
     ),
     _action("rep_env", "replaces all environment variables", children=(_ENV,)),
     _action("push_env", "saves the environment variables"),
@@ -238,10 +237,8 @@ _PLAIN = (
         "bool_arg",
         "an argument of the launch file that is true or false",
         _required("name", _NAME, "the name in $(var NAME)"),
-        _usually_written(
-            "default", _TRUTH, "the value if the caller passes none; without a default, the argument is required"
-        ),
-        _usually_written("description", _TEXT, "a description for --show-args"),
+        _usual("default", _BOOLEAN, "the value if the caller passes none; without a default, the argument is required"),
+        _usual("description", _TEXT, "a description for --show-args"),
     ),
     _action(
         "log",
@@ -254,7 +251,9 @@ _PLAIN = (
         for level in ("info", "debug", "warning", "error")
     ),
     _action("ready_to_test", "signals to launch_testing that tests may start"),
-    _action("shutdown", "ends the launch", _one("reason", _TEXT, "the reason to write to the log", "no reason given")),
+    _action(
+        "shutdown", "ends the launch", _optional("reason", _TEXT, "the reason to write to the log", "no reason given")
+    ),
     _action(
         "set_ros_log_dir",
         "changes the log folder of later processes",
@@ -263,15 +262,15 @@ _PLAIN = (
     _action(
         "gz_server",
         "starts Gazebo without a window",
-        _usually_written("world_sdf_file", _PATH, "the world"),
-        _one("world_sdf_string", _TEXT, "the world as text"),
-        *_GZ_CONTAINER,
+        _usual("world_sdf_file", _PATH, "the world"),
+        _optional("world_sdf_string", _TEXT, "the world as text"),
+        *_GZ_CONTAINER_ATTRIBUTES,
     ),
     _action(
         "gz_spawn_model",
         "spawns a model in Gazebo",
         *(
-            _one(name, kind, meaning)
+            _optional(name, kind, meaning)
             for name, kind, meaning in (
                 ("world", _NAME, "the name of the world"),
                 ("file", _PATH, "the file of the model"),
@@ -280,46 +279,46 @@ _PLAIN = (
                 ("entity_name", _NAME, "the name of the model in the world"),
             )
         ),
-        _one("allow_renaming", _TRUTH, "whether the model gets another name if its name is taken", "false"),
-        *(_one(name, _NUMBER, "the position of the model", "0", "m") for name in "xyz"),
-        *(_one(name, _NUMBER, "the orientation of the model", "0", "rad") for name in ("roll", "pitch", "yaw")),
+        _optional("allow_renaming", _BOOLEAN, "whether the model gets another name if its name is taken", "false"),
+        *(_optional(name, _NUMBER, "the position of the model", "0", "m") for name in "xyz"),
+        *(_optional(name, _NUMBER, "the orientation of the model", "0", "rad") for name in ("roll", "pitch", "yaw")),
     ),
     _action(
         "ros_gz_bridge",
         "starts a bridge between topics of Gazebo and of ROS",
         _required("bridge_name", _NAME, "the name of the node"),
         _required("config_file", _PATH, "the YAML file with the topics"),
-        _one("namespace", _NAME, "the namespace of the node"),
-        _one("log_level", ValueType("level of a log"), "the level", "info"),
-        _one("use_respawn", _TRUTH, "whether the process is started again when it ends", "false"),
-        _one("bridge_params", _TEXT, "additional parameters of the node"),
-        *_GZ_CONTAINER,
+        _optional("namespace", _NAME, "the namespace of the node"),
+        _optional("log_level", ValueType("level of a log"), "the level", "info"),
+        _optional("use_respawn", _BOOLEAN, "whether the process is started again when it ends", "false"),
+        _optional("bridge_params", _TEXT, "additional parameters of the node"),
+        *_GZ_CONTAINER_ATTRIBUTES,
         children=(_PARAM,),
     ),
 )
-_DEPTH = 6
+_MAX_DEPTH = 6
 """The depth to which actions are nested in the table. Deeper elements have no rules."""
 
 
 def _actions() -> tuple[ElementRule, ...]:
-    """Return the rules of all actions, with nested actions up to a depth of `_DEPTH`."""
-    inner = _PLAIN
-    for _ in range(_DEPTH):
-        inner = (*_PLAIN, *_containers(inner))
+    """Return the rules of all actions, with nested actions up to a depth of `_MAX_DEPTH`."""
+    inner = _SIMPLE_ACTIONS
+    for _ in range(_MAX_DEPTH):
+        inner = (*_SIMPLE_ACTIONS, *_containers(inner))
     return inner
 
 
 def _containers(inner: tuple[ElementRule, ...]) -> tuple[ElementRule, ...]:
     period = (
         _required("period", _NUMBER, "the time in seconds"),
-        _one("cancel_on_shutdown", _TRUTH, "whether a shutdown ends the wait", "true"),
+        _optional("cancel_on_shutdown", _BOOLEAN, "whether a shutdown ends the wait", "true"),
     )
     return (
         _action(
             "group",
             "actions with a condition, or with a scope of their own",
-            _one("scoped", _TRUTH, "whether settings inside end with the group", "true"),
-            _one("forwarding", _TRUTH, "whether settings from outside apply inside", "true"),
+            _optional("scoped", _BOOLEAN, "whether settings inside end with the group", "true"),
+            _optional("forwarding", _BOOLEAN, "whether settings from outside apply inside", "true"),
             children=(*inner, _pair("keep", "a launch configuration of the group")),
             is_recursive=True,
         ),
@@ -346,18 +345,21 @@ def _containers(inner: tuple[ElementRule, ...]) -> tuple[ElementRule, ...]:
 LAUNCH = ElementRule(
     "launch",
     "the root of a launch file",
-    (_one("version", _TEXT, "the version of the format"), _one("deprecated", _TEXT, "a warning for the callers")),
+    (
+        _optional("version", _TEXT, "the version of the format"),
+        _optional("deprecated", _TEXT, "a warning for the callers"),
+    ),
     _actions(),
 )
 """The rule of the root element of a launch file."""
 
-_TRUTHS = ("true", "false")
-_OUTPUTS = ("screen", "log", "both", "own_log", "full")
-_LEVELS = ("info", "debug", "warning", "error", "critical")
-_CHOICES = {
-    "output": _OUTPUTS,
+_BOOLEANS = ("true", "false")
+_OUTPUT_CHOICES = ("screen", "log", "both", "own_log", "full")
+_LOG_LEVELS = ("info", "debug", "warning", "error", "critical")
+_CHOICES_BY_ATTRIBUTE = {
+    "output": _OUTPUT_CHOICES,
     "on_exit": ("shutdown",),
-    "level": _LEVELS,
+    "level": _LOG_LEVELS,
     "log_level": ("info", "debug", "warn", "error", "fatal"),
     "type": ("str", "int", "float", "bool", "list_of_str", "list_of_int", "list_of_float", "list_of_bool"),
 }
@@ -368,4 +370,4 @@ def choices_of(rule: AttributeRule) -> tuple[str, ...]:
 
     Returns an empty tuple if any value is allowed.
     """
-    return _TRUTHS if rule.type is _TRUTH else _CHOICES.get(rule.name, ())
+    return _BOOLEANS if rule.type is _BOOLEAN else _CHOICES_BY_ATTRIBUTE.get(rule.name, ())

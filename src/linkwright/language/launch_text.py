@@ -11,8 +11,8 @@ from typing import Any
 
 from linkwright.packages import PackageFinder
 
-_WHOLE = re.compile(r"\$\(\s*([\w-]+)(?:\s+([^()]*?))?\s*\)")
-_MARK = re.compile(r"\$\(|\)")
+_CLOSED_SUBSTITUTION = re.compile(r"\$\(\s*([\w-]+)(?:\s+([^()]*?))?\s*\)")
+_BRACKET = re.compile(r"\$\(|\)")
 _WORD = re.compile(r"""(?:\$\((?:[^()]|\$\([^()]*\))*\)|[^\s"'\[\],;])+""")
 _MAX_PASSES = 8
 
@@ -37,10 +37,10 @@ class Substitution:
         return self.arguments[-1] if self.arguments else self.command
 
 
-def open_substitution(typed: str) -> Substitution | None:
+def find_open_substitution(typed: str) -> Substitution | None:
     """Return the innermost ``$(...)`` around the end of a text, or None if all are closed."""
     opened: list[int] = []
-    for mark in _MARK.finditer(typed):
+    for mark in _BRACKET.finditer(typed):
         if mark[0] == ")":
             opened = opened[:-1]
         else:
@@ -58,14 +58,16 @@ def substitution_around(text: str, offset: int) -> re.Match[str] | None:
 
     Its groups are the command and the arguments.
     """
-    return next((match for match in _WHOLE.finditer(text) if match.start() <= offset <= match.end()), None)
+    return next(
+        (match for match in _CLOSED_SUBSTITUTION.finditer(text) if match.start() <= offset <= match.end()), None
+    )
 
 
 def evaluate(text: str, file: Path, finder: PackageFinder, configurations: Mapping[str, str | None]) -> str | None:
     """Evaluate the substitutions in a text, or return None if one is unknown.
 
     Args:
-        text: the text.
+        text: an attribute value, as written.
         file: the launch file.
         finder: finds packages.
         configurations: the values of ``$(var NAME)`` by name, which may contain substitutions.
@@ -84,7 +86,7 @@ def evaluate(text: str, file: Path, finder: PackageFinder, configurations: Mappi
         return match[0]
 
     for _ in range(_MAX_PASSES):
-        replaced = _WHOLE.sub(value, text)
+        replaced = _CLOSED_SUBSTITUTION.sub(value, text)
         if replaced == text or len(replaced) > len(text) + 10_000:
             break
         text = replaced
@@ -97,7 +99,7 @@ def path_words(text: str) -> Iterator[tuple[int, int]]:
         yield match.span()
 
 
-def typed_word(typed: str) -> str:
+def find_typed_word(typed: str) -> str:
     """Return the word at the end of a text without open substitutions, or an empty string."""
     for start, end in path_words(typed):
         if end == len(typed):
@@ -113,10 +115,13 @@ def substitution_names() -> Mapping[str, str]:
 
     for _ in load(ACTION_GROUP):
         pass
-    return {name: _purpose(method) for name, method in sorted(substitution_parse_methods.items(), key=_rank)}
+    return {
+        name: _find_purpose(method)
+        for name, method in sorted(substitution_parse_methods.items(), key=_rank_substitution)
+    }
 
 
-def _purpose(method: Callable[..., Any]) -> str:
+def _find_purpose(method: Callable[..., Any]) -> str:
     owner = getattr(method, "__self__", method)
     return (getattr(owner, "__doc__", None) or "").partition("\n")[0].replace("``", "`")
 
@@ -134,7 +139,7 @@ _COMMON_SUBSTITUTIONS = (
 )
 
 
-def _rank(entry: tuple[str, object]) -> tuple[int, str]:
+def _rank_substitution(entry: tuple[str, object]) -> tuple[int, str]:
     return (
         _COMMON_SUBSTITUTIONS.index(entry[0]) if entry[0] in _COMMON_SUBSTITUTIONS else len(_COMMON_SUBSTITUTIONS)
     ), entry[0]

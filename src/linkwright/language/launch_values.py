@@ -13,24 +13,24 @@ from linkwright.language.definitions import NameKind, definitions_in
 from linkwright.language.format import Document, Target
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation
-from linkwright.language.launch_arguments import LaunchArgument, arguments_in, likely_values
+from linkwright.language.launch_arguments import LaunchArgument, arguments_in, list_likely_values
 from linkwright.language.launch_schema import LAUNCH, choices_of
 from linkwright.language.launch_text import (
     evaluate,
-    open_substitution,
+    find_open_substitution,
+    find_typed_word,
     path_words,
     substitution_around,
     substitution_names,
-    typed_word,
 )
 from linkwright.language.links import FileReference
 from linkwright.language.node_topics import (
     NodeProgram,
     explain_topic,
+    find_topic_targets,
     node_name,
     offer_topics,
     plain_name,
-    targets_of_topic,
 )
 from linkwright.language.offers import (
     explain_file,
@@ -51,13 +51,13 @@ from linkwright.language.source_parameters import parameters_in_sources
 from linkwright.packages.share_layout import source_of
 from linkwright.schema import describe_attribute
 
-_PACKAGES = frozenset({"find-pkg-share", "find-pkg-prefix", "find"})
-_VARIABLES = frozenset({"var", "arg"})
+_PACKAGE_COMMANDS = frozenset({"find-pkg-share", "find-pkg-prefix", "find"})
+_VARIABLE_COMMANDS = frozenset({"var", "arg"})
 _USE = re.compile(r"\$\((?:var|arg)\s+([\w./-]+)")
-_PATHS = frozenset({"file", "from", "filename", "world_sdf_file", "config_file", "new_log_dir", "cwd"})
-_INTO_ARGUMENTS = frozenset({"arg", "let"})
+_PATH_ATTRIBUTES = frozenset({"file", "from", "filename", "world_sdf_file", "config_file", "new_log_dir", "cwd"})
+_ARGUMENT_TAGS = frozenset({"arg", "let"})
 _WITH_VARIABLES = frozenset({"value", "default", "args", "cmd", "if", "unless", "namespace", "ros_args"})
-_DESCRIPTIONS = (".xacro", ".urdf", ".sdf")
+_DESCRIPTION_SUFFIXES = (".xacro", ".urdf", ".sdf")
 _BEGINNINGS = ("$(find-pkg-share ", "$(dirname)/")
 
 
@@ -93,7 +93,7 @@ class LaunchValue:
     @property
     def is_included(self) -> bool:
         """Whether the element is an argument for an included file."""
-        return self.tags[-1] in _INTO_ARGUMENTS and "include" in self.tags[:-1]
+        return self.tags[-1] in _ARGUMENT_TAGS and "include" in self.tags[:-1]
 
 
 @dataclass
@@ -156,17 +156,17 @@ class LaunchText:
 
 def complete_value(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
     """Yield the completions in a value of a launch file."""
-    substitution = open_substitution(value.typed)
+    substitution = find_open_substitution(value.typed)
     if substitution is None:
-        yield from _plain_completions(launch, value)
+        yield from _offer_plain_values(launch, value)
         return
     start = value.offset - len(substitution.typed)
     if not substitution.arguments:
         for name, purpose in substitution_names().items():
             yield Completion(name, ItemKind.FUNCTION, start, purpose)
-    elif substitution.command in _PACKAGES:
+    elif substitution.command in _PACKAGE_COMMANDS:
         yield from offer_packages(launch.document, start)
-    elif substitution.command in _VARIABLES and len(substitution.arguments) == 1:
+    elif substitution.command in _VARIABLE_COMMANDS and len(substitution.arguments) == 1:
         yield from _offer_arguments(launch.arguments, start)
         for name in launch.undeclared_names(start):
             yield Completion(name, ItemKind.NAME, start)
@@ -182,8 +182,10 @@ def _offer_command(launch: LaunchText, value: LaunchValue) -> Iterator[Completio
     """Yield the paths in a command, and the arguments of a description in it."""
     command = value.typed.rpartition("$(command")[2].strip()
     words = [command[start:end] for start, end in path_words(command)]
-    word = typed_word(value.typed)
-    for name in (other_word for other_word in words if other_word != word and other_word.endswith(_DESCRIPTIONS)):
+    word = find_typed_word(value.typed)
+    for name in (
+        other_word for other_word in words if other_word != word and other_word.endswith(_DESCRIPTION_SUFFIXES)
+    ):
         path = launch.path_of(name)
         if path is not None and path.is_file() and ":=" not in word:
             path = Path(source_of(str(path)))
@@ -202,12 +204,12 @@ def _offer_arguments(arguments: Iterable[LaunchArgument], start: int) -> Iterato
         yield Completion(argument.name, ItemKind.NAME, start, detail, argument.describe())
 
 
-def _plain_completions(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
+def _offer_plain_values(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
     document, offset, name, start = launch.document, value.offset, value.name, value.start
     rule = rule_at(LAUNCH, value.tags)
     attribute = None if rule is None else rule.attribute_rules.get(name)
     if value.tags[-1] == "remap":
-        yield from _new_and_old_names(launch, value)
+        yield from _offer_remapped_names(launch, value)
         return
     if name == "pkg":
         yield from offer_packages(document, start)
@@ -228,7 +230,7 @@ def _plain_completions(launch: LaunchText, value: LaunchValue) -> Iterator[Compl
     elif name in ("value", "default"):
         if value.is_included:
             yield from _offer_variables(
-                launch, start, _arguments_named(launch.arguments, value.attributes.get("name", ""))
+                launch, start, _find_arguments(launch.arguments, value.attributes.get("name", ""))
             )
         yield from offer_values(_list_choices(launch, value), start)
     elif value.tags[-1] in ("param", "set_parameter") and name == "name":
@@ -238,12 +240,12 @@ def _plain_completions(launch: LaunchText, value: LaunchValue) -> Iterator[Compl
 
 def _offer_texts(launch: LaunchText, value: LaunchValue, offset: int) -> Iterator[Completion]:
     """Yield the paths that complete the word before the cursor, and ``$(var NAME)``."""
-    word, name = typed_word(value.typed), value.name
-    if name in _PATHS:
+    word, name = find_typed_word(value.typed), value.name
+    if name in _PATH_ATTRIBUTES:
         yield from offer_values((begin for begin in _BEGINNINGS if begin.startswith(word)), offset - len(word))
-    if "/" in word or name in _PATHS:
+    if "/" in word or name in _PATH_ATTRIBUTES:
         yield from _offer_path(launch, word, offset, launch_files=value.tags[-1] == "include")
-    if (name in _PATHS or name in _WITH_VARIABLES) and (not word or word.startswith("$")):
+    if (name in _PATH_ATTRIBUTES or name in _WITH_VARIABLES) and (not word or word.startswith("$")):
         yield from _offer_variables(launch, offset - len(word), launch.arguments)
 
 
@@ -255,7 +257,7 @@ def _offer_variables(launch: LaunchText, start: int, arguments: Iterable[LaunchA
             yield Completion(f"$(var {argument.name})", ItemKind.NAME, start, argument.default or "")
 
 
-def _new_and_old_names(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
+def _offer_remapped_names(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
     """Yield the names for a remapping: topics of the node, or other forms of the old name."""
     if value.name == "from":
         programs = [launch.program_of(value)]
@@ -267,7 +269,7 @@ def _new_and_old_names(launch: LaunchText, value: LaunchValue) -> Iterator[Compl
             yield Completion(label, ItemKind.NAME, value.start)
 
 
-def _known_parameters(launch: LaunchText, value: LaunchValue) -> tuple[ParameterInfo, ...]:
+def _list_known_parameters(launch: LaunchText, value: LaunchValue) -> tuple[ParameterInfo, ...]:
     """Return the known parameters of the node around a value."""
     program = launch.program_of(value)
     names = (node_name(*program), program.executable, value.parent_attributes.get("name", ""))
@@ -277,10 +279,10 @@ def _known_parameters(launch: LaunchText, value: LaunchValue) -> tuple[Parameter
 
 def _offer_parameters(launch: LaunchText, value: LaunchValue) -> Iterator[Completion]:
     """Yield completions of the parameters of the node around a value."""
-    known_parameters = _known_parameters(launch, value)
+    known_parameters = _list_known_parameters(launch, value)
     for parameter in known_parameters:
         if parameter.name not in value.sibling_names and "*" not in parameter.name:
-            detail = f"{parameter.type} {parameter.written_default}".strip()
+            detail = f"{parameter.type} {parameter.default_text}".strip()
             yield Completion(parameter.name, ItemKind.NAME, value.start, detail, parameter.description)
     if not any(parameter.name == "use_sim_time" for parameter in known_parameters):
         yield Completion("use_sim_time", ItemKind.NAME, value.start, "bool false")
@@ -291,10 +293,12 @@ def _list_choices(launch: LaunchText, value: LaunchValue) -> tuple[str, ...]:
     name = value.attributes.get("name", "")
     if not value.is_included:
         return (
-            likely_values(None, name, launch.document.text) if value.name == "default" else _list_boolean_choices(name)
+            list_likely_values(None, name, launch.document.text)
+            if value.name == "default"
+            else _list_boolean_choices(name)
         )
     argument = next((candidate for candidate in launch.included_arguments(value) if candidate.name == name), None)
-    return () if argument is None else likely_values(argument, name, launch.document.text)
+    return () if argument is None else list_likely_values(argument, name, launch.document.text)
 
 
 def _list_boolean_choices(name: str) -> tuple[str, ...]:
@@ -353,16 +357,16 @@ def _meaning_in_substitution(launch: LaunchText, match: re.Match[str], offset: i
     name = arguments.partition(" ")[0]
     start = match.start(2) + (match[2] or "").find(name) if match[2] else match.end(1)
     name_range = start, start + len(name)
-    if command in _PACKAGES:
+    if command in _PACKAGE_COMMANDS:
         return _ValueMeaning("package", name, *name_range)
-    if command in _VARIABLES:
-        return _ValueMeaning("argument", name, *name_range, arguments=_arguments_named(launch.arguments, name))
+    if command in _VARIABLE_COMMANDS:
+        return _ValueMeaning("argument", name, *name_range, arguments=_find_arguments(launch.arguments, name))
     if command == "exec-in-pkg" and " " in arguments:
         return _ValueMeaning("program", name, *name_range, package=arguments.split()[-1])
     return None
 
 
-def _arguments_named(arguments: Iterable[LaunchArgument], name: str) -> tuple[LaunchArgument, ...]:
+def _find_arguments(arguments: Iterable[LaunchArgument], name: str) -> tuple[LaunchArgument, ...]:
     return tuple(argument for argument in arguments if argument.name == name)
 
 
@@ -374,14 +378,14 @@ def _meaning_of_attribute(launch: LaunchText, value: LaunchValue) -> _ValueMeani
     kinds = {"pkg": "package", "exec": "program", "plugin": "component"}
     if name in kinds:
         return _ValueMeaning(kinds[name], value.text, *whole_range, package=launch.package_of(value))
-    if name == "name" and value.tags[-1] in _INTO_ARGUMENTS:
+    if name == "name" and value.tags[-1] in _ARGUMENT_TAGS:
         arguments = launch.included_arguments(value) if value.is_included else launch.arguments
-        return _ValueMeaning("argument", value.text, *whole_range, arguments=_arguments_named(arguments, value.text))
+        return _ValueMeaning("argument", value.text, *whole_range, arguments=_find_arguments(arguments, value.text))
     for start, end in path_words(value.text):
         word = value.text[start:end]
-        if begin + start <= value.offset <= begin + end and ("/" in word or name in _PATHS):
+        if begin + start <= value.offset <= begin + end and ("/" in word or name in _PATH_ATTRIBUTES):
             path = launch.path_of(word)
-            if path is not None and (path.exists() or name in _PATHS):
+            if path is not None and (path.exists() or name in _PATH_ATTRIBUTES):
                 return _ValueMeaning("file", str(path), begin + start, begin + end)
     return None
 
@@ -389,17 +393,17 @@ def _meaning_of_attribute(launch: LaunchText, value: LaunchValue) -> _ValueMeani
 def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
     """Explain the object at the cursor in a value, or else the attribute, or return None."""
     meaning = _meaning_at(launch, value)
-    text = None if meaning is None else _explanation(launch.document, meaning)
+    text = None if meaning is None else _explain_meaning(launch.document, meaning)
     if meaning is not None and text:
         return Explanation(text, meaning.start, meaning.end)
     end = value.start + len(value.text)
     if value.tags[-1] in ("param", "set_parameter") and value.name in ("name", "value"):
-        known_parameters = _known_parameters(launch, value)
+        known_parameters = _list_known_parameters(launch, value)
         parameter = next(
             (candidate for candidate in known_parameters if candidate.matches(value.attributes.get("name", ""))), None
         )
         if parameter is not None:
-            default = f" = `{parameter.written_default}`" if parameter.written_default else ""
+            default = f" = `{parameter.default_text}`" if parameter.default_text else ""
             head = f"**{parameter.name}**: {parameter.type}{default}"
             return Explanation(f"{head}\n\n{parameter.description}".strip(), value.start, end)
     rule = rule_at(LAUNCH, value.tags)
@@ -407,7 +411,7 @@ def explain_value(launch: LaunchText, value: LaunchValue) -> Explanation | None:
     return None if attribute is None else Explanation(describe_attribute(attribute), value.start, end)
 
 
-def _explanation(document: Document, meaning: _ValueMeaning) -> str | None:
+def _explain_meaning(document: Document, meaning: _ValueMeaning) -> str | None:
     if meaning.kind == "package":
         return explain_package(document, meaning.name)
     if meaning.kind == "program":
@@ -437,7 +441,7 @@ def define_value(launch: LaunchText, value: LaunchValue) -> Iterator[Target]:
     elif meaning.kind == "file":
         yield from target_of_file(Path(meaning.name))
     elif meaning.kind == "topic" and meaning.program is not None:
-        yield from targets_of_topic(document, [meaning.program], meaning.name)
+        yield from find_topic_targets(document, [meaning.program], meaning.name)
     for argument in meaning.arguments:
         yield Target(argument.file, argument.start, argument.end)
 
@@ -453,7 +457,7 @@ def links_in(launch: LaunchText, name: str, text: str, begin: int) -> Iterator[F
     """
     for start, end in path_words(text):
         word = text[start:end]
-        if "/" in word or name in _PATHS:
+        if "/" in word or name in _PATH_ATTRIBUTES:
             path = launch.path_of(word)
             if path is not None and path.is_file():
                 yield FileReference(begin + start, begin + end, Path(source_of(str(path))))

@@ -35,7 +35,7 @@ def _value_at(text: str, offset: int) -> LaunchValue | None:
     if cursor.syntax is not CursorSyntax.VALUE or cursor.attribute is None or cursor.token is None:
         return None
     token = cursor.token
-    parent = _parent_of(text, token)
+    parent = _find_parent(text, token)
     siblings = [] if parent is None else parent.children
     key = "from" if token.name == "remap" else "name"
     others = (_attribute_values(child.tag).get(key, "") for child in siblings if child.tag.start != token.start)
@@ -51,7 +51,7 @@ def _value_at(text: str, offset: int) -> LaunchValue | None:
     )
 
 
-def _parent_of(text: str, token: Token) -> OutlineElement | None:
+def _find_parent(text: str, token: Token) -> OutlineElement | None:
     """Return the element that contains a start tag, or None if there is none."""
     ancestors = [
         element for element in Outline.of(text).elements_around(token.start) if element.tag.start < token.start
@@ -102,7 +102,7 @@ _KINDS = {
 }
 _MAX_DEPTH = 50
 """The maximum depth of symbols."""
-_NAMING = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
+_IDENTIFYING_ATTRIBUTES = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
 
 
 def _list_symbols(document: Document) -> Iterator[Symbol]:
@@ -111,7 +111,7 @@ def _list_symbols(document: Document) -> Iterator[Symbol]:
 
 def _make_symbol(element: OutlineElement, depth: int) -> Symbol:
     attributes = _attribute_values(element.tag)
-    identifier = next((attributes[name] for name in _NAMING if attributes.get(name)), "")
+    identifier = next((attributes[name] for name in _IDENTIFYING_ATTRIBUTES if attributes.get(name)), "")
     kind = _KINDS.get(element.tag.name, SymbolKind.OBJECT)
     children = tuple(_make_symbol(child, depth + 1) for child in element.children) if depth < _MAX_DEPTH else ()
     name = f"{element.tag.name} {identifier}".strip()
@@ -119,4 +119,4 @@ def _make_symbol(element: OutlineElement, depth: int) -> Symbol:
 
 
 LAUNCH_XML = Format(is_launch_file, _complete, _explain, _define, _links, _list_symbols, prepare=substitution_names)
-"""Launch files in XML."""
+"""The format of launch files in XML."""

@@ -1,4 +1,7 @@
-"""Language features for launch files in YAML, whose keys are the elements of the XML format."""
+"""Language features for launch files in YAML.
+
+The keys are the elements of the XML format.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,7 @@ from linkwright.schema import describe_attribute, describe_element
 
 _CHILDREN = "children"
 """The key of the actions in a timer or a loop."""
-_NAMING = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
+_IDENTIFYING_ATTRIBUTES = ("name", "exec", "plugin", "file", "from", "namespace", "target", "cmd")
 _MAX_DEPTH = 20
 
 
@@ -35,7 +38,7 @@ def is_yaml_launch_file(path: Path) -> bool:
     return stem != path.name and (stem == "launch" or stem.endswith((".launch", "_launch")))
 
 
-def _tags(entry: YamlEntry) -> tuple[str, ...]:
+def _element_tags(entry: YamlEntry) -> tuple[str, ...]:
     return tuple(key for key in entry.path if key != _CHILDREN)
 
 
@@ -51,13 +54,13 @@ def _element_around(entry: YamlEntry) -> YamlEntry | None:
     return ancestor
 
 
-def _value_of(cursor: YamlCursor) -> LaunchValue | None:
+def _find_value(cursor: YamlCursor) -> LaunchValue | None:
     """Return the value at a cursor, or None outside values."""
     entry = cursor.parent_entry
     element = entry.parent
     if cursor.position is not YamlPosition.VALUE or not entry.key or element is None or _is_new_item(cursor):
         return None
-    tags = _tags(entry)
+    tags = _element_tags(entry)
     if len(tags) < 2:
         return None
     text = entry.scalar if entry.scalar.startswith(cursor.typed) and not cursor.is_in_list else cursor.typed
@@ -73,11 +76,11 @@ def _value_of(cursor: YamlCursor) -> LaunchValue | None:
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
     cursor = YamlOutline(document.text).cursor(offset)
-    value = _value_of(cursor)
+    value = _find_value(cursor)
     if value is not None:
         yield from complete_value(LaunchText(document), value)
     elif cursor.position is YamlPosition.KEY or _is_new_item(cursor):
-        yield from _keys(cursor)
+        yield from _offer_keys(cursor)
 
 
 def _is_new_item(cursor: YamlCursor) -> bool:
@@ -85,13 +88,13 @@ def _is_new_item(cursor: YamlCursor) -> bool:
     return (
         cursor.position is YamlPosition.VALUE
         and cursor.is_in_list
-        and rule_at(LAUNCH, _tags(cursor.parent_entry)) is not None
+        and rule_at(LAUNCH, _element_tags(cursor.parent_entry)) is not None
     )
 
 
-def _keys(cursor: YamlCursor) -> Iterator[Completion]:
+def _offer_keys(cursor: YamlCursor) -> Iterator[Completion]:
     parent = cursor.parent_entry
-    tags = _tags(parent)
+    tags = _element_tags(parent)
     if not tags:
         yield Completion(LAUNCH.tag, ItemKind.ELEMENT, cursor.start, "", describe_element(LAUNCH))
         return
@@ -100,7 +103,7 @@ def _keys(cursor: YamlCursor) -> Iterator[Completion]:
         return
     present = {child.key for child in parent.children if child is not cursor.entry}
     owner = parent.parent if parent.is_item and parent.parent is not None else parent
-    is_action_list = owner.key in _LISTS and (parent.is_item or _is_new_item(cursor))
+    is_action_list = owner.key in _ACTION_LISTS and (parent.is_item or _is_new_item(cursor))
     for attribute in () if is_action_list or not parent.parent else rule.attributes:
         if attribute.name not in present:
             snippet = "" if cursor.entry is not None else f'{attribute.name}: "$1"$0'
@@ -112,19 +115,19 @@ def _keys(cursor: YamlCursor) -> Iterator[Completion]:
             yield Completion(child.tag, ItemKind.ELEMENT, cursor.start, "", describe_element(child), snippet)
 
 
-_LISTS = frozenset({LAUNCH.tag, "group", _CHILDREN})
+_ACTION_LISTS = frozenset({LAUNCH.tag, "group", _CHILDREN})
 """Keys whose items are actions."""
 
 
 def _explain(document: Document, offset: int) -> Explanation | None:
     cursor = YamlOutline(document.text).cursor(offset)
-    value = _value_of(cursor)
+    value = _find_value(cursor)
     if value is not None:
         return explain_value(LaunchText(document), value)
     entry = cursor.entry
     if cursor.position is not YamlPosition.KEY or entry is None:
         return None
-    tags = _tags(entry)
+    tags = _element_tags(entry)
     rule, parent = rule_at(LAUNCH, tags), rule_at(LAUNCH, tags[:-1])
     end = entry.start + len(entry.key)
     attribute = None if parent is None or entry.children else parent.attribute_rules.get(entry.key)
@@ -134,7 +137,7 @@ def _explain(document: Document, offset: int) -> Explanation | None:
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
-    value = _value_of(YamlOutline(document.text).cursor(offset))
+    value = _find_value(YamlOutline(document.text).cursor(offset))
     if value is not None:
         yield from define_value(LaunchText(document), value)
 
@@ -148,22 +151,22 @@ def _links(document: Document) -> Iterator[FileReference]:
 
 
 def _symbols(document: Document) -> Iterator[Symbol]:
-    yield from _actions(YamlOutline(document.text).root, 0)
+    yield from _action_symbols(YamlOutline(document.text).root, 0)
 
 
-def _actions(entry: YamlEntry, depth: int) -> Iterator[Symbol]:
+def _action_symbols(entry: YamlEntry, depth: int) -> Iterator[Symbol]:
     for child in entry.children if depth < _MAX_DEPTH else ():
         if child.is_item:
-            yield from _actions(child, depth + 1)
+            yield from _action_symbols(child, depth + 1)
         elif child.children:
             attributes = _attribute_values(child)
-            identifier = next((attributes[name] for name in _NAMING if attributes.get(name)), "")
+            identifier = next((attributes[name] for name in _IDENTIFYING_ATTRIBUTES if attributes.get(name)), "")
             kind = (
                 SymbolKind.NODE
                 if "exec" in attributes or "plugin" in attributes
                 else _KINDS.get(child.key, SymbolKind.OBJECT)
             )
-            inner = tuple(_actions(child, depth + 1))
+            inner = tuple(_action_symbols(child, depth + 1))
             yield Symbol(
                 f"{child.key} {identifier}".strip(), kind, child.start, child.end, inner, attributes.get("pkg", "")
             )
@@ -179,4 +182,4 @@ _KINDS = {
 }
 
 LAUNCH_YAML = Format(is_yaml_launch_file, _complete, _explain, _define, _links, _symbols, prepare=substitution_names)
-"""Launch files in YAML."""
+"""The format of launch files in YAML."""

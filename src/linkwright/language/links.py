@@ -15,7 +15,7 @@ from linkwright.xmltree.tokens import Kind, tokens
 _PATH_ATTRIBUTES = ("filename", "file", "uri", "path", "url")
 _PATH_TAGS = ("uri", "albedo_map", "normal_map", "filename", "parameters", "mesh")
 _SCHEME = re.compile(r"^(?:package|model|file)://")
-_FIND = re.compile(r"\$\(find(?:-pkg-share)?\s+([^()\s]+)\)")
+_FIND_SUBSTITUTION = re.compile(r"\$\(find(?:-pkg-share)?\s+([^()\s]+)\)")
 _LOAD_YAML = re.compile(r"load_yaml\(\s*(['\"])(?P<path>[^'\"]+)\1")
 
 
@@ -52,14 +52,14 @@ def file_references(
             for attribute in token.attributes():
                 is_path = attribute.name in _PATH_ATTRIBUTES
                 value = attribute.value or ""
-                yield from _reference_in(value, attribute.value_start, file, finder, values_by_range, is_path=is_path)
+                yield from _find_reference(value, attribute.value_start, file, finder, values_by_range, is_path=is_path)
         elif token.kind is Kind.TEXT and token.text.strip():
             value = token.text.strip()
             start = token.start + token.text.index(value)
-            yield from _reference_in(value, start, file, finder, values_by_range, is_path=tag in _PATH_TAGS)
+            yield from _find_reference(value, start, file, finder, values_by_range, is_path=tag in _PATH_TAGS)
 
 
-def _reference_in(
+def _find_reference(
     value: str,
     start: int,
     file: Path,
@@ -71,18 +71,18 @@ def _reference_in(
     loaded = _LOAD_YAML.search(value)
     begin, end = loaded.span("path") if loaded else (0, len(value))
     path_text = value[begin:end]
-    if not (is_path or loaded or _SCHEME.match(path_text) or _FIND.match(path_text)):
+    if not (is_path or loaded or _SCHEME.match(path_text) or _FIND_SUBSTITUTION.match(path_text)):
         return
     values = values_by_range.get((start, start + len(value)), ())
-    address = _FIND.sub(lambda match: str(finder.find(match[1]) or match[0]), path_text)
+    address = _FIND_SUBSTITUTION.sub(lambda match: str(finder.find(match[1]) or match[0]), path_text)
     if "$" in address and not loaded and len(values) == 1:
         address = values[0].strip("'\"")
-    target = None if "$" in address else _target(address, file, finder)
+    target = None if "$" in address else _resolve_address(address, file, finder)
     if target is not None:
         yield FileReference(start + begin, start + end, target)
 
 
-def _target(address: str, file: Path, finder: PackageFinder) -> Path | None:
+def _resolve_address(address: str, file: Path, finder: PackageFinder) -> Path | None:
     """Return the file or folder at an address, or None if it does not exist."""
     if not address or "\n" in address or "*" in address:
         return None

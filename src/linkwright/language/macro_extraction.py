@@ -9,16 +9,16 @@ from pathlib import Path
 
 from linkwright.diagnostics import phrase
 from linkwright.language.definitions import NameKind
-from linkwright.language.extraction import insertion_before, start_with_comments, unique_name
+from linkwright.language.extraction import find_start_with_comments, make_insertion_before, make_unique_name
 from linkwright.language.grammar import PREFIX
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
+from linkwright.language.source_elements import SourceElement, source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import SourceElement, source_elements
 from linkwright.xmltree.patches import indentation, line_ending
 from linkwright.xmltree.tokens import Kind, tokens
 
-_STEP = "  "
+_INDENTATION = "  "
 
 
 def selected_elements(text: str, start: int, end: int) -> list[SourceElement]:
@@ -66,14 +66,14 @@ def _is_movable(element: SourceElement) -> bool:
 
 
 def extract_macro(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, siblings: Sequence[SourceElement]
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, siblings: Sequence[SourceElement]
 ) -> tuple[Edit, ...]:
     """Return the proved edits that move elements to a macro with parameters.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: the file that contains the elements.
         text: its text.
         siblings: the elements, as `selected_elements` returns them.
 
@@ -82,22 +82,24 @@ def extract_macro(
     """
     start, end, top = siblings[0].start, siblings[-1].end, siblings[0].top
     assert top is not None
-    name = unique_name(project, texts, file, _macro_name(siblings[0]))
+    name = make_unique_name(workspace, texts, file, _choose_macro_name(siblings[0]))
     newline, blanks = line_ending(text), indentation(text, top.start) or ""
-    proof = ExpansionProof(project, texts, file)
+    proof = ExpansionProof(workspace, texts, file)
     error: UnprovedError | None = None
-    starts = dict.fromkeys((start, start_with_comments(text, start)))  # xacro drops comments above calls
-    places = dict.fromkeys((start_with_comments(text, top.start), top.start))
-    lists = _parameter_lists(project, texts, file, text, (start, end))
+    starts = dict.fromkeys(
+        (start, find_start_with_comments(text, start))
+    )  # The definition goes above these comments, because xacro drops comments above calls.
+    places = dict.fromkeys((find_start_with_comments(text, top.start), top.start))
+    lists = _generate_parameter_lists(workspace, texts, file, text, (start, end))
     for parameters, begin, insertion_offset in product(lists, starts, places):
         if begin < insertion_offset:
             continue
         call = "".join(f' {parameter}="${{{parameter}}}"' for parameter in parameters)
-        body = _reindent(text, begin, end, blanks + _STEP)
+        body = _reindent(text, begin, end, blanks + _INDENTATION)
         params = f' params="{" ".join(parameters)}"'
-        lines = (f'<xacro:macro name="{name}"{params}>', f"{blanks}{_STEP}{body}", f"{blanks}</xacro:macro>")
-        definition = insertion_before(file, text, insertion_offset, newline.join(lines))
-        edits = _merge(definition, Edit(file, begin, end, f"<xacro:{name}{call}/>"))
+        lines = (f'<xacro:macro name="{name}"{params}>', f"{blanks}{_INDENTATION}{body}", f"{blanks}</xacro:macro>")
+        definition = make_insertion_before(file, text, insertion_offset, newline.join(lines))
+        edits = _merge_adjacent(definition, Edit(file, begin, end, f"<xacro:{name}{call}/>"))
         try:
             proof.check_equal(edits)
         except UnprovedError as reason:
@@ -107,14 +109,14 @@ def extract_macro(
     raise error or UnprovedError(phrase("there is no place to define '{name}'", name=name))
 
 
-def _merge(first: Edit, second: Edit) -> tuple[Edit, ...]:
+def _merge_adjacent(first: Edit, second: Edit) -> tuple[Edit, ...]:
     """Merge two edits into one if they are adjacent, and return the edits."""
     if first.end == second.start:
         return (Edit(first.file, first.start, second.end, first.text + second.text),)
     return first, second
 
 
-def _macro_name(element: SourceElement) -> str:
+def _choose_macro_name(element: SourceElement) -> str:
     """Return a macro name that consists of the element's tag and the nearest name around it."""
     tag = element.name.removeprefix(PREFIX)
     for ancestor in element.ancestors_and_self():
@@ -124,13 +126,13 @@ def _macro_name(element: SourceElement) -> str:
     return f"{tag}_macro"
 
 
-def _parameter_lists(
-    project: Workspace, texts: Mapping[Path, str], file: Path, text: str, selected: tuple[int, int]
+def _generate_parameter_lists(
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, text: str, selected: tuple[int, int]
 ) -> Iterator[list[str]]:
-    """Yield the lists of parameters to try: all used names, only macro parameters, none."""
+    """Yield the lists of parameters to try: all used names, only macro parameters, or none."""
     properties: set[str] = set()
-    for other in project.index.related_files(file, texts):
-        all_names = occurrences_in(project.text(other, texts) or "", other)
+    for other in workspace.index.related_files(file, texts):
+        all_names = occurrences_in(workspace.text(other, texts) or "", other)
         properties |= {
             candidate.name for candidate in all_names if candidate.kind is NameKind.PROPERTY and candidate.is_definition
         }
@@ -151,11 +153,11 @@ def _parameter_lists(
     used_names = [
         candidate.name
         for candidate in names
-        if (candidate.kind is NameKind.PARAMETER and _is_value(text, candidate))
+        if (candidate.kind is NameKind.PARAMETER and _uses_value(text, candidate))
         or (candidate.kind is NameKind.PROPERTY and candidate.name in properties)
     ]
     local = [
-        candidate.name for candidate in names if candidate.kind is NameKind.PARAMETER and _is_value(text, candidate)
+        candidate.name for candidate in names if candidate.kind is NameKind.PARAMETER and _uses_value(text, candidate)
     ]
     lists = [[*dict.fromkeys(used_names)], [*dict.fromkeys(local)], []]
     for index, parameters in enumerate(lists):
@@ -168,8 +170,8 @@ def _is_block_use(text: str, name: Occurrence) -> bool:
     return start_of_tag.startswith("xacro:insert_block")
 
 
-def _is_value(text: str, name: Occurrence) -> bool:
-    """Return whether an occurrence uses the value of a name, and is not an attribute that passes an argument."""
+def _uses_value(text: str, name: Occurrence) -> bool:
+    """Return whether an occurrence uses a value, and is not the name of a passed argument."""
     return re.match(r"\s*=\s*[\"']", text[name.end :]) is None
 
 

@@ -15,20 +15,20 @@ from linkwright.language.links import FileReference
 from linkwright.language.manifest_schema import DEPENDENCY_TAGS, PACKAGE
 from linkwright.language.offers import explain_package, offer_packages, offer_values, target_of_package
 from linkwright.language.outline import Outline
-from linkwright.language.programs import used_packages
+from linkwright.language.programs import find_used_packages
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
 from linkwright.packages.creation.licenses import known_licenses
 from linkwright.packages.manifest import MANIFEST
 
 _COMMON_LICENSES = ("Apache-2.0", "BSD-3-Clause", "MIT")
-_TEXTS = {
+_COMMON_TEXTS = {
     "build_type": ("ament_cmake", "ament_python", "cmake"),
     "member_of_group": ("rosidl_interface_packages",),
     "group_depend": ("rosidl_interface_packages",),
     "version": ("0.1.0",),
 }
-_ATTRIBUTES = {"format": ("3", "2"), "type": ("website", "bugtracker", "repository")}
+_COMMON_ATTRIBUTE_VALUES = {"format": ("3", "2"), "type": ("website", "bugtracker", "repository")}
 _COMMON_DEPENDENCIES = {
     "buildtool_depend": ("ament_cmake", "ament_cmake_python", "ament_cmake_auto", "rosidl_default_generators"),
     "test_depend": (
@@ -43,7 +43,7 @@ _COMMON_DEPENDENCIES = {
     ),
 }
 """The usual dependencies of each tag, which are offered even if the packages are not found."""
-_DECLARED = re.compile(r"<(\w+)\b[^<>]*>\s*([\w.-]+)\s*</\1\s*>")
+_DECLARED_DEPENDENCY = re.compile(r"<(\w+)\b[^<>]*>\s*([\w.-]+)\s*</\1\s*>")
 
 
 def is_manifest(path: Path) -> bool:
@@ -55,20 +55,20 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
     cursor = cursor_at(document.text, offset)
     typed = cursor.typed.lstrip()
     if cursor.syntax is CursorSyntax.TEXT and cursor.tags and "\n" not in typed:
-        completions = [*_text_completions(document, cursor.tags[-1], offset - len(typed))]
+        completions = [*_offer_texts(document, cursor.tags[-1], offset - len(typed))]
         if completions:
             yield from completions
             return
     if cursor.syntax is CursorSyntax.VALUE and cursor.attribute is not None:
-        yield from offer_values(_ATTRIBUTES.get(cursor.attribute.name, ()), offset - len(cursor.typed))
+        yield from offer_values(_COMMON_ATTRIBUTE_VALUES.get(cursor.attribute.name, ()), offset - len(cursor.typed))
         return
-    present = _single_children(document.text, offset)
+    present = _list_single_children(document.text, offset)
     for item in complete(document, offset):
         if item.kind is not ItemKind.ELEMENT or item.label not in present:
             yield item
 
 
-def _single_children(text: str, offset: int) -> set[str]:
+def _list_single_children(text: str, offset: int) -> set[str]:
     """Return the tags of existing siblings at an offset that may occur only once."""
     ancestors = []
     for element in Outline.of(text).elements_around(offset):
@@ -82,25 +82,25 @@ def _single_children(text: str, offset: int) -> set[str]:
     return {name for name in names if name in rule.child_rules and not rule.child_rules[name].is_repeated}
 
 
-def _text_completions(document: Document, tag: str, start: int) -> Iterator[Completion]:
+def _offer_texts(document: Document, tag: str, start: int) -> Iterator[Completion]:
     if tag in DEPENDENCY_TAGS:
-        yield from _dependency_completions(document, tag, start)
+        yield from _offer_dependencies(document, tag, start)
     elif tag == "license":
         yield from offer_values(dict.fromkeys((*_COMMON_LICENSES, *known_licenses())), start)
     elif tag == "name":
         yield Completion(document.file.parent.name, ItemKind.PACKAGE, start)
     else:
-        yield from offer_values(_TEXTS.get(tag, ()), start)
+        yield from offer_values(_COMMON_TEXTS.get(tag, ()), start)
 
 
-def _dependency_completions(document: Document, tag: str, start: int) -> Iterator[Completion]:
+def _offer_dependencies(document: Document, tag: str, start: int) -> Iterator[Completion]:
     """Yield completions of packages: used ones, then common ones of the tag, then the others.
 
     Packages that the manifest declares are left out.
     """
     others = document.text[:start] + document.text[start:].partition("<")[2]
-    declared_names = {name for other, name in _DECLARED.findall(others) if other in (tag, "depend", "name")}
-    used_names = used_packages(document.file.parent) if tag in ("depend", "exec_depend") else []
+    declared_names = {name for other, name in _DECLARED_DEPENDENCY.findall(others) if other in (tag, "depend", "name")}
+    used_names = find_used_packages(document.file.parent) if tag in ("depend", "exec_depend") else []
     common_names: Iterable[str] = (*used_names, *_COMMON_DEPENDENCIES.get(tag, ()))
     for name in common_names:
         if name not in declared_names:
@@ -111,7 +111,7 @@ def _dependency_completions(document: Document, tag: str, start: int) -> Iterato
             yield item
 
 
-def _dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
+def _find_dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
     """Return the package name in the element at an offset and its start, or None."""
     cursor: Cursor = cursor_at(document.text, offset)
     if cursor.syntax is not CursorSyntax.TEXT or not cursor.tags or cursor.tags[-1] not in {*DEPENDENCY_TAGS, "name"}:
@@ -123,7 +123,7 @@ def _dependency_at(document: Document, offset: int) -> tuple[str, int] | None:
 
 
 def _explain(document: Document, offset: int) -> Explanation | None:
-    dependency = _dependency_at(document, offset)
+    dependency = _find_dependency_at(document, offset)
     if dependency is None:
         return explain_at(document, offset)
     text = explain_package(document, dependency[0])
@@ -131,7 +131,7 @@ def _explain(document: Document, offset: int) -> Explanation | None:
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
-    dependency = _dependency_at(document, offset)
+    dependency = _find_dependency_at(document, offset)
     if dependency is not None:
         yield from target_of_package(document, dependency[0])
 
@@ -157,4 +157,4 @@ def _symbols(document: Document) -> Iterator[Symbol]:
 
 
 PACKAGE_XML = Format(is_manifest, _complete, _explain, _define, _links, _symbols)
-"""``package.xml``."""
+"""The format of ``package.xml``."""

@@ -19,14 +19,14 @@ from linkwright.language.definitions import NameKind
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xmltree.tokens import Kind, tokens
 
-FILES = (".yaml", ".yml", ".rviz", ".launch.py", ".launch.xml", ".launch", ".py")
+FILE_SUFFIXES = (".yaml", ".yml", ".rviz", ".launch.py", ".launch.xml", ".launch", ".py")
 """The suffixes of the files that may mention names."""
 
-_MAX_TEXT = 1_000_000
+_MAX_TEXT_LENGTH = 1_000_000
 """The maximum length in characters. Longer files are data, not configuration."""
-_FRAMES = lazy_pattern(r"(?i)(^|[ _/])(frame|frame_id|link|base|tip|root|ee_link|footprint|body)s?(_name)?s?$")
-_JOINTS = lazy_pattern(r"(?i)((^|[ _])(joint|wheel)(_?names?)?s?$)|(^|_)joint_names?$|^dof_names$")
-_INTERFACES = frozenset(("position", "velocity", "effort", "acceleration"))
+_FRAME_KEY = lazy_pattern(r"(?i)(^|[ _/])(frame|frame_id|link|base|tip|root|ee_link|footprint|body)s?(_name)?s?$")
+_JOINT_KEY = lazy_pattern(r"(?i)((^|[ _])(joint|wheel)(_?names?)?s?$)|(^|_)joint_names?$|^dof_names$")
+_INTERFACE_NAMES = frozenset(("position", "velocity", "effort", "acceleration"))
 """The interfaces of a joint: they follow the joint's name and a slash."""
 _JOINT_MAPPINGS = frozenset(
     (
@@ -45,7 +45,7 @@ _JOINT_MAPPINGS = frozenset(
 _LINK_MAPPINGS = frozenset(("Links", "Frames", "Tree"))
 """Keys of RViz displays whose content is a mapping from links or frames."""
 _TRANSFORM = "static_transform_publisher"
-_POSE = 6
+_POSE_ARGUMENT_COUNT = 6
 """The numbers of a pose, in front of the frames in the arguments of a static transform."""
 _FRAME_OPTIONS = ("--frame-id", "--child-frame-id")
 
@@ -56,7 +56,7 @@ class Mention:
 
     Attributes:
         name: the text.
-        file: the file.
+        file: the file that contains it.
         start: the offset of the first character.
         kinds: the kinds of names that the context allows, or empty if they are unknown.
     """
@@ -78,21 +78,21 @@ def mentions_in(text: str, file: Path, names: frozenset[str]) -> Iterator[Mentio
     Args:
         text: the text of the file. A text that cannot be parsed has no mentions.
         file: the file, whose name determines its format.
-        names: the names.
+        names: the names of links and joints to search.
     """
-    if len(text) > _MAX_TEXT or not any(name in text for name in names):
+    if len(text) > _MAX_TEXT_LENGTH or not any(name in text for name in names):
         return
     if file.name.endswith((".yaml", ".yml", ".rviz")):
-        yield from _in_yaml(text, file, names)
+        yield from _mentions_in_yaml(text, file, names)
     elif file.name.endswith(".py"):
-        yield from _in_python(text, file, names)
+        yield from _mentions_in_python(text, file, names)
     elif file.name.endswith((".sdf", ".world")):
-        yield from _in_sdf(text, file, names)
+        yield from _mentions_in_sdf(text, file, names)
     else:
-        yield from _in_launch_xml(text, file, names)
+        yield from _mentions_in_launch_xml(text, file, names)
 
 
-def _in_yaml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+def _mentions_in_yaml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
     try:
         documents = [*yaml.compose_all(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))]
     except (yaml.YAMLError, RecursionError):
@@ -111,23 +111,23 @@ def _in_yaml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
             name = node.value.removeprefix("/")  # In tf 1, frame names began with a slash.
             start = node.start_mark.index + (1 if node.style in ("'", '"') else 0) + len(node.value) - len(name)
             if text[start : start + len(name)] == name:
-                yield Mention(name, file, start, _kinds_of_keys(keys, is_key=is_key))
+                yield Mention(name, file, start, _kinds_of_path(keys, is_key=is_key))
         elif isinstance(node, yaml.ScalarNode) and "/" in node.value:
-            yield from _in_path(node.value, text, node.start_mark.index, file, names)
+            yield from _mentions_in_path(node.value, text, node.start_mark.index, file, names)
 
 
-def _in_path(value: str, text: str, begin: int, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+def _mentions_in_path(value: str, text: str, begin: int, file: Path, names: frozenset[str]) -> Iterator[Mention]:
     """Yield the names in a value with slashes, such as ``left_wheel_joint/velocity``."""
     parts = value.split("/")
     start = text.find(value, begin, begin + len(value) + 2)
     for index, part in enumerate(parts):
         if part in names and start >= 0:
-            is_joint = index == 0 and len(parts) == 2 and parts[1] in _INTERFACES
+            is_joint = index == 0 and len(parts) == 2 and parts[1] in _INTERFACE_NAMES
             yield Mention(part, file, start, (NameKind.JOINT,) if is_joint else ())
         start += len(part) + 1
 
 
-def _kinds_of_keys(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]:
+def _kinds_of_path(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]:
     last = keys[-1] if keys else ""
     if is_key:
         if not _LINK_MAPPINGS.isdisjoint(keys):
@@ -137,13 +137,13 @@ def _kinds_of_keys(keys: Sequence[str], *, is_key: bool) -> tuple[NameKind, ...]
 
 
 def kinds_of_key(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that a parameter may contain, according to the parameter's name."""
-    if _JOINTS.search(key):
+    """Return the kinds of names that the value of a key may contain."""
+    if _JOINT_KEY.search(key):
         return (NameKind.JOINT,)
-    return (NameKind.LINK,) if _FRAMES.search(key) else ()
+    return (NameKind.LINK,) if _FRAME_KEY.search(key) else ()
 
 
-def _in_python(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+def _mentions_in_python(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
     try:
         tree = ast.parse(text)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -158,12 +158,14 @@ def _in_python(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention
             continue
         column = len(lines[node.lineno - 1].encode()[: node.col_offset].decode(errors="replace"))
         start = starts[node.lineno - 1] + column + 1
-        if text[start : start + len(node.value)] == node.value:  # a string with a single quotation mark and no prefix
+        if (
+            text[start : start + len(node.value)] == node.value
+        ):  # This is a string with single quotation marks and no prefix.
             yield Mention(node.value, file, start, kinds.get(id(node), ()))
 
 
 def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]]:
-    """Yield the `id` of each string that is a parameter value or a frame option, with the kinds."""
+    """Yield the `id` and kinds of each string that is a parameter value or a frame option."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Dict):
             for key, value in zip(node.keys, node.values, strict=True):
@@ -176,7 +178,7 @@ def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]
             keywords = {keyword.arg: keyword.value for keyword in node.keywords}
             program, words = keywords.get("executable"), keywords.get("arguments")
             if isinstance(program, ast.Constant) and program.value == _TRANSFORM and isinstance(words, ast.List):
-                for item in words.elts[_POSE:] if len(words.elts) > _POSE else ():
+                for item in words.elts[_POSE_ARGUMENT_COUNT:] if len(words.elts) > _POSE_ARGUMENT_COUNT else ():
                     yield id(item), (NameKind.LINK,)
         elif isinstance(node, (ast.List, ast.Tuple)):
             for option, item in zip(node.elts, node.elts[1:], strict=False):
@@ -184,7 +186,7 @@ def _kinds_in_python(tree: ast.AST) -> Iterator[tuple[int, tuple[NameKind, ...]]
                     yield id(item), (NameKind.LINK,)
 
 
-def _in_sdf(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+def _mentions_in_sdf(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
     """Yield the mentions in a model, which are never certain.
 
     A model has its own names, but the frames of its sensors are often frames of a robot.
@@ -194,7 +196,7 @@ def _in_sdf(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
         yield Mention(match[1], file, match.start(1))
 
 
-def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
+def _mentions_in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Mention]:
     words = re.compile(rf"(?<![\w/.-])(?:{'|'.join(map(re.escape, sorted(names, key=len, reverse=True)))})(?![\w/.-])")
     for token in tokens(text):
         if token.kind is not Kind.START:
@@ -210,7 +212,9 @@ def _in_launch_xml(text: str, file: Path, names: frozenset[str]) -> Iterator[Men
                 kinds = kinds_of_key(key or "") if is_whole else ()
                 is_frame = preceding_words[-1:] and preceding_words[-1] in _FRAME_OPTIONS
                 if is_frame or (
-                    program == _TRANSFORM and len(preceding_words) >= _POSE and preceding_words[0][:1] != "-"
+                    program == _TRANSFORM
+                    and len(preceding_words) >= _POSE_ARGUMENT_COUNT
+                    and preceding_words[0][:1] != "-"
                 ):
                     kinds = (NameKind.LINK,)
                 yield Mention(match[0], file, attribute.value_start + match.start(), kinds)

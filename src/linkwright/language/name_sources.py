@@ -25,7 +25,7 @@ from linkwright.xmltree.tokens import Kind, tokens
 
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*")
 _ARGUMENT = re.compile(r"arg\s+(\S+)\s*")
-_OPTIONAL = re.compile(r"\$\(optenv\s+\S+\s+([^()]*?)\s*\)")
+_OPTIONAL_VARIABLE = re.compile(r"\$\(optenv\s+\S+\s+([^()]*?)\s*\)")
 _MAX_DEPTH = 12
 _MAX_EXPRESSIONS = 8
 
@@ -35,7 +35,7 @@ class SourceValue:
     """A text of a file, as written.
 
     Attributes:
-        file: the file.
+        file: the file that contains the text.
         start: the offset of the text.
         text: the text, which may contain expressions.
         frame: the macro call or include in which it is evaluated, or None.
@@ -56,20 +56,20 @@ def source_value(element: Element, key: str) -> SourceValue | None:
     """Return the source of an attribute or text of an expanded element, or None.
 
     Args:
-        element: the element.
+        element: an element of an expansion.
         key: the name of the attribute, or an empty string for the text of the element.
     """
     source = element.source
     if source is None:
         return None
-    value_range = attribute_value_range(source.text, element.offset, key) if key else _text_range(element)
+    value_range = attribute_value_range(source.text, element.offset, key) if key else _find_text_range(element)
     if value_range is None:
         return None
     frame = element.origin if isinstance(element.origin, Frame) else None
     return SourceValue(real_path(source.name), value_range[0], source.text[value_range[0] : value_range[1]], frame)
 
 
-def _text_range(element: Element) -> tuple[int, int] | None:
+def _find_text_range(element: Element) -> tuple[int, int] | None:
     for child in element.children:
         if isinstance(child, Text) and child.data.strip() and child.source is element.source:
             source = element.source
@@ -82,7 +82,7 @@ def _text_range(element: Element) -> tuple[int, int] | None:
     return None
 
 
-def renamed_template(old: str, new: str, value: str) -> str | None:
+def rename_in_template(old: str, new: str, value: str) -> str | None:
     """Return the value of a name after a change of its text, or None if the expressions differ.
 
     Args:
@@ -90,7 +90,7 @@ def renamed_template(old: str, new: str, value: str) -> str | None:
         new: the new text, such as ``${prefix}tire``.
         value: the present value, such as ``left_wheel``.
     """
-    old_parts, new_parts = _parts(old), _parts(new)
+    old_parts, new_parts = _split_parts(old), _split_parts(new)
     expressions = [part.text for part in old_parts if part.kind is not TokenKind.TEXT]
     if [part.text for part in new_parts if part.kind is not TokenKind.TEXT] != expressions:
         return None
@@ -106,14 +106,14 @@ class NameSources:
     """A generator of proposed edits for computed names.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         files: the files to search for properties, arguments and macros.
     """
 
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], files: list[Path]) -> None:
-        self._project, self._texts = project, texts
-        self._tags = {file: [*_start_tags(project.text(file, texts) or "")] for file in files}
+    def __init__(self, workspace: Workspace, texts: Mapping[Path, str], files: list[Path]) -> None:
+        self._project, self._texts = workspace, texts
+        self._tags = {file: [*_find_start_tags(workspace.text(file, texts) or "")] for file in files}
 
     def edits(self, source: SourceValue, value: str, new: str) -> Iterator[tuple[Edit, ...]]:
         """Yield proposals of edits that give a text a new value, the most likely first.
@@ -132,7 +132,7 @@ class NameSources:
             if source.text == value:
                 yield (Edit(source.file, source.start, source.start + len(value), new),)
             return
-        parts = _parts(source.text)
+        parts = _split_parts(source.text)
         expressions = [part for part in parts if part.kind is not TokenKind.TEXT]
         if not parts or len(expressions) > _MAX_EXPRESSIONS:
             return
@@ -207,7 +207,7 @@ class NameSources:
             return None
         values = [
             inner.text if inner.kind is TokenKind.TEXT else self._find_value(inner, source.frame, depth + 1)
-            for inner in _parts(source.text)
+            for inner in _split_parts(source.text)
         ]
         return "".join(text for text in values if text is not None) if None not in values else None
 
@@ -220,7 +220,7 @@ class NameSources:
             return
         argument = _ARGUMENT.fullmatch(part.text)
         if argument is not None:
-            yield from self._attributes("xacro:arg", argument[1], "default")
+            yield from self._find_attribute_values("xacro:arg", argument[1], "default")
 
     def _find_sources_of_name(self, name: str, frame: Frame | None) -> Iterator[SourceValue]:
         while frame is not None:
@@ -235,14 +235,14 @@ class NameSources:
                         frame.outer,
                     )
                     return
-                default = self._parameter_default(frame.macro, name, frame)
+                default = self._find_parameter_default(frame.macro, name, frame)
                 if default is not None:
                     yield default
                     return
             frame = frame.outer
-        yield from self._attributes("xacro:property", name, "value")
+        yield from self._find_attribute_values("xacro:property", name, "value")
 
-    def _parameter_default(self, macro: str, name: str, frame: Frame) -> SourceValue | None:
+    def _find_parameter_default(self, macro: str, name: str, frame: Frame) -> SourceValue | None:
         """Return the default of a parameter of a macro, or None."""
         called = macro.rpartition(".")[2].removeprefix("xacro:")
         for file, tags in self._tags.items():
@@ -262,19 +262,19 @@ class NameSources:
                             return SourceValue(file, begin, text, frame)
         return None
 
-    def _attributes(self, tag: str, name: str, key: str) -> Iterator[SourceValue]:
+    def _find_attribute_values(self, tag: str, name: str, key: str) -> Iterator[SourceValue]:
         """Yield the values of an attribute of the elements with a tag and a name."""
         for file, tags in self._tags.items():
             for other, attributes in tags:
                 if other == tag and attributes.get("name", ("", 0))[0] == name and key in attributes:
                     text, start = attributes[key]
-                    default = _OPTIONAL.fullmatch(text)  # An environment variable seldom provides the value.
+                    default = _OPTIONAL_VARIABLE.fullmatch(text)  # An environment variable seldom provides the value.
                     if default is not None:
                         text, start = default[1], start + default.start(1)
                     yield SourceValue(file, start, text, None)
 
 
-def _start_tags(text: str) -> Iterator[tuple[str, dict[str, tuple[str, int]]]]:
+def _find_start_tags(text: str) -> Iterator[tuple[str, dict[str, tuple[str, int]]]]:
     """Yield the start tags of macros, properties and arguments, with their attributes."""
     for token in tokens(text):
         if token.kind is Kind.START and token.name in ("xacro:macro", "xacro:property", "xacro:arg"):
@@ -284,7 +284,7 @@ def _start_tags(text: str) -> Iterator[tuple[str, dict[str, tuple[str, int]]]]:
             )
 
 
-def _parts(text: str) -> Sequence[Token]:
+def _split_parts(text: str) -> Sequence[Token]:
     """Return the literal parts and expressions of a text, or an empty list if it is malformed."""
     try:
         return tokenize(text)

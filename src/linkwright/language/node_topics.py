@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.format import Document, Target
 from linkwright.language.includes import real_path
-from linkwright.language.programs import programs_of
+from linkwright.language.programs import find_programs
 from linkwright.language.source_declarations import declared_topics
 from linkwright.packages.share_layout import source_of
 
@@ -63,18 +63,18 @@ def plain_name(name: str) -> str:
 
 
 @cache
-def _table() -> Mapping[str, Any]:
+def _load_table() -> Mapping[str, Any]:
     table: Mapping[str, Any] = json.loads(resources.files(__package__).joinpath(_FILE).read_text(encoding="utf-8"))
     return table
 
 
 def node_name(package: str, executable: str) -> str:
     """Return the default name of a program's node, or empty if it is unknown."""
-    entry = _table().get(f"{package}/{executable}")
+    entry = _load_table().get(f"{package}/{executable}")
     return "" if entry is None else str(entry["node"])
 
 
-def topics_of(document: Document, programs: Iterable[NodeProgram]) -> list[NodeTopic]:
+def find_topics(document: Document, programs: Iterable[NodeProgram]) -> list[NodeTopic]:
     """Return the topics, services and actions of some nodes, each once.
 
     Args:
@@ -86,23 +86,23 @@ def topics_of(document: Document, programs: Iterable[NodeProgram]) -> list[NodeT
     """
     topics: dict[tuple[str, str], NodeTopic] = {}
     for program in programs:
-        for topic in (*_recorded_topics(program), *_in_sources(document, program)):
+        for topic in (*_recorded_topics(program), *_topics_in_sources(document, program)):
             topics.setdefault((topic.key, topic.role), topic)
     return list(topics.values())
 
 
 def _recorded_topics(program: NodeProgram) -> Iterator[NodeTopic]:
-    for name, entry in _table().items():
+    for name, entry in _load_table().items():
         package, _, executable = name.partition("/")
         if program.package in ("", package) and program.executable in ("", executable):
             yield from (NodeTopic(*topic) for topic in entry["topics"])
 
 
-def _in_sources(document: Document, program: NodeProgram) -> Iterator[NodeTopic]:
+def _topics_in_sources(document: Document, program: NodeProgram) -> Iterator[NodeTopic]:
     share = document.finder.find(program.package) if program.package else None
     if share is None or not share.is_dir():
         return
-    installed_program = programs_of(document.finder, program.package).get(program.executable)
+    installed_program = find_programs(document.finder, program.package).get(program.executable)
     file = None if installed_program is None or installed_program.target is None else installed_program.target.file
     folder = real_path(source_of(str(share / "package.xml"))).parent
     for topic in declared_topics(document, file if file is not None and file.suffix == ".py" else folder):
@@ -123,13 +123,13 @@ def offer_topics(
         remapped: the names that have a remapping already.
     """
     present = {plain_name(name) for name in remapped}
-    for topic in topics_of(document, programs):
+    for topic in find_topics(document, programs):
         if topic.key not in present:
             present.add(topic.key)
-            yield Completion(_in_form(topic.name, typed), ItemKind.NAME, start, topic.role, describe_topic(topic))
+            yield Completion(_match_form(topic.name, typed), ItemKind.NAME, start, topic.role, describe_topic(topic))
 
 
-def _in_form(name: str, typed: str) -> str:
+def _match_form(name: str, typed: str) -> str:
     if typed.startswith("~"):
         return f"~/{plain_name(name)}"
     return f"/{plain_name(name)}" if typed.startswith("/") else name if not typed else name.lstrip("/")
@@ -143,12 +143,12 @@ def describe_topic(topic: NodeTopic) -> str:
 
 def explain_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> str:
     """Return the uses of a topic, service or action by some nodes in Markdown, or empty."""
-    topics = [topic for topic in topics_of(document, programs) if topic.key == plain_name(name)]
+    topics = [topic for topic in find_topics(document, programs) if topic.key == plain_name(name)]
     return "\n\n".join(map(describe_topic, topics))
 
 
-def targets_of_topic(document: Document, programs: Sequence[NodeProgram], name: str) -> Iterator[Target]:
+def find_topic_targets(document: Document, programs: Sequence[NodeProgram], name: str) -> Iterator[Target]:
     """Yield the locations in the sources that create a topic, service or action."""
-    for topic in topics_of(document, programs):
+    for topic in find_topics(document, programs):
         if topic.key == plain_name(name) and topic.target is not None:
             yield topic.target

@@ -24,24 +24,24 @@ from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xmltree.tokens import Kind, Token, TokenAttribute, tokens
 
 _INNERMOST = lazy_pattern(r"\$\([^()]*\)|\$\{[^{}]*\}")
-_LINK, _JOINT = (NameKind.LINK,), (NameKind.JOINT,)
-_BOTH = (NameKind.LINK, NameKind.JOINT)
-_REFERENCES: dict[tuple[str, str], tuple[NameKind, ...]] = {
-    ("parent", "link"): _LINK,
-    ("child", "link"): _LINK,
-    ("mimic", "joint"): _JOINT,
-    ("gazebo", "reference"): _BOTH,
-    ("chain", "base_link"): _LINK,
-    ("chain", "tip_link"): _LINK,
-    ("disable_collisions", "link1"): _LINK,
-    ("disable_collisions", "link2"): _LINK,
-    ("enable_collisions", "link1"): _LINK,
-    ("enable_collisions", "link2"): _LINK,
-    ("disable_default_collisions", "link"): _LINK,
-    ("virtual_joint", "child_link"): _LINK,
-    ("end_effector", "parent_link"): _LINK,
-    ("link_sphere_approximation", "link"): _LINK,
-    ("passive_joint", "name"): _JOINT,
+_LINK_KIND, _JOINT_KIND = (NameKind.LINK,), (NameKind.JOINT,)
+_LINK_AND_JOINT_KINDS = (NameKind.LINK, NameKind.JOINT)
+_REFERENCE_KINDS: dict[tuple[str, str], tuple[NameKind, ...]] = {
+    ("parent", "link"): _LINK_KIND,
+    ("child", "link"): _LINK_KIND,
+    ("mimic", "joint"): _JOINT_KIND,
+    ("gazebo", "reference"): _LINK_AND_JOINT_KINDS,
+    ("chain", "base_link"): _LINK_KIND,
+    ("chain", "tip_link"): _LINK_KIND,
+    ("disable_collisions", "link1"): _LINK_KIND,
+    ("disable_collisions", "link2"): _LINK_KIND,
+    ("enable_collisions", "link1"): _LINK_KIND,
+    ("enable_collisions", "link2"): _LINK_KIND,
+    ("disable_default_collisions", "link"): _LINK_KIND,
+    ("virtual_joint", "child_link"): _LINK_KIND,
+    ("end_effector", "parent_link"): _LINK_KIND,
+    ("link_sphere_approximation", "link"): _LINK_KIND,
+    ("passive_joint", "name"): _JOINT_KIND,
     ("material", "name"): (NameKind.MATERIAL,),
     ("xacro:call", "macro"): (NameKind.MACRO,),
 }
@@ -57,7 +57,7 @@ class Occurrence:
     Attributes:
         kind: the kind of the name.
         name: the name as written. The name of a link, joint or material may contain expressions.
-        file: the file.
+        file: the file that contains it.
         start: the offset of the first character.
         is_definition: whether it defines the name.
         owner: for a parameter, its macro, and otherwise the enclosing macro, or an empty string.
@@ -78,7 +78,7 @@ class Occurrence:
 
 def kinds_of_reference(tag: str, attribute: str) -> tuple[NameKind, ...]:
     """Return the kinds of names that an attribute may refer to, or an empty tuple."""
-    return _REFERENCES.get((tag, attribute), ())
+    return _REFERENCE_KINDS.get((tag, attribute), ())
 
 
 def kinds_of_text(tag: str) -> tuple[NameKind, ...]:
@@ -87,8 +87,8 @@ def kinds_of_text(tag: str) -> tuple[NameKind, ...]:
     The kinds follow from the tag, as in the parameters ``<left_joint>`` and ``<robot_base_frame>`` of plugins.
     """
     if JOINT_TAG.search(tag):
-        return _JOINT
-    return _LINK if LINK_TAG.search(tag) else ()
+        return _JOINT_KIND
+    return _LINK_KIND if LINK_TAG.search(tag) else ()
 
 
 def occurrences_in(text: str, file: Path) -> Iterator[Occurrence]:
@@ -154,7 +154,7 @@ class _Scan:
             start = name.value_end - len(owner)
             yield Occurrence(NameKind.MACRO, owner, self._file, start, is_definition=True)
         names: set[str] = set()
-        for parameter in _parameters((params.value or "") if params else ""):
+        for parameter in _parse_parameters((params.value or "") if params else ""):
             bare = parameter.name.lstrip("*")
             start = (params.value_start if params else 0) + parameter.start + len(parameter.name) - len(bare)
             yield Occurrence(NameKind.PARAMETER, bare, self._file, start, is_definition=True, owner=owner)
@@ -277,7 +277,7 @@ class _Scan:
                     yield Occurrence(NameKind.ARGUMENT, node.value, self._file, start)
 
 
-def _parameters(params: str) -> tuple[Parameter, ...]:
+def _parse_parameters(params: str) -> tuple[Parameter, ...]:
     try:
         return parse_parameters(params)
     except Fault:  # These parameters are still being typed.

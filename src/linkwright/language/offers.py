@@ -9,16 +9,16 @@ from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.format import Document, Target
-from linkwright.language.hover_facts import mesh_facts, package_facts
-from linkwright.language.node_topics import NodeProgram, describe_topic, topics_of
-from linkwright.language.programs import components_of, package_names, programs_of, replaced_packages
+from linkwright.language.hover_facts import describe_mesh, describe_package
+from linkwright.language.node_topics import NodeProgram, describe_topic, find_topics
+from linkwright.language.programs import find_components, find_programs, package_names, replaced_packages
 from linkwright.messages.definitions.interfaces import is_package_name
 from linkwright.packages.manifest import MANIFEST
 from linkwright.packages.share_layout import source_of
 
-_SHOWN_FILES = 300
-_SHOWN_TOPICS = 20
-_LAUNCH_FILES = (".launch.py", ".launch.xml", ".launch.yaml", ".launch", "_launch.py", "_launch.xml", "_launch.yaml")
+_MAX_SHOWN_FILES = 300
+_MAX_SHOWN_TOPICS = 20
+_LAUNCH_SUFFIXES = (".launch.py", ".launch.xml", ".launch.yaml", ".launch", "_launch.py", "_launch.xml", "_launch.yaml")
 
 
 def offer_packages(document: Document, start: int) -> Iterator[Completion]:
@@ -36,13 +36,13 @@ def offer_packages(document: Document, start: int) -> Iterator[Completion]:
 
 def offer_programs(document: Document, package: str | None, start: int) -> Iterator[Completion]:
     """Yield the executables of a package, or nothing if the package is None."""
-    for program in programs_of(document.finder, package).values() if package else ():
+    for program in find_programs(document.finder, package).values() if package else ():
         yield Completion(program.name, ItemKind.FUNCTION, start, program.origin)
 
 
 def offer_components(document: Document, package: str | None, start: int) -> Iterator[Completion]:
     """Yield the components of a package, or nothing if the package is None."""
-    for name in components_of(document.finder, package) if package else ():
+    for name in find_components(document.finder, package) if package else ():
         yield Completion(name, ItemKind.FUNCTION, start, package or "")
 
 
@@ -67,8 +67,8 @@ def offer_files(base: Path, typed: str, offset: int, *, launch_files: bool = Fal
         names = [(entry.is_file(), entry.name) for entry in entries]
     except (OSError, ValueError):
         return
-    names.sort(key=lambda entry: (launch_files and not entry[1].endswith(_LAUNCH_FILES), *entry))
-    for is_file, entry_name in names[:_SHOWN_FILES]:
+    names.sort(key=lambda entry: (launch_files and not entry[1].endswith(_LAUNCH_SUFFIXES), *entry))
+    for is_file, entry_name in names[:_MAX_SHOWN_FILES]:
         yield Completion(entry_name, ItemKind.FILE if is_file else ItemKind.FOLDER, offset - len(name))
 
 
@@ -79,7 +79,7 @@ def explain_package(document: Document, name: str) -> str | None:
         return localized(phrase("package '{name}' not found", name=name)) if is_package_name(name) else None
     if not folder.is_dir():
         return localized(phrase("**{name}**: nodes and modules of Linkwright replace this package", name=name))
-    return package_facts(document.finder, name)
+    return describe_package(document.finder, name)
 
 
 def explain_program(document: Document, package: str | None, name: str) -> str | None:
@@ -87,10 +87,10 @@ def explain_program(document: Document, package: str | None, name: str) -> str |
 
     The interfaces are its topics, services and actions. The result is None for an unknown executable.
     """
-    program = programs_of(document.finder, package).get(name) if package else None
+    program = find_programs(document.finder, package).get(name) if package else None
     if package is None or program is None:
         return None
-    topics = topics_of(document, [NodeProgram(package, name)])[:_SHOWN_TOPICS]
+    topics = find_topics(document, [NodeProgram(package, name)])[:_MAX_SHOWN_TOPICS]
     return f"**{package} {name}**: `{program.origin}`\n\n" + "\n".join(f"- {describe_topic(topic)}" for topic in topics)
 
 
@@ -98,7 +98,7 @@ def explain_file(path: Path) -> str:
     """Return the path of a file, or the facts about a mesh, in Markdown."""
     if not path.exists():
         return localized(phrase("`{path}` does not exist", path=path))
-    return mesh_facts(path) or f"`{path}`"
+    return describe_mesh(path) or f"`{path}`"
 
 
 def target_of_package(document: Document, name: str) -> Iterator[Target]:
@@ -110,14 +110,14 @@ def target_of_package(document: Document, name: str) -> Iterator[Target]:
 
 def target_of_program(document: Document, package: str | None, name: str) -> Iterator[Target]:
     """Yield the source of an executable."""
-    program = programs_of(document.finder, package).get(name) if package else None
+    program = find_programs(document.finder, package).get(name) if package else None
     if program is not None and program.target is not None:
         yield program.target
 
 
 def target_of_component(document: Document, package: str | None, name: str) -> Iterator[Target]:
     """Yield the location where a package registers a component."""
-    target = components_of(document.finder, package).get(name) if package else None
+    target = find_components(document.finder, package).get(name) if package else None
     if target is not None:
         yield target
 

@@ -18,7 +18,7 @@ from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import Occurrence, occurrences_in
 from linkwright.language.proof import Edit, ExpansionProof
-from linkwright.language.trials import trials
+from linkwright.language.trials import run_trials
 from linkwright.language.workspace import Workspace, hash_texts
 from linkwright.packages import enclosing_package
 from linkwright.packages.manifest import MANIFEST
@@ -37,17 +37,17 @@ class OtherFiles:
     """The files of a workspace that may mention the names of some descriptions.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         file: a file of the descriptions.
         proof: the expansions of the descriptions.
     """
 
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path, proof: ExpansionProof) -> None:
-        self._project, self._texts, self._file, self._proof = project, texts, file, proof
+    def __init__(self, workspace: Workspace, texts: Mapping[Path, str], file: Path, proof: ExpansionProof) -> None:
+        self._project, self._texts, self._file, self._proof = workspace, texts, file, proof
         self._srdfs_added = False
         self._robots: dict[Path, list[Path]] = {}
-        self._own_files = {*project.index.related_files(file, texts, computed=True)}
+        self._own_files = {*workspace.index.related_files(file, texts, computed=True)}
 
     def edits(self, names: Names) -> tuple[set[Edit], tuple[Mention, ...]]:
         """Return the edits of certain uses and mentions of names, and the uncertain mentions.
@@ -64,7 +64,7 @@ class OtherFiles:
         for files in self._files.values():
             for file in files:
                 text = self._project.text(file, self._texts) or ""
-                mentions = [*_mentions(text, file, names, old_names)]
+                mentions = [*_find_mentions(text, file, names, old_names)]
                 robots = self._robots_of(file) if mentions else []
                 if robots and not any(map(self._is_affected, robots)):  # The file refers to other robots.
                     unchanged += [mention for mention in mentions if self._depends(file, names, mention)]
@@ -76,7 +76,8 @@ class OtherFiles:
                         if not mention.kinds:
                             unchanged.append(mention)
                     elif (file in self._proof.data and ".srdf" not in file.name) or any(
-                        (kind, mention.name) in names_of_robot(self._project, self._texts, robot) for robot in others
+                        (kind, mention.name) in find_names_of_robot(self._project, self._texts, robot)
+                        for robot in others
                     ):
                         unchanged.append(mention)
                     else:
@@ -119,32 +120,32 @@ class OtherFiles:
         return files
 
     def _depends(self, file: Path, names: Names, mention: Mention) -> bool:
-        """Return whether the package of a mention depends on the package of the renamed description.
+        """Return whether the package of a mention depends on the package of the description.
 
-        Its files may then mean the renamed robots, too.
+        In that case, its files may also mean the renamed robots.
         """
         package, own_package = enclosing_package(file.parent), enclosing_package(self._file.parent)
         if package is None or own_package is None or not any((kind, mention.name) in names for kind in mention.kinds):
             return False
-        return real_path(own_package[1]) in _dependencies(self._project, self._texts, real_path(package[1]))
+        return real_path(own_package[1]) in _find_dependencies(self._project, self._texts, real_path(package[1]))
 
     def _robots_of(self, file: Path) -> list[Path]:
         if file not in self._robots:
-            self._robots[file] = robots_of_file(self._project, self._texts, file)
+            self._robots[file] = find_robots_of_file(self._project, self._texts, file)
         return self._robots[file]
 
     def _is_affected(self, robot: Path) -> bool:
         return robot in self._proof.entries
 
 
-def _mentions(text: str, file: Path, names: Names, old_names: frozenset[str]) -> Iterable[Mention]:
+def _find_mentions(text: str, file: Path, names: Names, old_names: frozenset[str]) -> Iterable[Mention]:
     if ".srdf" in file.name:
         uses = (use for use in occurrences_in(text, file) if (use.kind, use.name) in names)
         return (Mention(use.name, file, use.start, (use.kind,)) for use in uses)
     return mentions_in(text, file, old_names)
 
 
-def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
+def find_robots_of_file(workspace: Workspace, texts: Mapping[Path, str], file: Path) -> list[Path]:
     """Return the descriptions that a configuration or launch file may refer to.
 
     These are the robots of its package, or else the robots with parts in the package, or else the robots of the
@@ -152,65 +153,67 @@ def robots_of_file(project: Workspace, texts: Mapping[Path, str], file: Path) ->
     file, or else to the robots in the nearest folders.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: a configuration or launch file.
     """
     package = enclosing_package(file.parent)
     folder = file.parent if package is None else real_path(package[1])
-    robots = _robots_of_package(project, texts, folder)
+    robots = _find_robots_of_package(workspace, texts, folder)
     if len(robots) < 2:
         return [*robots]
-    return _named_together(project, texts, file, [*robots]) or _nearest(file, folder, robots)
+    return _find_robots_named_together(workspace, texts, file, [*robots]) or _find_nearest(file, folder, robots)
 
 
-def _robots_of_package(project: Workspace, texts: Mapping[Path, str], folder: Path) -> dict[Path, list[Path]]:
+def _find_robots_of_package(workspace: Workspace, texts: Mapping[Path, str], folder: Path) -> dict[Path, list[Path]]:
     """Return the descriptions that a package may refer to, with their files in the package."""
-    entries = [entry for entry in project.index.roots(texts) if entry.name.endswith(_DESCRIPTION_SUFFIXES)]
+    entries = [entry for entry in workspace.index.roots(texts) if entry.name.endswith(_DESCRIPTION_SUFFIXES)]
     entries = [entry for entry in entries if ".srdf" not in entry.name and not entry.name.startswith(".")]
     own_entries = {entry: [entry] for entry in entries if entry.is_relative_to(folder)}
     if own_entries:
         return own_entries
     for entry in entries:
-        parts = [file for file in project.index.related_files(entry, texts) if file.is_relative_to(folder)]
+        parts = [file for file in workspace.index.related_files(entry, texts) if file.is_relative_to(folder)]
         if parts:
             own_entries[entry] = parts
     if own_entries:
         return own_entries
-    dependencies = _dependencies(project, texts, folder)
+    dependencies = _find_dependencies(workspace, texts, folder)
     entries_in_dependencies = [entry for other in dependencies for entry in entries if entry.is_relative_to(other)]
     return {entry: [] for entry in entries_in_dependencies or entries}
 
 
-def _named_together(project: Workspace, texts: Mapping[Path, str], file: Path, robots: Sequence[Path]) -> list[Path]:
-    """Return the robots that mention a file, or are mentioned together with it in a launch file."""
+def _find_robots_named_together(
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, robots: Sequence[Path]
+) -> list[Path]:
+    """Return the robots that mention a file, or are mentioned beside it in a launch file."""
     name = re.compile(rf"(?<![\w.-]){re.escape(file.name)}(?![\w-])")
-    text = project.text(file, texts) or ""
+    text = workspace.text(file, texts) or ""
     if ".srdf" in file.name:
         title = _ROBOT.search(text)
-        titles = {robot: _ROBOT.search(project.text(robot, texts) or "") for robot in robots}
+        titles = {robot: _ROBOT.search(workspace.text(robot, texts) or "") for robot in robots}
         same = [robot for robot, other in titles.items() if title is not None and other and other[1] == title[1]]
         if same:
             return same
-    mentioned_robots = {robot for robot in robots if _named_in(robot, text)}
+    mentioned_robots = {robot for robot in robots if _is_named_in(robot, text)}
     for robot in robots:
         if any(
-            name.search(project.text(related_file, texts) or "")
-            for related_file in project.index.related_files(robot, texts)
+            name.search(workspace.text(related_file, texts) or "")
+            for related_file in workspace.index.related_files(robot, texts)
         ):
             mentioned_robots.add(robot)
-    for launch in project.files(_LAUNCH):
-        launch_text = project.text(launch, texts) or ""
+    for launch in workspace.files(_LAUNCH):
+        launch_text = workspace.text(launch, texts) or ""
         if launch != file and name.search(launch_text):
-            mentioned_robots |= {robot for robot in robots if _named_in(robot, launch_text)}
+            mentioned_robots |= {robot for robot in robots if _is_named_in(robot, launch_text)}
     return [robot for robot in robots if robot in mentioned_robots]
 
 
-def _named_in(robot: Path, text: str) -> bool:
+def _is_named_in(robot: Path, text: str) -> bool:
     return re.search(rf"(?<![\w.-]){re.escape(robot.name)}(?![\w-])", text) is not None
 
 
-def _nearest(file: Path, folder: Path, robots: Mapping[Path, Sequence[Path]]) -> list[Path]:
+def _find_nearest(file: Path, folder: Path, robots: Mapping[Path, Sequence[Path]]) -> list[Path]:
     """Return the robots with files that share most folders of their package with a file."""
 
     def shared(robot_file: Path) -> int:
@@ -221,18 +224,20 @@ def _nearest(file: Path, folder: Path, robots: Mapping[Path, Sequence[Path]]) ->
     return [robot for robot, depth in depths.items() if depth == max(depths.values())]
 
 
-def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -> frozenset[tuple[NameKind, str]]:
+def find_names_of_robot(
+    workspace: Workspace, texts: Mapping[Path, str], robot: Path
+) -> frozenset[tuple[NameKind, str]]:
     """Return the links and joints of a description for all argument sets that can be expanded.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         robot: the description.
     """
     text_hashes = hash_texts(texts)
-    cached = project.cached_results.get(("names", robot))
+    cached = workspace.cached_results.get(("names", robot))
     if cached is None or cached[0] != text_hashes:
-        expansions, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
+        expansions, _ = run_trials(workspace, texts, robot, is_partial=True, is_switched=False)
         roots = [trial.expansion.document.root for trial in expansions]
         names = frozenset(
             (kind, element.attributes.get("name", ""))
@@ -240,16 +245,16 @@ def names_of_robot(project: Workspace, texts: Mapping[Path, str], robot: Path) -
             for kind in _PART_KINDS
             for element in root.elements(kind.value)
         )
-        cached = project.cached_results["names", robot] = (text_hashes, names)
+        cached = workspace.cached_results["names", robot] = (text_hashes, names)
     assert isinstance(cached[1], frozenset)
     return cached[1]
 
 
-def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:
+def _find_dependencies(workspace: Workspace, texts: Mapping[Path, str], folder: Path) -> list[Path]:
     """Return the folders of a package's direct and indirect dependencies in the workspace."""
     manifests = {
-        package_folder: _manifest(project, texts, package_folder)
-        for package_folder in map(real_path, project.index.packages)
+        package_folder: _read_manifest(workspace, texts, package_folder)
+        for package_folder in map(real_path, workspace.index.packages)
     }
     by_name = {
         manifest.name: manifest_folder for manifest_folder, manifest in manifests.items() if manifest is not None
@@ -266,8 +271,8 @@ def _dependencies(project: Workspace, texts: Mapping[Path, str], folder: Path) -
     return [*folders]
 
 
-def _manifest(project: Workspace, texts: Mapping[Path, str], folder: Path) -> Manifest | None:
-    text = project.text(folder / MANIFEST, texts)
+def _read_manifest(workspace: Workspace, texts: Mapping[Path, str], folder: Path) -> Manifest | None:
+    text = workspace.text(folder / MANIFEST, texts)
     try:
         return None if text is None else Manifest(parse(text, str(folder / MANIFEST)))
     except LinkwrightError:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
-_NAMING = ("name", "filename", "reference", "link", "value")
+_IDENTIFYING_ATTRIBUTES = ("name", "filename", "reference", "link", "value")
 """The attributes that identify an element, in order of precedence."""
 
 
@@ -31,13 +31,15 @@ class OutlineElement:
     def label(self) -> str:
         """The tag and the value that identifies the element, such as ``link base``."""
         attributes = {attribute.name: attribute.value for attribute in self.tag.attributes()}
-        value = next((attributes[name] for name in _NAMING if attributes.get(name)), None)
+        value = next((attributes[name] for name in _IDENTIFYING_ATTRIBUTES if attributes.get(name)), None)
         return f"{self.tag.name} {value}" if value else self.tag.name
 
     @property
     def is_named(self) -> bool:
         """Whether the element has a name, or includes a file."""
-        return any(attribute.name in _NAMING[:3] and attribute.value for attribute in self.tag.attributes())
+        return any(
+            attribute.name in _IDENTIFYING_ATTRIBUTES[:3] and attribute.value for attribute in self.tag.attributes()
+        )
 
     def all(self) -> Iterator[OutlineElement]:
         """Yield the element and all its descendants, in text order."""
@@ -52,7 +54,7 @@ class Outline:
 
     Attributes:
         elements: the top-level elements.
-        comments: the comments.
+        comments: the comment tokens, in text order.
     """
 
     elements: list[OutlineElement] = field(default_factory=list)

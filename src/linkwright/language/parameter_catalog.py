@@ -17,7 +17,7 @@ from typing import Any
 from linkwright.diagnostics import LinkwrightError
 from linkwright.loading.extensions import extensions
 
-MANAGER = "controller_manager"
+CONTROLLER_MANAGER = "controller_manager"
 _CONTROLLERS = "linkwright.controllers"
 _FILE = "node_parameters.json"
 
@@ -44,7 +44,7 @@ class ParameterInfo:
     keys: tuple[str, ...] = ()
     owner: str = ""
 
-    def below(self, prefix: str, owner: str) -> ParameterInfo:
+    def with_prefix(self, prefix: str, owner: str) -> ParameterInfo:
         """Return the parameter with a prefix before its name."""
         keys = tuple(f"{prefix}.{key}" for key in self.keys)
         return replace(self, name=f"{prefix}.{self.name}", owner=owner, keys=keys)
@@ -56,7 +56,7 @@ class ParameterInfo:
             mark in ("*", part) for mark, part in zip(own_parts, parts, strict=True)
         )
 
-    def rest_below(self, name: str) -> str:
+    def relative_name(self, name: str) -> str:
         """Return the parameter's name relative to a group, or empty if it is not in the group."""
         own_parts, group = self.name.split("."), name.split(".")
         is_inside = len(own_parts) > len(group) and all(
@@ -65,9 +65,9 @@ class ParameterInfo:
         return ".".join(own_parts[len(group) :]) if is_inside else ""
 
     @property
-    def written_default(self) -> str:
+    def default_text(self) -> str:
         """The default in YAML, or empty if there is none."""
-        return "" if self.default is None else yaml_text(self.default)
+        return "" if self.default is None else to_yaml(self.default)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ class Plugin:
     parameters: tuple[ParameterInfo, ...]
 
 
-def yaml_text(value: Any) -> str:
+def to_yaml(value: Any) -> str:
     """Return the value of a parameter in YAML."""
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -97,7 +97,7 @@ def yaml_text(value: Any) -> str:
         text = repr(value)
         return {"nan": ".nan", "inf": ".inf", "-inf": "-.inf"}.get(text, text)
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(yaml_text, value))}]"
+        return f"[{', '.join(map(to_yaml, value))}]"
     text = str(value)
     return text if text and text.strip("[]{}") == text else f'"{text}"'
 
@@ -109,7 +109,7 @@ def _load_table() -> Mapping[str, Any]:
     return table
 
 
-def _infos(table: Mapping[str, Mapping[str, Any]], owner: str) -> tuple[ParameterInfo, ...]:
+def _parse_infos(table: Mapping[str, Mapping[str, Any]], owner: str) -> tuple[ParameterInfo, ...]:
     return tuple(
         ParameterInfo(
             name,
@@ -133,7 +133,7 @@ def node_names() -> tuple[str, ...]:
 @lru_cache(maxsize=64)
 def node_parameters(node: str) -> tuple[ParameterInfo, ...]:
     """Return the parameters of a node by its name, or an empty tuple if it is unknown."""
-    return _infos(_load_table()["nodes"].get(node, {}), node)
+    return _parse_infos(_load_table()["nodes"].get(node, {}), node)
 
 
 @cache
@@ -141,7 +141,7 @@ def plugins() -> Mapping[str, Plugin]:
     """Return the plugins by type, with ``/`` in place of ``::``."""
     return {
         kind.replace("::", "/"): Plugin(
-            kind, entry["node"], entry["listed"], entry["purpose"], _infos(entry["parameters"], kind)
+            kind, entry["node"], entry["listed"], entry["purpose"], _parse_infos(entry["parameters"], kind)
         )
         for kind, entry in _load_table()["plugins"].items()
     }
@@ -222,7 +222,7 @@ def _find_controller(kind: str) -> Any:
         return None
 
 
-def owners_of(keys: Iterable[str]) -> list[str]:
+def find_owners(keys: Iterable[str]) -> list[str]:
     """Return the nodes that have any of some parameters, the best match first."""
     names = set(keys)
     counts = {node: sum(parameter.name in names for parameter in node_parameters(node)) for node in node_names()}

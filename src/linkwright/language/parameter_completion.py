@@ -20,17 +20,17 @@ from linkwright.language.parameter_catalog import (
     plugins,
 )
 from linkwright.language.parameter_sections import (
-    PARAMETERS,
+    PARAMETERS_KEY,
     Section,
     declared_controllers,
     node_of,
     section_at,
     sections,
 )
-from linkwright.language.parameter_values import kinds_of_parameter, parameter_values, sources_of
+from linkwright.language.parameter_values import find_declared_parameters, kinds_of_parameter, parameter_values
 from linkwright.language.robot_names import robot_names
 from linkwright.language.yaml_outline import YamlCursor, YamlEntry, YamlOutline, YamlPosition
-from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text
+from linkwright.language.yaml_symbols import has_colon, snippet_text, sort_by_match
 
 _USUAL_CONTROLLERS = (
     "joint_state_broadcaster/JointStateBroadcaster",
@@ -40,7 +40,7 @@ _USUAL_CONTROLLERS = (
 _NUMBERED = re.compile(r"[a-z]+\d+(_|$)")
 """A parameter of one of several sensors, such as ``odom0_config``."""
 _MAX_FILES = 40
-_COSTMAPS = ("local_costmap", "global_costmap")
+_COSTMAP_NODES = ("local_costmap", "global_costmap")
 
 
 def complete_parameters(document: Document, offset: int) -> list[Completion]:
@@ -60,7 +60,7 @@ def complete_parameters(document: Document, offset: int) -> list[Completion]:
         )
     else:
         items = () if section is None else parameter_values(document, section, cursor)
-    return by_typed(items, cursor.typed)
+    return sort_by_match(items, cursor.typed)
 
 
 def _offer_node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> Iterator[Completion]:
@@ -70,13 +70,13 @@ def _offer_node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> It
     is_top = cursor.parent_entry.parent is None
     if is_top and others and not any(sections(outline)):
         return  # This is another kind of file.
-    body, parent_key = f"{PARAMETERS}:\n    $0", cursor.parent_entry.key
+    body, parent_key = f"{PARAMETERS_KEY}:\n    $0", cursor.parent_entry.key
     if not is_top:
-        if parent_key in _COSTMAPS and len(cursor.parent_entry.path) == 1 and not present:
+        if parent_key in _COSTMAP_NODES and len(cursor.parent_entry.path) == 1 and not present:
             yield _make_key_completion(cursor, parent_key, "node", "", colon and f"{parent_key}:\n  {body}")
-        if PARAMETERS not in present:
+        if PARAMETERS_KEY not in present:
             text = phrase("the parameters of the node")
-            yield _make_key_completion(cursor, PARAMETERS, "", text, colon and f"{PARAMETERS}:\n  $0")
+            yield _make_key_completion(cursor, PARAMETERS_KEY, "", text, colon and f"{PARAMETERS_KEY}:\n  $0")
         if "ros__parameters" in present:
             return
     if is_top and "/**" not in present:
@@ -90,7 +90,7 @@ def _offer_node_keys(outline: YamlOutline, cursor: YamlCursor, colon: str) -> It
     for name in node_names():
         if name not in present:
             yield _make_key_completion(
-                cursor, name, "node", _names_of(node_parameters(name)), colon and f"{name}:\n  {body}"
+                cursor, name, "node", _join_names(node_parameters(name)), colon and f"{name}:\n  {body}"
             )
 
 
@@ -100,7 +100,7 @@ def _make_key_completion(
     return Completion(label, ItemKind.ATTRIBUTE, cursor.start, detail, description, snippet)
 
 
-def _names_of(parameters: Iterable[ParameterInfo]) -> str:
+def _join_names(parameters: Iterable[ParameterInfo]) -> str:
     return ", ".join(f"`{parameter.name}`" for parameter in parameters)
 
 
@@ -119,7 +119,9 @@ def _offer_parameters(document: Document, section: Section, cursor: YamlCursor, 
         if len(parts) <= len(prefix_parts) or any(a not in ("*", b) for a, b in zip(parts, prefix_parts, strict=False)):
             continue
         remaining_parts = parts[len(prefix_parts) :]
-        first_names = _names_for(document, section, parameter) if remaining_parts[0] == "*" else [remaining_parts[0]]
+        first_names = (
+            _find_names_for(document, section, parameter) if remaining_parts[0] == "*" else [remaining_parts[0]]
+        )
         for first in first_names:
             if len(remaining_parts) == 1 and first not in present:
                 yield _make_parameter_completion(cursor, first, parameter, colon)
@@ -142,7 +144,7 @@ def _offer_parameters_of_sources(
     document: Document, section: Section, cursor: YamlCursor, colon: str, present: set[str]
 ) -> Iterator[Completion]:
     """Yield the parameters that the sources of a node of the workspace declare."""
-    for parameter in sources_of(document, section):
+    for parameter in find_declared_parameters(document, section):
         prefix = f"{section.prefix}." if section.prefix else ""
         if parameter.name.startswith(prefix):
             first, _, remainder = parameter.name.removeprefix(prefix).partition(".")
@@ -161,7 +163,7 @@ def _offer_keys_of_other_files(
     """Yield the keys at this position in other parameter files, for an unknown node."""
     if not section.may_be_controller or section.node in section.controllers:
         return
-    for file in [*document.project.configuration_files(document.file)][:_MAX_FILES]:
+    for file in [*document.workspace.configuration_files(document.file)][:_MAX_FILES]:
         text = document.other(file) if file != document.file and file.name.endswith((".yaml", ".yml")) else ""
         for entry in sections(YamlOutline(text)) if f"{section.node}:" in text else ():
             section_entry: YamlEntry | None = entry if node_of(entry) == section.node else None
@@ -192,7 +194,7 @@ def _offer_plugin_keys(section: Section, cursor: YamlCursor, colon: str, present
 
 
 def _make_parameter_completion(cursor: YamlCursor, label: str, parameter: ParameterInfo, colon: str) -> Completion:
-    default = parameter.written_default
+    default = parameter.default_text
     detail = f"{parameter.type} = {default}" if default else parameter.type
     value = f"${{1:{snippet_text(default)}}}" if default and len(default) <= 40 else "$0"
     snippet = colon and f"{snippet_text(label)}: {value}"
@@ -205,10 +207,10 @@ def describe_parameter_info(parameter: ParameterInfo, name: str = "") -> str:
     """Return the description of a parameter in Markdown.
 
     Args:
-        parameter: the parameter.
+        parameter: a parameter of the catalog.
         name: the name to show instead of a name with ``*``.
     """
-    default = parameter.written_default
+    default = parameter.default_text
     head = f"**{name or parameter.name}**" + (f" `{parameter.type}`" if parameter.type else "")
     lines = [head + (f" = `{default}`" if default else "")]
     if parameter.description:
@@ -221,7 +223,7 @@ def describe_parameter_info(parameter: ParameterInfo, name: str = "") -> str:
     return "\n\n".join(lines)
 
 
-def _names_for(document: Document, section: Section, parameter: ParameterInfo) -> list[str]:
+def _find_names_for(document: Document, section: Section, parameter: ParameterInfo) -> list[str]:
     """Return the names for ``*``: the names in its list parameters, or all movable joints."""
     entries = section.entries()
     names = [

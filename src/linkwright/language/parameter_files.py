@@ -10,29 +10,29 @@ from linkwright.diagnostics.translation import localized
 from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
-from linkwright.language.hover_facts import part_facts, robots_of
+from linkwright.language.hover_facts import describe_part, robots_of
 from linkwright.language.parameter_catalog import controller_purpose, load_tables, node_parameters, plugins
 from linkwright.language.parameter_completion import complete_parameters, describe_parameter_info
 from linkwright.language.parameter_sections import (
-    PARAMETERS,
+    PARAMETERS_KEY,
     Section,
     controller_declarations,
     declared_controllers,
     node_of,
     section_at,
 )
-from linkwright.language.parameter_values import kinds_of_parameter, sources_of
+from linkwright.language.parameter_values import find_declared_parameters, kinds_of_parameter
 from linkwright.language.robot_names import robot_names, written_length
 from linkwright.language.yaml_outline import YamlCursor, YamlEntry, YamlOutline, YamlPosition
 from linkwright.language.yaml_symbols import yaml_symbols
 
-_ENDINGS = (".yaml", ".yml")
-_LAUNCH = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
+_SUFFIXES = (".yaml", ".yml")
+_LAUNCH_SUFFIXES = (".launch.yaml", ".launch.yml", "_launch.yaml", "_launch.yml")
 
 
 def is_parameter_file(file: Path) -> bool:
     """Return whether a file may contain parameters: YAML, except launch files."""
-    return file.name.endswith(_ENDINGS) and not file.name.endswith(_LAUNCH)
+    return file.name.endswith(_SUFFIXES) and not file.name.endswith(_LAUNCH_SUFFIXES)
 
 
 # --- explanations -----------------------------------------------------------------------------------------------------
@@ -72,7 +72,7 @@ def word_at(text: str, cursor: YamlCursor) -> tuple[int, int, str]:
 
 
 def _explain_key(document: Document, outline: YamlOutline, entry: YamlEntry) -> str:
-    if entry.key == PARAMETERS:
+    if entry.key == PARAMETERS_KEY:
         return localized(phrase("the parameters of the node")) + (f" **{node}**" if (node := node_of(entry)) else "")
     section = section_at(outline, entry.parent) if entry.parent is not None else None
     if section is None:
@@ -93,18 +93,20 @@ def _explain_key(document: Document, outline: YamlOutline, entry: YamlEntry) -> 
     plugin = entry.child("plugin")
     if plugin is not None:
         return f"**{entry.key}** " + _explain_plugin(plugin.scalar)
-    declaration = next((declared for declared in sources_of(document, section) if declared.name == name), None)
+    declaration = next(
+        (declared for declared in find_declared_parameters(document, section) if declared.name == name), None
+    )
     if declaration is not None:
         default = f" = `{declaration.default}`" if declaration.default else ""
         return f"**{name}** `{declaration.type}`{default}\n\n`{declaration.file.name}`".replace(" ``", "")
-    declared_names = [declaration.name for declaration in sources_of(document, section)]
+    declared_names = [declaration.name for declaration in find_declared_parameters(document, section)]
     nested_names = {
         parameter.removeprefix(f"{name}."): None for parameter in declared_names if parameter.startswith(f"{name}.")
     }
     nested_names |= {
-        inner_name: None for parameter in section.parameters() if (inner_name := parameter.rest_below(name))
+        inner_name: None for parameter in section.parameters() if (inner_name := parameter.relative_name(name))
     }
-    facts = part_explanation(document, entry.key, (NameKind.JOINT, NameKind.LINK))
+    facts = explain_part(document, entry.key, (NameKind.JOINT, NameKind.LINK))
     if facts:
         return facts
     return f"**{name}**: " + ", ".join(f"`{inner_name}`" for inner_name in nested_names) if nested_names else ""
@@ -144,19 +146,19 @@ def _explain_value(document: Document, outline: YamlOutline, cursor: YamlCursor,
         return f"`{word}`: {purpose}"
     if word.replace("::", "/") in plugins():
         return _explain_plugin(word)
-    facts = part_explanation(document, word, kinds_of_parameter(last))
+    facts = explain_part(document, word, kinds_of_parameter(last))
     if facts:
         return facts
     parameter = section.find(section.prefix)
     return "" if parameter is None else describe_parameter_info(parameter, section.prefix)
 
 
-def part_explanation(document: Document, name: str, kinds: tuple[NameKind, ...]) -> str:
+def explain_part(document: Document, name: str, kinds: tuple[NameKind, ...]) -> str:
     """Return the facts about a link or joint in the robots that a file probably means."""
     for part in robot_names(document):
         if part.name == name and part.kind in kinds:
-            robots = robots_of(document.project, document.texts, part.file)
-            facts = next((facts for robot in robots if (facts := part_facts(robot, part.kind, name))), "")
+            robots = robots_of(document.workspace, document.texts, part.file)
+            facts = next((facts for robot in robots if (facts := describe_part(robot, part.kind, name))), "")
             return f"**{part.kind.value} {name}**, {part.file.name}\n\n{facts}"
     return ""
 
@@ -176,13 +178,13 @@ def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
     if section is not None:
         key = section.prefix.rpartition(".")[2]
         kinds = kinds_of_parameter(key) if cursor.position is YamlPosition.VALUE else (NameKind.JOINT, NameKind.LINK)
-    declaration = _declaration(outline, section, cursor, word)
+    declaration = _find_declaration(outline, section, cursor, word)
     if declaration is not None:
         yield Target(document.file, declaration.start, declaration.start + len(declaration.key))
         return
     if section is not None and cursor.position is YamlPosition.KEY:
         name_in_section = section.name(word)
-        for source in sources_of(document, section):
+        for source in find_declared_parameters(document, section):
             if source.name == name_in_section:
                 yield Target(source.file, source.start, source.start + len(source.name))
                 return
@@ -192,7 +194,7 @@ def define_in_parameters(document: Document, offset: int) -> Iterator[Target]:
             return
 
 
-def _declaration(outline: YamlOutline, section: Section | None, cursor: YamlCursor, word: str) -> YamlEntry | None:
+def _find_declaration(outline: YamlOutline, section: Section | None, cursor: YamlCursor, word: str) -> YamlEntry | None:
     """Return the entry that declares the controller or plugin at a cursor, or None."""
     if cursor.position is YamlPosition.VALUE and section is not None:
         entry = section.entry.child(word)
@@ -202,7 +204,7 @@ def _declaration(outline: YamlOutline, section: Section | None, cursor: YamlCurs
         return None
     kind = controller_declarations(outline).get(word.rpartition("/")[2])
     entry = kind if kind is None or kind.key != "type" else kind.parent
-    if entry is not None and entry.key == PARAMETERS:
+    if entry is not None and entry.key == PARAMETERS_KEY:
         entry = entry.parent
     if entry is not None and entry is cursor.entry:
         return next((other for other in outline.root.all() if other.key == word and other is not entry), None)

@@ -8,21 +8,21 @@ from dataclasses import dataclass
 from functools import cache
 
 from linkwright.language.parameter_catalog import (
-    MANAGER,
+    CONTROLLER_MANAGER,
     ParameterInfo,
     controller_parameters,
+    find_owners,
     node_names,
     node_parameters,
-    owners_of,
     plugins,
 )
 from linkwright.language.yaml_outline import YamlEntry, YamlOutline
 
-PARAMETERS = "ros__parameters"
-_EVERY_NODE = ParameterInfo(
+PARAMETERS_KEY = "ros__parameters"
+_COMMON_PARAMETER = ParameterInfo(
     "use_sim_time", "bool", False, "whether the node uses the simulated time of the topic `/clock`"
 )
-_TYPE = ParameterInfo("type", "string", None, "the type of the controller, if the node is one")
+_TYPE_PARAMETER = ParameterInfo("type", "string", None, "the type of the controller, if the node is one")
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class Section:
     @property
     def is_manager(self) -> bool:
         """Whether the node is a controller manager."""
-        return self.node == MANAGER or _declares_controllers(self.entry)
+        return self.node == CONTROLLER_MANAGER or _declares_controllers(self.entry)
 
     @property
     def may_be_controller(self) -> bool:
@@ -57,7 +57,7 @@ class Section:
 
     def entries(self) -> dict[str, YamlEntry]:
         """Return the entries of the section, by full parameter name."""
-        return {".".join(_keys_below(self.entry, entry)): entry for entry in self.entry.all() if entry.key}
+        return {".".join(_find_keys_below(self.entry, entry)): entry for entry in self.entry.all() if entry.key}
 
     def parameters(self) -> list[ParameterInfo]:
         """Return the possible parameters of the section's node and its plugins."""
@@ -65,13 +65,13 @@ class Section:
         if self.node in self.controllers:
             parameters = list(controller_parameters(self.controllers[self.node], entries.keys()))
         else:
-            owners = [self.node] if node_parameters(self.node) else owners_of(entries)[:1]
+            owners = [self.node] if node_parameters(self.node) else find_owners(entries)[:1]
             parameters = [parameter for owner in owners for parameter in node_parameters(owner)]
             if not self.node:
-                parameters += [_EVERY_NODE, *_common_parameters()]
+                parameters += [_COMMON_PARAMETER, *_common_parameters()]
         if self.may_be_controller:
-            parameters.append(_TYPE)
-        return [*parameters, *self._plugin_parameters(entries), _EVERY_NODE]
+            parameters.append(_TYPE_PARAMETER)
+        return [*parameters, *self._plugin_parameters(entries), _COMMON_PARAMETER]
 
     def find(self, name: str) -> ParameterInfo | None:
         """Return the parameter with a full name, or None if it is unknown."""
@@ -84,7 +84,7 @@ class Section:
                 plugins().get(entry.scalar.replace("::", "/")) if last in ("plugin", "primary_controller") else None
             )
             if plugin is not None and prefix:
-                yield from (parameter.below(prefix, plugin.type) for parameter in plugin.parameters)
+                yield from (parameter.with_prefix(prefix, plugin.type) for parameter in plugin.parameters)
 
 
 def section_at(outline: YamlOutline, entry: YamlEntry) -> Section | None:
@@ -96,7 +96,7 @@ def section_at(outline: YamlOutline, entry: YamlEntry) -> Section | None:
     """
     keys: list[str] = []
     current: YamlEntry | None = entry
-    while current is not None and current.key != PARAMETERS:
+    while current is not None and current.key != PARAMETERS_KEY:
         keys = [current.key, *keys] if current.key else keys
         current = current.parent
     if current is None or current.parent is None:
@@ -112,7 +112,7 @@ def node_of(entry: YamlEntry) -> str:
 
 def sections(outline: YamlOutline) -> Iterator[YamlEntry]:
     """Yield the ``ros__parameters`` entries of a file."""
-    return (entry for entry in outline.root.all() if entry.key == PARAMETERS)
+    return (entry for entry in outline.root.all() if entry.key == PARAMETERS_KEY)
 
 
 def declared_controllers(outline: YamlOutline) -> dict[str, str]:
@@ -151,7 +151,7 @@ def _common_parameters() -> tuple[ParameterInfo, ...]:
     return tuple(sorted(parameters, key=lambda parameter: -counts[parameter.name]))
 
 
-def _keys_below(section: YamlEntry, entry: YamlEntry) -> list[str]:
+def _find_keys_below(section: YamlEntry, entry: YamlEntry) -> list[str]:
     keys: list[str] = []
     current: YamlEntry | None = entry
     while current is not None and current is not section:

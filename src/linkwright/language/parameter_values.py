@@ -24,17 +24,17 @@ from linkwright.language.source_declarations import DeclaredParameter, declared_
 from linkwright.language.yaml_outline import YamlCursor
 from linkwright.language.yaml_symbols import snippet_text
 
-INTERFACES = ("position", "velocity", "effort", "acceleration")
+INTERFACE_NAMES = ("position", "velocity", "effort", "acceleration")
 _USUAL_FRAMES = ("map", "odom", "base_link", "base_footprint")
 """Frames of mobile platforms (REP 105)."""
-_INTERFACE = re.compile(r"(^|_)(command_|state_)?interfaces?(_names?)?$")
+_INTERFACE_KEY = re.compile(r"(^|_)(command_|state_)?interfaces?(_names?)?$")
 _CAPITALIZED_BOOLEAN = re.compile(r":[ \t]+(?:True|False)\b")
 _LOWERCASE_BOOLEAN = re.compile(r":[ \t]+(?:true|false)\b")
 _CPP_PLUGIN_NAME = re.compile(r"plugin:[ \t]+[\"']?nav2_(?!costmap_2d)\w+::|plugin:[ \t]+[\"']?dwb_core::")
 _SENSOR_TOPICS = ("/scan", "/points")
 
 
-def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
+def find_declared_parameters(document: Document, section: Section) -> list[DeclaredParameter]:
     """Return the parameters that the sources of a section's node declare.
 
     The result is empty for patterns, known nodes, controller managers and declared controllers.
@@ -45,7 +45,7 @@ def sources_of(document: Document, section: Section) -> list[DeclaredParameter]:
 
 
 def kinds_of_parameter(key: str) -> tuple[NameKind, ...]:
-    """Return the kinds of names that a parameter may contain, according to the parameter's name."""
+    """Return the kinds of names that a parameter may contain, derived from its key."""
     last = key.rpartition(".")[2]
     return kinds_of_key(last)
 
@@ -67,19 +67,19 @@ def parameter_values(document: Document, section: Section, cursor: YamlCursor) -
             yield item(type_name, description=controller_purpose(type_name) or "")
     elif last in ("plugin", "primary_controller"):
         uses_colons = _CPP_PLUGIN_NAME.search(document.text) is not None
-        for type_name in _plugin_types(section, name.rpartition(".")[0], last):
+        for type_name in _list_plugin_types(section, name.rpartition(".")[0], last):
             yield item(type_name.replace("/", "::") if uses_colons else type_name)
     elif _is_boolean(document, section, name):
         counts = [len(pattern.findall(document.text)) for pattern in (_LOWERCASE_BOOLEAN, _CAPITALIZED_BOOLEAN)]
         is_capital = cursor.typed[:1].isupper() if cursor.typed else counts[1] > counts[0]
         for word in ("true", "false"):
-            mark = "" if parameter is None else _default_mark(parameter, word)
+            mark = "" if parameter is None else _mark_default(parameter, word)
             yield item(word.title() if is_capital else word, detail=mark)
     elif parameter is not None and parameter.choices:
         for choice in parameter.choices:
-            yield item(choice, detail=_default_mark(parameter, choice))
-    elif _INTERFACE.search(last):
-        for interface in INTERFACES:
+            yield item(choice, detail=_mark_default(parameter, choice))
+    elif _INTERFACE_KEY.search(last):
+        for interface in INTERFACE_NAMES:
             if interface not in present:
                 yield item(interface)
     elif any(plugin.list_parameter == last for plugin in plugins().values()):
@@ -87,15 +87,15 @@ def parameter_values(document: Document, section: Section, cursor: YamlCursor) -
             if entry.child("plugin") is not None and entry.key not in present:
                 yield item(entry.key, ItemKind.NAME)
     else:
-        default = parameter.written_default if parameter is not None else ""
-        for label, detail in _robot_values(document, last, default):
+        default = parameter.default_text if parameter is not None else ""
+        for label, detail in _list_robot_values(document, last, default):
             if label not in present:
                 yield item(label, ItemKind.NAME, detail)
     if last == "topic" and name.count("."):
         for topic in ("cmd_vel",) if section.node == "twist_mux" else _SENSOR_TOPICS:
             yield item(topic)
-    if parameter is not None and not cursor.is_in_list and parameter.written_default and not parameter.choices:
-        default = parameter.written_default
+    if parameter is not None and not cursor.is_in_list and parameter.default_text and not parameter.choices:
+        default = parameter.default_text
         if parameter.type != "bool":
             yield item(default, detail=localized(phrase("default")))
 
@@ -104,14 +104,16 @@ def _is_boolean(document: Document, section: Section, name: str) -> bool:
     parameter = section.find(name)
     if parameter is not None:
         return parameter.type == "bool"
-    return any(declared.name == name and declared.type == "bool" for declared in sources_of(document, section))
+    return any(
+        declared.name == name and declared.type == "bool" for declared in find_declared_parameters(document, section)
+    )
 
 
-def _default_mark(parameter: ParameterInfo, word: str) -> str:
-    return localized(phrase("default")) if parameter.written_default.strip('"') == word else ""
+def _mark_default(parameter: ParameterInfo, word: str) -> str:
+    return localized(phrase("default")) if parameter.default_text.strip('"') == word else ""
 
 
-def _robot_values(document: Document, key: str, default: str) -> Iterator[tuple[str, str]]:
+def _list_robot_values(document: Document, key: str, default: str) -> Iterator[tuple[str, str]]:
     """Yield the joints or frames for a parameter with a detail, the default frame first."""
     kinds = kinds_of_parameter(key)
     if not kinds:
@@ -139,7 +141,7 @@ def _sort_by_resemblance(types: Iterable[str], name: str) -> list[str]:
     return sorted(types, key=rank)
 
 
-def _plugin_types(section: Section, plugin: str, key: str) -> list[str]:
+def _list_plugin_types(section: Section, plugin: str, key: str) -> list[str]:
     """Return the possible types of a plugin, restricted by the parameter that lists it."""
     if key == "primary_controller":
         return plugin_types(section.node, "controller_plugins")

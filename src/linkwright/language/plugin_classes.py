@@ -17,7 +17,7 @@ from linkwright.packages.readers.entry_points import text_of
 from linkwright.xmltree.tokens import Kind, Token, tokens
 
 _EXPORT = re.compile(r"(?i)\bpluginlib_export_plugin_description_file\s{0,9}\(\s{0,99}([\w-]+)\s{1,99}\"?([^\s\")]+)")
-_SECONDS = 10.0
+_CACHE_LIFETIME_S = 10.0
 """The maximum age of the exported classes, in seconds."""
 
 
@@ -57,31 +57,31 @@ def plugin_classes(document: Document, base: str) -> list[PluginClass]:
     Raises:
         NotYetKnownError: the packages were never read, and the document does not wait.
     """
-    return [plugin for plugin in _all_classes(document) if plugin.base == base]
+    return [plugin for plugin in _list_classes(document) if plugin.base == base]
 
 
-def _all_classes(document: Document) -> list[PluginClass]:
-    cached = _classes.get(document.project)
-    if cached is not None and time.monotonic() - cached[0] <= _SECONDS:
+def _list_classes(document: Document) -> list[PluginClass]:
+    cached = _classes.get(document.workspace)
+    if cached is not None and time.monotonic() - cached[0] <= _CACHE_LIFETIME_S:
         return cached[1]
     if document.waits:
-        folders = dict.fromkeys((*document.project.index.packages, *document.finder.packages().values()))
-        classes = {plugin.name: plugin for folder in folders for plugin in _exported_classes(folder)}
-        cached = _classes[document.project] = time.monotonic(), list(classes.values())
+        folders = dict.fromkeys((*document.workspace.index.packages, *document.finder.packages().values()))
+        classes = {plugin.name: plugin for folder in folders for plugin in _find_exported_classes(folder)}
+        cached = _classes[document.workspace] = time.monotonic(), list(classes.values())
     elif cached is None:
         raise NotYetKnownError
     else:
-        document.refreshes.append(partial(_all_classes, replace(document, waits=True)))
+        document.refreshes.append(partial(_list_classes, replace(document, waits=True)))
     return cached[1]
 
 
-def _exported_classes(folder: Path) -> Iterator[PluginClass]:
+def _find_exported_classes(folder: Path) -> Iterator[PluginClass]:
     """Yield the classes that a package exports."""
-    for base, file in _files(folder):
-        yield from _classes_in(text_of(file), base, folder, file)
+    for base, file in _find_plugin_descriptions(folder):
+        yield from _parse_classes(text_of(file), base, folder, file)
 
 
-def _files(folder: Path) -> Iterator[tuple[str, Path]]:
+def _find_plugin_descriptions(folder: Path) -> Iterator[tuple[str, Path]]:
     """Yield the base class package and path of each plugin description of a package."""
     if is_installed(folder):
         prefix, end = install_prefix(folder), "__pluginlib__plugin"
@@ -95,7 +95,7 @@ def _files(folder: Path) -> Iterator[tuple[str, Path]]:
         yield match[1], folder / match[2].replace("${PROJECT_NAME}", name)
 
 
-def _classes_in(text: str, base: str, folder: Path, file: Path) -> Iterator[PluginClass]:
+def _parse_classes(text: str, base: str, folder: Path, file: Path) -> Iterator[PluginClass]:
     current: Token | None = None
     tag = description = ""
     for token in tokens(text):
@@ -104,18 +104,18 @@ def _classes_in(text: str, base: str, folder: Path, file: Path) -> Iterator[Plug
             if tag == "class":
                 current, description = token, ""
                 if token.is_empty_element:
-                    yield from _class_of(token, "", base, folder, file)
+                    yield from _parse_class(token, "", base, folder, file)
                     current = None
         elif token.kind is Kind.TEXT and tag == "description":
             description += token.text
         elif token.kind is Kind.END:
             tag = ""
             if token.name == "class" and current is not None:
-                yield from _class_of(current, " ".join(description.split()), base, folder, file)
+                yield from _parse_class(current, " ".join(description.split()), base, folder, file)
                 current = None
 
 
-def _class_of(token: Token, description: str, base: str, folder: Path, file: Path) -> Iterator[PluginClass]:
+def _parse_class(token: Token, description: str, base: str, folder: Path, file: Path) -> Iterator[PluginClass]:
     attributes = {attribute.name: attribute for attribute in token.attributes()}
     name_attribute = attributes.get("name") or attributes.get("type")
     if name_attribute is not None and name_attribute.value:

@@ -9,13 +9,13 @@ from xml.sax.saxutils import quoteattr
 from linkwright.language.includes import real_path
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import ExpansionProof
+from linkwright.language.source_elements import SourceElement, find_innermost_element, source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import SourceElement, innermost_element, source_elements
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.macros import Parameter, parse_parameters
 
 _XACRO = "http://www.ros.org/wiki/xacro"
-_VALUES = ("probe", "1", "0")
+_PROBE_VALUES = ("probe", "1", "0")
 """The values of the parameters in the calls: a name, the number for true, and the number for false."""
 
 
@@ -27,9 +27,9 @@ def is_reached(proof: ExpansionProof, text: str, name: Occurrence) -> bool:
     Args:
         proof: the expansions.
         text: the text of the file that contains the name.
-        name: the name.
+        name: an occurrence of a name in the macro.
     """
-    innermost = innermost_element(source_elements(text), name.start)
+    innermost = find_innermost_element(source_elements(text), name.start)
     if innermost is None:
         return True
     macro = innermost.macro if not innermost.name.startswith("xacro:macro") else innermost
@@ -53,12 +53,12 @@ def generate_probes(workspace: Workspace, texts: Mapping[Path, str], name: Occur
     Returns an empty dictionary outside macros.
 
     Args:
-        workspace: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        name: the name.
+        name: an occurrence of a name in the macro.
     """
     text = workspace.text(name.file, texts) or ""
-    element = innermost_element(source_elements(text), name.start)
+    element = find_innermost_element(source_elements(text), name.start)
     macro = None if element is None else element if element.name == "xacro:macro" else element.macro
     if macro is None or macro.macro is not None or not workspace.contains(real_path(name.file)):
         return {}
@@ -81,17 +81,20 @@ def _generate_calls(macro: SourceElement) -> Iterator[str]:
     if not called or "$" in called:
         return
     blocks = "".join(map(_generate_block, parameters))
-    for value in _VALUES:
+    for value in _PROBE_VALUES:
         arguments = "".join(
             f" {parameter.name}={quoteattr(value)}"
             for parameter in parameters
-            if not parameter.is_block and (parameter.default is None or value != _VALUES[0])
+            if not parameter.is_block and (parameter.default is None or value != _PROBE_VALUES[0])
         )
         yield f"  <xacro:{called}{arguments}>{blocks}</xacro:{called}>"
 
 
 def _generate_block(parameter: Parameter) -> str:
-    """Return an element for a block parameter. The macro inserts the children of an element for ``**name``."""
+    """Return an element for a block parameter.
+
+    The macro inserts only the children of an element for ``**name``.
+    """
     if not parameter.is_block or parameter.default is not None:
         return ""
     if parameter.name.startswith("**"):

@@ -1,6 +1,6 @@
 """The packages, executables and components that a launch file can use.
 
-They are found without running any code.
+They are found without executing any code.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 
 from linkwright.language.format import Target
 from linkwright.launch.ros.executables import builtin_packages, hosted_executables
-from linkwright.lint.targets import walk
+from linkwright.lint.targets import find_files_and_packages
 from linkwright.nodes import COMPONENTS
 from linkwright.packages import PackageFinder, enclosing_package, install_prefix, is_installed
 from linkwright.packages.programs.source_programs import module_file, python_root, source_programs
@@ -40,7 +40,7 @@ _FILES_WITH_PACKAGES = (
 )
 _MAX_FILES = 200
 _MAX_BYTES = 300_000
-_REGISTERED = re.compile(r"(?i)\brclcpp_components_register_nodes?\s*\(([^)]*)\)")
+_COMPONENT_REGISTRATION = re.compile(r"(?i)\brclcpp_components_register_nodes?\s*\(([^)]*)\)")
 _CLASS = re.compile(r"\b[A-Za-z_]\w*(?:::\w+)+")
 DEPENDENCY = re.compile(r"<(?:exec_|run_)?depend\b[^<>]*>\s*([a-z]\w*)\s*<")
 """The dependency tags of ``package.xml`` that name packages needed at run time."""
@@ -63,9 +63,9 @@ class Program:
     target: Target | None = None
 
 
-def used_packages(folder: Path) -> list[str]:
+def find_used_packages(folder: Path) -> list[str]:
     """Return the packages that the files of a package use, the most used first."""
-    files, _ = walk(folder, _FILES_WITH_PACKAGES)
+    files, _ = find_files_and_packages(folder, _FILES_WITH_PACKAGES)
     use_counts: Counter[str] = Counter()
     for file in files[:_MAX_FILES]:
         try:
@@ -91,13 +91,13 @@ def replaced_packages() -> set[str]:
     return {*builtin_packages(), *substituted_executables()}
 
 
-def programs_of(finder: PackageFinder, package: str) -> dict[str, Program]:
+def find_programs(finder: PackageFinder, package: str) -> dict[str, Program]:
     """Return the executables of a package by name, or an empty dictionary if there are none."""
     programs: dict[str, Program] = {}
     share = finder.find(package)
     if share is not None and share.is_dir():
         if not is_installed(share):
-            programs = {program.name: program for program in _in_sources(share, package)}
+            programs = {program.name: program for program in _programs_in_sources(share, package)}
         for path in sorted((install_prefix(share) / "lib" / package).glob("*")):
             if path.is_file() and path.suffix not in (".so", ".dylib") and os.access(path, os.X_OK):
                 programs[path.name] = Program(path.name, str(path), Target(path))
@@ -107,11 +107,11 @@ def programs_of(finder: PackageFinder, package: str) -> dict[str, Program]:
     return programs
 
 
-def _in_sources(share: Path, package: str) -> Iterator[Program]:
+def _programs_in_sources(share: Path, package: str) -> Iterator[Program]:
     programs = source_programs(share, runs_setup=False)
     root = python_root(share, package) or share
     for name, entry in programs.entry_points.items():
-        yield Program(name, f"{entry.module}:{entry.function}", _entry_target(root, entry))
+        yield Program(name, f"{entry.module}:{entry.function}", _find_entry_target(root, entry))
     for name, path in programs.scripts.items():
         yield Program(name, str(path.relative_to(share)), Target(Path(source_of(str(path)))))
     build = Path(source_of(str(share / "CMakeLists.txt")))
@@ -121,7 +121,7 @@ def _in_sources(share: Path, package: str) -> Iterator[Program]:
         yield Program(name, "CMakeLists.txt", Target(build, *(match.span(1) if match else (0, 0))))
 
 
-def _entry_target(root: Path, entry: EntryPoint) -> Target | None:
+def _find_entry_target(root: Path, entry: EntryPoint) -> Target | None:
     file = module_file(root, entry.module)
     if file is None:
         return None
@@ -130,13 +130,13 @@ def _entry_target(root: Path, entry: EntryPoint) -> Target | None:
     return Target(file, *(match.span(1) if match else (0, 0)))
 
 
-def components_of(finder: PackageFinder, package: str) -> dict[str, Target | None]:
+def find_components(finder: PackageFinder, package: str) -> dict[str, Target | None]:
     """Return the components of a package by class, with the location of the registration."""
     components: dict[str, Target | None] = {}
     share = finder.find(package)
     if share is not None:
         build = Path(source_of(str(share / "CMakeLists.txt")))
-        for command in _REGISTERED.finditer(text_of(build)):
+        for command in _COMPONENT_REGISTRATION.finditer(text_of(build)):
             for name in _CLASS.finditer(command[1]):
                 start = command.start(1) + name.start()
                 components[name[0]] = Target(build, start, start + len(name[0]))

@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 from linkwright.diagnostics import LinkwrightError, Phrase, Span, display_path, phrase
 from linkwright.language.includes import real_path
-from linkwright.language.trials import Trial, blank_out, expand_with_gaps, trials
+from linkwright.language.trials import Trial, blank_out, expand_with_gaps, run_trials
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.xacro import Expansion
 from linkwright.xmltree import Element
@@ -73,17 +73,17 @@ def apply_edits(text: str, edits: Collection[Edit]) -> str:
     return text
 
 
-def apply_edits_to_texts(project: Workspace, texts: Mapping[Path, str], edits: Collection[Edit]) -> dict[Path, str]:
+def apply_edits_to_texts(workspace: Workspace, texts: Mapping[Path, str], edits: Collection[Edit]) -> dict[Path, str]:
     """Return the texts of the open and edited files, with the edits applied.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         edits: the edits, which must not overlap.
     """
     changed = dict(texts)
     for file in {edit.file for edit in edits}:
-        text = project.text(file, texts) or ""
+        text = workspace.text(file, texts) or ""
         changed[file] = apply_edits(text, [edit for edit in edits if edit.file == file])
     return changed
 
@@ -92,23 +92,25 @@ class ExpansionProof:
     """The expansions of the descriptions that include a file, for comparison after edits.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: the file that is edited.
         is_partial: whether the comparison includes descriptions that can be expanded only without some elements, and
             arguments that no caller passes.
 
     Attributes:
         entries: the descriptions that are compared.
         data: the files that their expansions read.
-        trials: the expansions without the edits.
+        run_trials: the expansions without the edits.
     """
 
-    def __init__(self, project: Workspace, texts: Mapping[Path, str], file: Path, *, is_partial: bool = False) -> None:
+    def __init__(
+        self, workspace: Workspace, texts: Mapping[Path, str], file: Path, *, is_partial: bool = False
+    ) -> None:
         self.entries: set[Path] = set()
         self.data: set[Path] = set()
         self.trials: list[Trial] = []
-        self._project, self._texts = project, texts
+        self._project, self._texts = workspace, texts
         self._is_partial = is_partial
         self._error: LinkwrightError | None = None
         self._names: dict[Path, set[str]] = {}
@@ -131,7 +133,7 @@ class ExpansionProof:
         """Yield the expansion of each description and argument set before and after edits.
 
         Args:
-            edits: the edits.
+            edits: the edits, which must not overlap.
             renamed: the new names of arguments of the descriptions, by old name.
 
         Raises:
@@ -140,7 +142,7 @@ class ExpansionProof:
         for file in sorted({edit.file for edit in edits}):
             if not self._project.contains(file):
                 raise UnprovedError(phrase("'{file}' is outside the workspace", file=display_path(str(file))))
-            if file.name.endswith(DESCRIPTIONS):
+            if file.name.endswith(DESCRIPTION_SUFFIXES):
                 self._add_entries(file)
         if not self.trials:
             reason = self._error.diagnostics[0].message if self._error else phrase("no description includes the file")
@@ -162,7 +164,7 @@ class ExpansionProof:
         """Compare the expansions before and after edits, which must be equal.
 
         Args:
-            edits: the edits.
+            edits: the edits, which must not overlap.
             renamed: the new names of arguments of the descriptions, by old name.
 
         Raises:
@@ -184,7 +186,7 @@ class ExpansionProof:
         if entry in self.entries:
             return
         self.entries.add(entry)
-        expansions, error = trials(self._project, self._texts, entry, is_partial=self._is_partial)
+        expansions, error = run_trials(self._project, self._texts, entry, is_partial=self._is_partial)
         self._error = error or self._error
         self.trials += expansions
         for path in (path for trial in expansions for path in trial.expansion.dependencies):

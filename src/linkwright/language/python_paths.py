@@ -67,7 +67,7 @@ class PythonPaths:
         value = self.value_of(item)
         return None if value is None or value.is_path else value.text
 
-    def before(self, text: Text, item: Item) -> Value | None:
+    def path_before(self, text: Text, item: Item) -> Value | None:
         """Return the path that a string continues, or None if it is unknown.
 
         The path ends with ``/`` if the string is a new component of it.
@@ -84,9 +84,9 @@ class PythonPaths:
             return None if value is None else Value(value.text + joint, value.is_path)
         if head:
             return None
-        return self._joined_before(item)
+        return self._join_before(item)
 
-    def _joined_before(self, item: Item) -> Value | None:
+    def _join_before(self, item: Item) -> Value | None:
         group = item.group
         outer = group.parent.group if group.parent is not None else None
         in_list = group.opening == "[" and outer is not None
@@ -95,7 +95,7 @@ class PythonPaths:
             value = self._join(earlier_items, 0) if earlier_items else None
             return None if value is None else Value(value.text + "/", value.is_path)
         if in_list and not group.callee:  # This is a list of substitutions, which launch concatenates.
-            return self._concatenated([self.value_of(other) for other in group.items[: group.items.index(item)]])
+            return self._concatenate([self.value_of(other) for other in group.items[: group.items.index(item)]])
         return None
 
     def _join_parts(self, parts: Sequence[Part], depth: int) -> Value | None:
@@ -110,7 +110,7 @@ class PythonPaths:
                     return None
                 mark = part.value
                 continue
-            term = self._term(part, depth)
+            term = self._evaluate_term(part, depth)
             if value is None and index > 0:
                 return None
             if term is None:
@@ -118,13 +118,13 @@ class PythonPaths:
             value = (
                 term
                 if value is None
-                else self._concatenated([value, Value("/"), term] if mark == "/" else [value, term])
+                else self._concatenate([value, Value("/"), term] if mark == "/" else [value, term])
             )
             mark = ""
         return value
 
     @staticmethod
-    def _concatenated(values: Sequence[Value | None]) -> Value | None:
+    def _concatenate(values: Sequence[Value | None]) -> Value | None:
         if not values or any(value is None for value in values):
             return None
         return Value("".join(value.text for value in values if value), bool(values[0] and values[0].is_path))
@@ -137,12 +137,12 @@ class PythonPaths:
         is_path = bool(values[0] and values[0].is_path)
         return Value("/".join([pieces[0].rstrip("/"), *(piece.strip("/") for piece in pieces[1:])]), is_path)
 
-    def _term(self, part: Part, depth: int) -> Value | None:
+    def _evaluate_term(self, part: Part, depth: int) -> Value | None:
         if isinstance(part, Text):
             return None if part.is_format and "{" in part.value else Value(part.value)
         if isinstance(part, Name):
             return self._evaluate_variable(part.value, depth)
-        return self._group(part, depth) if isinstance(part, Group) else None
+        return self._evaluate_group(part, depth) if isinstance(part, Group) else None
 
     def _evaluate_variable(self, name: str, depth: int) -> Value | None:
         if name == "__file__":
@@ -150,7 +150,7 @@ class PythonPaths:
         bound = self._python.bindings.get(name)
         return None if bound is None else self._join_parts(bound.parts, depth + 1)
 
-    def _group(self, group: Group, depth: int) -> Value | None:
+    def _evaluate_group(self, group: Group, depth: int) -> Value | None:
         items = [item for item in group.items if item.parts]
         function = group.function
         if function in PACKAGE_FUNCTIONS:
@@ -173,5 +173,5 @@ class PythonPaths:
         if (function in _WRAPPERS or (not group.callee and group.opening == "(")) and items:
             return self._join_parts(items[0].parts, depth + 1)
         if group.opening == "[" and not group.callee:
-            return self._concatenated([self._join_parts(item.parts, depth + 1) for item in items])
+            return self._concatenate([self._join_parts(item.parts, depth + 1) for item in items])
         return None

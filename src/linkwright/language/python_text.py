@@ -30,10 +30,10 @@ _TOKEN = lazy_pattern(
     """,
     re.VERBOSE | re.DOTALL,
 )
-_STATEMENT = frozenset({"def", "class", "return", "import", "from", "with", "try", "while", "raise", "del"})
+_STATEMENT_KEYWORDS = frozenset({"def", "class", "return", "import", "from", "with", "try", "while", "raise", "del"})
 """The words that begin a statement. A line that begins with one ends all open brackets."""
-_CLOSING = {"(": ")", "[": "]", "{": "}", "": ""}
-_MAX_TEXT = 300_000
+_CLOSING_BRACKETS = {"(": ")", "[": "]", "{": "}", "": ""}
+_MAX_TEXT_LENGTH = 300_000
 """The maximum length in characters. Longer files are not launch files."""
 
 
@@ -146,7 +146,7 @@ class PythonText:
     """A Python text as a tree of brackets.
 
     Args:
-        text: the text.
+        text: the source text.
 
     Attributes:
         root: the whole text, whose items are the statements.
@@ -162,7 +162,7 @@ class PythonText:
         self.bindings: dict[str, Item | None] = {}
         self._group = self.root
         self._item = self._new_item(0)
-        if len(text) <= _MAX_TEXT:
+        if len(text) <= _MAX_TEXT_LENGTH:
             self._read(text)
 
     def calls_of(self, *functions: str) -> Iterator[Group]:
@@ -194,7 +194,7 @@ class PythonText:
                 continue
             if kind in ("space", "comment", "continued"):
                 continue
-            if kind == "name" and line_begins and token[0] in _STATEMENT:
+            if kind == "name" and line_begins and token[0] in _STATEMENT_KEYWORDS:
                 self._close_all(token.start())
             line_begins = False
             if kind == "string":
@@ -244,7 +244,7 @@ class PythonText:
 
     def _close(self, bracket: str, end: int) -> None:
         group = self._group
-        while group.parent is not None and _CLOSING[group.opening] != bracket:
+        while group.parent is not None and _CLOSING_BRACKETS[group.opening] != bracket:
             group = group.parent.group
         if group.parent is None:
             return

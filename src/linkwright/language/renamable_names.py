@@ -14,22 +14,22 @@ from linkwright.language.format import Document
 from linkwright.language.grammar import root_of
 from linkwright.language.launch_names import LaunchName, is_launch_file
 from linkwright.language.launch_renaming import launch_name_at, rename_launch_argument
-from linkwright.language.mentions import FILES, Mention, mentions_in
-from linkwright.language.name_sources import renamed_template, source_value
+from linkwright.language.mentions import FILE_SUFFIXES, Mention, mentions_in
+from linkwright.language.name_sources import rename_in_template, source_value
 from linkwright.language.occurrences import Occurrence
-from linkwright.language.other_files import names_of_robot, robots_of_file
+from linkwright.language.other_files import find_names_of_robot, find_robots_of_file
 from linkwright.language.proof import UnprovedError
 from linkwright.language.renaming import Renaming, occurrence_at, rename, xacro_name_at
 from linkwright.language.robot_renaming import ROBOT_NAME_KINDS
-from linkwright.language.sdf_names import SdfName, rename_in_sdf, sdf_name_at
+from linkwright.language.sdf_names import SdfName, find_sdf_name_at, rename_in_sdf
 from linkwright.language.srdf import is_srdf
-from linkwright.language.trials import trials
+from linkwright.language.trials import run_trials
 from linkwright.language.workspace import Workspace
 from linkwright.sdf.worlds import SDF
 
 _WORD = re.compile(r"[^\s\"'\[\]{},<>=|#]+")
 _LAUNCH_NAME = re.compile(r"[\w.-]+")
-_UNPROVED = "LANG104"
+_UNPROVED_CODE = "LANG104"
 _MAX_ROBOTS = 4
 
 
@@ -38,7 +38,7 @@ class RenamableName:
     """A name that can be renamed.
 
     Attributes:
-        file: the file.
+        file: the file that contains it.
         start: the offset of the name.
         name: the name as written.
         meaning: a name in a description or SRDF, a mention of a link or joint in another file, a launch argument with
@@ -56,39 +56,42 @@ class RenamableName:
         return self.start + len(self.name)
 
 
-def renamable_name_at(project: Workspace, texts: Mapping[Path, str], file: Path, offset: int) -> RenamableName | None:
+def renamable_name_at(workspace: Workspace, texts: Mapping[Path, str], file: Path, offset: int) -> RenamableName | None:
     """Return the renamable name at an offset of a file, or None if there is none.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
-        offset: the character offset.
+        file: the file of the request.
+        offset: the character offset of the cursor.
     """
-    text = project.text(file, texts)
+    text = workspace.text(file, texts)
     if text is None:
         return None
     if is_launch_file(file):
-        launch = launch_name_at(Document(project, texts, file, text), offset)
+        launch = launch_name_at(Document(workspace, texts, file, text), offset)
         if launch is not None:
             return RenamableName(file, launch[0].start, launch[0].name, launch)
     elif root_of(file) is SDF:
-        name = sdf_name_at(text, file, offset)
+        name = find_sdf_name_at(text, file, offset)
         if name is not None:
             return RenamableName(file, name.start, name.name, name)
         occurrence = xacro_name_at(text, file, offset)
         return None if occurrence is None else RenamableName(file, occurrence.start, occurrence.name, occurrence)
-    elif not file.name.endswith(FILES):
+    elif not file.name.endswith(FILE_SUFFIXES):
         occurrence = occurrence_at(text, file, offset)
         return None if occurrence is None else RenamableName(file, occurrence.start, occurrence.name, occurrence)
-    mention = _mention_at(text, file, offset)
-    if mention is None or next(_robots_with(project, texts, mention), None) is None:
+    mention = _find_mention_at(text, file, offset)
+    if mention is None or next(_find_robots_with(workspace, texts, mention), None) is None:
         return None
     return RenamableName(file, mention.start, mention.name, mention)
 
 
-def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
-    """Return the mention of a link or joint at an offset of a file other than a description, or None."""
+def _find_mention_at(text: str, file: Path, offset: int) -> Mention | None:
+    """Return the mention of a link or joint at an offset, or None.
+
+    The file is not a description.
+    """
     begin = text.rfind("\n", 0, offset) + 1
     end = text.find("\n", offset)
     line = text[begin : end if end >= 0 else len(text)]
@@ -102,27 +105,29 @@ def _mention_at(text: str, file: Path, offset: int) -> Mention | None:
     return None
 
 
-def _robots_with(project: Workspace, texts: Mapping[Path, str], mention: Mention) -> Iterator[tuple[Path, NameKind]]:
+def _find_robots_with(
+    workspace: Workspace, texts: Mapping[Path, str], mention: Mention
+) -> Iterator[tuple[Path, NameKind]]:
     """Yield the descriptions that may contain the mentioned link or joint, each with the kind."""
-    for robot in robots_of_file(project, texts, mention.file):
-        robot_names = names_of_robot(project, texts, robot)
+    for robot in find_robots_of_file(workspace, texts, mention.file):
+        robot_names = find_names_of_robot(workspace, texts, robot)
         for kind in mention.kinds:
             if (kind, mention.name) in robot_names:
                 yield robot, kind
 
 
-def _fits(source_name: str, name: str) -> bool:
+def _may_equal(source_name: str, name: str) -> bool:
     parts = re.split(r"\$\{[^{}]*\}|\$\([^()]*\)", source_name)
     return any(parts) and re.fullmatch(".*".join(map(re.escape, parts)), name) is not None
 
 
-def rename_name(project: Workspace, texts: Mapping[Path, str], renamable: RenamableName, new: str) -> Renaming:
+def rename_name(workspace: Workspace, texts: Mapping[Path, str], renamable: RenamableName, new: str) -> Renaming:
     """Return the edits that rename a name.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        renamable: the place, as `renamable_name_at` returns it.
+        renamable: the name, as `renamable_name_at` returns it.
         new: the new name.
 
     Raises:
@@ -130,43 +135,43 @@ def rename_name(project: Workspace, texts: Mapping[Path, str], renamable: Renama
     """
     meaning = renamable.meaning
     if isinstance(meaning, Occurrence):
-        return _rename_occurrence(project, texts, meaning, new)
+        return _rename_occurrence(workspace, texts, meaning, new)
     if isinstance(meaning, Mention):
-        return _rename_mention(project, texts, meaning, new)
+        return _rename_mention(workspace, texts, meaning, new)
     try:
         if isinstance(meaning, SdfName):
-            edits, unchanged = rename_in_sdf(project, texts, meaning, new)
+            edits, unchanged = rename_in_sdf(workspace, texts, meaning, new)
             return Renaming(tuple(sorted(edits)), {meaning.name: new}, tuple(unchanged))
         if not _LAUNCH_NAME.fullmatch(new):
             raise _invalid_name_error(new, phrase("launch argument"))
-        renaming = rename_launch_argument(project, texts, meaning[1], meaning[0].name, new)
+        renaming = rename_launch_argument(workspace, texts, meaning[1], meaning[0].name, new)
     except UnprovedError as error:
         raise _refusal_error(renamable.name, error.reason, error.span) from None
     return Renaming(tuple(sorted(renaming.edits)), {}, tuple(renaming.unchanged), tuple(dict.fromkeys(renaming.notes)))
 
 
-def _rename_occurrence(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+def _rename_occurrence(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
     """Rename a name in a description, or a use in an SRDF of a name in another file."""
     is_use = name.kind in ROBOT_NAME_KINDS[:2] and not name.is_definition
     if is_use and is_srdf(name.file):
-        return _rename_in_srdf(project, texts, name, new)
+        return _rename_in_srdf(workspace, texts, name, new)
     try:
-        return rename(project, texts, name, new)
+        return rename(workspace, texts, name, new)
     except LinkwrightError as error:
-        if not is_use or error.diagnostics[0].code != _UNPROVED:
+        if not is_use or error.diagnostics[0].code != _UNPROVED_CODE:
             raise
         try:
-            return _rename_in_srdf(project, texts, name, new)
+            return _rename_in_srdf(workspace, texts, name, new)
         except LinkwrightError:
             raise error from None
 
 
-def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Mention, new: str) -> Renaming:
+def _rename_mention(workspace: Workspace, texts: Mapping[Path, str], mention: Mention, new: str) -> Renaming:
     """Rename the link or joint in the first description whose renaming changes the mention."""
     error: LinkwrightError | None = None
-    for robot, kind in islice(_robots_with(project, texts, mention), _MAX_ROBOTS):
+    for robot, kind in islice(_find_robots_with(workspace, texts, mention), _MAX_ROBOTS):
         try:
-            renaming = rename(project, texts, Occurrence(kind, mention.name, robot, 0), new)
+            renaming = rename(workspace, texts, Occurrence(kind, mention.name, robot, 0), new)
         except LinkwrightError as reason:
             error = error or reason
             continue
@@ -178,23 +183,25 @@ def _rename_mention(project: Workspace, texts: Mapping[Path, str], mention: Ment
     raise error or _refusal_error(mention.name, phrase("no description in the workspace contains it"))
 
 
-def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+def _rename_in_srdf(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
     """Rename a link or joint, starting from its use in an SRDF."""
     if "$" not in name.name:
-        return _rename_mention(project, texts, Mention(name.name, name.file, name.start, (name.kind,)), new)
+        return _rename_mention(workspace, texts, Mention(name.name, name.file, name.start, (name.kind,)), new)
     error: LinkwrightError | None = None
-    for robot in robots_of_file(project, texts, name.file)[:_MAX_ROBOTS]:
-        names_of_kind = sorted(value for kind, value in names_of_robot(project, texts, robot) if kind is name.kind)
-        for value in (value for value in names_of_kind if _fits(name.name, value)):
-            changed = renamed_template(name.name, new, value)
+    for robot in find_robots_of_file(workspace, texts, name.file)[:_MAX_ROBOTS]:
+        names_of_kind = sorted(
+            value for kind, value in find_names_of_robot(workspace, texts, robot) if kind is name.kind
+        )
+        for value in (value for value in names_of_kind if _may_equal(name.name, value)):
+            changed = rename_in_template(name.name, new, value)
             if changed is None or changed == value:
                 continue
-            definition = _definition(project, texts, robot, name, value)
+            definition = _find_definition(workspace, texts, robot, name, value)
             try:
                 renaming = (
-                    rename(project, texts, Occurrence(name.kind, value, robot, 0), changed)
+                    rename(workspace, texts, Occurrence(name.kind, value, robot, 0), changed)
                     if definition is None
-                    else rename(project, texts, definition, new)
+                    else rename(workspace, texts, definition, new)
                 )
             except LinkwrightError as reason:
                 error = error or reason
@@ -204,25 +211,25 @@ def _rename_in_srdf(project: Workspace, texts: Mapping[Path, str], name: Occurre
     raise error or _refusal_error(name.name, phrase("no description in the workspace contains it"))
 
 
-def _definition(
-    project: Workspace, texts: Mapping[Path, str], robot: Path, name: Occurrence, value: str
+def _find_definition(
+    workspace: Workspace, texts: Mapping[Path, str], robot: Path, name: Occurrence, value: str
 ) -> Occurrence | None:
     """Return the definition of a link or joint whose source equals a use, or None.
 
     The source of a name may contain expressions, such as ``${prefix}wheel``.
     """
-    expansions, _ = trials(project, texts, robot, is_partial=True, is_switched=False)
+    expansions, _ = run_trials(workspace, texts, robot, is_partial=True, is_switched=False)
     for trial in expansions:
         for element in trial.expansion.document.root.elements(name.kind.value):
             source = source_value(element, "name") if element.attributes.get("name") == value else None
             if source is not None and source.text == name.name:
-                return occurrence_at(project.text(source.file, texts) or "", source.file, source.start)
+                return occurrence_at(workspace.text(source.file, texts) or "", source.file, source.start)
     return None
 
 
 def _refusal_error(name: str, reason: Phrase, span: Span | None = None) -> LinkwrightError:
     return LinkwrightError(
-        Diagnostic(_UNPROVED, phrase("'{name}' is not renamed: {reason}", name=name, reason=reason), span)
+        Diagnostic(_UNPROVED_CODE, phrase("'{name}' is not renamed: {reason}", name=name, reason=reason), span)
     )
 
 

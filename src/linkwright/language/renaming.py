@@ -26,7 +26,7 @@ from linkwright.language.robot_renaming import ROBOT_NAME_KINDS, RobotRenaming
 from linkwright.language.workspace import Workspace
 from linkwright.sdf.worlds import SDF
 
-_FORWARD = re.compile(r"\s*:?=\s*\^")
+_FORWARDED_DEFAULT = re.compile(r"\s*:?=\s*\^")
 _NAME = re.compile(r"[^\s<>&\"']+")
 
 
@@ -51,7 +51,7 @@ def occurrence_at(text: str, file: Path, offset: int) -> Occurrence | None:
     """Return the name at an offset, or None if there is no renamable name."""
     if root_of(file) is SDF:  # Names in SDF models have their own scopes.
         return None
-    return _innermost(occurrences_in(text, file), offset)
+    return _find_innermost(occurrences_in(text, file), offset)
 
 
 def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
@@ -59,40 +59,40 @@ def xacro_name_at(text: str, file: Path, offset: int) -> Occurrence | None:
 
     It is the name of a macro, parameter, property or argument.
     """
-    return _innermost((name for name in occurrences_in(text, file) if name.kind not in ROBOT_NAME_KINDS), offset)
+    return _find_innermost((name for name in occurrences_in(text, file) if name.kind not in ROBOT_NAME_KINDS), offset)
 
 
-def _innermost(names: Iterable[Occurrence], offset: int) -> Occurrence | None:
+def _find_innermost(names: Iterable[Occurrence], offset: int) -> Occurrence | None:
     occurrences = [name for name in names if name.start <= offset <= name.end]
     return min(occurrences, key=lambda name: (name.end - name.start, not name.is_definition), default=None)
 
 
-def references(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> list[Occurrence]:
+def find_references(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence) -> list[Occurrence]:
     """Return the definitions and uses of a name in all files of its descriptions.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        name: the name.
+        name: one of its occurrences.
     """
     occurrences: dict[Path, list[Occurrence]] = {}
     pending = [name.file]
     is_shared = name.kind not in ROBOT_NAME_KINDS  # A link with the same name in another robot is a different link.
     for start in pending:
-        for file in project.index.related_files(start, texts, computed=True):
+        for file in workspace.index.related_files(start, texts, computed=True):
             if file not in occurrences:
-                uses = occurrences_in(project.text(file, texts) or "", file)
+                uses = occurrences_in(workspace.text(file, texts) or "", file)
                 occurrences[file] = [use for use in uses if _is_same(use, name)]
                 if occurrences[file] and is_shared:
                     pending.append(file)
     return [use for uses in occurrences.values() for use in uses]
 
 
-def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+def rename(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
     """Return the proved edits that rename a name of a description.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         name: the name, as `occurrence_at` returns it.
         new: the new name, as it replaces the text of the old one.
@@ -101,33 +101,37 @@ def rename(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new:
         LinkwrightError: LANG102, the new name is not valid; LANG103, it exists; LANG104, the edits cannot be proved.
     """
     _check_new_name(name, new)
-    seeds = references(project, texts, name)
+    seeds = find_references(workspace, texts, name)
     if not any(seed.is_definition for seed in seeds) and name.kind not in ROBOT_NAME_KINDS:
         raise _unproved_error(phrase("'{name}' is not defined in the files of the workspace", name=name.name), name)
-    existing = next((other for other in references(project, texts, _with_name(name, new)) if other.is_definition), None)
+    existing = next(
+        (other for other in find_references(workspace, texts, _with_name(name, new)) if other.is_definition), None
+    )
     if existing is not None:
         message = phrase("{kind} '{name}' already exists", kind=term(name.kind.value), name=new)
-        raise LinkwrightError(Diagnostic("LANG103", message, _span(project, texts, existing)))
+        raise LinkwrightError(Diagnostic("LANG103", message, _span(workspace, texts, existing)))
     try:
-        return _proved_edits(project, texts, name, new)
+        return _prove_renaming(workspace, texts, name, new)
     except UnprovedError as error:
         raise _unproved_error(error.reason, name, error.span) from None
 
 
-def _proved_edits(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
+def _prove_renaming(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> Renaming:
     """Return the edits of the occurrences of a name, and the edits that follow from them."""
-    proof = ExpansionProof(project, texts, name.file, is_partial=True)
+    proof = ExpansionProof(workspace, texts, name.file, is_partial=True)
     notes: list[Phrase] = []
     probes = (
-        {} if is_reached(proof, project.text(name.file, texts) or "", name) else generate_probes(project, texts, name)
+        {}
+        if is_reached(proof, workspace.text(name.file, texts) or "", name)
+        else generate_probes(workspace, texts, name)
     )
     if probes:  # No expansion contains the name, so generated calls of its macro are compared.
         texts = {**texts, **probes}
-        proof = ExpansionProof(project, texts, name.file, is_partial=True)
+        proof = ExpansionProof(workspace, texts, name.file, is_partial=True)
         notes.append(phrase("no description calls this macro, so the edits were checked with generated calls"))
-    seeds = references(project, texts, name)
+    seeds = find_references(workspace, texts, name)
     if name.kind in ROBOT_NAME_KINDS:
-        renaming = RobotRenaming(project, texts, name, new, proof)
+        renaming = RobotRenaming(workspace, texts, name, new, proof)
         renaming.run(seeds)
         edits, names, unchanged = renaming.edits, renaming.names, renaming.unchanged
         derived_names = sorted(old for (_, old) in names if old != name.name) if "$" not in name.name else []
@@ -137,9 +141,9 @@ def _proved_edits(project: Workspace, texts: Mapping[Path, str], name: Occurrenc
         edits = {Edit(seed.file, seed.start, seed.end, new) for seed in seeds}
         renamed = {}
         if name.kind is NameKind.ARGUMENT:
-            edits |= _passed_arguments(project, texts, proof, name, new)
+            edits |= _edit_callers(workspace, texts, proof, name, new)
             renamed = {name.name: new}
-        edits = _equal(project, texts, proof, name, new, edits, renamed)
+        edits = _extend_until_equal(workspace, texts, proof, name, new, edits, renamed)
         names, unchanged = {}, ()
     if proof.gap_reason is not None:
         notes.append(
@@ -149,8 +153,8 @@ def _proved_edits(project: Workspace, texts: Mapping[Path, str], name: Occurrenc
     return Renaming(file_edits, {old: changed for (_, old), changed in names.items()}, unchanged, tuple(notes))
 
 
-def _equal(
-    project: Workspace,
+def _extend_until_equal(
+    workspace: Workspace,
     texts: Mapping[Path, str],
     proof: ExpansionProof,
     name: Occurrence,
@@ -169,7 +173,7 @@ def _equal(
     try:
         proof.check_equal(edits, renamed)
     except UnprovedError:
-        extended_edits = edits | _visible_elsewhere(project, texts, name, new)
+        extended_edits = edits | _edit_related_parameters(workspace, texts, name, new)
         if extended_edits == edits:
             raise
         try:
@@ -182,15 +186,15 @@ def _equal(
     return edits
 
 
-def _visible_elsewhere(project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> set[Edit]:
-    """Return the edits of properties with the name of a parameter, and of forwarding parameters."""
+def _edit_related_parameters(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str) -> set[Edit]:
+    """Return the edits of forwarding parameters and of properties with a parameter's name."""
     if name.kind not in (NameKind.PARAMETER, NameKind.PROPERTY):
         return set()
     edits: set[Edit] = set()
-    for file in project.index.related_files(name.file, texts, computed=True):
-        text = project.text(file, texts) or ""
+    for file in workspace.index.related_files(name.file, texts, computed=True):
+        text = workspace.text(file, texts) or ""
         uses = [use for use in occurrences_in(text, file) if use.name == name.name]
-        forwarding = {use.owner for use in uses if use.is_definition and _FORWARD.match(text, use.end)}
+        forwarding = {use.owner for use in uses if use.is_definition and _FORWARDED_DEFAULT.match(text, use.end)}
         edits |= {
             Edit(file, use.start, use.end, new)
             for use in uses
@@ -199,8 +203,8 @@ def _visible_elsewhere(project: Workspace, texts: Mapping[Path, str], name: Occu
     return edits
 
 
-def _passed_arguments(
-    project: Workspace, texts: Mapping[Path, str], proof: ExpansionProof, name: Occurrence, new: str
+def _edit_callers(
+    workspace: Workspace, texts: Mapping[Path, str], proof: ExpansionProof, name: Occurrence, new: str
 ) -> set[Edit]:
     """Return the edits of the calls that pass an argument to the descriptions.
 
@@ -211,12 +215,14 @@ def _passed_arguments(
     passed = re.compile(rf"(?<!\w){re.escape(old)}(?=:=)|(?<=['\"]){re.escape(old)}(?=['\"]\s*:)")
     edits: set[Edit] = set()
     for entry in proof.entries:
-        for values, span in project.argument_calls(entry):
+        for values, span in workspace.argument_calls(entry):
             if old not in values or span is None:
                 continue
             file = real_path(span.file)
-            text = project.text(file, texts) or ""
-            call_edits = {Edit(file, *match.span(), new) for match in passed.finditer(text, *_call_range(text, span))}
+            text = workspace.text(file, texts) or ""
+            call_edits = {
+                Edit(file, *match.span(), new) for match in passed.finditer(text, *_find_call_range(text, span))
+            }
             if not call_edits:
                 raise UnprovedError(
                     phrase("a caller passes the argument, but its name is not written in the call"), span
@@ -255,11 +261,11 @@ def _unproved_error(message: Phrase, name: Occurrence, span: Span | None = None)
     )
 
 
-def _span(project: Workspace, texts: Mapping[Path, str], name: Occurrence) -> Span:
-    return SourceText(str(name.file), project.text(name.file, texts) or "").span(name.start, name.end)
+def _span(workspace: Workspace, texts: Mapping[Path, str], name: Occurrence) -> Span:
+    return SourceText(str(name.file), workspace.text(name.file, texts) or "").span(name.start, name.end)
 
 
-def _call_range(text: str, span: Span) -> tuple[int, int]:
+def _find_call_range(text: str, span: Span) -> tuple[int, int]:
     """Return the start and end of a call in its file.
 
     In Python, the end is the end of the last line of the expression.

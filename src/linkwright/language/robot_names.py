@@ -16,14 +16,14 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.language.definitions import NameDefinition, NameKind, definitions_in
 from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.includes import real_path
-from linkwright.language.valid_parts import valid_parts
+from linkwright.language.valid_parts import expand_valid_parts
 from linkwright.language.workspace import Workspace
 from linkwright.packages import enclosing_package
 from linkwright.xacro import Expansion, expand
 from linkwright.xmltree import Overlay
 from linkwright.xmltree.positions import start_tag_end
 
-_ENDINGS = (".urdf", ".xacro")
+_SUFFIXES = (".urdf", ".xacro")
 _MAX_ROBOTS = 24
 _MAX_STORED = 4 * _MAX_ROBOTS
 _MAX_ENTRIES = 6
@@ -47,10 +47,11 @@ _robots: WeakKeyDictionary[Workspace, dict[Path, _Robot]] = WeakKeyDictionary()
 
 
 def robot_names(document: Document) -> list[NameDefinition]:
-    """Return the links and joints of the robots that a file probably refers to, the most likely first.
+    """Return the links and joints of the robots that a file probably refers to.
 
-    Names with expressions are expanded, and located at the attribute with the expressions. A description that cannot
-    be expanded provides its earlier names, the names in its valid parts, or the names without expressions.
+    The most likely robots come first. Names with expressions are expanded, and located at the attribute with the
+    expressions. A description that cannot be expanded provides its earlier names, the names in its valid parts, or the
+    names without expressions.
 
     Args:
         document: a file of parameters, a configuration or a description.
@@ -68,7 +69,7 @@ def robot_names(document: Document) -> list[NameDefinition]:
             robots.append(robot)
         elif not robots:
             raise NotYetKnownError
-    return _names(sorted(robots, key=lambda robot: document.file.name not in robot.mentioned_files))
+    return _merge_names(sorted(robots, key=lambda robot: document.file.name not in robot.mentioned_files))
 
 
 def part_names(document: Document) -> list[NameDefinition]:
@@ -81,7 +82,7 @@ def part_names(document: Document) -> list[NameDefinition]:
         NotYetKnownError: a description was not read, and the document does not wait.
     """
     robots: list[_Robot] = []
-    entries = document.project.index.entries(document.file, document.texts)[:_MAX_ENTRIES]
+    entries = document.workspace.index.entries(document.file, document.texts)[:_MAX_ENTRIES]
     for entry in dict.fromkeys((*entries, document.file)):
         if entry == document.file and entry not in entries and any(robot.is_expanded for robot in robots):
             continue  # The file alone counts only if no description that includes it can be expanded.
@@ -89,21 +90,21 @@ def part_names(document: Document) -> list[NameDefinition]:
         if robot is None:
             raise NotYetKnownError
         robots.append(robot)
-    return _names(robots)
+    return _merge_names(robots)
 
 
-def mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
+def find_mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
     """Return the descriptions whose links or joints are among some words, the best match first.
 
     Args:
         document: the file with the words.
-        words: the words.
+        words: the possible names of links and joints.
 
     Raises:
         NotYetKnownError: no description was read, and the document does not wait.
     """
     robot_names(document)  # reads them
-    cache = _robots.get(document.project, {})
+    cache = _robots.get(document.workspace, {})
     counts = {
         entry: len({name.name for name in cache[entry].names} & {*words})
         for entry in _list_likely_robots(document)
@@ -112,7 +113,7 @@ def mentioned_robots(document: Document, words: Collection[str]) -> list[Path]:
     return sorted((entry for entry, count in counts.items() if count), key=lambda entry: -counts[entry])
 
 
-def _names(robots: Iterable[_Robot]) -> list[NameDefinition]:
+def _merge_names(robots: Iterable[_Robot]) -> list[NameDefinition]:
     """Return the names of some robots, the first of each kind and name."""
     names: dict[tuple[NameKind, str], NameDefinition] = {}
     for name in (name for robot in robots for name in robot.names):
@@ -121,13 +122,13 @@ def _names(robots: Iterable[_Robot]) -> list[NameDefinition]:
 
 
 def _find_robot(document: Document, entry: Path) -> _Robot | None:
-    """Return the names of a description, or None if they are unknown and must not be waited for."""
-    cache = _robots.setdefault(document.project, {})
+    """Return the robot of a description, or None if the document cannot wait for its expansion."""
+    cache = _robots.setdefault(document.workspace, {})
     robot = cache.get(entry)
-    if robot is not None and robot.state == _state((path for path, _ in robot.state), document.texts):
+    if robot is not None and robot.state == _compute_state((path for path, _ in robot.state), document.texts):
         return robot
     if document.waits:
-        robot = _read(document.project, document.texts, entry, cache.pop(entry, None))
+        robot = _read_robot(document.workspace, document.texts, entry, cache.pop(entry, None))
         cache[entry] = robot
         if len(cache) > _MAX_STORED:
             del cache[next(iter(cache))]
@@ -146,47 +147,47 @@ def _list_likely_robots(document: Document) -> list[Path]:
         shared = max(len(commonprefix([name, part])) for part in entry.parts)  # noqa: RUF071 - it compares characters
         return not entry.is_relative_to(folder), -shared
 
-    entries = [entry for entry in document.project.index.roots(document.texts) if entry.name.endswith(_ENDINGS)]
+    entries = [entry for entry in document.workspace.index.roots(document.texts) if entry.name.endswith(_SUFFIXES)]
     return sorted(entries, key=distance)[:_MAX_ROBOTS]
 
 
-def _read(project: Workspace, texts: Mapping[Path, str], entry: Path, cached: _Robot | None) -> _Robot:
+def _read_robot(workspace: Workspace, texts: Mapping[Path, str], entry: Path, cached: _Robot | None) -> _Robot:
     """Return the names of a description.
 
     If its text cannot be expanded, these are its earlier names, the names in the saved files, in the valid parts, or in
     the text.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         entry: the description.
         cached: its earlier names, or None.
     """
-    robot = _expand_robot(project, texts, entry)
+    robot = _expand_robot(workspace, texts, entry)
     if robot is not None:
         return robot
-    related = dict.fromkeys((entry, *project.index.related_files(entry, texts)))
-    state = _state([*map(str, related), *(path for path, _ in (() if cached is None else cached.state))], texts)
+    related = dict.fromkeys((entry, *workspace.index.related_files(entry, texts)))
+    state = _compute_state([*map(str, related), *(path for path, _ in (() if cached is None else cached.state))], texts)
     if cached is not None and cached.is_expanded:
         return replace(cached, state=state)
-    saved = _expand_robot(project, {}, entry) if texts else None
+    saved = _expand_robot(workspace, {}, entry) if texts else None
     if saved is not None:
         return replace(saved, state=state)
-    parts = valid_parts(project, texts, entry)
+    parts = expand_valid_parts(workspace, texts, entry)
     if parts is not None:
         return _make_robot(parts, state, is_complete=False)
-    text = project.text(entry, texts) or ""
+    text = workspace.text(entry, texts) or ""
     literal = (name for name in definitions_in(text, entry) if "$" not in name.name)
     return _Robot(state, tuple(name for name in literal if name.kind in _KINDS.values()), is_expanded=False)
 
 
-def _expand_robot(project: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
+def _expand_robot(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> _Robot | None:
     """Return the names in the first expansion without errors, or None if there is none."""
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    for arguments, _ in project.argument_calls(entry)[:_MAX_ARGUMENT_SETS]:
+    for arguments, _ in workspace.argument_calls(entry)[:_MAX_ARGUMENT_SETS]:
         with suppress(LinkwrightError, OSError, RecursionError):
-            expansion = expand(entry, arguments, packages=project.finder(entry), overlay=overlay)
-            return _make_robot(expansion, _state(map(str, expansion.dependencies), texts))
+            expansion = expand(entry, arguments, packages=workspace.finder(entry), overlay=overlay)
+            return _make_robot(expansion, _compute_state(map(str, expansion.dependencies), texts))
     return None
 
 
@@ -207,7 +208,7 @@ def _make_robot(expansion: Expansion, state: _State, *, is_complete: bool = True
     return _Robot(state, tuple(names), mentioned, is_complete)
 
 
-def _state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str]) -> _State:
+def _compute_state(files: Iterator[str] | list[str] | map[str], texts: Mapping[Path, str]) -> _State:
     state: list[tuple[str, object]] = []
     for file in files:
         text = texts.get(Path(file)) or texts.get(real_path(file))

@@ -14,7 +14,7 @@ from pathlib import Path
 from linkwright.diagnostics import Phrase, Span, phrase, quoted_names, term
 from linkwright.language.definitions import NameKind
 from linkwright.language.mentions import Mention
-from linkwright.language.name_sources import NameSources, SourceValue, renamed_template, source_value
+from linkwright.language.name_sources import NameSources, SourceValue, rename_in_template, source_value
 from linkwright.language.occurrences import Occurrence, kinds_of_reference, kinds_of_text
 from linkwright.language.other_files import OtherFiles
 from linkwright.language.proof import Edit, ExpansionPair, ExpansionProof, UnprovedError
@@ -36,29 +36,29 @@ class RobotRenaming:
     """The edits for a new name of a link, joint or material.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        name: the name.
+        name: an occurrence of the name.
         new: its new name.
         proof: the expansions of the descriptions that contain the name.
 
     Attributes:
-        edits: the edits.
+        edits: the edits that were found.
         names: the names that change.
         unchanged: uncertain mentions of changed names.
     """
 
     def __init__(
-        self, project: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str, proof: ExpansionProof
+        self, workspace: Workspace, texts: Mapping[Path, str], name: Occurrence, new: str, proof: ExpansionProof
     ) -> None:
         self.edits: set[Edit] = set()
         self.names: dict[tuple[NameKind, str], str] = {}
         self.unchanged: tuple[Mention, ...] = ()
-        self._project, self._texts, self._name, self._new = project, texts, name, new
+        self._project, self._texts, self._name, self._new = workspace, texts, name, new
         self._proof = proof
-        self._files = project.index.related_files(name.file, texts, computed=True)
-        self._sources = NameSources(project, texts, self._files)
-        self._others = OtherFiles(project, texts, name.file, proof)
+        self._files = workspace.index.related_files(name.file, texts, computed=True)
+        self._sources = NameSources(workspace, texts, self._files)
+        self._others = OtherFiles(workspace, texts, name.file, proof)
 
     def run(self, seeds: Iterable[Occurrence]) -> None:
         """Find all edits that follow from the edits of certain occurrences.
@@ -70,13 +70,13 @@ class RobotRenaming:
             UnprovedError: the expansions differ in more than names, or a reference cannot be edited.
         """
         self._others.add_srdfs()
-        required = self._required()
+        required = self._map_required_names()
         if not any(self._defines(*name) for name in required):
             self._rename_unused(seeds, required)
             return
         literal = {Edit(seed.file, seed.start, seed.end, self._new) for seed in seeds}
         error: UnprovedError | None = None
-        for proposal in islice(self._proposals(required, literal), _MAX_PROPOSALS):
+        for proposal in islice(self._generate_proposals(required, literal), _MAX_PROPOSALS):
             try:
                 self._extend(proposal, required)
             except UnprovedError as reason:  # noqa: PERF203 - each proposal may fail for itself
@@ -104,19 +104,19 @@ class RobotRenaming:
             else phrase("{nothing}, as far as it can be expanded: {reason}", nothing=message, reason=reason)
         )
 
-    def _required(self) -> Names:
+    def _map_required_names(self) -> Names:
         """Return the values of the name in the expansions, each with its new value."""
         name = self._name
         if "$" not in name.name:
-            return {(self._kind(), name.name): self._new}
+            return {(self._find_kind(), name.name): self._new}
         required: dict[tuple[NameKind, str], str] = {}
         for value in self._list_expanded_names():
-            new = renamed_template(name.name, self._new, value)
+            new = rename_in_template(name.name, self._new, value)
             if new is not None and new != value and self._defines(name.kind, value):
                 required[name.kind, value] = new
         return required
 
-    def _kind(self) -> NameKind:
+    def _find_kind(self) -> NameKind:
         """Return the kind of a literal name: of its definition, or else of its occurrence."""
         name = self._name
         for kind in (name.kind, *ROBOT_NAME_KINDS[:2]):
@@ -128,7 +128,7 @@ class RobotRenaming:
         return any(
             value == element.attributes.get("name")
             for trial in self._proof.trials
-            for element in _definitions(trial.expansion.document.root, kind)
+            for element in _find_definitions(trial.expansion.document.root, kind)
         )
 
     def _list_expanded_names(self) -> Iterator[str]:
@@ -146,12 +146,15 @@ class RobotRenaming:
                     if value_range is not None and value_range[0] == self._name.start:
                         yield value
 
-    def _proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
-        """Yield the sets of initial edits: all certain occurrences, plus one way to edit a computed definition."""
+    def _generate_proposals(self, required: Names, literal: set[Edit]) -> Iterator[set[Edit]]:
+        """Yield the sets of initial edits to try.
+
+        Each consists of the certain occurrences and one way to edit a computed definition.
+        """
         computed: list[tuple[SourceValue, str, str]] = []
         for kind, value in required:
             for trial in self._proof.trials:
-                for element in _definitions(trial.expansion.document.root, kind):
+                for element in _find_definitions(trial.expansion.document.root, kind):
                     if element.attributes.get("name") != value:
                         continue
                     source = source_value(element, "name")
@@ -173,7 +176,7 @@ class RobotRenaming:
         """Extend edits until all names have changed."""
         for _ in range(_MAX_ROUNDS):
             pairs = [*self._proof.pairs(edits)]
-            names = dict(_changed_names(pairs))
+            names = dict(_find_changed_names(pairs))
             if not names and not required:
                 raise UnprovedError(self._no_name_reason())
             new_names = {**names, **required}
@@ -185,13 +188,13 @@ class RobotRenaming:
             if new_edits <= edits:
                 self._check(pairs, names, required)
                 self.edits, self.names = edits, names
-                self.unchanged = (*unchanged, *self._unused_mentions(edits, names))
+                self.unchanged = (*unchanged, *self._find_unused_mentions(edits, names))
                 return
             edits = edits | new_edits
             _check_overlap(edits)
         raise UnprovedError(phrase("some references would keep the old name"))
 
-    def _unused_mentions(self, edits: Collection[Edit], names: Names) -> Iterator[Mention]:
+    def _find_unused_mentions(self, edits: Collection[Edit], names: Names) -> Iterator[Mention]:
         """Yield unused values with an old name in the descriptions, such as unused defaults."""
         edited = {(edit.file, edit.start) for edit in edits}
         words = "|".join(re.escape(old) for old in dict.fromkeys(old for _, old in names))
@@ -208,11 +211,11 @@ class RobotRenaming:
                             yield Mention(match[1], file, start)
 
     def _edits_of_old_names(self, pair: ExpansionPair, names: Names, edits: Collection[Edit]) -> Iterator[Edit]:
-        """Yield edits of the definitions and references in an expansion that still have an old name."""
+        """Yield edits of the definitions and references that still have an old name."""
         for old, new in zip(pair.before.walk(), pair.after.walk(), strict=False):
             if old.tag != new.tag:
                 raise UnprovedError(phrase("the elements of the robot would change"))
-            for kinds, key in _names_in(old, is_top=_is_definition(pair.before, old)):
+            for kinds, key in _find_names(old, is_top=_is_definition(pair.before, old)):
                 old_value = old.attributes.get(key, "") if key else old.text().strip()
                 new_value = new.attributes.get(key, "") if key else new.text().strip()
                 new_name = next((names[kind, old_value] for kind in kinds if (kind, old_value) in names), None)
@@ -237,8 +240,8 @@ class RobotRenaming:
             self._check_sharing(pairs, required)
         allowed = {*((old, new) for (_, old), new in names.items())}
         for pair in pairs:
-            old_names, new_names = _part_names(pair.before), _part_names(pair.after)
-            for key, old, new in _differences(pair.before, pair.after):
+            old_names, new_names = _list_part_names(pair.before), _list_part_names(pair.after)
+            for key, old, new in _find_differences(pair.before, pair.after):
                 is_name = (old, new) in allowed and (old not in old_names or new in new_names)
                 if not is_name and not (key == "name" and _is_derived(old, new, allowed)):
                     raise UnprovedError(phrase("'{old}' would become '{new}'", old=old, new=new))
@@ -257,7 +260,7 @@ class RobotRenaming:
             if value == old
         }
         for pair in pairs:
-            changed = next(_changed_names([pair]), None) if pair.entry not in owners else None
+            changed = next(_find_changed_names([pair]), None) if pair.entry not in owners else None
             if changed is not None:
                 (_, old), new = changed
                 message = phrase(
@@ -286,7 +289,7 @@ def _check_overlap(edits: Iterable[Edit]) -> None:
             )
 
 
-def _definitions(root: Element, kind: NameKind) -> Iterator[Element]:
+def _find_definitions(root: Element, kind: NameKind) -> Iterator[Element]:
     """Yield the elements that define names: links and joints of the robot, or all materials."""
     if kind is NameKind.MATERIAL:
         yield from (element for element in root.walk() if element.tag == "material")
@@ -299,10 +302,10 @@ def _is_definition(root: Element, element: Element) -> bool:
 
 
 def _list_names(root: Element, kind: NameKind) -> Iterator[str]:
-    return (element.attributes.get("name", "") for element in _definitions(root, kind))
+    return (element.attributes.get("name", "") for element in _find_definitions(root, kind))
 
 
-def _changed_names(pairs: Iterable[ExpansionPair]) -> Iterator[tuple[tuple[NameKind, str], str]]:
+def _find_changed_names(pairs: Iterable[ExpansionPair]) -> Iterator[tuple[tuple[NameKind, str], str]]:
     """Yield the changed names, each once with its single new name."""
     names: dict[tuple[NameKind, str], str] = {}
     for pair in pairs:
@@ -322,7 +325,7 @@ def _changed_names(pairs: Iterable[ExpansionPair]) -> Iterator[tuple[tuple[NameK
     yield from names.items()
 
 
-def _names_in(element: Element, *, is_top: bool) -> Iterator[tuple[tuple[NameKind, ...], str]]:
+def _find_names(element: Element, *, is_top: bool) -> Iterator[tuple[tuple[NameKind, ...], str]]:
     """Yield the kinds of each name in an element, and its attribute, or empty for the text."""
     for key in element.attributes:
         if key == "name" and element.tag in ("link", "joint"):
@@ -336,7 +339,7 @@ def _names_in(element: Element, *, is_top: bool) -> Iterator[tuple[tuple[NameKin
         yield kinds, ""
 
 
-def _part_names(root: Element) -> set[str]:
+def _list_part_names(root: Element) -> set[str]:
     """Return the names of the links and joints of a robot."""
     return {value for kind in ROBOT_NAME_KINDS[:2] for value in _list_names(root, kind)}
 
@@ -349,7 +352,7 @@ def _is_derived(old: str, new: str, allowed: Collection[tuple[str, str]]) -> boo
     return any(name in old and old.replace(name, changed) == new for name, changed in allowed)
 
 
-def _differences(before: Element, after: Element) -> Iterator[tuple[str, str, str]]:
+def _find_differences(before: Element, after: Element) -> Iterator[tuple[str, str, str]]:
     """Yield the attribute (empty for a text) and both values of each difference."""
     old_elements, new_elements = [*before.walk()], [*after.walk()]
     if [old.tag for old in old_elements] != [new.tag for new in new_elements]:

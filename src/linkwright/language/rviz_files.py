@@ -13,12 +13,12 @@ from linkwright.language.completion import Completion, ItemKind
 from linkwright.language.definitions import NameKind
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.hover import Explanation
-from linkwright.language.parameter_files import part_explanation, target_of, word_at
+from linkwright.language.parameter_files import explain_part, target_of, word_at
 from linkwright.language.robot_names import robot_names
 from linkwright.language.rviz_owners import (
-    DISPLAYS,
+    DISPLAY_ENTRY_POINTS,
     OPTIONS,
-    PANELS,
+    PANEL_NAMES,
     ConfigOwner,
     display_class,
     display_schema,
@@ -26,7 +26,7 @@ from linkwright.language.rviz_owners import (
     owner_of,
 )
 from linkwright.language.yaml_outline import YamlCursor, YamlOutline, YamlPosition
-from linkwright.language.yaml_symbols import by_typed, has_colon, snippet_text, yaml_symbols
+from linkwright.language.yaml_symbols import has_colon, snippet_text, sort_by_match, yaml_symbols
 from linkwright.loading.extensions import extensions
 from linkwright.rviz.config.former_names import to_modern_class
 from linkwright.rviz.config.schema import FIXED_FRAME, PropertySpec, value_to_text
@@ -46,8 +46,8 @@ _COMMON_DISPLAYS = (
     "Grid",
 )
 """The displays that most configurations have, offered first."""
-_FRAMES = ("map", "odom", "world")
-_TOPICS = {
+_USUAL_FRAMES = ("map", "odom", "world")
+_USUAL_TOPICS = {
     "nav_msgs/msg/OccupancyGrid": "/map",
     "nav_msgs/msg/Odometry": "/odom",
     "nav_msgs/msg/Path": "/plan",
@@ -69,11 +69,11 @@ def complete_rviz(document: Document, offset: int) -> list[Completion]:
     cursor = YamlOutline(document.text).cursor(offset)
     if cursor.position is YamlPosition.NOTHING:
         return []
-    items = _keys(document, cursor) if cursor.position is YamlPosition.KEY else _values(document, cursor)
-    return by_typed(items, cursor.typed)
+    items = _offer_keys(document, cursor) if cursor.position is YamlPosition.KEY else _offer_values(document, cursor)
+    return sort_by_match(items, cursor.typed)
 
 
-def _keys(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
+def _offer_keys(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
     owner = owner_of(cursor.parent_entry)
     present = {child.key for child in cursor.parent_entry.children if child is not cursor.entry}
     has_value = has_colon(document.text, cursor.offset)
@@ -122,13 +122,13 @@ def _describe_property(spec: PropertySpec) -> str:
     return "\n\n".join(lines)
 
 
-def _values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
+def _offer_values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
     parent = cursor.parent_entry.parent
     if parent is None:
         return
     owner, key = owner_of(parent), cursor.parent_entry.key
     if key == "Class":
-        for name, purpose in _classes(owner):
+        for name, purpose in _list_classes(owner):
             yield Completion(name, ItemKind.VALUE, cursor.start, "", purpose)
         return
     if key == "Name":
@@ -144,12 +144,12 @@ def _values(document: Document, cursor: YamlCursor) -> Iterator[Completion]:
     for word in words:
         yield Completion(word, ItemKind.VALUE, cursor.start, localized(phrase("default")) if word == default else "")
     if spec.kind == "frame":
-        yield from _frames(document, cursor.start, with_fixed=owner.role != OPTIONS)
+        yield from _offer_frames(document, cursor.start, with_fixed=owner.role != OPTIONS)
     elif spec.kind == "topic" or spec.name.endswith("Topic"):
         message = getattr(display_class(owner.class_name), "MESSAGE", "")
         _, _, typed = word_at(document.text, cursor)
-        others = (topic for topic in _topics(document) if topic != typed or typed == _TOPICS.get(message))
-        for topic in dict.fromkeys((*filter(None, (_TOPICS.get(message), default)), *others)):
+        others = (topic for topic in _find_topics(document) if topic != typed or typed == _USUAL_TOPICS.get(message))
+        for topic in dict.fromkeys((*filter(None, (_USUAL_TOPICS.get(message), default)), *others)):
             yield Completion(topic, ItemKind.NAME, cursor.start)
     elif default and not words:
         yield Completion(default, ItemKind.VALUE, cursor.start, localized(phrase("default")))
@@ -162,12 +162,14 @@ def _default_name(owner: ConfigOwner) -> str:
     return owner.class_name.rpartition("/")[2] or ("root" if owner.role == "" else "")
 
 
-def _classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
+def _list_classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
     """Yield the classes that a display, tool, view or panel may have, each with its purpose."""
     if owner.role == "Displays":
         common_ranks = {f"rviz_default_plugins/{name}": index for index, name in enumerate(_COMMON_DISPLAYS)}
-        for name in sorted(extensions(DISPLAYS), key=lambda name: common_ranks.get(name, len(common_ranks))):
-            yield name, _purpose(name)
+        for name in sorted(
+            extensions(DISPLAY_ENTRY_POINTS), key=lambda name: common_ranks.get(name, len(common_ranks))
+        ):
+            yield name, _find_purpose(name)
     elif owner.role == "Tools":
         for name, tool in TOOL_KINDS.items():
             yield name, tool.name
@@ -175,11 +177,11 @@ def _classes(owner: ConfigOwner) -> Iterator[tuple[str, str]]:
         for name in sorted(VIEW_SCHEMAS, key=lambda name: name != ORBIT):
             yield name, ""
     elif owner.role == "Panels":
-        for name in PANELS:
+        for name in PANEL_NAMES:
             yield f"rviz_common/{name}", ""
 
 
-def _purpose(name: str) -> str:
+def _find_purpose(name: str) -> str:
     """Return the purpose of a class of displays or tools, or empty if it is unknown."""
     if name in TOOL_KINDS:
         return TOOL_KINDS[name].name
@@ -187,17 +189,17 @@ def _purpose(name: str) -> str:
     return "" if display is None else cleandoc(display.__doc__ or "").partition("\n\n")[0]
 
 
-def _frames(document: Document, start: int, *, with_fixed: bool) -> Iterator[Completion]:
+def _offer_frames(document: Document, start: int, *, with_fixed: bool) -> Iterator[Completion]:
     if with_fixed:
         yield Completion(FIXED_FRAME, ItemKind.VALUE, start)
     for name in robot_names(document):
         if name.kind is NameKind.LINK:
             yield Completion(name.name, ItemKind.NAME, start, name.file.name)
-    for frame in _FRAMES:
+    for frame in _USUAL_FRAMES:
         yield Completion(frame, ItemKind.NAME, start, "REP 105")
 
 
-def _topics(document: Document) -> Iterator[str]:
+def _find_topics(document: Document) -> Iterator[str]:
     """Yield the topics in the configuration."""
     yield from dict.fromkeys(match[1] for match in _TOPIC.finditer(document.text))
 
@@ -215,7 +217,7 @@ def explain_rviz(document: Document, offset: int) -> Explanation | None:
         owner = owner_of(cursor.parent_entry)
         text = _explain_property(owner, word)
         if not text and {"Links", "Frames", "Tree"} & set(owner.keys):
-            text = part_explanation(document, word, (NameKind.LINK,))
+            text = explain_part(document, word, (NameKind.LINK,))
     else:
         parent = cursor.parent_entry.parent
         owner = owner_of(parent if parent is not None else cursor.parent_entry)
@@ -225,7 +227,7 @@ def explain_rviz(document: Document, offset: int) -> Explanation | None:
         if key == "Class":
             text = _explain_class(to_modern_class(word))
         elif spec is not None and spec.kind == "frame":
-            text = part_explanation(document, word, (NameKind.LINK,))
+            text = explain_part(document, word, (NameKind.LINK,))
         text = text or _explain_property(owner, key)
     return Explanation(text, start, end) if text else None
 
@@ -238,7 +240,7 @@ def _explain_property(owner: ConfigOwner, key: str) -> str:
 
 
 def _explain_class(name: str) -> str:
-    purpose = _purpose(name)
+    purpose = _find_purpose(name)
     schema = display_schema(name) or VIEW_SCHEMAS.get(name, ())
     properties = ", ".join(f"`{spec.name}`" for spec in schema)
     return "\n\n".join(part for part in (f"**{name}**", purpose, properties) if part) if name else ""

@@ -14,22 +14,22 @@ from linkwright.rviz.config.schema import PropertySpec, Schema
 from linkwright.rviz.config.tools import TOOL_KINDS
 from linkwright.rviz.config.views import VIEW_SCHEMAS
 
-DISPLAYS = "linkwright.displays"
-_LISTS = ("Displays", "Tools", "Panels", "Saved")
-PANELS = ("Displays", "Selection", "Tool Properties", "Views", "Time", "Transformation")
+DISPLAY_ENTRY_POINTS = "linkwright.displays"
+_LIST_KEYS = ("Displays", "Tools", "Panels", "Saved")
+PANEL_NAMES = ("Displays", "Selection", "Tool Properties", "Views", "Time", "Transformation")
 OPTIONS = "Global Options"
-_COMMON: Schema = (
+_DISPLAY_PROPERTIES: Schema = (
     PropertySpec("Class", "string", "", "The class."),
     PropertySpec("Name", "string", "", "The name in the panel."),
     PropertySpec("Enabled", "bool", True, "Whether the display is drawn."),
     PropertySpec("Value", "bool", True, "The same as Enabled."),
 )
-_TOP: Schema = (
+_TOP_PROPERTIES: Schema = (
     PropertySpec("Panels", "group", description="The panels of the window."),
     PropertySpec("Visualization Manager", "group", description="The displays, tools, views and options."),
     PropertySpec("Window Geometry", "group", description="The size and layout of the window."),
 )
-_WINDOW: Schema = (
+_WINDOW_PROPERTIES: Schema = (
     PropertySpec("Height", "int", 846, "The height of the window, in pixels."),
     PropertySpec("Width", "int", 1200, "The width of the window, in pixels."),
     PropertySpec("X", "int", 0, "The left edge of the window, in pixels."),
@@ -38,9 +38,9 @@ _WINDOW: Schema = (
     PropertySpec("Hide Right Dock", "bool", False, "Whether the panels on the right are hidden."),
     PropertySpec("QMainWindow State", "string", "", "The layout of the panels, as Qt writes it."),
     PropertySpec("collapsed", "bool", False, "Whether the panel is hidden."),
-    *(PropertySpec(name, "group", description="Whether the panel is hidden.") for name in PANELS),
+    *(PropertySpec(name, "group", description="Whether the panel is hidden.") for name in PANEL_NAMES),
 )
-_PANEL: Schema = (
+_PANEL_PROPERTIES: Schema = (
     PropertySpec("Class", "string", "", "The class."),
     PropertySpec("Name", "string", "", "The name of the panel."),
     PropertySpec("Help Height", "int", 78, "The height of the help, in pixels."),
@@ -52,23 +52,23 @@ _PANEL: Schema = (
     PropertySpec("SyncMode", "int", 0, "How displays are synchronized: 0 for off, 1 for exact, 2 for approximate."),
     PropertySpec("SyncSource", "string", "", "The display that the time follows."),
 )
-_LINK: Schema = (
+_LINK_PROPERTIES: Schema = (
     PropertySpec("Alpha", "float", 1.0, "Opacity: 0 is invisible.", minimum=0.0, maximum=1.0),
     PropertySpec("Show Axes", "bool", False, "Draw the axes of the link's frame."),
     PropertySpec("Show Trail", "bool", False, "Draw the way of the link's frame."),
     PropertySpec("Value", "bool", True, "Whether it is drawn."),
 )
-_OF_FRAMES: Schema = (
+_FRAME_PROPERTIES: Schema = (
     PropertySpec("Frames", "group", description="The frames that are drawn."),
     PropertySpec("Tree", "group", description="The tree of the frames."),
 )
-_MANAGER: Schema = (
+_MANAGER_PROPERTIES: Schema = (
     PropertySpec("Displays", "group", description="The displays, in the order in which they are drawn."),
     PropertySpec(OPTIONS, "group", description="The Fixed Frame, the background and the frame rate."),
     PropertySpec("Tools", "group", description="The tools of the toolbar."),
     PropertySpec("Views", "group", description="The current view and the saved ones."),
     PropertySpec("Transformation", "group", description="The plugin that transforms between frames."),
-    *_COMMON,
+    *_DISPLAY_PROPERTIES,
 )
 
 
@@ -96,7 +96,7 @@ class ConfigOwner:
     def schema(self) -> Schema:
         """The properties at the position."""
         if self.role == "Displays" and self.keys[-2:-1] in (("Links",), ("Frames",)):
-            return _LINK if self.keys[-2] == "Links" else _LINK[-1:]
+            return _LINK_PROPERTIES if self.keys[-2] == "Links" else _LINK_PROPERTIES[-1:]
         if self.role == "Displays" and self.keys[-1:] == ("Frames",):
             return (PropertySpec("All Enabled", "bool", True, "Whether all frames are drawn."),)
         specs = self._specs
@@ -109,21 +109,21 @@ class ConfigOwner:
         if self.role == OPTIONS:
             return GLOBAL_OPTIONS
         if self.role == "Displays":
-            return (*_COMMON[:2], *display_schema(self.class_name), *_COMMON[2:])
+            return (*_DISPLAY_PROPERTIES[:2], *display_schema(self.class_name), *_DISPLAY_PROPERTIES[2:])
         if self.role == "Tools":
             tool = TOOL_KINDS.get(self.class_name)
-            return (_COMMON[0], *(() if tool is None else tool.schema))
+            return (_DISPLAY_PROPERTIES[0], *(() if tool is None else tool.schema))
         if self.role == "Views":
             value = PropertySpec("Value", "string", "", "The class and the package of the view.")
-            return (*_COMMON[:2], *VIEW_SCHEMAS.get(self.class_name, ()), value)
+            return (*_DISPLAY_PROPERTIES[:2], *VIEW_SCHEMAS.get(self.class_name, ()), value)
         if self.role == "Panels":
-            return _PANEL
+            return _PANEL_PROPERTIES
         if self.entry.parent is None:
-            return _TOP
+            return _TOP_PROPERTIES
         if self.entry.key == "Visualization Manager":
-            return _MANAGER
+            return _MANAGER_PROPERTIES
         if "Window Geometry" in self.entry.path:
-            return _WINDOW
+            return _WINDOW_PROPERTIES
         return (PropertySpec("Current", "group"), PropertySpec("Saved", "group")) if self.entry.key == "Views" else ()
 
     def spec(self, key: str) -> PropertySpec | None:
@@ -142,7 +142,7 @@ def owner_of(entry: YamlEntry) -> ConfigOwner:
     current = entry
     while current.parent is not None:
         parent = current.parent
-        if current.is_item and parent.key in _LISTS:
+        if current.is_item and parent.key in _LIST_KEYS:
             return ConfigOwner("Views" if parent.key == "Saved" else parent.key, current, tuple(reversed(keys)))
         if current.key == "Current" and parent.key == "Views":
             return ConfigOwner("Views", current, tuple(reversed(keys)))
@@ -156,7 +156,7 @@ def owner_of(entry: YamlEntry) -> ConfigOwner:
 
 def display_class(name: str) -> Any:
     """Return the class of a display, or None if it cannot be imported."""
-    entry = extensions(DISPLAYS).get(name)
+    entry = extensions(DISPLAY_ENTRY_POINTS).get(name)
     return None if entry is None else _load(entry)
 
 
@@ -170,11 +170,11 @@ def _load(entry: EntryPoint) -> Any:
 
 def load_displays() -> None:
     """Import the classes of displays. The first import is slow."""
-    for name in extensions(DISPLAYS):
+    for name in extensions(DISPLAY_ENTRY_POINTS):
         display_class(name)
 
 
 def display_schema(name: str) -> Schema:
     """Return the properties of a display class, or an empty tuple if it is unknown."""
     schema: Schema = getattr(display_class(name), "SCHEMA", ())
-    return (*schema, *_OF_FRAMES) if name == "rviz_default_plugins/TF" else schema
+    return (*schema, *_FRAME_PROPERTIES) if name == "rviz_default_plugins/TF" else schema

@@ -16,20 +16,20 @@ from linkwright.language.includes import real_path
 from linkwright.language.mentions import Mention, mentions_in
 from linkwright.language.occurrences import kinds_of_text
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError, apply_edits
+from linkwright.language.source_elements import SourceElement, find_innermost_element, source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import SourceElement, innermost_element, source_elements
 
-_DEFINING = frozenset({"link", "joint", "frame", "model"})
-_SCOPES = frozenset({"model", "world", "sdf"})
-_ATTRIBUTES = frozenset(
+_DEFINING_TAGS = frozenset({"link", "joint", "frame", "model"})
+_SCOPE_TAGS = frozenset({"model", "world", "sdf"})
+_REFERENCE_ATTRIBUTES = frozenset(
     {"relative_to", "attached_to", "expressed_in", "rotate_to", "canonical_link", "placement_frame"}
 )
 _INNER_REFERENCES = frozenset({"canonical_link", "placement_frame"})
-_MIMIC = ("mimic", "joint")
-_TEXTS = frozenset({"parent", "child", "link", "joint", "gripper_link", "palm_link", "placement_frame"})
+_MIMIC_REFERENCE = ("mimic", "joint")
+_REFERENCE_TAGS = frozenset({"parent", "child", "link", "joint", "gripper_link", "palm_link", "placement_frame"})
 _NAME = re.compile(r"[^\s<>&\"':/]+(?: [^\s<>&\"':/]+)*")
 _SEPARATOR = "::"
-_ENDINGS = (".sdf", ".world", ".sdf.xacro", ".world.xacro")
+_SUFFIXES = (".sdf", ".world", ".sdf.xacro", ".world.xacro")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +37,8 @@ class SdfName:
     """A name in an SDF text.
 
     Attributes:
-        name: the name.
-        file: the file.
+        name: the name as written.
+        file: the file that contains it.
         start: the offset of this occurrence.
         definition: the offset of the start tag of the element that has the name.
     """
@@ -57,44 +57,44 @@ class SdfName:
 def sdf_names(text: str, file: Path) -> Iterator[SdfName]:
     """Yield the names of links, joints, frames and models in a text, and their uses."""
     for element in source_elements(text):
-        if element.name in _DEFINING and element.parent is not None:
+        if element.name in _DEFINING_TAGS and element.parent is not None:
             for attribute in element.tag.attributes():
                 if attribute.name == "name" and attribute.value and _defines(element):
                     yield SdfName(attribute.value, file, attribute.value_start, element.start)
         for value, start, scope in _find_references(element, text):
-            for part, offset, owner in _referred_elements(scope, value):
+            for part, offset, owner in _find_referred_elements(scope, value):
                 yield SdfName(part, file, start + offset, owner.start)
 
 
-def sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
+def find_sdf_name_at(text: str, file: Path, offset: int) -> SdfName | None:
     """Return the name at an offset of an SDF text, or None."""
     return next((name for name in sdf_names(text, file) if name.start <= offset <= name.end), None)
 
 
 def rename_in_sdf(
-    project: Workspace, texts: Mapping[Path, str], name: SdfName, new: str
+    workspace: Workspace, texts: Mapping[Path, str], name: SdfName, new: str
 ) -> tuple[set[Edit], list[Mention]]:
     """Return the edits that rename a link, joint, frame or model, and uncertain mentions.
 
     A mention in another file, such as a launch file that starts a model, may have another meaning.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        name: the name, as `sdf_name_at` returns it.
+        name: the name, as `find_sdf_name_at` returns it.
         new: the new name.
 
     Raises:
         UnprovedError: the new name is not valid or exists, the file is outside the workspace, or values would lead
             to other elements.
     """
-    text = project.text(name.file, texts) or ""
+    text = workspace.text(name.file, texts) or ""
     span = SourceText(str(name.file), text).span(name.start, name.end)
     if not _NAME.fullmatch(new) or _SEPARATOR in new or (new.startswith("__") and new.endswith("__")):
         raise UnprovedError(phrase("'{new}' is not a valid name", new=new), span)
-    if not project.contains(name.file):
+    if not workspace.contains(name.file):
         raise UnprovedError(phrase("'{file}' is outside the workspace", file=name.file.name), span)
-    definition = innermost_element(source_elements(text), name.definition)
+    definition = find_innermost_element(source_elements(text), name.definition)
     scope = None if definition is None else _find_scope(definition.parent)
     if definition is None or scope is None:
         raise UnprovedError(phrase("the name is not defined in this file"), span)
@@ -105,17 +105,17 @@ def rename_in_sdf(
         for use in sdf_names(text, name.file)
         if use.definition == name.definition
     }
-    _check(project, texts, name.file, edits)
+    _check(workspace, texts, name.file, edits)
     path = _path_from_top(definition)
     unchanged: list[Mention] = []
-    configurations = project.configuration_files(name.file)
-    for file in dict.fromkeys((*project.files(_ENDINGS), *configurations)):
+    configurations = workspace.configuration_files(name.file)
+    for file in dict.fromkeys((*workspace.files(_SUFFIXES), *configurations)):
         if file == name.file:
             continue
-        other = project.text(file, texts) or ""
+        other = workspace.text(file, texts) or ""
         file_edits: set[Edit] = set()
-        if path is not None and file.name.endswith(_ENDINGS):
-            file_edits = {*_edits_of_includer(other, file, name.file, path, new)}
+        if path is not None and file.name.endswith(_SUFFIXES):
+            file_edits = {*_edit_includer(other, file, name.file, path, new)}
         edits |= file_edits
         if file in configurations or file_edits:
             edited_starts = {edit.start for edit in file_edits}
@@ -124,15 +124,15 @@ def rename_in_sdf(
     return edits, unchanged
 
 
-def _check(project: Workspace, texts: Mapping[Path, str], file: Path, edits: set[Edit]) -> None:
+def _check(workspace: Workspace, texts: Mapping[Path, str], file: Path, edits: set[Edit]) -> None:
     """Check that the edits keep the number of references to elements in the file.
 
     For a xacro file, check its expansions, too.
     """
-    text = project.text(file, texts) or ""
+    text = workspace.text(file, texts) or ""
     pairs = [(text, apply_edits(text, edits))]
     if file.name.endswith(".xacro"):
-        proof = ExpansionProof(project, texts, file, is_partial=True)
+        proof = ExpansionProof(workspace, texts, file, is_partial=True)
         pairs += [(pair.text_before, pair.text_after) for pair in proof.pairs(edits)]
     for before, after in pairs:
         if len([*sdf_names(before, file)]) != len([*sdf_names(after, file)]):
@@ -144,24 +144,24 @@ def _defines(element: SourceElement) -> bool:
     parent = element.parent
     if any(outer.name == "state" for outer in element.ancestors_and_self()):
         return False
-    return parent is not None and parent.name in _SCOPES
+    return parent is not None and parent.name in _SCOPE_TAGS
 
 
 def _find_scope(element: SourceElement | None) -> SourceElement | None:
     """Return the innermost model or world that is or contains an element, or None."""
-    while element is not None and element.name not in _SCOPES:
+    while element is not None and element.name not in _SCOPE_TAGS:
         element = element.parent
     return element
 
 
 def _named_children(scope: SourceElement) -> Iterator[SourceElement]:
-    return (child for child in scope.children if child.name in _DEFINING)
+    return (child for child in scope.children if child.name in _DEFINING_TAGS)
 
 
 def _find_references(element: SourceElement, text: str) -> Iterator[tuple[str, int, SourceElement]]:
     """Yield the values of an element that may contain names, with offset and scope."""
     for attribute in element.tag.attributes():
-        is_reference = attribute.name in _ATTRIBUTES or (element.name, attribute.name) == _MIMIC
+        is_reference = attribute.name in _REFERENCE_ATTRIBUTES or (element.name, attribute.name) == _MIMIC_REFERENCE
         if is_reference and attribute.value:
             own = element if attribute.name in _INNER_REFERENCES and element.name == "model" else None
             scope = own or _find_attribute_scope(element)
@@ -169,7 +169,7 @@ def _find_references(element: SourceElement, text: str) -> Iterator[tuple[str, i
                 yield attribute.value, attribute.value_start, scope
     if element.name in ("model", "link"):
         yield from _find_state_reference(element)
-    is_named = element.name in _TEXTS or bool(kinds_of_text(element.name))
+    is_named = element.name in _REFERENCE_TAGS or bool(kinds_of_text(element.name))
     if is_named and not element.children and not _defines(element) and element.end > 0:
         begin = element.tag.end
         written = text[begin : text.find("<", begin)]
@@ -210,7 +210,7 @@ def _find_attribute_scope(element: SourceElement) -> SourceElement | None:
     return _find_scope(parent)
 
 
-def _referred_elements(scope: SourceElement, value: str) -> Iterator[tuple[str, int, SourceElement]]:
+def _find_referred_elements(scope: SourceElement, value: str) -> Iterator[tuple[str, int, SourceElement]]:
     """Yield the parts of a value that refer to elements, with the offset and the element."""
     offset = 0
     current: SourceElement | None = scope
@@ -228,7 +228,7 @@ def _referred_elements(scope: SourceElement, value: str) -> Iterator[tuple[str, 
 
 
 def _path_from_top(element: SourceElement) -> tuple[str, ...] | None:
-    """Return the names from the outermost model to an element, or None for an element in a world."""
+    """Return the names from the outermost model to an element, or None inside a world."""
     names: list[str] = []
     current: SourceElement | None = element
     while current is not None and current.name != "sdf":
@@ -239,14 +239,14 @@ def _path_from_top(element: SourceElement) -> tuple[str, ...] | None:
     return tuple(reversed(names))
 
 
-def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...], new: str) -> Iterator[Edit]:
+def _edit_includer(text: str, file: Path, model: Path, path: tuple[str, ...], new: str) -> Iterator[Edit]:
     """Yield the edits of references to a name in a model from a file that includes the model.
 
     Args:
         text: the text of the file.
-        file: the file.
+        file: the file that includes the model.
         model: the file of the model.
-        path: the names from the model to the one that changes; that of the model alone if it changes.
+        path: the names from the model to the renamed element, or only the model's name if the model is renamed.
         new: the new name.
     """
     if model.parent.name not in text and model.name not in text:
@@ -255,7 +255,7 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
     for include in elements:
         if include.name != "include" or not _includes(include, text, model):
             continue
-        include_name = _child_text(include, "name", text)
+        include_name = _read_child_text(include, "name", text)
         scope = _find_scope(include.parent)
         if include_name and len(path) == 1:  # The include assigns another name to the model.
             continue
@@ -268,10 +268,10 @@ def _edits_of_includer(text: str, file: Path, model: Path, path: tuple[str, ...]
 
 
 def _includes(include: SourceElement, text: str, model: Path) -> bool:
-    uri = _child_text(include, "uri", text).rstrip("/")
+    uri = _read_child_text(include, "uri", text).rstrip("/")
     return uri.rpartition("/")[2] in (model.parent.name, model.name) and real_path(model).is_file()
 
 
-def _child_text(element: SourceElement, tag: str, text: str) -> str:
+def _read_child_text(element: SourceElement, tag: str, text: str) -> str:
     child = next((candidate for candidate in element.children if candidate.name == tag), None)
     return "" if child is None else text[child.tag.end : text.find("<", child.tag.end)].strip()

@@ -15,8 +15,8 @@ from linkwright.language.python_text import Group, Item, Text, python_text
 from linkwright.packages.programs.source_programs import module_file
 from linkwright.packages.readers.entry_points import text_of
 
-_NAME = "setup.py"
-_ENTRY = re.compile(r"^\s*(?P<name>[^=\s]+)\s*=\s*(?P<module>[\w.]*)(?:\s*:\s*(?P<function>\w*))?")
+_FILE_NAME = "setup.py"
+_ENTRY_POINT = re.compile(r"^\s*(?P<name>[^=\s]+)\s*=\s*(?P<module>[\w.]*)(?:\s*:\s*(?P<function>\w*))?")
 _FUNCTION = re.compile(r"^(?:async )?def ([A-Za-z]\w*)\s*\(", re.MULTILINE)
 _ARGUMENTS = {
     "name": "the name of the package, as in package.xml",
@@ -36,7 +36,7 @@ _WORD_BEFORE = re.compile(r"[^\W\d]\w*\Z")
 _MAX_MODULES = 300
 
 
-def _entry_at(document: Document, offset: int) -> tuple[Text, re.Match[str] | None] | None:
+def _find_entry_at(document: Document, offset: int) -> tuple[Text, re.Match[str] | None] | None:
     """Return the program declaration at an offset with its parts, or None."""
     string = python_text(document.text).string_at(offset)
     if string is None:
@@ -45,10 +45,10 @@ def _entry_at(document: Document, offset: int) -> tuple[Text, re.Match[str] | No
     outer = item.group.parent
     first = outer.parts[0] if outer is not None and outer.parts else None
     is_script = isinstance(first, Text) and first.value.endswith("_scripts") and item.group.opening in ("[", "(")
-    return (text, _ENTRY.match(text.value)) if is_script else None
+    return (text, _ENTRY_POINT.match(text.value)) if is_script else None
 
 
-def _modules(folder: Path) -> Iterator[str]:
+def _list_modules(folder: Path) -> Iterator[str]:
     """Yield the modules of the Python packages in a folder."""
     for package in sorted(folder.glob("*/__init__.py")):
         for file in sorted(package.parent.rglob("*.py"))[:_MAX_MODULES]:
@@ -57,14 +57,14 @@ def _modules(folder: Path) -> Iterator[str]:
 
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
-    entry = _entry_at(document, offset)
+    entry = _find_entry_at(document, offset)
     folder = document.file.parent
     if entry is not None:
-        yield from _program(entry[0], offset, folder)
+        yield from _offer_program_parts(entry[0], offset, folder)
         return
     string = python_text(document.text).string_at(offset)
     if string is None:
-        yield from _arguments(document, offset)
+        yield from _offer_arguments(document, offset)
         return
     text, item = string
     if _is_installed(item):
@@ -73,7 +73,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
         yield Completion(folder.name, ItemKind.PACKAGE, text.start)
 
 
-def _program(text: Text, offset: int, folder: Path) -> Iterator[Completion]:
+def _offer_program_parts(text: Text, offset: int, folder: Path) -> Iterator[Completion]:
     typed = text.value[: offset - text.start]
     name, equals, target = typed.partition("=")
     module, colon, function = target.strip().partition(":")
@@ -83,16 +83,16 @@ def _program(text: Text, offset: int, folder: Path) -> Iterator[Completion]:
         for choice in sorted(names, key=lambda candidate: candidate != "main"):
             yield Completion(choice, ItemKind.FUNCTION, offset - len(function.lstrip()), module)
     elif equals:
-        modules = [*_modules(folder)]
+        modules = [*_list_modules(folder)]
         for choice in sorted(modules, key=lambda module: module.rpartition(".")[2] != name.strip()):
             yield Completion(choice, ItemKind.FILE, offset - len(module))
     else:
-        for choice in _modules(folder):
+        for choice in _list_modules(folder):
             script = choice.rpartition(".")[2]
             yield Completion(f"{script} = {choice}:main", ItemKind.FUNCTION, text.start)
 
 
-def _arguments(document: Document, offset: int) -> Iterator[Completion]:
+def _offer_arguments(document: Document, offset: int) -> Iterator[Completion]:
     """Yield completions of the arguments of ``setup`` that the call does not have yet."""
     call = python_text(document.text).call_at(offset)
     typed = _WORD_BEFORE.search(document.text, document.text.rfind("\n", 0, offset) + 1, offset)
@@ -116,7 +116,7 @@ def _is_installed(item: Item) -> bool:
 
 
 def _explain(document: Document, offset: int) -> Explanation | None:
-    entry = _entry_at(document, offset)
+    entry = _find_entry_at(document, offset)
     target = next(iter(_define(document, offset)), None)
     text, parts = entry or (None, None)
     if text is not None and parts is not None:
@@ -130,7 +130,7 @@ def _explain(document: Document, offset: int) -> Explanation | None:
 
 
 def _define(document: Document, offset: int) -> Iterator[Target]:
-    entry = _entry_at(document, offset)
+    entry = _find_entry_at(document, offset)
     folder = document.file.parent
     if entry is not None:
         parts = entry[1]
@@ -142,12 +142,12 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
         return
     string = python_text(document.text).string_at(offset)
     if string is not None and _is_installed(string[1]):
-        path = _file(folder, string[0].value)
+        path = _find_file(folder, string[0].value)
         if path is not None:
             yield Target(path)
 
 
-def _file(folder: Path, name: str) -> Path | None:
+def _find_file(folder: Path, name: str) -> Path | None:
     try:
         return folder / name if name and "\0" not in name and (folder / name).is_file() else None
     except OSError:
@@ -156,17 +156,17 @@ def _file(folder: Path, name: str) -> Path | None:
 
 def _links(document: Document) -> Iterator[FileReference]:
     for text, item in python_text(document.text).strings:
-        path = _file(document.file.parent, text.value) if _is_installed(item) else None
+        path = _find_file(document.file.parent, text.value) if _is_installed(item) else None
         if path is not None:
             yield FileReference(text.start, text.end, path)
 
 
 def _symbols(document: Document) -> Iterator[Symbol]:
     for text, _ in python_text(document.text).strings:
-        _, parts = _entry_at(document, text.start) or (text, None)
+        _, parts = _find_entry_at(document, text.start) or (text, None)
         if parts is not None:
             yield Symbol(parts["name"], SymbolKind.FUNCTION, text.start, text.end, (), parts["module"])
 
 
-SETUP_FILES = Format(lambda file: file.name == _NAME, _complete, _explain, _define, _links, _symbols)
-"""``setup.py``."""
+SETUP_FILES = Format(lambda file: file.name == _FILE_NAME, _complete, _explain, _define, _links, _symbols)
+"""The format of ``setup.py``."""

@@ -16,7 +16,7 @@ from linkwright.sdf.plugins import PLUGIN, library_name
 from linkwright.sdf.values import INTEGER, NUMBER, TEXT, TRUTH, VECTOR3
 
 _FILE = "simulator_plugins.json"
-_TYPES = {"str": TEXT, "float": NUMBER, "int": INTEGER, "bool": TRUTH, "vector": VECTOR3}
+_VALUE_TYPES = {"str": TEXT, "float": NUMBER, "int": INTEGER, "bool": TRUTH, "vector": VECTOR3}
 _ROS = ElementRule(
     "ros",
     "the node of the plugin",
@@ -47,13 +47,13 @@ class SimulatorPlugin:
     Attributes:
         library: the name of the library without ``lib`` and ``.so``.
         class_name: the class, which gz needs as the name of the plugin, or empty for Gazebo classic.
-        about: a description of the plugin.
+        purpose: a description of the plugin.
         rule: its element, with the parameters as children.
     """
 
     library: str
     class_name: str
-    about: str
+    purpose: str
     rule: ElementRule
 
     @property
@@ -71,13 +71,13 @@ class SimulatorPlugin:
 def simulator_plugins() -> Mapping[str, SimulatorPlugin]:
     """Return the known plugins by library."""
     table = json.loads(resources.files(__package__).joinpath(_FILE).read_text(encoding="utf-8"))
-    return {library: _plugin(library, entry) for library, entry in table.items()}
+    return {library: _parse_plugin(library, entry) for library, entry in table.items()}
 
 
-def _plugin(library: str, entry: Mapping[str, object]) -> SimulatorPlugin:
+def _parse_plugin(library: str, entry: Mapping[str, object]) -> SimulatorPlugin:
     name, purpose, parameters = str(entry["class"]), str(entry["about"]), entry["parameters"]
     assert isinstance(parameters, list)
-    children = tuple(map(_parameter, parameters))
+    children = tuple(map(_parse_parameter, parameters))
     if not name:
         children = (_ROS, *children)
     return SimulatorPlugin(
@@ -85,11 +85,11 @@ def _plugin(library: str, entry: Mapping[str, object]) -> SimulatorPlugin:
     )
 
 
-def _parameter(entry: Mapping[str, str]) -> ElementRule:
+def _parse_parameter(entry: Mapping[str, str]) -> ElementRule:
     name, meaning, is_repeated = entry["name"], entry["meaning"], bool(entry.get("many"))
     text = AttributeRule(
         "text",
-        _TYPES[entry["type"]],
+        _VALUE_TYPES[entry["type"]],
         meaning,
         entry["unit"],
         required=bool(entry.get("required")),
@@ -98,7 +98,7 @@ def _parameter(entry: Mapping[str, str]) -> ElementRule:
     return ElementRule(name, meaning, is_repeated=is_repeated, text=text, required=text.required)
 
 
-def plugin_of(filename: str, name: str = "") -> SimulatorPlugin | None:
+def find_plugin(filename: str, name: str = "") -> SimulatorPlugin | None:
     """Return the plugin that an element ``<plugin>`` loads, or None if it is unknown.
 
     Args:
@@ -106,13 +106,13 @@ def plugin_of(filename: str, name: str = "") -> SimulatorPlugin | None:
         name: the name in the element, which must be the class in gz.
     """
     plugin = simulator_plugins().get(library_name(filename)) if filename else None
-    return plugin or (_by_class().get(_modern(name)) if "::" in name else None)
+    return plugin or (_plugins_by_class().get(_modern_name(name)) if "::" in name else None)
 
 
-def _modern(name: str) -> str:
+def _modern_name(name: str) -> str:
     return name.replace("ignition::gazebo::", "gz::sim::")
 
 
 @cache
-def _by_class() -> Mapping[str, SimulatorPlugin]:
+def _plugins_by_class() -> Mapping[str, SimulatorPlugin]:
     return {plugin.class_name: plugin for plugin in simulator_plugins().values() if plugin.class_name}

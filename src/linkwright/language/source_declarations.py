@@ -14,12 +14,12 @@ from weakref import WeakKeyDictionary
 from linkwright.language.format import Document, NotYetKnownError
 from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import walk
+from linkwright.lint.targets import find_files_and_packages
 
-_SOURCES = (".py", ".cpp", ".hpp", ".cc", ".cxx", ".h")
+_SOURCE_SUFFIXES = (".py", ".cpp", ".hpp", ".cc", ".cxx", ".h")
 _MAX_FILES = 3000
-_MAX_TEXT = 300_000
-_SECONDS = 10.0
+_MAX_TEXT_LENGTH = 300_000
+_CACHE_LIFETIME_S = 10.0
 """The time in seconds after which the sources are searched and read again."""
 _DECLARATION = re.compile(
     r"""declare_parameter\s{0,9}(?:<([\w:<> ]{1,80})>)?\s{0,9}\(\s{0,99}["']([\w.]+)["']"""
@@ -145,11 +145,11 @@ def declared_topics(document: Document, folder: Path) -> list[DeclaredTopic]:
 
 def _list_known_sources(document: Document) -> dict[Path, _Source]:
     """Return the source files that declare parameters or topics, by path."""
-    sources = _sources.get(document.project)
-    if sources is not None and time.monotonic() - sources.time <= _SECONDS:
+    sources = _sources.get(document.workspace)
+    if sources is not None and time.monotonic() - sources.time <= _CACHE_LIFETIME_S:
         return sources.sources
     if document.waits:
-        sources = _sources[document.project] = _read(document.project, document.texts, sources)
+        sources = _sources[document.workspace] = _read_sources(document.workspace, document.texts, sources)
     elif sources is None:
         raise NotYetKnownError
     else:
@@ -157,9 +157,13 @@ def _list_known_sources(document: Document) -> dict[Path, _Source]:
     return sources.sources
 
 
-def _read(project: Workspace, texts: Mapping[Path, str], cached: _Sources | None) -> _Sources:
+def _read_sources(workspace: Workspace, texts: Mapping[Path, str], cached: _Sources | None) -> _Sources:
     """Read the sources that have changed since they were read before."""
-    files = [real_path(file) for folder in project.index.packages for file in walk(folder, _SOURCES)[0]][:_MAX_FILES]
+    files = [
+        real_path(file)
+        for folder in workspace.index.packages
+        for file in find_files_and_packages(folder, _SOURCE_SUFFIXES)[0]
+    ][:_MAX_FILES]
     cache = {} if cached is None else cached.cache
     sources: dict[Path, _Source] = {}
     for file in files:
@@ -169,7 +173,7 @@ def _read(project: Workspace, texts: Mapping[Path, str], cached: _Sources | None
             continue
         entry = cache.get(file)
         if entry is None or entry[0] != state:
-            entry = cache[file] = state, _read_source(project.text(file, texts) or "", file)
+            entry = cache[file] = state, _read_source(workspace.text(file, texts) or "", file)
         if entry[1].text:
             sources[file] = entry[1]
     return _Sources(sources, time.monotonic(), cache)
@@ -177,26 +181,26 @@ def _read(project: Workspace, texts: Mapping[Path, str], cached: _Sources | None
 
 def _read_source(text: str, file: Path) -> _Source:
     """Return the declarations in a source, or an empty source if there are none."""
-    if len(text) > _MAX_TEXT:
+    if len(text) > _MAX_TEXT_LENGTH:
         return _Source("", (), ())
-    source = _Source(text, tuple(_declarations(text, file)), tuple(_topics(text, file)))
+    source = _Source(text, tuple(_find_parameters(text, file)), tuple(_find_topics(text, file)))
     return source if source.parameters or source.topics else _Source("", (), ())
 
 
-def _topics(text: str, file: Path) -> Iterator[DeclaredTopic]:
+def _find_topics(text: str, file: Path) -> Iterator[DeclaredTopic]:
     for match in _ENDPOINT.finditer(text):
         role = match["kind"] or (f"action {match['side'].lower()}" if match["side"] else "")
         kind = (match["type"] or match["message"] or "").strip()
         yield DeclaredTopic(match["name"], kind.replace("::", "/"), role or "topic", file, match.start("name"))
 
 
-def _declarations(text: str, file: Path) -> Iterator[DeclaredParameter]:
+def _find_parameters(text: str, file: Path) -> Iterator[DeclaredParameter]:
     for match in _DECLARATION.finditer(text):
         default = (match[3] or "").strip()
-        yield DeclaredParameter(match[2], _type_of(match[1] or "", default), default, file, match.start(2))
+        yield DeclaredParameter(match[2], _derive_type(match[1] or "", default), default, file, match.start(2))
 
 
-def _type_of(declared_type: str, default: str) -> str:
+def _derive_type(declared_type: str, default: str) -> str:
     """Derive the type of a parameter from its C++ type, or from the text of its default."""
     cpp_type = _TYPES.get(declared_type.replace(" ", ""))
     if cpp_type is not None:

@@ -15,7 +15,7 @@ def parameters_in_sources(document: Document, program: NodeProgram) -> tuple[Par
 
     Args:
         document: the launch file.
-        program: the program.
+        program: the program of a node.
 
     Raises:
         NotYetKnownError: the sources of the workspace were never read, and the document does not wait.

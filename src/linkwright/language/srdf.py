@@ -14,13 +14,13 @@ from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.format import Document, Format, Target
 from linkwright.language.grammar import rule_at
 from linkwright.language.hover import Explanation, definitions_at
-from linkwright.language.hover_facts import facts_at, part_facts
+from linkwright.language.hover_facts import describe_part, facts_at
 from linkwright.language.includes import real_path
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.outline import Outline
-from linkwright.language.robot_names import mentioned_robots
+from linkwright.language.robot_names import find_mentioned_robots
 from linkwright.language.srdf_schema import CHOICES, GROUP, JOINT, LINK, SRDF
-from linkwright.language.values import values_in
+from linkwright.language.values import evaluate_file
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
 from linkwright.packages import enclosing_package
@@ -30,12 +30,12 @@ from linkwright.schema import AttributeRule
 from linkwright.urdf import Robot
 from linkwright.xmltree.tokens import Kind, tokens
 
-_ROBOT = re.compile(r"<robot\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
-_ASSISTANT = re.compile(r"URDF:\s*\n\s+package:\s*(\S+)\s*\n\s+relative_path:\s*(\S+)")
+_ROBOT_NAME = re.compile(r"<robot\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']")
+_SETUP_ASSISTANT_URDF = re.compile(r"URDF:\s*\n\s+package:\s*(\S+)\s*\n\s+relative_path:\s*(\S+)")
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)")
 _MAX_ROBOTS = 3
-_SHOWN_PARTS = 12
-_LONGEST_HEAD = 20_000
+_MAX_SHOWN_PARTS = 12
+_MAX_HEAD_LENGTH = 20_000
 """The number of characters of a description that are searched for the name of the robot."""
 
 
@@ -52,39 +52,39 @@ class _Semantics:
 
     @cached_property
     def names(self) -> list[NameDefinition]:
-        return self.document.project.names(self.document.file, self.document.texts)
+        return self.document.workspace.names(self.document.file, self.document.texts)
 
     @cached_property
     def descriptions(self) -> list[Path]:
         """The descriptions of the robot, found by MoveIt's Setup Assistant or the robot's name."""
-        project, file = self.document.project, self.document.file
+        workspace, file = self.document.workspace, self.document.file
         package = enclosing_package(file.parent)
         descriptions = [*self._setup_assistant_descriptions(package[1])] if package is not None else []
-        robot_name = _ROBOT.search(self.document.text)
+        robot_name = _ROBOT_NAME.search(self.document.text)
         name = robot_name[1] if robot_name is not None else ""
-        neighbors = project.package_neighbors(file, ())
-        for other in dict.fromkeys((*neighbors, *project.index.files)):
-            head = _ROBOT.search(self.document.other(other)[:_LONGEST_HEAD]) if name else None
+        neighbors = workspace.package_neighbors(file, ())
+        for other in dict.fromkeys((*neighbors, *workspace.index.files)):
+            head = _ROBOT_NAME.search(self.document.other(other)[:_MAX_HEAD_LENGTH]) if name else None
             if head is not None and head[1] == name and not is_srdf(other):
                 descriptions.append(other)
         descriptions_beside = [other for other in neighbors if ".urdf" in other.name and not is_srdf(other)]
         words = {attribute.value or "" for token in tokens(self.document.text) for attribute in token.attributes()}
         return [
             *islice(
-                dict.fromkeys(descriptions or mentioned_robots(self.document, words) or descriptions_beside),
+                dict.fromkeys(descriptions or find_mentioned_robots(self.document, words) or descriptions_beside),
                 _MAX_ROBOTS,
             )
         ]
 
     def _setup_assistant_descriptions(self, folder: Path) -> Iterator[Path]:
-        for match in _ASSISTANT.finditer(text_of(folder / ".setup_assistant")):
+        for match in _SETUP_ASSISTANT_URDF.finditer(text_of(folder / ".setup_assistant")):
             share = self.document.finder.find(match[1])
             if share is not None and (share / match[2]).is_file():
                 yield real_path(source_of(str(share / match[2])))
 
     @cached_property
     def robots(self) -> list[Robot]:
-        robots = (self.document.project.robot(file, self.document.texts) for file in self.descriptions)
+        robots = (self.document.workspace.robot(file, self.document.texts) for file in self.descriptions)
         return [robot for robot in robots if robot is not None]
 
     def parts(self, kind: NameKind) -> list[str]:
@@ -103,7 +103,7 @@ class _Semantics:
         return groups
 
 
-def _rule_of(cursor: Cursor) -> AttributeRule | None:
+def _find_rule(cursor: Cursor) -> AttributeRule | None:
     """Return the rule of the attribute whose value is at a cursor, or None."""
     if cursor.syntax is not CursorSyntax.VALUE or cursor.attribute is None:
         return None
@@ -118,7 +118,7 @@ def _is_group(cursor: Cursor, rule: AttributeRule) -> bool:
 
 def _complete(document: Document, offset: int) -> Iterator[Completion]:
     semantics, cursor = _Semantics(document), cursor_at(document.text, offset)
-    rule = _rule_of(cursor)
+    rule = _find_rule(cursor)
     if rule is None or "$" in cursor.typed:
         yield from complete(document, offset, semantics.names)
         return
@@ -127,7 +127,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
         yield Completion(choice, ItemKind.VALUE, start)
     if rule.type in (LINK, JOINT):
         kind = NameKind.LINK if rule.type is LINK else NameKind.JOINT
-        present = _names_beside(document.text, offset) if rule.name == "name" else set()
+        present = _find_sibling_names(document.text, offset) if rule.name == "name" else set()
         for name in semantics.parts(kind):
             if name not in present:
                 yield Completion(name, ItemKind.NAME, start, kind.value)
@@ -137,7 +137,7 @@ def _complete(document: Document, offset: int) -> Iterator[Completion]:
                 yield Completion(name, ItemKind.NAME, start)
 
 
-def _names_beside(text: str, offset: int) -> set[str | None]:
+def _find_sibling_names(text: str, offset: int) -> set[str | None]:
     """Return the names of the siblings with the same tag as the element at an offset."""
     lineage = Outline.of(text).elements_around(offset)
     siblings = lineage[-2].children if len(lineage) > 1 else []
@@ -147,29 +147,29 @@ def _names_beside(text: str, offset: int) -> set[str | None]:
 
 def _explain(document: Document, offset: int) -> Explanation | None:
     semantics, cursor = _Semantics(document), cursor_at(document.text, offset)
-    rule = _rule_of(cursor)
+    rule = _find_rule(cursor)
     if rule is not None and rule.type in (LINK, JOINT) and cursor.attribute is not None and cursor.attribute.value:
         kind = NameKind.LINK if rule.type is LINK else NameKind.JOINT
         name = cursor.attribute.value
         facts = next(
-            (robot_facts for robot in semantics.robots if (robot_facts := part_facts(robot, kind, name))), None
+            (robot_facts for robot in semantics.robots if (robot_facts := describe_part(robot, kind, name))), None
         )
         if facts is not None:
             text = f"**{kind.value} {name}**\n\n{facts}"
             return Explanation(text, cursor.attribute.value_start, cursor.attribute.value_end)
     if rule is not None and cursor.attribute is not None and _is_group(cursor, rule):
-        described = _described_group(document.text, cursor.attribute.value or "")
+        described = _describe_group(document.text, cursor.attribute.value or "")
         if described:
             return Explanation(described, cursor.attribute.value_start, cursor.attribute.value_end)
     explanation = explain_at(document, offset, semantics.names)
     if explanation is not None or not document.file.name.endswith(".xacro"):
         return explanation
-    values = values_in(document.project, document.texts, document.file)
-    further_facts = facts_at(document.project, document.texts, document.file, document.text, offset, values)
+    values = evaluate_file(document.workspace, document.texts, document.file)
+    further_facts = facts_at(document.workspace, document.texts, document.file, document.text, offset, values)
     return Explanation("\n\n".join(further_facts), offset, offset) if further_facts else None
 
 
-def _described_group(text: str, name: str) -> str:
+def _describe_group(text: str, name: str) -> str:
     """Return the content of a group in Markdown, or empty if the text does not define it."""
     for element in (
         candidate for root in Outline.of(text).elements for candidate in root.children if candidate.tag.name == "group"
@@ -180,9 +180,9 @@ def _described_group(text: str, name: str) -> str:
         ):
             lines = [
                 f"- {child.tag.name} " + ", ".join(f"`{candidate.value}`" for candidate in child.tag.attributes())
-                for child in element.children[:_SHOWN_PARTS]
+                for child in element.children[:_MAX_SHOWN_PARTS]
             ]
-            ellipsis = ["- ..."] if len(element.children) > _SHOWN_PARTS else []
+            ellipsis = ["- ..."] if len(element.children) > _MAX_SHOWN_PARTS else []
             return "\n".join([f"**group {name}**", "", *lines, *ellipsis])
     return ""
 
@@ -190,10 +190,10 @@ def _described_group(text: str, name: str) -> str:
 def _define(document: Document, offset: int) -> Iterator[Target]:
     semantics, cursor = _Semantics(document), cursor_at(document.text, offset)
     value = cursor.attribute.value if cursor.attribute is not None else None
-    rule = _rule_of(cursor)
+    rule = _find_rule(cursor)
     if rule is not None and value and rule.type in (LINK, JOINT):
         kind = NameKind.LINK if rule.type is LINK else NameKind.JOINT
-        yield from _parts(semantics, kind, value)
+        yield from _find_part_targets(semantics, kind, value)
     elif rule is not None and value and _is_group(cursor, rule):
         start = semantics.groups().get(value)
         if start is not None:
@@ -204,11 +204,11 @@ def _define(document: Document, offset: int) -> Iterator[Target]:
         yield from (Target(link.file) for link in _links(document) if link.start <= offset <= link.end)
 
 
-def _parts(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target]:
+def _find_part_targets(semantics: _Semantics, kind: NameKind, value: str) -> Iterator[Target]:
     """Yield the definitions of a link or joint, by its name or a name with expressions."""
     document = semantics.document
     for file in semantics.descriptions:
-        names = document.project.names(file, document.texts)
+        names = document.workspace.names(file, document.texts)
         names_of_kind = [name for name in names if name.kind is kind and _matches(name.name, value)]
         if kind is NameKind.JOINT:
             names_of_kind = [
@@ -234,4 +234,4 @@ def _links(document: Document) -> Iterator[FileReference]:
 
 
 SRDF_FILES = Format(is_srdf, _complete, _explain, _define, _links, needs_index=True)
-"""SRDF, with or without xacro."""
+"""The format of SRDF, with or without xacro."""

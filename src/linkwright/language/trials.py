@@ -16,8 +16,8 @@ from pathlib import Path
 from linkwright.descriptions.argument_sets import compared_values
 from linkwright.diagnostics import LinkwrightError, Phrase, SourceText, Span
 from linkwright.language.includes import real_path
+from linkwright.language.source_elements import find_innermost_element, source_elements
 from linkwright.language.workspace import Workspace
-from linkwright.language.written import innermost_element, source_elements
 from linkwright.xacro import Expansion, expand
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Overlay, parse
@@ -26,12 +26,12 @@ from linkwright.xmltree.tokens import Kind, tokens
 Range = tuple[int, int]
 Gaps = Mapping[Path, tuple[Range, ...]]
 
-_UNDECLARED = "XAC211"
+_UNDECLARED_ARGUMENT_CODE = "XAC211"
 _PLACEHOLDERS = ("value", "1")
 """The values of an argument that only a caller sets."""
 _MAX_GAPS = 60
-_MAX_WITH_GAPS = 3
-_MAX_SWITCHED = 10
+_MAX_TRIALS_WITH_GAPS = 3
+_MAX_SWITCHED_TRIALS = 10
 _MAX_DURATION_S = 2.0
 """The time after which no further arguments are switched."""
 _OPPOSITES = {"true": "false", "false": "true", "True": "False", "False": "True", "0": "1", "1": "0"}
@@ -44,7 +44,7 @@ class Trial:
     Attributes:
         entry: the description.
         arguments: the values of its arguments.
-        expansion: the expansion.
+        expansion: the result.
         gaps: the ranges of elements that were left out because they cannot be expanded, by file.
         reason: the error of the first omitted element, or None.
     """
@@ -57,12 +57,12 @@ class Trial:
 
 
 def expand_with_gaps(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str], gaps: Gaps | None = None
+    workspace: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str], gaps: Gaps | None = None
 ) -> Expansion:
     """Return the expansion of a description without some elements.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         entry: the description.
         arguments: the values of its arguments.
@@ -73,8 +73,8 @@ def expand_with_gaps(
     """
     overlay_texts: dict[str | os.PathLike[str], str] = {str(path): text for path, text in texts.items()}
     for file, ranges in (gaps or {}).items():
-        overlay_texts[str(file)] = blank_out(project.text(file, texts) or "", ranges)
-    return expand(entry, arguments, packages=project.finder(entry), overlay=Overlay(overlay_texts))
+        overlay_texts[str(file)] = blank_out(workspace.text(file, texts) or "", ranges)
+    return expand(entry, arguments, packages=workspace.finder(entry), overlay=Overlay(overlay_texts))
 
 
 def blank_out(text: str, ranges: tuple[Range, ...]) -> str:
@@ -85,13 +85,13 @@ def blank_out(text: str, ranges: tuple[Range, ...]) -> str:
     return text
 
 
-def trials(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, *, is_partial: bool, is_switched: bool = True
+def run_trials(
+    workspace: Workspace, texts: Mapping[Path, str], entry: Path, *, is_partial: bool, is_switched: bool = True
 ) -> tuple[list[Trial], LinkwrightError | None]:
     """Return the expansions of a description, and the last error, or None.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         entry: the description.
         is_partial: whether elements that fail are left out if nothing can be expanded.
@@ -99,37 +99,37 @@ def trials(
     """
     distinct: dict[tuple[str, frozenset[str]], Trial] = {}
     error: LinkwrightError | None = None
-    for arguments, _ in project.argument_calls(entry):
+    for arguments, _ in workspace.argument_calls(entry):
         try:
-            expansion = expand_with_gaps(project, texts, entry, arguments)
+            expansion = expand_with_gaps(workspace, texts, entry, arguments)
         except LinkwrightError as reason:  # noqa: PERF203 - each may fail for itself
             error = reason
         else:
             distinct.setdefault((str(expansion), frozenset(arguments)), Trial(entry, arguments, expansion))
     expansions = [*distinct.values()]
     if is_partial and not expansions:
-        expansions += _with_gaps(project, texts, entry)
+        expansions += _generate_trials_with_gaps(workspace, texts, entry)
     if is_partial and is_switched and expansions:
         expansions += _generate_trials_with_other_values(
-            project, texts, expansions[0], {str(trial.expansion) for trial in expansions}
+            workspace, texts, expansions[0], {str(trial.expansion) for trial in expansions}
         )
     return expansions, error
 
 
-def _with_gaps(project: Workspace, texts: Mapping[Path, str], entry: Path) -> Iterator[Trial]:
-    """Yield at most `_MAX_WITH_GAPS` expansions without the failing elements."""
+def _generate_trials_with_gaps(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> Iterator[Trial]:
+    """Yield at most `_MAX_TRIALS_WITH_GAPS` expansions without the failing elements."""
     count = 0
-    for arguments in project.possible_arguments(entry):
-        trial = _trial_with_gaps(project, texts, entry, arguments)
+    for arguments in workspace.possible_arguments(entry):
+        trial = _run_trial_with_gaps(workspace, texts, entry, arguments)
         if trial is not None:
             yield trial
             count += 1
-        if count == _MAX_WITH_GAPS:
+        if count == _MAX_TRIALS_WITH_GAPS:
             return
 
 
-def _trial_with_gaps(
-    project: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
+def _run_trial_with_gaps(
+    workspace: Workspace, texts: Mapping[Path, str], entry: Path, arguments: Mapping[str, str]
 ) -> Trial | None:
     """Return an expansion without the failing elements, or None if the description has none."""
     gaps: dict[Path, tuple[Range, ...]] = {}
@@ -137,12 +137,12 @@ def _trial_with_gaps(
     values = dict(arguments)
     for _ in range(_MAX_GAPS):
         try:
-            return Trial(entry, values, expand_with_gaps(project, texts, entry, values, gaps), gaps, reason)
+            return Trial(entry, values, expand_with_gaps(workspace, texts, entry, values, gaps), gaps, reason)
         except (Fault, RecursionError):
             return None
         except LinkwrightError as raised:
             error = raised
-        undeclared = [diagnostic for diagnostic in error.diagnostics if diagnostic.code == _UNDECLARED]
+        undeclared = [diagnostic for diagnostic in error.diagnostics if diagnostic.code == _UNDECLARED_ARGUMENT_CODE]
         names = [str(name) for finding in undeclared if (name := finding.message.arguments.get("name"))]
         added = {name: _PLACEHOLDERS[0] for name in names if name not in values}
         if added:
@@ -153,7 +153,7 @@ def _trial_with_gaps(
         if not gaps and numbers and not first.code.startswith(("PKG", "XML")):
             values |= numbers
             continue
-        element_range = None if first.span is None else _element_around(project, texts, first.span, gaps)
+        element_range = None if first.span is None else _find_element_around(workspace, texts, first.span, gaps)
         if element_range is None:
             return None
         reason = reason or first.message
@@ -161,14 +161,16 @@ def _trial_with_gaps(
     return None
 
 
-def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps) -> tuple[Path, Range] | None:
+def _find_element_around(
+    workspace: Workspace, texts: Mapping[Path, str], span: Span, gaps: Gaps
+) -> tuple[Path, Range] | None:
     """Return the file and range of the element at a location, or None for the root."""
     file = real_path(span.file)
-    text = project.text(file, texts)
+    text = workspace.text(file, texts)
     if text is None:
         return None
     offset = SourceText(span.file, text).offset(span.line, span.column)
-    element = innermost_element(source_elements(text), offset)
+    element = find_innermost_element(source_elements(text), offset)
     if element is None or element.parent is None or element.end < 0:
         return None
     element_range = element.start, element.end
@@ -176,18 +178,18 @@ def _element_around(project: Workspace, texts: Mapping[Path, str], span: Span, g
 
 
 def _generate_trials_with_other_values(
-    project: Workspace, texts: Mapping[Path, str], base: Trial, seen_results: set[str]
+    workspace: Workspace, texts: Mapping[Path, str], base: Trial, seen_results: set[str]
 ) -> Iterator[Trial]:
     """Yield the new expansions that result from another value of a single argument."""
     begin = time.monotonic()
-    for name, value in _list_other_values(project, texts, base.entry):
+    for name, value in _list_other_values(workspace, texts, base.entry):
         if base.arguments.get(name) == value:
             continue
         if time.monotonic() - begin > _MAX_DURATION_S:
             return
         arguments = {**base.arguments, name: value}
         try:
-            expansion = expand_with_gaps(project, texts, base.entry, arguments, base.gaps)
+            expansion = expand_with_gaps(workspace, texts, base.entry, arguments, base.gaps)
         except (LinkwrightError, Fault, RecursionError):
             continue
         text = str(expansion)
@@ -196,12 +198,12 @@ def _generate_trials_with_other_values(
             yield Trial(base.entry, arguments, expansion, base.gaps, base.reason)
 
 
-def _list_other_values(project: Workspace, texts: Mapping[Path, str], entry: Path) -> list[tuple[str, str]]:
+def _list_other_values(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> list[tuple[str, str]]:
     """Return other values of arguments: opposites of defaults, and values in conditions."""
     values: dict[tuple[str, str], None] = {}
     documents = []
-    for file in project.index.related_files(entry, texts, computed=True):
-        text = project.text(file, texts) or ""
+    for file in workspace.index.related_files(entry, texts, computed=True):
+        text = workspace.text(file, texts) or ""
         for token in tokens(text):
             if token.kind is Kind.START and token.name == "xacro:arg":
                 attributes = {attribute.name: attribute.value or "" for attribute in token.attributes()}
@@ -214,4 +216,4 @@ def _list_other_values(project: Workspace, texts: Mapping[Path, str], entry: Pat
             continue
     for compared in compared_values(documents):
         values.update(dict.fromkeys(compared.values.items()))
-    return [*values][:_MAX_SWITCHED]
+    return [*values][:_MAX_SWITCHED_TRIALS]

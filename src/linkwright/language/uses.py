@@ -17,11 +17,11 @@ from linkwright.packages.launch_files import is_launch_file_name, launch_files_b
 from linkwright.packages.share_layout import source_of
 
 _MAX_FILES = 200
-_MAX_PLACES = 300
+_MAX_USES = 300
 """The maximum number of occurrences of a name that are checked in a file."""
 
 
-def uses_at(document: Document, file_format: Format, offset: int, *, in_file: bool = False) -> list[Target]:
+def find_uses(document: Document, file_format: Format, offset: int, *, in_file: bool = False) -> list[Target]:
     """Return the definition and the uses of the name at an offset, or an empty list.
 
     The uses of a launch argument are also searched in the launch files of the package that mention its file.
@@ -39,14 +39,14 @@ def uses_at(document: Document, file_format: Format, offset: int, *, in_file: bo
             continue
         if not in_file or target.file == document.file:
             targets[target] = None
-        for other in [document] if in_file else [*_documents(document, target.file)]:
+        for other in [document] if in_file else [*_list_documents(document, target.file)]:
             other_format = format_of(other.file)
             if other_format is not None:
-                targets.update(dict.fromkeys(_uses(other, other_format, target, name)))
+                targets.update(dict.fromkeys(_find_uses_of_target(other, other_format, target, name)))
     return list(targets)
 
 
-def _documents(document: Document, file: Path) -> Iterator[Document]:
+def _list_documents(document: Document, file: Path) -> Iterator[Document]:
     """Yield a document and a file. For a launch file, also yield launch files that mention it.
 
     These are the launch files in the packages of both.
@@ -60,11 +60,11 @@ def _documents(document: Document, file: Path) -> Iterator[Document]:
         if index < _MAX_FILES:
             text = document.text if path == document.file else document.other(path)
             if path in (document.file, file) or file.name in text:
-                yield Document(document.project, document.texts, path, text)
+                yield Document(document.workspace, document.texts, path, text)
 
 
-def _uses(document: Document, file_format: Format, target: Target, name: str) -> Iterator[Target]:
+def _find_uses_of_target(document: Document, file_format: Format, target: Target, name: str) -> Iterator[Target]:
     places = re.finditer(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])", document.text)
-    for _, position in zip(range(_MAX_PLACES), places, strict=False):
+    for _, position in zip(range(_MAX_USES), places, strict=False):
         if target in file_format.define(document, position.start()):
             yield Target(document.file, *position.span())

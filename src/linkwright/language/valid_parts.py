@@ -14,20 +14,20 @@ from linkwright.xacro.session import Inputs
 from linkwright.xmltree import Overlay
 
 
-def valid_parts(project: Workspace, texts: Mapping[Path, str], entry: Path) -> Expansion | None:
+def expand_valid_parts(workspace: Workspace, texts: Mapping[Path, str], entry: Path) -> Expansion | None:
     """Expand a description with default arguments, or only its valid parts if it has errors.
 
     Returns None if nothing can be expanded.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
         entry: the description.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
-    inputs = Inputs(str(entry), {}, project.finder(entry), overlay=overlay)
+    inputs = Inputs(str(entry), {}, workspace.finder(entry), overlay=overlay)
     try:
-        return expand(entry, packages=project.finder(entry), overlay=overlay)
+        return expand(entry, packages=workspace.finder(entry), overlay=overlay)
     except (LinkwrightError, OSError, RecursionError) as error:
         with suppress(LinkwrightError, OSError, RecursionError):
             return expand_parts(inputs, error) if isinstance(error, LinkwrightError) else None

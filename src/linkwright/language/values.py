@@ -10,7 +10,7 @@ from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
 from linkwright.xacro.faults import Frame, frames
 from linkwright.xacro.session import Inputs
-from linkwright.xacro.tracing.values import Evaluation, evaluated_expressions
+from linkwright.xacro.tracing.values import Evaluation, evaluate_expressions
 from linkwright.xmltree import Overlay
 
 _MAX_EXPANSIONS = 12
@@ -42,22 +42,24 @@ class EvaluatedText:
         return list(dict.fromkeys(evaluation.value for evaluation, _ in self.evaluations))
 
 
-def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list[EvaluatedText]:
+def evaluate_file(workspace: Workspace, texts: Mapping[Path, str], file: Path) -> list[EvaluatedText]:
     """Return the values of the texts with expressions in a file, in no particular order.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: a description, or a file that descriptions include.
     """
     overlay = Overlay({str(path): text for path, text in texts.items()})
     evaluated_texts: dict[tuple[int, int], EvaluatedText] = {}
     calls = (
-        (entry, values) for entry in project.index.entries(file, texts) for values, _ in project.argument_calls(entry)
+        (entry, values)
+        for entry in workspace.index.entries(file, texts)
+        for values, _ in workspace.argument_calls(entry)
     )
     for _, (entry, values) in zip(range(_MAX_EXPANSIONS), calls, strict=False):
-        inputs = Inputs(str(entry), values, project.finder(entry), overlay=overlay)
-        for expression in evaluated_expressions(inputs):
+        inputs = Inputs(str(entry), values, workspace.finder(entry), overlay=overlay)
+        for expression in evaluate_expressions(inputs):
             if real_path(expression.file) == file:
                 key = expression.start, expression.end
                 text = evaluated_texts.setdefault(key, EvaluatedText(*key))
@@ -65,7 +67,7 @@ def values_in(project: Workspace, texts: Mapping[Path, str], file: Path) -> list
     return list(evaluated_texts.values())
 
 
-def value_at(texts: Sequence[EvaluatedText], offset: int) -> EvaluatedText | None:
+def find_value_at(texts: Sequence[EvaluatedText], offset: int) -> EvaluatedText | None:
     """Return the smallest text with values around an offset, or None if there is none."""
     texts_at_offset = [text for text in texts if text.start <= offset <= text.end and text.values()[0]]
     return min(texts_at_offset, key=lambda text: text.end - text.start, default=None)
@@ -75,7 +77,7 @@ def outermost_texts(texts: Sequence[EvaluatedText]) -> Iterator[EvaluatedText]:
     """Yield the texts that are not part of another text, in text order.
 
     Args:
-        texts: the texts of a file, as `values_in` returns them.
+        texts: the texts of a file, as `evaluate_file` returns them.
     """
     end = 0
     for text in sorted(texts, key=lambda text: (text.start, -text.end)):
@@ -84,7 +86,7 @@ def outermost_texts(texts: Sequence[EvaluatedText]) -> Iterator[EvaluatedText]:
             yield text
 
 
-def short_values(text: EvaluatedText) -> str:
+def shorten_values(text: EvaluatedText) -> str:
     """Return the first values of a text on one line, for an inlay hint."""
     values = [value[1:-1] if value[:1] in ("'", '"') else value for value in text.values() if value]
     short_text = " | ".join(values[:_MAX_INLINE_VALUES]) + (" | ..." if len(values) > _MAX_INLINE_VALUES else "")
@@ -95,8 +97,8 @@ def describe_values(text: EvaluatedText, source: str) -> str:
     """Return the values of a text in Markdown, each with its macro calls or arguments.
 
     Args:
-        text: the text.
-        source: its characters.
+        text: a text with expressions, and its evaluations.
+        source: the text as written.
     """
     groups: dict[tuple[str, str], list[tuple[Evaluation, Mapping[str, str]]]] = {}
     for evaluation, arguments in text.evaluations:
@@ -106,7 +108,7 @@ def describe_values(text: EvaluatedText, source: str) -> str:
         ((value, names),) = groups
         return f"`{source}` = `{value}`" + (f" ({names})" if names else "")
     lines = [
-        f"- `{value}`{_origin(evaluations)}" + (f" ({names})" if names else "")
+        f"- `{value}`{_describe_origin(evaluations)}" + (f" ({names})" if names else "")
         for (value, names), evaluations in [*groups.items()][:_MAX_VALUES]
     ]
     if len(groups) > _MAX_VALUES:
@@ -114,9 +116,9 @@ def describe_values(text: EvaluatedText, source: str) -> str:
     return f"`{source}`\n\n" + "\n".join(lines)
 
 
-def _origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
-    """Return the macro calls that lead to a value, and the arguments, if they differ from the defaults."""
-    calls = [call for call in dict.fromkeys(_call(evaluation.frame) for evaluation, _ in evaluations) if call]
+def _describe_origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
+    """Return the macro calls that lead to a value, and the arguments other than defaults."""
+    calls = [call for call in dict.fromkeys(_describe_call(evaluation.frame) for evaluation, _ in evaluations) if call]
     origin = f" {', '.join(calls[:_MAX_CALLS])}" + (", ..." if len(calls) > _MAX_CALLS else "")
     arguments = evaluations[0][1]
     if arguments and all(values for _, values in evaluations):
@@ -124,7 +126,7 @@ def _origin(evaluations: Sequence[tuple[Evaluation, Mapping[str, str]]]) -> str:
     return "" if origin == " " else origin
 
 
-def _call(frame: Frame | None) -> str:
+def _describe_call(frame: Frame | None) -> str:
     """Return the innermost macro call with its file and line, or empty outside macros."""
     call = next((frame for frame in frames(frame) if frame.macro is not None), None)
     if call is None:

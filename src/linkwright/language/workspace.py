@@ -9,12 +9,12 @@ from typing import NamedTuple
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Span
 from linkwright.language.definitions import NameDefinition, definitions_in
 from linkwright.language.includes import IncludeIndex, real_path
-from linkwright.language.mentions import FILES as MENTIONING_FILES
+from linkwright.language.mentions import FILE_SUFFIXES as MENTIONING_FILES
 from linkwright.lint.checking import Checker, UniqueFindings
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.finding import Finding, without_element
-from linkwright.lint.folders import Examined, relevant_findings, relevant_package_findings
-from linkwright.lint.targets import DESCRIPTIONS, XML_FILES, Targets, walk
+from linkwright.lint.folders import Examined, select_relevant_findings, select_relevant_package_findings
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES, XML_SUFFIXES, Targets, find_files_and_packages
 from linkwright.packages import PackageFinder, enclosing_package
 from linkwright.packages.manifest import MANIFEST
 from linkwright.urdf import Robot, read
@@ -51,7 +51,7 @@ class _Result(NamedTuple):
     text_hashes: Mapping[Path, int]
 
 
-_NOTHING = _Result((), {})
+_NO_RESULT = _Result((), {})
 
 
 def hash_texts(texts: Mapping[Path, str]) -> dict[Path, int]:
@@ -69,7 +69,7 @@ class Workspace:
         folders: the folders of the workspace.
 
     Attributes:
-        folders: the folders.
+        folders: the folders, with symbolic links resolved.
         index: the descriptions in the folders.
         cached_results: results about files until a file changes, each with the hashes of the open texts.
     """
@@ -131,12 +131,12 @@ class Workspace:
 
     def configurations_below(self, folder: Path) -> list[Path]:
         """Return the files below a folder that may mention links and joints."""
-        paths, _ = walk(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
+        paths, _ = find_files_and_packages(folder, (*MENTIONING_FILES, ".srdf", ".srdf.xacro", ".sdf", ".world"))
         return [real_path(path) for path in paths]
 
     def files(self, suffixes: tuple[str, ...]) -> list[Path]:
         """Return the files of the workspace with some suffixes, inside packages or not."""
-        paths = (path for folder in self.folders for path in walk(folder, suffixes)[0])
+        paths = (path for folder in self.folders for path in find_files_and_packages(folder, suffixes)[0])
         return [*dict.fromkeys(map(real_path, paths))]
 
     def package_neighbors(self, file: Path, known_files: Container[Path]) -> list[Path]:
@@ -151,7 +151,7 @@ class Workspace:
         """Return the names defined in a file, and in the descriptions that include it.
 
         Args:
-            file: the file.
+            file: the file of the request.
             texts: the texts of the open files.
         """
         return [name for other in self.index.related_files(file, texts) for name in self._names_in(other, texts)]
@@ -164,7 +164,9 @@ class Workspace:
             texts: the texts of the open files. The result is cached until the text of a description changes.
         """
         texts = {
-            file: text for file, text in texts.items() if file.name.endswith(DESCRIPTIONS) and file in self.index.files
+            file: text
+            for file, text in texts.items()
+            if file.name.endswith(DESCRIPTION_SUFFIXES) and file in self.index.files
         }
         text_hashes = hash_texts(texts)
         cached = self._robots.pop(entry, None)
@@ -214,7 +216,7 @@ class Workspace:
             file: the changed file.
             texts: the texts of the open files.
         """
-        is_description = file.name.endswith(DESCRIPTIONS)
+        is_description = file.name.endswith(DESCRIPTION_SUFFIXES)
         if (is_description and file not in texts and file.exists() != (file in self.index.files)) or (
             file.name == MANIFEST and file.exists() != (file.parent in self.index.packages)
         ):
@@ -229,7 +231,7 @@ class Workspace:
         descriptions = self.index.entries(file, texts) if is_description else []
         subjects = [*descriptions, *([] if package is None else [real_path(package[1])])]
         if subjects and file not in subjects:
-            self._results.pop(file, None)  # findings about the file alone, before it had subjects
+            self._results.pop(file, None)  # These are findings about the file alone, from before it had subjects.
         return subjects
 
     def check(
@@ -257,7 +259,7 @@ class Workspace:
             texts: the texts of the open files that were checked.
             changed: files that are included in the result even if there is no finding about them.
         """
-        old_findings = self._results.pop(subject, _NOTHING).findings
+        old_findings = self._results.pop(subject, _NO_RESULT).findings
         if findings:
             self._results[subject] = _Result(findings, hash_texts(texts))
         return self._findings_by_file(
@@ -273,7 +275,7 @@ class Workspace:
         """Return the findings about a file with a fix that applies to the current texts.
 
         Args:
-            file: the file.
+            file: the file of the request.
             texts: the texts of the open files.
         """
         unique_findings = UniqueFindings()
@@ -290,7 +292,7 @@ class Workspace:
         """Return the findings with a location in a file, if its text has not changed since.
 
         Args:
-            file: the file.
+            file: the file of the request.
             texts: the texts of the open files.
         """
         unique_findings = UniqueFindings()
@@ -320,18 +322,18 @@ class Workspace:
         overlay = Overlay({str(path): text for path, text in texts.items()})
         if subject.is_dir():
             diagnostics, problems = self._checker.check_package(subject, overlay, Contexts())
-            return (*problems, *relevant_package_findings(diagnostics, [subject]))
+            return (*problems, *select_relevant_package_findings(diagnostics, [subject]))
         if not self._is_xml(subject, texts):
             return ()
         open_subjects = frozenset({subject}) if subject in texts else frozenset()
         targets = Targets((subject,), self.index.packages, open_subjects)
         checked_file, problems = self._checker.check_file(subject, targets, overlay, Contexts())
         examined = Examined.of(checked_file, subject)
-        return (*problems, *relevant_findings(examined, [examined], targets, [subject]))
+        return (*problems, *select_relevant_findings(examined, [examined], targets, [subject]))
 
     def _is_xml(self, file: Path, texts: Mapping[Path, str]) -> bool:
         """Return whether a file is XML by its name, or else by its text."""
-        return file.name.endswith((*XML_FILES, ".xml")) or (self.text(file, texts) or "").lstrip().startswith("<")
+        return file.name.endswith((*XML_SUFFIXES, ".xml")) or (self.text(file, texts) or "").lstrip().startswith("<")
 
     def _findings_by_file(self, files: set[Path]) -> dict[Path, list[Diagnostic]]:
         """Return the findings about some files, of all subjects, without duplicates."""

@@ -72,13 +72,15 @@ def _offer_elements(
     free = [child for child in offered if child.is_repeated or child.tag not in present]
     for child in sorted(free, key=lambda child: not child.required):
         snippet = mark + _make_element_snippet(child)
-        yield Completion(child.tag, ItemKind.ELEMENT, start, _unit_of(child), describe_element(child), snippet)
+        yield Completion(child.tag, ItemKind.ELEMENT, start, _format_unit(child), describe_element(child), snippet)
     if not cursor.tags or not has_xacro(root):
         return
     for macro in sorted_by_use(definitions_of_kind(names, NameKind.MACRO), document.text):
         label = PREFIX + macro.name
         described = f"`{macro.detail}`\n\n{macro.file.name}" if macro.detail else macro.file.name
-        yield Completion(label, ItemKind.MACRO, start, _one_line(macro.detail), described, mark + _call_snippet(macro))
+        yield Completion(
+            label, ItemKind.MACRO, start, _to_one_line(macro.detail), described, mark + _make_call_snippet(macro)
+        )
     for tag in XACRO.values():
         yield Completion(
             tag.tag, ItemKind.ELEMENT, start, "xacro", describe_element(tag), mark + _make_element_snippet(tag)
@@ -96,13 +98,13 @@ def _list_present_elements(text: str, cursor: Cursor) -> frozenset[str]:
     return frozenset(child.tag.name for child in children if child.tag.start != typed_start)
 
 
-def _unit_of(rule: ElementRule) -> str:
+def _format_unit(rule: ElementRule) -> str:
     if rule.text is None:
         return ""
     return f"{rule.text.type.name}, {rule.text.unit}" if rule.text.unit else rule.text.type.name
 
 
-def _one_line(text: str) -> str:
+def _to_one_line(text: str) -> str:
     return " ".join(text.split())
 
 
@@ -122,7 +124,7 @@ def _make_element_snippet(rule: ElementRule) -> str:
     return f"{rule.tag}{attributes_text}>$0</{rule.tag}>" if has_content else f"{rule.tag}{attributes_text}/>$0"
 
 
-def _call_snippet(macro: NameDefinition) -> str:
+def _make_call_snippet(macro: NameDefinition) -> str:
     parameters = macro_parameters(macro)
     attributes_text = "".join(
         f' {parameter.name}="${{{number}}}"'

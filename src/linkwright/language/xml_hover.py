@@ -15,9 +15,9 @@ from linkwright.language.grammar import PREFIX, XACRO, root_of, rule_at
 from linkwright.language.hardware_plugins import hardware_parameters, hardware_plugins
 from linkwright.language.hover import Explanation, definitions_at, describe_definition
 from linkwright.language.parameters import called_macro, macro_parameters
-from linkwright.language.simulator_plugins import SimulatorPlugin, plugin_of
+from linkwright.language.simulator_plugins import SimulatorPlugin, find_plugin
 from linkwright.language.xml_completion import describe_parameter
-from linkwright.language.xml_values import element_at, hardware_of
+from linkwright.language.xml_values import find_element_at, find_hardware_plugin
 from linkwright.schema import AttributeRule, ElementRule, describe_attribute, describe_element
 
 
@@ -77,13 +77,13 @@ def _explain_attribute(
         value_explanation = _explain_value(document, cursor, attribute, value)
         if value_explanation:
             return Explanation(value_explanation, start, end)
-        angles = _in_degrees(cursor, attribute, value)
+        angles = _describe_in_degrees(cursor, attribute, value)
         if angles:
             return Explanation(f"{localized(describe_attribute(attribute))}\n\n{angles}", start, end)
     return Explanation(describe_attribute(attribute), start, end)
 
 
-def _in_degrees(cursor: Cursor, rule: AttributeRule, value: str) -> str:
+def _describe_in_degrees(cursor: Cursor, rule: AttributeRule, value: str) -> str:
     """Return the angles of a value in degrees, or an empty text if it has other contents."""
     parent_attributes = {
         attribute.name: attribute.value for element in cursor.elements[-2:-1] for attribute in element.attributes()
@@ -101,10 +101,10 @@ def _explain_value(document: Document, cursor: Cursor, rule: AttributeRule, valu
     """Return the explanation of a simulator plugin or hardware parameter, or empty."""
     if cursor.tags[-1] == "plugin" and rule.name in ("filename", "name"):
         attributes = {attribute.name: attribute.value or "" for attribute in cursor.elements[-1].attributes()}
-        plugin = plugin_of(attributes.get("filename", ""), attributes.get("name", ""))
+        plugin = find_plugin(attributes.get("filename", ""), attributes.get("name", ""))
         return "" if plugin is None else describe_plugin(plugin)
     if rule.type is PARAMETER_NAME and "hardware" in cursor.tags:
-        plugin_name = hardware_of(document.text, element_at(document.text, cursor.elements[:-1]))
+        plugin_name = find_hardware_plugin(document.text, find_element_at(document.text, cursor.elements[:-1]))
         parameter = hardware_parameters(document, plugin_name).get(value)
         return "" if parameter is None else f"**{value}**, {plugin_name}\n\n{parameter.meaning}"
     return ""
@@ -114,7 +114,7 @@ def describe_plugin(plugin: SimulatorPlugin) -> str:
     """Return the purpose and the parameters of a simulator plugin in Markdown."""
     name = plugin.class_name or plugin.filename
     parameters = ", ".join(f"`{child.tag}`" for child in plugin.rule.children)
-    return f"**{name}**: {plugin.about}" + (f"\n\n{parameters}" if parameters else "")
+    return f"**{name}**: {plugin.purpose}" + (f"\n\n{parameters}" if parameters else "")
 
 
 def _explain_text(document: Document, cursor: Cursor, root: ElementRule) -> Explanation | None:

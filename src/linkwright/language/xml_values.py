@@ -29,8 +29,8 @@ from linkwright.language.hardware_plugins import hardware_parameters, hardware_p
 from linkwright.language.occurrences import kinds_of_reference, kinds_of_text
 from linkwright.language.outline import Outline, OutlineElement
 from linkwright.language.robot_names import part_names
-from linkwright.language.simulator_plugins import plugin_of, simulator_plugins
-from linkwright.lint.extension_names import INTERFACES
+from linkwright.language.simulator_plugins import find_plugin, simulator_plugins
+from linkwright.lint.extension_names import INTERFACE_NAMES
 from linkwright.schema import AttributeRule, ElementRule
 from linkwright.sdf.values import TRUTH
 from linkwright.urdf.values import JOINT_TYPE, JOINT_TYPES
@@ -62,13 +62,13 @@ _PATH_TAGS = frozenset({"uri", "parameters", "albedo_map", "normal_map", "roughn
 _PACKAGE = re.compile(r"^(package|model)://([^/]*)$")
 _PATH = re.compile(r"^(?:(?:package|model)://|\$\(find\s+)([^/)]+)\)?/(.*)$")
 _IN_EXPRESSION = re.compile(r"^\$\(find\s+\$\{(\w+)\}\)/")
-_ENDINGS = {
+_SUFFIXES = {
     "xacro:include": (".xacro", ".urdf"),
     "mesh": (".stl", ".dae", ".obj"),
     "parameters": (".yaml", ".yml"),
     "texture": (".png", ".jpg"),
 }
-_SHOWN_FILES = 200
+_MAX_SHOWN_FILES = 200
 
 
 def complete_value(
@@ -85,15 +85,11 @@ def complete_value(
         rule: the rule of the element, or None.
         names: the names that the files of the description define.
     """
-    if (
-        cursor.attribute is None
-        or cursor.token is None
-        or (yield from _expression_completions(document, cursor, names))
-    ):
+    if cursor.attribute is None or cursor.token is None or (yield from _offer_expressions(document, cursor, names)):
         return
     start, tag, name = cursor.offset - len(cursor.typed), cursor.tags[-1], cursor.attribute.name
     if tag == "plugin" and rule is not None:
-        yield from _simulator_plugin(document, cursor, start)
+        yield from _offer_simulator_plugins(document, cursor, start)
         return
     if (tag, name) == ("xacro:insert_block", "name"):
         for block in blocks_in_scope(cursor):
@@ -102,16 +98,16 @@ def complete_value(
             yield Completion(name_of_block.name, ItemKind.NAME, start, "block", name_of_block.file.name)
         return
     attribute = None if rule is None else rule.attribute_rules.get(name)
-    yield from _value_completions(_CHOICES.get((tag, name), ()), start)
+    yield from _offer_values(_CHOICES.get((tag, name), ()), start)
     if attribute is not None:
-        yield from _type_completions(document, cursor, attribute, start, names)
+        yield from _offer_values_of_type(document, cursor, attribute, start, names)
     kinds = kinds_of_reference(tag, name)
     if (tag, name) == ("joint", "name") and "ros2_control" in cursor.tags:
         kinds = (NameKind.JOINT,)
-    yield from _name_completions(document, cursor, kinds, start, names)
+    yield from _offer_names(document, cursor, kinds, start, names)
     if name in _PATH_ATTRIBUTES:
-        yield from complete_path(document, cursor.typed, cursor.offset, _ENDINGS.get(tag, ()), names)
-    yield from _default_completion(cursor.attribute.value, attribute, start)
+        yield from complete_path(document, cursor.typed, cursor.offset, _SUFFIXES.get(tag, ()), names)
+    yield from _offer_default(cursor.attribute.value, attribute, start)
 
 
 def complete_text(
@@ -129,23 +125,23 @@ def complete_text(
         names: the names that the files of the description define.
     """
     tag, typed = cursor.tags[-1], cursor.typed.lstrip()
-    if "\n" in typed or (yield from _expression_completions(document, cursor, names)):
+    if "\n" in typed or (yield from _offer_expressions(document, cursor, names)):
         return
     if rule is not None and rule.text is None and tag not in _PATH_TAGS:
         return
     start = cursor.offset - len(typed)
     text = None if rule is None else rule.text
     if tag == "output_type":
-        yield from _value_completions(_OUTPUT_TYPES, start)
+        yield from _offer_values(_OUTPUT_TYPES, start)
     if text is not None:
-        yield from _type_completions(document, cursor, text, start, names)
-    yield from _name_completions(document, cursor, kinds_of_text(tag), start, names)
+        yield from _offer_values_of_type(document, cursor, text, start, names)
+    yield from _offer_names(document, cursor, kinds_of_text(tag), start, names)
     if tag in _PATH_TAGS:
-        yield from complete_path(document, typed, cursor.offset, _ENDINGS.get(tag, ()), names)
-    yield from _default_completion(None, text, start)
+        yield from complete_path(document, typed, cursor.offset, _SUFFIXES.get(tag, ()), names)
+    yield from _offer_default(None, text, start)
 
 
-def _expression_completions(
+def _offer_expressions(
     document: Document, cursor: Cursor, names: Sequence[NameDefinition]
 ) -> Generator[Completion, None, bool]:
     """Yield the completions in an expression or substitution, and return whether there is one."""
@@ -158,12 +154,12 @@ def _expression_completions(
     return False
 
 
-def _value_completions(values: Iterable[str], start: int, detail: str = "") -> Iterator[Completion]:
+def _offer_values(values: Iterable[str], start: int, detail: str = "") -> Iterator[Completion]:
     for value in values:
         yield Completion(value, ItemKind.VALUE, start, detail)
 
 
-def _default_completion(value: str | None, rule: AttributeRule | None, start: int) -> Iterator[Completion]:
+def _offer_default(value: str | None, rule: AttributeRule | None, start: int) -> Iterator[Completion]:
     """Yield the default of a rule, unless the value equals it or the rule is a boolean."""
     if rule is not None and rule.default and rule.default != value and rule.type is not TRUTH:
         yield Completion(rule.default, ItemKind.VALUE, start, localized(phrase("default")))
@@ -172,7 +168,7 @@ def _default_completion(value: str | None, rule: AttributeRule | None, start: in
 # --- values by their type ---------------------------------------------------------------------------------------------
 
 
-def _type_completions(
+def _offer_values_of_type(
     document: Document,
     cursor: Cursor,
     rule: AttributeRule,
@@ -181,49 +177,49 @@ def _type_completions(
 ) -> Iterator[Completion]:
     kind = rule.type
     if kind is JOINT_TYPE:
-        yield from _value_completions(JOINT_TYPES, start)
+        yield from _offer_values(JOINT_TYPES, start)
     elif " | " in kind.name:
-        yield from _value_completions(kind.name.split(" | "), start)
+        yield from _offer_values(kind.name.split(" | "), start)
     elif kind is TRUTH:
         for word in ("true", "false"):
-            yield from _value_completions((word,), start, localized(phrase("default")) if word == rule.default else "")
+            yield from _offer_values((word,), start, localized(phrase("default")) if word == rule.default else "")
     elif kind is HARDWARE_PLUGIN:
         for name, purpose in hardware_plugins(document).items():
             yield Completion(name, ItemKind.VALUE, start, "", purpose)
     elif kind is INTERFACE_NAME:
-        yield from _interfaces(document, cursor, start)
+        yield from _offer_interfaces(document, cursor, start)
     elif kind is PARAMETER_NAME:
-        yield from _parameters(document, cursor, start)
+        yield from _offer_parameters(document, cursor, start)
     elif kind in _KINDS_OF_TYPES:
-        yield from _name_completions(document, cursor, _KINDS_OF_TYPES[kind], start, names)
+        yield from _offer_names(document, cursor, _KINDS_OF_TYPES[kind], start, names)
 
 
-def _interfaces(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
+def _offer_interfaces(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
     """Yield the names of interfaces that the component does not have yet."""
-    component = element_at(document.text, cursor.elements[:-1])
+    component = find_element_at(document.text, cursor.elements[:-1])
     tag = cursor.tags[-1]
     others = [] if component is None else [sibling for sibling in component.children if sibling.tag.name == tag]
     present_names = {
-        _attribute(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start
+        _attribute_value(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start
     }
     is_joint = len(cursor.tags) < 2 or cursor.tags[-2] == "joint"
-    likely = INTERFACES if is_joint else (*_names_in_text(document.text, tag), *INTERFACES)
-    yield from _value_completions((name for name in dict.fromkeys(likely) if name not in present_names), start)
+    likely = INTERFACE_NAMES if is_joint else (*_find_names_in_text(document.text, tag), *INTERFACE_NAMES)
+    yield from _offer_values((name for name in dict.fromkeys(likely) if name not in present_names), start)
 
 
-def _names_in_text(text: str, tag: str) -> list[str]:
+def _find_names_in_text(text: str, tag: str) -> list[str]:
     return re.findall(rf"""<{tag}\s[^<>]{{0,99}}?\bname\s*=\s*["']([\w./-]+)["']""", text)
 
 
-def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
+def _offer_parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
     """Yield the parameters of hardware or of an interface."""
-    component = element_at(document.text, cursor.elements[:-1])
+    component = find_element_at(document.text, cursor.elements[:-1])
     others = [] if component is None else [child for child in component.children if child.tag.name == "param"]
     present_names = {
-        _attribute(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start
+        _attribute_value(sibling.tag, "name") for sibling in others if sibling.tag.start != cursor.elements[-1].start
     }
     if cursor.tags[-2:-1] == ("hardware",):
-        plugin = hardware_of(document.text, component)
+        plugin = find_hardware_plugin(document.text, component)
         for parameter in hardware_parameters(document, plugin, start).values():
             if parameter.name not in present_names:
                 yield Completion(parameter.name, ItemKind.ATTRIBUTE, start, plugin, parameter.meaning)
@@ -233,14 +229,14 @@ def _parameters(document: Document, cursor: Cursor, start: int) -> Iterator[Comp
                 yield Completion(name, ItemKind.ATTRIBUTE, start, "", meaning)
 
 
-def hardware_of(text: str, hardware: OutlineElement | None) -> str:
+def find_hardware_plugin(text: str, hardware: OutlineElement | None) -> str:
     """Return the plugin in an element ``<hardware>``, or empty if there is none."""
     plugin = next((child for child in hardware.children if child.tag.name == "plugin"), None) if hardware else None
     return "" if plugin is None else text[plugin.tag.end : plugin.end].partition("<")[0].strip()
 
 
-def element_at(text: str, elements: Sequence[Token]) -> OutlineElement | None:
-    """Return the innermost of some nested elements in the outline of a text, or None if it is missing."""
+def find_element_at(text: str, elements: Sequence[Token]) -> OutlineElement | None:
+    """Return the innermost of some nested elements in the outline of a text, or None."""
     children, innermost = Outline.of(text).elements, None
     for element in elements:
         innermost = next((candidate for candidate in children if candidate.tag.start == element.start), None)
@@ -248,21 +244,24 @@ def element_at(text: str, elements: Sequence[Token]) -> OutlineElement | None:
     return innermost
 
 
-def _attribute(token: Token, name: str) -> str:
+def _attribute_value(token: Token, name: str) -> str:
     return next((attribute.value or "" for attribute in token.attributes() if attribute.name == name), "")
 
 
 # --- names ------------------------------------------------------------------------------------------------------------
 
 
-def _name_completions(
+def _offer_names(
     document: Document,
     cursor: Cursor,
     kinds: Sequence[NameKind],
     start: int,
     names: Sequence[NameDefinition],
 ) -> Iterator[Completion]:
-    """Yield completions of names of some kinds: expanded names and, in a macro, names as written."""
+    """Yield completions of names of some kinds.
+
+    These are the expanded names and, in a macro, the names as written.
+    """
     if not kinds:
         return
     names_of_parts = [name for name in part_names(document) if name.kind in kinds]
@@ -271,39 +270,47 @@ def _name_completions(
     in_macro = cursor.macro is not None
     patterns = [name for name in names_in_file if "$" in name.name]
     literal_names = [name for name in defined_names if "$" not in name.name]
-    macro = "" if cursor.macro is None else _attribute(cursor.macro, "name")
+    macro = "" if cursor.macro is None else _attribute_value(cursor.macro, "name")
     names_in_macro = [name for name in names_in_file if name.owner == macro] if in_macro else []
     for name in (*names_in_macro, *(patterns if in_macro else ()), *names_of_parts, *literal_names):
         if name.start != start or name.file != document.file:
             yield Completion(name.name, ItemKind.NAME, start, name.detail or name.kind.value, name.file.name)
 
 
-def _simulator_plugin(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
+def _offer_simulator_plugins(document: Document, cursor: Cursor, start: int) -> Iterator[Completion]:
     """Yield the libraries or names of plugins, the plugins for the file's simulator first."""
     assert cursor.attribute is not None
     token, name = cursor.elements[-1], cursor.attribute.name
-    library, class_name = _attribute(token, "filename"), _attribute(token, "name")
+    library, class_name = _attribute_value(token, "filename"), _attribute_value(token, "name")
     is_classic = ".so" in document.text and "gz-sim" not in document.text and "ignition-gazebo" not in document.text
     plugins = sorted(simulator_plugins().values(), key=lambda plugin: plugin.is_classic != is_classic)
     if name == "filename":
-        plugin_of_class = plugin_of("", class_name)
+        plugin_of_class = find_plugin("", class_name)
         for plugin in ([] if plugin_of_class is None else [plugin_of_class]) + plugins:
             spelled = _spelled_name(plugin.filename, cursor.typed)
-            yield Completion(spelled, ItemKind.VALUE, start, plugin.class_name, plugin.about)
+            yield Completion(spelled, ItemKind.VALUE, start, plugin.class_name, plugin.purpose)
     elif name == "name":
-        known_plugin = plugin_of(library)
+        known_plugin = find_plugin(library)
         if known_plugin is not None and known_plugin.class_name:
             yield Completion(
-                _spelled_name(known_plugin.class_name, cursor.typed), ItemKind.VALUE, start, library, known_plugin.about
+                _spelled_name(known_plugin.class_name, cursor.typed),
+                ItemKind.VALUE,
+                start,
+                library,
+                known_plugin.purpose,
             )
         elif known_plugin is not None:
             yield Completion(
-                known_plugin.library.removeprefix("gazebo_ros_"), ItemKind.VALUE, start, library, known_plugin.about
+                known_plugin.library.removeprefix("gazebo_ros_"), ItemKind.VALUE, start, library, known_plugin.purpose
             )
         for plugin in plugins:
             if plugin.class_name and (known_plugin is None or not known_plugin.is_classic):
                 yield Completion(
-                    _spelled_name(plugin.class_name, cursor.typed), ItemKind.VALUE, start, plugin.filename, plugin.about
+                    _spelled_name(plugin.class_name, cursor.typed),
+                    ItemKind.VALUE,
+                    start,
+                    plugin.filename,
+                    plugin.purpose,
                 )
 
 
@@ -352,10 +359,10 @@ def complete_path(
             if beginning.startswith(typed):
                 yield Completion(beginning, ItemKind.VALUE, offset - len(typed))
     if base is not None and "$" not in subpath:
-        yield from _files(base, subpath, offset, endings, document.file)
+        yield from _offer_files(base, subpath, offset, endings, document.file)
 
 
-def _files(base: Path, typed: str, offset: int, endings: Sequence[str], own_file: Path) -> Iterator[Completion]:
+def _offer_files(base: Path, typed: str, offset: int, endings: Sequence[str], own_file: Path) -> Iterator[Completion]:
     subfolder, _, name = typed.rpartition("/")
     try:
         entries = [(entry.is_file(), entry.name) for entry in (base / subfolder).iterdir() if entry != own_file]
@@ -367,6 +374,6 @@ def _files(base: Path, typed: str, offset: int, endings: Sequence[str], own_file
         fits = file_name.lower().endswith(tuple(endings))
         return (0 if fits or not is_file else 1) if endings else 0, is_file, file_name
 
-    for is_file, file_name in sorted(entries, key=rank)[:_SHOWN_FILES]:
+    for is_file, file_name in sorted(entries, key=rank)[:_MAX_SHOWN_FILES]:
         if not file_name.startswith("."):
             yield Completion(file_name, ItemKind.FILE if is_file else ItemKind.FOLDER, offset - len(name))

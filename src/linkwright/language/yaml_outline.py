@@ -13,12 +13,12 @@ from enum import Enum
 
 from linkwright.loading.deferred import lazy_pattern
 
-MAX_TEXT = 500_000
+MAX_TEXT_LENGTH = 500_000
 """The maximum length of a text in characters. Longer files are data, not configuration."""
 _MAX_FLOW_LINES = 300
 _MAX_DASHES = 20
 """The maximum number of list items that begin in one line."""
-_MAX_KEY = 500
+_MAX_KEY_LENGTH = 500
 _KEY = lazy_pattern(r"""("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|(?![\s#\[\]{},"'&!|>@`])[^\n]*?):(?=\s|$)""")
 _BLOCK_TEXT = lazy_pattern(r"[|>][+-]?\d?[+-]?\s*$")
 
@@ -93,9 +93,11 @@ class YamlEntry:
     def items(self) -> list[tuple[str, int]]:
         """Return the items of a flow or block list without quotes, each with its offset."""
         if self.value.startswith("["):
-            return [*_flow_items(self.value, self.value_start)]
+            return [*_parse_flow_items(self.value, self.value_start)]
         return [
-            (unquoted(child.value), _content_start(child)) for child in self.children if child.is_item and child.value
+            (unquoted(child.value), _find_content_start(child))
+            for child in self.children
+            if child.is_item and child.value
         ]
 
 
@@ -138,7 +140,7 @@ class YamlOutline:
         self._last: list[YamlEntry] = []
         """The last entry that begins at or before each line."""
         self._comments: dict[int, int] = {}
-        if len(text) <= MAX_TEXT:
+        if len(text) <= MAX_TEXT_LENGTH:
             self._read()
         _set_ends(self.root, len(text))
 
@@ -165,14 +167,14 @@ class YamlOutline:
                     entry,
                 )
             if offset > entry.start and (not entry.key or offset >= entry.value_start) and entry.value_start <= offset:
-                return self._in_value(entry, offset)
+                return self._cursor_in_value(entry, offset)
         if on_line and on_line[0].key and offset > on_line[0].start:
             return no_position  # The cursor is directly after the colon.
         if on_line and prefix.strip():
             return no_position
-        return self._in_new_line(prefix, last, line, offset)
+        return self._cursor_in_new_line(prefix, last, line, offset)
 
-    def _in_value(self, entry: YamlEntry, offset: int) -> YamlCursor:
+    def _cursor_in_value(self, entry: YamlEntry, offset: int) -> YamlCursor:
         cursor = _value_cursor(self.text, entry, offset)
         is_word = entry.is_item and not entry.value.startswith(("[", "{", '"', "'"))
         siblings = [child for child in (entry.parent or self.root).children if child is not entry]
@@ -180,11 +182,11 @@ class YamlOutline:
             return YamlCursor(YamlPosition.KEY, offset, entry, cursor.start, cursor.typed)
         return cursor
 
-    def _in_new_line(self, prefix: str, last: YamlEntry, line: int, offset: int) -> YamlCursor:
+    def _cursor_in_new_line(self, prefix: str, last: YamlEntry, line: int, offset: int) -> YamlCursor:
         """Return the cursor in a line that has no entry yet."""
         typed = prefix.lstrip(" \t")
         column = len(prefix) - len(typed)
-        parent = self._before(last, line)
+        parent = self._find_entry_before(last, line)
         while parent.parent is not None and (parent.column >= column or (parent.value and not parent.is_item)):
             parent = parent.parent
         start = offset - len(typed)
@@ -195,7 +197,7 @@ class YamlOutline:
             return YamlCursor(YamlPosition.VALUE, offset, parent, offset, "", None, is_in_list=True)
         return YamlCursor(YamlPosition.KEY, offset, parent, start, typed.lstrip("\"'"))
 
-    def _before(self, last: YamlEntry, line: int) -> YamlEntry:
+    def _find_entry_before(self, last: YamlEntry, line: int) -> YamlEntry:
         while last.line >= line and last.parent is not None and line > 0:
             line -= 1
             last = self._last[line]
@@ -230,7 +232,7 @@ class YamlOutline:
     ) -> YamlEntry | None:
         """Add the entries of a line, and return the last one, or None."""
         added: YamlEntry | None = None
-        end = _comment_start(line, column)
+        end = _find_comment_start(line, column)
         if end < len(line):
             self._comments[line_index] = offset + end
         for _ in range(_MAX_DASHES):
@@ -244,7 +246,7 @@ class YamlOutline:
                 stack.append(added)
                 column += width
                 continue
-            match = _KEY.match(item_text[:_MAX_KEY])
+            match = _KEY.match(item_text[:_MAX_KEY_LENGTH])
             if match is None:
                 break
             if added is not None:
@@ -261,11 +263,11 @@ class YamlOutline:
 
     def _read_flow(self, entry: YamlEntry) -> int:
         """Extend a value to the end of its flow collection, add its keys, and return its end."""
-        end = _flow_end(self.text, entry.value_start, entry.column)
+        end = _find_flow_end(self.text, entry.value_start, entry.column)
         entry.value = self.text[entry.value_start : end].rstrip()
         if entry.value.startswith("{"):
-            for text, start in _flow_items(entry.value, entry.value_start):
-                match = _KEY.match(text[:_MAX_KEY])
+            for text, start in _parse_flow_items(entry.value, entry.value_start):
+                match = _KEY.match(text[:_MAX_KEY_LENGTH])
                 if match is not None:
                     value = text[match.end() :]
                     begin = start + match.end() + len(value) - len(value.lstrip())
@@ -290,7 +292,7 @@ def _pop_to_column(stack: list[YamlEntry], column: int, *, is_item: bool) -> Non
         stack.pop()
 
 
-def _comment_start(line: str, column: int) -> int:
+def _find_comment_start(line: str, column: int) -> int:
     """Return the column of a comment in a line, or the length of the line."""
     quote = ""
     for index in range(column, len(line)):
@@ -304,10 +306,10 @@ def _comment_start(line: str, column: int) -> int:
     return len(line.rstrip("\r"))
 
 
-def _flow_end(text: str, start: int, column: int) -> int:
+def _find_flow_end(text: str, start: int, column: int) -> int:
     """Return the offset after a flow collection.
 
-    An unclosed one ends before the next line at the column of its entry.
+    An unclosed collection ends before the next line at the column of its entry.
     """
     depth, offset = 0, start
     for number in range(_MAX_FLOW_LINES):
@@ -317,7 +319,7 @@ def _flow_end(text: str, start: int, column: int) -> int:
         if number and content.strip() and len(line) - len(content) <= column and content[0] not in "]}":
             break
         quote = ""
-        for index, character in enumerate(line[: _comment_start(line, 0)]):
+        for index, character in enumerate(line[: _find_comment_start(line, 0)]):
             if quote:
                 quote = "" if character == quote else quote
             elif character in "\"'":
@@ -334,7 +336,7 @@ def _flow_end(text: str, start: int, column: int) -> int:
     return min(offset - 1, len(text))
 
 
-def _flow_items(value: str, start: int) -> Iterator[tuple[str, int]]:
+def _parse_flow_items(value: str, start: int) -> Iterator[tuple[str, int]]:
     """Yield the items of a flow collection without quotes, each with its offset."""
     depth, quote, begin = 0, "", 1
     for index, character in enumerate(value):
@@ -347,13 +349,13 @@ def _flow_items(value: str, start: int) -> Iterator[tuple[str, int]]:
         elif character in "]}":
             depth -= 1
         if not quote and ((character == "," and depth == 1) or (character in "]}" and depth == 0)):
-            yield from _flow_item(value, begin, index, start)
+            yield from _parse_flow_item(value, begin, index, start)
             begin = index + 1
     if depth > 0:
-        yield from _flow_item(value, begin, len(value), start)
+        yield from _parse_flow_item(value, begin, len(value), start)
 
 
-def _flow_item(value: str, begin: int, end: int, start: int) -> Iterator[tuple[str, int]]:
+def _parse_flow_item(value: str, begin: int, end: int, start: int) -> Iterator[tuple[str, int]]:
     text = re.sub(r"^(\s*#[^\n]*\n)*\s*", lambda match: " " * len(match[0]), value[begin:end])
     if text.strip():
         inner = text.strip()
@@ -361,7 +363,7 @@ def _flow_item(value: str, begin: int, end: int, start: int) -> Iterator[tuple[s
         yield unquoted(inner), start + begin + len(text) - len(text.lstrip()) + (1 if quoted else 0)
 
 
-def _content_start(entry: YamlEntry) -> int:
+def _find_content_start(entry: YamlEntry) -> int:
     return entry.value_start + (1 if entry.value[:1] in ('"', "'") else 0)
 
 

@@ -10,7 +10,7 @@ from linkwright.language.yaml_outline import YamlEntry, YamlOutline
 
 _MAX_DEPTH = 30
 _MAX_SYMBOLS = 20_000
-_NAMING = ("Name", "name", "Class", "type", "plugin")
+_IDENTIFYING_KEYS = ("Name", "name", "Class", "type", "plugin")
 """The keys whose value names an item of a list, in order of precedence."""
 
 
@@ -30,7 +30,9 @@ def _symbols(entries: Iterable[YamlEntry], depth: int) -> Iterator[Symbol]:
         if entry.is_item:
             if not children:
                 continue
-            name = next((child.scalar for key in _NAMING if (child := entry.child(key)) and child.scalar), str(index))
+            name = next(
+                (child.scalar for key in _IDENTIFYING_KEYS if (child := entry.child(key)) and child.scalar), str(index)
+            )
             yield Symbol(name, SymbolKind.OBJECT, entry.start, entry.end, children)
             continue
         kind = SymbolKind.GROUP if children else SymbolKind.KEY
@@ -46,7 +48,7 @@ def _symbols(entries: Iterable[YamlEntry], depth: int) -> Iterator[Symbol]:
         )
 
 
-def by_typed(items: Iterable[Completion], typed: str) -> list[Completion]:
+def sort_by_match(items: Iterable[Completion], typed: str) -> list[Completion]:
     """Remove duplicate completions, and sort the others by their match with the typed text.
 
     Labels that begin with the text come first, then labels that contain it, then the others.

@@ -25,9 +25,9 @@ _TEXT_SUFFIXES = (
 _MESH_SUFFIXES = (".dae", ".obj", ".gltf")
 _MAX_TEXT_BYTES, _MAX_MESH_BYTES = 1 << 20, 1 << 16
 """The number of bytes that are searched for names. Meshes name their textures near their beginning."""
-_EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|%[sd]|\{[\w.\[\]'\"]*\}")
+_COMPUTED_PART = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|%[sd]|\{[\w.\[\]'\"]*\}")
 _WORD = re.compile(r"model://[\w.+-]+|[\w.+*-]+")
-_MODEL = "model://"
+_MODEL_SCHEME = "model://"
 _MODEL_CONFIG = "model.config"
 """The file of a model folder that names only files of this folder."""
 _MIN_FIXED_CHARACTERS = 3
@@ -136,9 +136,9 @@ def _read_beginning(file: Path) -> str:
 
 def _find_file_names(text: str) -> Iterator[str]:
     """Yield the file names in a text, with ``*`` for each computed part, and the names of SDF models."""
-    for word in set(_WORD.findall(_EXPRESSION.sub("*", text))):
-        if word.startswith(_MODEL):
-            yield word.removeprefix(_MODEL)
+    for word in set(_WORD.findall(_COMPUTED_PART.sub("*", text))):
+        if word.startswith(_MODEL_SCHEME):
+            yield word.removeprefix(_MODEL_SCHEME)
             continue
         stem, _, suffix = word.rpartition(".")
         if not suffix[:1].isalpha():

@@ -37,7 +37,7 @@ class FixResult:
 
     def diff(self) -> str:
         """Return the changes as a unified diff that ``patch -p0`` accepts."""
-        return "".join(_diff(file, text) for file, text in self.texts.items())
+        return "".join(_make_diff(file, text) for file, text in self.texts.items())
 
 
 def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = True) -> FixResult:
@@ -57,14 +57,14 @@ def fix_file(path: Path, check: Check, *, unsafe: bool = False, write: bool = Tr
     Raises:
         LinkwrightError: LINT201 if a file cannot be written.
     """
-    allowed_folder = _allowed_folder(path)
+    allowed_folder = _find_allowed_folder(path)
     result = FixResult()
     for _ in range(_MAX_PASSES):
         findings = check(result.texts.get(str(path)) if not write else None)
         fixed_files = {file for file in result.texts if not write and file != str(path)}
         fixes = [
             (fixable.code, fixable.fix)
-            for fixable in _fixable(findings, unsafe)
+            for fixable in _find_fixable_findings(findings, unsafe)
             if _may_change(fixable.fix, allowed_folder, fixed_files)
         ]
         new_texts = _apply_fixes(fixes, result, {} if write else result.texts)
@@ -110,13 +110,13 @@ class _FixableFinding:
     fix: Fix
 
 
-def _fixable(findings: Iterable[Diagnostic], unsafe: bool) -> Iterator[_FixableFinding]:
+def _find_fixable_findings(findings: Iterable[Diagnostic], unsafe: bool) -> Iterator[_FixableFinding]:
     for diagnostic in findings:
         if isinstance(diagnostic, Finding) and diagnostic.fix and (diagnostic.fix.safe or unsafe):
             yield _FixableFinding(diagnostic.code, diagnostic.fix)
 
 
-def _allowed_folder(path: Path) -> Path:
+def _find_allowed_folder(path: Path) -> Path:
     folder = path.absolute().parent
     package = enclosing_package(folder)
     return (package[1] if package else folder).resolve()
@@ -145,7 +145,7 @@ def _apply_fixes(fixes: Iterable[tuple[str, Fix]], result: FixResult, texts: Map
             counts[code] = counts.get(code, 0) + 1
     new_texts = {}
     for file, edits in accepted_edits.items():
-        text = old_texts.setdefault(file, texts.get(file) if file in texts else _text(file))
+        text = old_texts.setdefault(file, texts.get(file) if file in texts else _read_text(file))
         if text is None:
             return {}
         new_text = _apply_edits(text, edits)
@@ -167,7 +167,7 @@ def _apply_edits(text: str, edits: Iterable[Edit]) -> str:
     return text
 
 
-def _text(file: str) -> str | None:
+def _read_text(file: str) -> str | None:
     """Return the text of a file without a byte order mark, or None if it is not readable UTF-8."""
     try:
         return read_bytes(file).removeprefix(_BYTE_ORDER_MARK).decode("utf-8")
@@ -185,11 +185,11 @@ def _is_well_formed(file: str, text: str) -> bool:
     return True
 
 
-def _diff(file: str, text: str) -> str:
-    return unified_changes(display_path(file), _text(file) or "", text)
+def _make_diff(file: str, text: str) -> str:
+    return make_unified_diff(display_path(file), _read_text(file) or "", text)
 
 
-def unified_changes(name: str, before: str, after: str) -> str:
+def make_unified_diff(name: str, before: str, after: str) -> str:
     """Return the changes to a file as a unified diff that ``patch -p0`` accepts."""
     lines = unified_diff(before.splitlines(keepends=True), after.splitlines(keepends=True), name, name)
     return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)

@@ -21,17 +21,17 @@ from linkwright.diagnostics import (
     quoted_names,
 )
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.lint.engine import Checked, sorted_by_location, with_configured_severity
+from linkwright.lint.engine import Checked, sort_by_location, with_configured_severity
 from linkwright.lint.registry import find_rule
-from linkwright.lint.rules.inertia_doubtful import SKIPPED_FOR_PLACEHOLDERS, placeholder_links
+from linkwright.lint.rules.inertia_doubtful import SKIPPED_FOR_PLACEHOLDERS, find_placeholder_links
 from linkwright.lint.settings import Settings
 from linkwright.loading.lean_dataclasses import dataclass, field, replace
 from linkwright.packages import PackageFinder
 from linkwright.xmltree import Document
 
-UNDECLARED = "XAC211"
-UNUSED = "XAC215"
-_NEEDS_ARGUMENTS = "LINT303"
+UNDECLARED_CODE = "XAC211"
+UNUSED_CODE = "XAC215"
+_NEEDS_ARGUMENTS_CODE = "LINT303"
 _FILE_CODES = frozenset({"XML101", "XAC506"})
 _MAX_TRIED_VALUES = 12
 """The maximum number of values to try, among those that a description compares its arguments with."""
@@ -104,7 +104,7 @@ class SetCheck:
         default = self._run(_NO_VALUES)
         if _has_expressions(default.result):
             default = self._run_expanded(find_sets()) or default
-        if (self.is_named and not default.errors) or not _takes_arguments(default.result):
+        if (self.is_named and not default.errors) or not _uses_arguments(default.result):
             return default.result
         sets = find_sets()
         if self.is_named and not any(argument_set.values or argument_set.runtime_names for argument_set in sets):
@@ -159,7 +159,7 @@ class SetCheck:
         )
         self._is_expanded = result.subject is not None and result.subject.expansion is not None
         if argument_set.values:  # a caller may set arguments that only other descriptions declare
-            diagnostics = tuple(diagnostic for diagnostic in result.diagnostics if diagnostic.code != UNUSED)
+            diagnostics = tuple(diagnostic for diagnostic in result.diagnostics if diagnostic.code != UNUSED_CODE)
             result = replace(result, diagnostics=diagnostics)
         errors = frozenset(
             _finding_key(diagnostic)
@@ -170,7 +170,7 @@ class SetCheck:
         if not (errors and argument_set.runtime_names):
             return run
         assumed_values = dict.fromkeys(filter(None, argument_set.runtime_names), _ANY_VALUE)
-        changed_errors = self._changed_errors(run, assumed_values) if assumed_values else frozenset()
+        changed_errors = self._find_changed_errors(run, assumed_values) if assumed_values else frozenset()
         return replace(run, hanging=changed_errors | {key for key in errors if _may_depend_on_argument(key[0])})
 
     # --- findings ---------------------------------------------------------------------------------------------
@@ -182,11 +182,11 @@ class SetCheck:
         """
         occurrences: dict[Key, tuple[Diagnostic, list[_Run]]] = {}
         for run in runs:
-            for key, finding in _with_numbered_keys(run.result.diagnostics):
+            for key, finding in _number_keys(run.result.diagnostics):
                 occurrences.setdefault(key, (finding, []))[1].append(run)
         diagnostics: list[Diagnostic] = [*with_configured_severity(extra, self.settings)]
         placeholder_names = {
-            name for run in runs if run.result.subject for name in run.result.subject.once(placeholder_links)
+            name for run in runs if run.result.subject for name in run.result.subject.once(find_placeholder_links)
         }
         for diagnostic, affected_runs in occurrences.values():
             if (
@@ -199,13 +199,13 @@ class SetCheck:
             elif not _holds_for_all_sets(diagnostic):
                 diagnostics.append(_add_condition(diagnostic, affected_runs, runs))
         best_result = next((run.result for run in runs if run.result.robot is not None), runs[0].result)
-        return replace(best_result, diagnostics=tuple(sorted_by_location(diagnostics, str(self.path))))
+        return replace(best_result, diagnostics=tuple(sort_by_location(diagnostics, str(self.path))))
 
     def _needs_arguments_finding(
         self, working_run: _Run, default: _Run, common: frozenset[Key], sets: Sequence[ArgumentSet]
     ) -> Iterator[Diagnostic]:
         """Yield the finding that the defaults alone do not produce a robot."""
-        names = self._required_arguments(working_run.argument_set.values, common)
+        names = self._find_required_arguments(working_run.argument_set.values, common)
         shown_values = " ".join(
             f"{name}:={working_run.argument_set.values[name]}" for name in names[:_MAX_SHOWN_ARGUMENTS]
         )
@@ -217,9 +217,9 @@ class SetCheck:
         notes = [Note(message, working_run.argument_set.span)]
         if len(sets) > 1 and working_run.argument_set in sets:
             notes.append(Note(phrase("the file is checked with {count} sets of values", count=len(sets))))
-        yield _missing_arguments_finding(default.result, names, tuple(notes))
+        yield _make_missing_arguments_finding(default.result, names, tuple(notes))
 
-    def _required_arguments(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
+    def _find_required_arguments(self, values: Mapping[str, str], common: frozenset[Key]) -> list[str]:
         """Return the names of the arguments without which the expansion fails.
 
         The arguments are found by leaving out each argument in turn.
@@ -250,12 +250,12 @@ class SetCheck:
 
         Errors that may be due to such values are left out.
         """
-        names = _runtime_arguments(sets)
+        names = _find_runtime_arguments(sets)
         if not names:
             return self._result_without_values(default, sets)
         certain_errors = common.difference(*(run.hanging for run in runs))
         return self._without_uncertain_errors(
-            default, lambda error: _finding_key(error) in certain_errors, names, _runtime_value_note(sets)
+            default, lambda error: _finding_key(error) in certain_errors, names, _make_runtime_value_note(sets)
         )
 
     def _result_without_values(self, default: _Run, sets: Sequence[ArgumentSet]) -> Checked:
@@ -265,21 +265,21 @@ class SetCheck:
         arguments are left out.
         """
         undeclared_names = [
-            name for diagnostic in default.result.diagnostics if (name := undeclared_argument(diagnostic))
+            name for diagnostic in default.result.diagnostics if (name := find_undeclared_argument(diagnostic))
         ]
         if undeclared_names:
-            uncertain_errors = self._changed_errors(default, dict.fromkeys(undeclared_names, _ANY_VALUE))
+            uncertain_errors = self._find_changed_errors(default, dict.fromkeys(undeclared_names, _ANY_VALUE))
             return self._without_uncertain_errors(
                 default,
-                lambda error: undeclared_argument(error) is None and _finding_key(error) not in uncertain_errors,
+                lambda error: find_undeclared_argument(error) is None and _finding_key(error) not in uncertain_errors,
                 list(dict.fromkeys(undeclared_names)),
-                _runtime_value_note(sets),
+                _make_runtime_value_note(sets),
             )
-        names = dict.fromkeys((*_runtime_arguments(sets), *empty_defaults(_sources(default.result))))
+        names = dict.fromkeys((*_find_runtime_arguments(sets), *empty_defaults(_sources(default.result))))
         changed_errors = {
             name: errors
             for name in list(names)[:_MAX_TRIED_VALUES]
-            if (errors := self._changed_errors(default, {name: _ANY_VALUE}))
+            if (errors := self._find_changed_errors(default, {name: _ANY_VALUE}))
         }
         if not changed_errors:
             return default.result
@@ -288,10 +288,10 @@ class SetCheck:
             default,
             lambda error: _finding_key(error) not in uncertain_errors,
             list(changed_errors),
-            _runtime_value_note(sets),
+            _make_runtime_value_note(sets),
         )
 
-    def _changed_errors(self, run: _Run, values: Mapping[str, str]) -> frozenset[Key]:
+    def _find_changed_errors(self, run: _Run, values: Mapping[str, str]) -> frozenset[Key]:
         """Return the keys of the errors that change or disappear with other values."""
         other_messages = self._run(ArgumentSet({**run.argument_set.values, **values})).error_messages
         return frozenset(key for key, message in run.error_messages if (key, message) not in other_messages)
@@ -310,9 +310,9 @@ class SetCheck:
             name=names[0],
         )
         diagnostics += with_configured_severity(
-            [_missing_arguments_finding(default.result, names, notes, hint)], self.settings
+            [_make_missing_arguments_finding(default.result, names, notes, hint)], self.settings
         )
-        return replace(default.result, diagnostics=tuple(sorted_by_location(diagnostics, str(self.path))))
+        return replace(default.result, diagnostics=tuple(sort_by_location(diagnostics, str(self.path))))
 
 
 def _sources(result: Checked) -> Sequence[Document]:
@@ -327,7 +327,7 @@ def _has_expressions(result: Checked) -> bool:
     return any("${" in text or "$(" in text for text in texts)
 
 
-def _takes_arguments(result: Checked) -> bool:
+def _uses_arguments(result: Checked) -> bool:
     """Return whether arguments might change a description, because its sources contain ``arg``.
 
     A file without a subject takes arguments if its suffix is ``.xacro``.
@@ -342,7 +342,7 @@ def _finding_key(diagnostic: Diagnostic) -> Key:
     return diagnostic.code, diagnostic.span, "" if diagnostic.span else diagnostic.message
 
 
-def _with_numbered_keys(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnostic]]:
+def _number_keys(diagnostics: Iterable[Diagnostic]) -> Iterator[tuple[Key, Diagnostic]]:
     """Yield each diagnostic with a key: code, span, and index among the findings at this span.
 
     The key leaves the message out, since numbers and names in messages differ between sets.
@@ -379,12 +379,12 @@ def _add_condition(diagnostic: Diagnostic, affected_runs: Sequence[_Run], runs: 
     An error becomes a warning if all runs that have it use values that a launch argument merely offers. Such a value
     may require a matching value of another argument, such as the number of joints for the kind of arm.
     """
-    notes = (*diagnostic.notes, _condition(affected_runs[0], runs))
+    notes = (*diagnostic.notes, _make_condition_note(affected_runs[0], runs))
     is_offered = diagnostic.severity is Severity.ERROR and all(run.argument_set.is_offered for run in affected_runs)
     return diagnostic.with_changes(notes=notes, severity=Severity.WARNING if is_offered else diagnostic.severity)
 
 
-def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
+def _make_condition_note(run: _Run, runs: Sequence[_Run]) -> Note:
     """Return a note with the values that differ between a run and the other runs."""
     values = run.argument_set.values
     differing_names = [
@@ -397,22 +397,22 @@ def _condition(run: _Run, runs: Sequence[_Run]) -> Note:
     return Note(phrase("this happens with {values}", values=shown_values), run.argument_set.span)
 
 
-def undeclared_argument(diagnostic: Diagnostic) -> str | None:
+def find_undeclared_argument(diagnostic: Diagnostic) -> str | None:
     """Return the name of the argument that a finding reports as undeclared, or None.
 
     The result is also None if the name may be misspelled.
     """
-    if diagnostic.code != UNDECLARED or as_phrase(diagnostic.hint or "").template.startswith("did you mean"):
+    if diagnostic.code != UNDECLARED_CODE or as_phrase(diagnostic.hint or "").template.startswith("did you mean"):
         return None
     return str(as_phrase(diagnostic.message).arguments.get("name", ""))
 
 
-def _runtime_arguments(sets: Sequence[ArgumentSet]) -> list[str]:
+def _find_runtime_arguments(sets: Sequence[ArgumentSet]) -> list[str]:
     """Return the names of the arguments whose values are known only when their callers run."""
     return list(dict.fromkeys(name for argument_set in sets for name in argument_set.runtime_names if name))
 
 
-def _runtime_value_note(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
+def _make_runtime_value_note(sets: Sequence[ArgumentSet]) -> tuple[Note, ...]:
     """Return a note on the first caller with values known only at runtime, or an empty tuple."""
     call_spans = [argument_set.span for argument_set in sets if argument_set.runtime_names]
     return (
@@ -427,10 +427,10 @@ def _may_depend_on_argument(code: str) -> bool:
     """
     if code.startswith("URDF"):
         return code not in HOLDS_FOR_PARTS
-    return code in (UNDECLARED, *_FILE_CODES)
+    return code in (UNDECLARED_CODE, *_FILE_CODES)
 
 
-def _missing_arguments_finding(
+def _make_missing_arguments_finding(
     result: Checked, names: Sequence[str], notes: tuple[Note, ...], hint: Phrase | None = None
 ) -> Diagnostic:
     shown_names = list(names[:_MAX_SHOWN_ARGUMENTS])
@@ -449,4 +449,4 @@ def _missing_arguments_finding(
     root = next(iter(result.subject.sources.values())).root if result.subject is not None else None
     span = root.span() if root is not None else None
     source = root.source if root is not None else None
-    return Diagnostic(_NEEDS_ARGUMENTS, message, span, Severity.INFO, notes, hint, source)
+    return Diagnostic(_NEEDS_ARGUMENTS_CODE, message, span, Severity.INFO, notes, hint, source)

@@ -17,7 +17,7 @@ _CODE_PREFIX = "LW3"
 """The prefix of the codes of the rules about masses and inertias."""
 
 
-def inertia_findings(robot: Robot, finder: PackageFinder) -> list[tuple[str, Diagnostic]]:
+def find_inertia_findings(robot: Robot, finder: PackageFinder) -> list[tuple[str, Diagnostic]]:
     """Return the findings about masses and inertias, each with the name of its link.
 
     If a macro with a link is called four times, each of the four links has its own findings, whereas `linkwright check`
@@ -31,16 +31,16 @@ def inertia_findings(robot: Robot, finder: PackageFinder) -> list[tuple[str, Dia
     subject = Subject(description, finder, Settings())
     rules = [rule for rule in all_rules() if rule.default and rule.code.startswith(_CODE_PREFIX)]
     findings = [diagnostic for rule in rules for diagnostic in rule.check(subject)]
-    link_names = _link_names(robot)
+    link_names = _index_link_names(robot)
     return [
         (link, diagnostic)
         for diagnostic in Suppressions(subject, subject.settings).apply(findings)
         if diagnostic.severity is not Severity.INFO
-        if (link := _link_name(diagnostic, link_names)) is not None
+        if (link := _find_link_name(diagnostic, link_names)) is not None
     ]
 
 
-def _link_names(robot: Robot) -> dict[int, str]:
+def _index_link_names(robot: Robot) -> dict[int, str]:
     """Return the name of the link that contains each element, by the `id` of the element."""
     link_names: dict[int, str] = {}
     for link in robot.links.values():
@@ -49,7 +49,7 @@ def _link_names(robot: Robot) -> dict[int, str]:
     return link_names
 
 
-def _link_name(diagnostic: Diagnostic, link_names: dict[int, str]) -> str | None:
+def _find_link_name(diagnostic: Diagnostic, link_names: dict[int, str]) -> str | None:
     if not isinstance(diagnostic, Finding) or diagnostic.element is None:
         return None
     return link_names.get(id(diagnostic.element))

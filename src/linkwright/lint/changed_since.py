@@ -80,15 +80,15 @@ class WorkingTreeChanges:
     def _affected_paths(self, root: Path, paths: Sequence[Path], changed: Iterable[str]) -> Targets:
         targets = find_targets(paths, with_packages=self._with_packages)
         changed_names = set(changed)
-        names = {_relative(file, root): file for file in targets.files}
+        names = {_to_relative(file, root): file for file in targets.files}
         affected = TextFiles(root).affected(changed_names, names.keys())
-        folders = [_relative(folder, root) for folder in targets.packages]
+        folders = [_to_relative(folder, root) for folder in targets.packages]
         changed_folders = {
             folder for folder in folders if any(Path(name).is_relative_to(folder) for name in changed_names | affected)
         }
         return Targets(
             tuple(file for name, file in names.items() if name in affected),
-            tuple(folder for folder in targets.packages if _relative(folder, root) in changed_folders),
+            tuple(folder for folder in targets.packages if _to_relative(folder, root) in changed_folders),
             targets.named_files,
         )
 
@@ -96,5 +96,5 @@ class WorkingTreeChanges:
 _HINT = phrase("leave out `--changed`; outside a repository, `--baseline` hides known findings")
 
 
-def _relative(path: Path, root: Path) -> str:
+def _to_relative(path: Path, root: Path) -> str:
     return Path(os.path.relpath(os.path.realpath(path), root)).as_posix()

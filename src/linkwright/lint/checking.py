@@ -7,13 +7,18 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Span
 from linkwright.lint.argument_sets import SetCheck
-from linkwright.lint.configuration import read_settings, settings_for
+from linkwright.lint.configuration import find_settings, read_settings
 from linkwright.lint.contexts import Contexts
 from linkwright.lint.engine import Checked, examine, examine_package
 from linkwright.lint.finding import without_element
-from linkwright.lint.folders import MISSING_PACKAGE, Examined, relevant_findings, relevant_package_findings
+from linkwright.lint.folders import (
+    MISSING_PACKAGE_CODE,
+    Examined,
+    select_relevant_findings,
+    select_relevant_package_findings,
+)
 from linkwright.lint.rule import Scope
-from linkwright.lint.selector_words import canonical
+from linkwright.lint.selector_words import to_canonical
 from linkwright.lint.settings import Settings
 from linkwright.lint.targets import Targets
 from linkwright.loading.lean_dataclasses import dataclass, field
@@ -38,7 +43,7 @@ class UniqueFindings:
     def add(self, findings: Iterable[Diagnostic]) -> None:
         """Add the findings that are not in the collection yet, without their elements."""
         for diagnostic in findings:
-            key = (diagnostic.code, _location(diagnostic), diagnostic.message)
+            key = (diagnostic.code, _find_location(diagnostic), diagnostic.message)
             if key not in self._findings:
                 self._findings[key] = without_element(diagnostic)
 
@@ -47,13 +52,13 @@ class UniqueFindings:
         return list(self._findings.values())
 
 
-def _location(diagnostic: Diagnostic) -> Span | None:
+def _find_location(diagnostic: Diagnostic) -> Span | None:
     """Return the location of a finding with the resolved path of its file.
 
     The result is None for a finding without a location, and for missing packages.
     """
     span = diagnostic.span
-    if span is None or diagnostic.code == MISSING_PACKAGE:
+    if span is None or diagnostic.code == MISSING_PACKAGE_CODE:
         return None  # installing the package once is enough, however many files use it
     return span._replace(file=str(Path(span.file).resolve()))
 
@@ -98,9 +103,9 @@ class Checker:
 
     def settings(self, path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
         """Return the settings for a file or folder, and the findings about the settings file."""
-        settings, settings_findings = settings_for(path) if self.config is None else read_settings(self.config)
-        select = None if self.select is None else tuple(map(canonical, self.select))
-        return settings.with_command_line(select, tuple(map(canonical, self.ignore))), settings_findings
+        settings, settings_findings = find_settings(path) if self.config is None else read_settings(self.config)
+        select = None if self.select is None else tuple(map(to_canonical, self.select))
+        return settings.with_command_line(select, tuple(map(to_canonical, self.ignore))), settings_findings
 
     def for_folders(self, folders: Sequence[Path]) -> Checker:
         """Return a checker with the same settings for other folders, such as another version's."""
@@ -130,10 +135,10 @@ class Checker:
             examined_files.append(Examined.of(checked, file))
             all_settings_findings.append(settings_findings)
         for result, settings_findings in zip(examined_files, all_settings_findings, strict=True):
-            findings.add((*settings_findings, *relevant_findings(result, examined_files, targets, paths)))
+            findings.add((*settings_findings, *select_relevant_findings(result, examined_files, targets, paths)))
         for folder in targets.packages:
             diagnostics, settings_findings = self.check_package(folder, contexts=contexts)
-            findings.add((*settings_findings, *relevant_package_findings(diagnostics, paths)))
+            findings.add((*settings_findings, *select_relevant_package_findings(diagnostics, paths)))
         return findings.all(), checked
 
     def check_file(

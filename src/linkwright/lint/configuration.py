@@ -29,7 +29,7 @@ from linkwright.diagnostics import (
 from linkwright.lint.option import Option, OptionValue
 from linkwright.lint.registry import find_rule
 from linkwright.lint.rule import Rule
-from linkwright.lint.selector_words import canonical, is_selector, selector_hint
+from linkwright.lint.selector_words import is_selector, make_selector_hint, to_canonical
 from linkwright.lint.settings import Settings
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import Any
@@ -38,13 +38,13 @@ from linkwright.xmltree.reader import read_bytes
 from linkwright.xmltree.style import Style
 
 CONFIGURATION = "linkwright.toml"
-_PROJECT = "pyproject.toml"
+_PROJECT_FILE = "pyproject.toml"
 _PROJECT_TABLE = ("tool", "linkwright")
-_SETTINGS = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options", "arguments", "format")
+_SETTING_NAMES = ("select", "extend-select", "ignore", "severity", "per-file-ignores", "options", "arguments", "format")
 
-_HEADER = lazy_pattern(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
+_TABLE_HEADER = lazy_pattern(r"^[ \t]*\[(?!\[)([^\]\n]+)\]", re.MULTILINE)
 _POSITION = lazy_pattern(r"\(at line (\d+), column (\d+)\)")
-_KINDS = {
+_TYPE_NAMES = {
     bool: phrase("true or false"),
     int: phrase("an integer"),
     float: phrase("a number"),
@@ -53,7 +53,7 @@ _KINDS = {
 }
 
 
-def settings_for(path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
+def find_settings(path: Path) -> tuple[Settings, tuple[Diagnostic, ...]]:
     """Return the settings for a file or folder, and the findings about its configuration."""
     file = find_configuration(path)
     return (Settings(), ()) if file is None else read_settings(file)
@@ -69,7 +69,7 @@ def find_configuration(path: Path) -> Path | None:
         configuration = folder / CONFIGURATION
         if configuration.is_file():
             return configuration
-        project = folder / _PROJECT
+        project = folder / _PROJECT_FILE
         if project.is_file() and _has_linkwright_table(project):
             return project
     return None
@@ -95,8 +95,8 @@ def _read_settings(file: Path, _stamp: int) -> tuple[Settings, tuple[Diagnostic,
     try:
         document = tomllib.loads(source.text)
     except tomllib.TOMLDecodeError as error:
-        return Settings(), (_syntax_error(source, error),)
-    prefix = _PROJECT_TABLE if file.name == _PROJECT else ()
+        return Settings(), (_make_syntax_error(source, error),)
+    prefix = _PROJECT_TABLE if file.name == _PROJECT_FILE else ()
     table: Any = document
     for key in prefix:
         table = table.get(key, {}) if isinstance(table, dict) else {}
@@ -112,7 +112,7 @@ def _has_linkwright_table(project: Path) -> bool:
     return re.search(r"^[ \t]*\[+\s*tool\s*\.\s*linkwright\b", text, re.MULTILINE) is not None
 
 
-def _syntax_error(source: SourceText, error: Exception) -> Diagnostic:
+def _make_syntax_error(source: SourceText, error: Exception) -> Diagnostic:
     message = str(error)
     position = _POSITION.search(message)
     start = source.offset(int(position[1]), int(position[2])) if position else len(source.text)
@@ -141,23 +141,25 @@ class _Reader:
             )
             return Settings(folder=folder)
         for key in table:
-            if key not in _SETTINGS:
-                hint = did_you_mean(key, _SETTINGS) or phrase("the settings are {keys}", keys=joined(_SETTINGS))
-                self._add("LINT102", phrase("there is no setting '{key}'", key=key), (key,), hint)
+            if key not in _SETTING_NAMES:
+                hint = did_you_mean(key, _SETTING_NAMES) or phrase(
+                    "the settings are {keys}", keys=joined(_SETTING_NAMES)
+                )
+                self._add_finding("LINT102", phrase("there is no setting '{key}'", key=key), (key,), hint)
         select = table.get("select")
         return Settings(
             None if select is None else self._read_selectors(("select",), select),
             self._read_selectors(("extend-select",), table.get("extend-select", [])),
             self._read_selectors(("ignore",), table.get("ignore", [])),
-            dict(self._severities(self._table("severity", table))),
-            tuple(self._per_file_ignores(self._table("per-file-ignores", table))),
-            dict(self._read_options(self._table("options", table))),
+            dict(self._read_severities(self._check_table("severity", table))),
+            tuple(self._read_per_file_ignores(self._check_table("per-file-ignores", table))),
+            dict(self._read_options(self._check_table("options", table))),
             folder,
-            tuple(self._arguments(self._table("arguments", table))),
-            Style(**dict(self._style_settings(self._table("format", table)))),
+            tuple(self._read_arguments(self._check_table("arguments", table))),
+            Style(**dict(self._read_style_settings(self._check_table("format", table)))),
         )
 
-    def _table(self, key: str, table: Mapping[str, Any]) -> Mapping[str, Any]:
+    def _check_table(self, key: str, table: Mapping[str, Any]) -> Mapping[str, Any]:
         value = table.get(key, {})
         if isinstance(value, dict):
             return value
@@ -171,24 +173,24 @@ class _Reader:
             self._report_invalid(
                 path,
                 phrase("is not a list of strings"),
-                phrase('write {key} = ["LW204", "limit-inverted"]', key=_toml_key(path[-1])),
+                phrase('write {key} = ["LW204", "limit-inverted"]', key=_to_toml_key(path[-1])),
             )
             return ()
         return tuple(selector for item in value if (selector := self._read_selector(path, item, item)))
 
     def _read_selector(self, path: tuple[str, ...], selector: str, value_text: str) -> str | None:
         if is_selector(selector):
-            return canonical(selector)
-        self._add(
+            return to_canonical(selector)
+        self._add_finding(
             "LINT104",
             phrase("there is no rule '{rule}'", rule=selector),
             path,
-            selector_hint(selector),
+            make_selector_hint(selector),
             value_text=value_text,
         )
         return None
 
-    def _severities(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Severity]]:
+    def _read_severities(self, table: Mapping[str, Any]) -> Iterator[tuple[str, Severity]]:
         severity_names = [severity.value for severity in Severity]
         for key, value in table.items():
             path = ("severity", key)
@@ -201,15 +203,15 @@ class _Reader:
             elif selector:
                 yield selector, Severity(value)
 
-    def _per_file_ignores(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[str, ...]]]:
+    def _read_per_file_ignores(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[str, ...]]]:
         for pattern, value in table.items():
             yield pattern, self._read_selectors(("per-file-ignores", pattern), value)
 
-    def _arguments(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Mapping[str, str], ...]]]:
+    def _read_arguments(self, table: Mapping[str, Any]) -> Iterator[tuple[str, tuple[Mapping[str, str], ...]]]:
         for pattern, value in table.items():
             sets = value if isinstance(value, list) else [value]
             if all(isinstance(item, dict) and all(map(_is_scalar, item.values())) for item in sets):
-                yield pattern, tuple({name: _as_argument(item[name]) for name in item} for item in sets)
+                yield pattern, tuple({name: _to_argument(item[name]) for name in item} for item in sets)
             else:
                 self._report_invalid(
                     ("arguments", pattern),
@@ -217,12 +219,12 @@ class _Reader:
                     phrase('write {key} = [{{ prefix = "left_" }}, {{ prefix = "right_" }}]', key=f'"{pattern}"'),
                 )
 
-    def _style_settings(self, table: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
+    def _read_style_settings(self, table: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
         for key, value in table.items():
             path = ("format", key)
             if key not in Style._fields:
                 hint = did_you_mean(key, Style._fields) or phrase("the settings are {keys}", keys=joined(Style._fields))
-                self._add("LINT102", phrase("there is no setting '{key}'", key=key), path, hint)
+                self._add_finding("LINT102", phrase("there is no setting '{key}'", key=key), path, hint)
             elif type(value) is not int or value < 1:
                 self._report_invalid(
                     path, phrase("is not a positive integer"), phrase("write {key} = 2", key=key), shown=value
@@ -234,8 +236,8 @@ class _Reader:
         for key, value in table.items():
             rule = find_rule(key)
             if rule is None:
-                self._add(
-                    "LINT104", phrase("there is no rule '{rule}'", rule=key), ("options", key), selector_hint(key)
+                self._add_finding(
+                    "LINT104", phrase("there is no rule '{rule}'", rule=key), ("options", key), make_selector_hint(key)
                 )
             elif not isinstance(value, dict):
                 self._report_invalid(
@@ -255,19 +257,19 @@ class _Reader:
                     if options
                     else phrase("{code} has no options", code=rule.code)
                 )
-                self._add(
+                self._add_finding(
                     "LINT102",
                     phrase("rule '{name}' has no option '{other_name}'", name=rule.name, other_name=name),
                     path,
                     hint,
                 )
             elif not _has_option_type(option, value):
-                from linkwright.lint.explain import toml
+                from linkwright.lint.explain import to_toml
 
                 self._report_invalid(
                     path,
-                    phrase("is not {kind}", kind=_KINDS[type(option.default)]),
-                    phrase("the default is {toml}", toml=toml(option.default)),
+                    phrase("is not {kind}", kind=_TYPE_NAMES[type(option.default)]),
+                    phrase("the default is {toml}", toml=to_toml(option.default)),
                 )
             else:
                 yield name, value
@@ -276,9 +278,9 @@ class _Reader:
         message = phrase("'{key}' {problem}", key=path[-1], problem=problem)
         if shown is not None:
             message = joined([message, quoted(shown)], ": ")
-        self._add("LINT103", message, path, hint)
+        self._add_finding("LINT103", message, path, hint)
 
-    def _add(
+    def _add_finding(
         self, code: str, message: Phrase, path: tuple[str, ...], hint: Phrase, *, value_text: str | None = None
     ) -> None:
         span = _locate(self._source, (*self._prefix, *path), value_text)
@@ -299,12 +301,12 @@ def _is_scalar(value: object) -> bool:
     return isinstance(value, (str, int, float))
 
 
-def _as_argument(value: str | float) -> str:
+def _to_argument(value: str | float) -> str:
     """Return a TOML value as a user writes it on a command line."""
     return str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _toml_key(key: str) -> str:
+def _to_toml_key(key: str) -> str:
     return key if re.fullmatch(r"[\w-]+", key) else f'"{key}"'
 
 
@@ -315,10 +317,10 @@ def _locate(source: SourceText, path: tuple[str, ...], value_text: str | None) -
     file.
     """
     tables: list[tuple[tuple[str, ...], int, int]] = []
-    headers = list(_HEADER.finditer(source.text))
+    headers = list(_TABLE_HEADER.finditer(source.text))
     ends = [header.start() for header in headers] + [len(source.text)]
     tables.append(((), 0, ends[0]))
-    tables += [(_header_keys(header[1]), header.start(1), end) for header, end in zip(headers, ends[1:], strict=True)]
+    tables += [(_parse_header(header[1]), header.start(1), end) for header, end in zip(headers, ends[1:], strict=True)]
     for name, start, end in sorted(tables, key=lambda table: -len(table[0])):
         remaining_keys = path[len(name) :]
         if name != path[: len(name)]:
@@ -351,5 +353,5 @@ def _find_key(text: str, start: int, end: int, keys: tuple[str, ...]) -> tuple[i
     return key_range
 
 
-def _header_keys(header: str) -> tuple[str, ...]:
+def _parse_header(header: str) -> tuple[str, ...]:
     return tuple(match[2] or match[3] for match in re.finditer(r"""(["'])(.*?)\1|([\w-]+)""", header))

@@ -96,10 +96,10 @@ class FileContext:
             return new_results.results
         if _NOT_COMPARED in stored_results:
             first_results = stored_results.pop(_NOT_COMPARED)
-            stored_results[self._content(first_results.root)] = first_results
-        return stored_results.setdefault(self._content(root), new_results).results
+            stored_results[self._make_content_key(first_results.root)] = first_results
+        return stored_results.setdefault(self._make_content_key(root), new_results).results
 
-    def _content(self, root: Element) -> tuple[object, ...]:
+    def _make_content_key(self, root: Element) -> tuple[object, ...]:
         """Return the content of an expanded element, with numbers for the origins of its elements.
 
         Sources are identified by `id`, which is safe because the stored elements keep them alive.
@@ -109,7 +109,7 @@ class FileContext:
         pending: list[tuple[Element, int | None]] = [(root, None)]
         while pending:
             node, number = pending.pop()
-            origin_number = self._number(node.origin, numbers) if number is None else number
+            origin_number = self._number_chain(node.origin, numbers) if number is None else number
             while isinstance(node, LazyCopy) and node.original is not None:
                 node, number = node.original, origin_number  # not copied yet: the original's content, the copy's origin
             attributes, children = node.attributes, node.children
@@ -131,7 +131,7 @@ class FileContext:
                     content += (type(child), child.data, is_cdata, child.offset, id(child.source))
         return tuple(content)
 
-    def _number(self, origin: object, numbers: dict[int, int]) -> int:
+    def _number_chain(self, origin: object, numbers: dict[int, int]) -> int:
         """Return the number of a chain of macro calls and includes, or 0 if there is no chain.
 
         New frames of the chain are added to `numbers`, which maps the `id` of each known frame to its number.

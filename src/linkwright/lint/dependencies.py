@@ -38,7 +38,7 @@ _ALWAYS_INSTALLED = frozenset(
     }
 )
 """Packages of the variant `ros_base` (REP 2001), which every installation is assumed to contain."""
-_FAMILIES = (
+_METAPACKAGE_PREFIXES = (
     ("navigation2", "nav2_"),
     ("nav2_bringup", "nav2_"),
     ("moveit", "moveit_"),
@@ -67,7 +67,8 @@ def depends_indirectly_on(manifest: Manifest, package: str, finder: PackageFinde
         finder: the finder of packages.
     """
     return any(
-        name == package or any(name == metapackage and package.startswith(prefix) for metapackage, prefix in _FAMILIES)
+        name == package
+        or any(name == metapackage and package.startswith(prefix) for metapackage, prefix in _METAPACKAGE_PREFIXES)
         for name in _transitive_dependencies(manifest, finder)
     )
 

@@ -16,12 +16,12 @@ from linkwright.lint.finding import Finding
 from linkwright.lint.missing_files import with_file_severity
 from linkwright.lint.missing_packages import with_package_severity
 from linkwright.lint.registry import (
-    failed_rule,
     find_rule,
+    find_unusable_rules,
     has_external_rules,
     is_external,
+    make_failed_rule_finding,
     rules_of,
-    unusable_rules,
 )
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.settings import Settings
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
     from linkwright.sdf.worlds import Sdf
 
 
-_PREFIX_MISSING, _NO_LINKS = "LW720", "URDF106"
-_NO_PACKAGE, _NO_PACKAGE_OF_MESHES = "PKG101", "LW423"
+_PREFIX_MISSING_CODE, _NO_LINKS_CODE = "LW720", "URDF106"
+_NO_PACKAGE_CODE, _NO_MESH_PACKAGE_CODE = "PKG101", "LW423"
 _SDF_TEXT = lazy_pattern(r"(?:\s|<\?.*?\?>|<!--.*?-->)*<sdf\b", re.DOTALL)
 
 
@@ -111,11 +111,11 @@ def examine(
     path = Path(path_or_text) if text is None else Path(TEXT_NAME)
     settings_findings: tuple[Diagnostic, ...] = ()
     if settings is None:
-        from linkwright.lint.configuration import settings_for
+        from linkwright.lint.configuration import find_settings
 
-        settings, settings_findings = settings_for(path)
-    settings_findings = (*unusable_rules(), *settings_findings)
-    finder = _package_finder(path, packages)
+        settings, settings_findings = find_settings(path)
+    settings_findings = (*find_unusable_rules(), *settings_findings)
+    finder = _make_package_finder(path, packages)
     if text is not None:
         overlay = Overlay({path: text})
     if is_world(str(path)) or (text is not None and _SDF_TEXT.match(text)):
@@ -127,7 +127,9 @@ def examine(
     except LinkwrightError as error:
         return Checked(path, None, (*settings_findings, *with_configured_severity(error.diagnostics, settings)), None)
     subject = Subject(description, finder, settings, contexts)
-    findings = _run(subject, scopes, _library_findings(description) if subject.is_library else description.diagnostics)
+    findings = _find_all(
+        subject, scopes, _find_library_findings(description) if subject.is_library else description.diagnostics
+    )
     return Checked(path, subject.robot, (*settings_findings, *findings), subject)
 
 
@@ -150,11 +152,11 @@ def _examine_world(
 
         findings = [*adapt_to_classic([*findings, *check_sdf(world.sdf, ResourceFinder(finder))], path)]
         findings = merge_missing_resources(findings)
-    diagnostics = sorted_by_location(with_configured_severity(findings, settings), str(path))
+    diagnostics = sort_by_location(with_configured_severity(findings, settings), str(path))
     return Checked(path, None, (*settings_findings, *diagnostics), None, world.sdf)
 
 
-def _run(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
+def _find_all(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnostic] = ()) -> list[Diagnostic]:
     """Return all findings in source order, filtered by settings and suppression comments.
 
     The result contains the `earlier` findings and the findings of the rules.
@@ -162,7 +164,7 @@ def _run(subject: Subject, scopes: Collection[Scope], earlier: Iterable[Diagnost
     suppressions = Suppressions(subject, subject.settings)
     findings = _without_replaced([*earlier, *_find_with_rules(subject, scopes, suppressions)], scopes, subject.settings)
     selected_findings = _without_consequences(with_configured_severity(suppressions.apply(findings), subject.settings))
-    return sorted_by_location(selected_findings, str(subject.path))
+    return sort_by_location(selected_findings, str(subject.path))
 
 
 def _find_with_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppressions) -> list[Diagnostic]:
@@ -170,14 +172,14 @@ def _find_with_rules(subject: Subject, scopes: Collection[Scope], suppressions: 
 
     Findings of unselected rules are included if they show whether a suppression comment is used.
     """
-    cache = {} if has_external_rules() else subject.once(_findings_cache)
+    cache = {} if has_external_rules() else subject.once(_make_findings_cache)
     key = frozenset(scopes)
     if key not in cache:
         cache[key] = _run_rules(subject, scopes, suppressions)
     return cache[key]
 
 
-def _findings_cache(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
+def _make_findings_cache(_: Subject) -> dict[frozenset[Scope], list[Diagnostic]]:
     """Return a new cache of findings by scopes, for all subjects with the same expansion."""
     return {}
 
@@ -189,7 +191,7 @@ def _run_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppre
             continue
         if not _may_run(rule, subject):
             continue
-        findings += map(_add_trail, _findings_of_rule(rule, subject))
+        findings += map(_add_trail, _run_rule(rule, subject))
     mesh_findings = subject.meshes.unread.diagnostics if subject.meshes.unread else ()
     return [
         *_without_repetitions(findings),
@@ -197,7 +199,7 @@ def _run_rules(subject: Subject, scopes: Collection[Scope], suppressions: Suppre
     ]
 
 
-def _findings_of_rule(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
+def _run_rule(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
     """Return the findings of a rule.
 
     If a rule of another package raises an exception, the only finding is about this failure.
@@ -207,7 +209,7 @@ def _findings_of_rule(rule: Rule, subject: Subject) -> Sequence[Diagnostic]:
         _check_codes(rule, findings)
     except Exception as error:
         if is_external(rule):
-            return (failed_rule(rule, error),)
+            return (make_failed_rule_finding(rule, error),)
         raise
     return findings
 
@@ -240,7 +242,7 @@ def _may_run(rule: Rule, subject: Subject) -> bool:
     return subject.is_whole and (rule.holds_for_libraries or not subject.is_library)
 
 
-def _library_findings(description: Description) -> Iterator[Diagnostic]:
+def _find_library_findings(description: Description) -> Iterator[Diagnostic]:
     """Yield the findings on a file that only has parts for other files to include.
 
     These are the findings that hold for single parts, and a note that the file is not a robot by itself.
@@ -258,7 +260,7 @@ def _library_findings(description: Description) -> Iterator[Diagnostic]:
     yield Diagnostic("LINT302", message, root_span, Severity.INFO, hint=hint, source=root.source)
 
 
-def sorted_by_location(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
+def sort_by_location(diagnostics: Iterable[Diagnostic], first_file: str) -> list[Diagnostic]:
     """Return diagnostics sorted by location.
 
     Diagnostics without a location come first, then `first_file`. The other files follow in the order of their
@@ -296,11 +298,11 @@ def examine_package(
     path = folder / MANIFEST
     document = Document(Element("robot", {"name": folder.name}))
     description = Description(str(path), document, Reading(None, ()), overlay=overlay)
-    subject = Subject(description, finder or _package_finder(path, None), settings, contexts)
-    return Checked(path, None, tuple(_run(subject, (Scope.PACKAGE,))), subject)
+    subject = Subject(description, finder or _make_package_finder(path, None), settings, contexts)
+    return Checked(path, None, tuple(_find_all(subject, (Scope.PACKAGE,))), subject)
 
 
-def _package_finder(path: Path, packages: Packages) -> PackageFinder:
+def _make_package_finder(path: Path, packages: Packages) -> PackageFinder:
     if isinstance(packages, PackageFinder):
         return packages
     return PackageFinder(start=[path.absolute().parent, Path.cwd()], extra=packages)
@@ -351,15 +353,15 @@ def _without_consequences(diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]
     the meshes of this package are also missing.
     """
     findings = list(diagnostics)
-    lacks_prefix = any(diagnostic.code == _PREFIX_MISSING for diagnostic in findings)
+    lacks_prefix = any(diagnostic.code == _PREFIX_MISSING_CODE for diagnostic in findings)
     missing_packages = {
-        as_phrase(finding.message).arguments.get("name") for finding in findings if finding.code == _NO_PACKAGE
+        as_phrase(finding.message).arguments.get("name") for finding in findings if finding.code == _NO_PACKAGE_CODE
     }
 
     def is_consequence(finding: Diagnostic) -> bool:
-        if finding.code == _NO_PACKAGE_OF_MESHES:
+        if finding.code == _NO_MESH_PACKAGE_CODE:
             return as_phrase(finding.message).arguments.get("package") in missing_packages
-        return lacks_prefix and finding.code == _NO_LINKS
+        return lacks_prefix and finding.code == _NO_LINKS_CODE
 
     return [finding for finding in findings if not is_consequence(finding)]
 

@@ -17,7 +17,7 @@ from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import dataclass
 
 PAGES = Path(__file__).parent / "pages"
-_SECTION = lazy_pattern(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3}: |\Z)", re.MULTILINE | re.DOTALL)
+_PAGE_SECTION = lazy_pattern(r"^## ([A-Z]+[0-9]{3}): (.+?)\n(.*?)(?=^## [A-Z]+[0-9]{3}: |\Z)", re.MULTILINE | re.DOTALL)
 
 _HEADINGS: dict[str, str] = {
     heading: heading for heading in (phrase("## Why"), phrase("## Example"), phrase("## Use instead"))
@@ -49,50 +49,52 @@ class Page:
         header_lines: list[str] = [phrase("# {code}: {title}", code=self.code, title=self.title)]
         if self.name:
             header_lines = [f"# {self.code}: {self.name}", "", phrase("{title}.", title=self.title)]
-        return _lines(*header_lines, "", self.text)
+        return _join_lines(*header_lines, "", self.text)
 
 
 def find_page(code_or_name: str) -> Page | None:
     """Return the page of a code or rule name, ignoring case, or None if there is none."""
     rule = find_rule(code_or_name)
-    return rule_page(rule) if rule else room_pages().get(code_or_name.strip().upper())
+    return make_rule_page(rule) if rule else read_room_pages().get(code_or_name.strip().upper())
 
 
-def rule_page(rule: Rule) -> Page:
+def make_rule_page(rule: Rule) -> Page:
     """Return the page of a rule: its docstring, the setting that enables it, and its options."""
     from inspect import cleandoc  # Imported here because a check does not print pages.
 
     title, _, text = cleandoc(rule.__doc__ or "").partition("\n")
-    severity = phrase("Severity: {severity}. {state}", severity=term(rule.severity.value), state=_default_state(rule))
+    severity = phrase(
+        "Severity: {severity}. {state}", severity=term(rule.severity.value), state=_describe_default(rule)
+    )
     lines = [severity, "", *(_HEADINGS.get(line, line) for line in text.strip().splitlines())]
     if rule.options:
         lines += ["", phrase("## Options"), ""]
         lines += [
-            phrase("- `{name}` (default `{value}`): {meaning}", name=name, value=toml(default), meaning=meaning)
+            phrase("- `{name}` (default `{value}`): {meaning}", name=name, value=to_toml(default), meaning=meaning)
             for name, default, meaning in ((option.name, option.default, option.meaning) for option in rule.options)
         ]
         lines += ["", "```toml", f"[options.{rule.name}]"]
-        lines += [f"{option.name} = {toml(option.default)}" for option in rule.options]
+        lines += [f"{option.name} = {to_toml(option.default)}" for option in rule.options]
         lines += ["```"]
-    return Page(rule.code, title_of_page(title.rstrip(".")), _lines(*lines), rule.name)
+    return Page(rule.code, title_of_page(title.rstrip(".")), _join_lines(*lines), rule.name)
 
 
 @cache
-def room_pages() -> dict[str, Page]:
+def read_room_pages() -> dict[str, Page]:
     """Return the pages of the diagnostics that do not belong to rules, by code."""
     pages = {}
     for file in sorted(PAGES.glob("*.md")):
-        for code, title, text in _SECTION.findall(file.read_text(encoding="utf-8")):
+        for code, title, text in _PAGE_SECTION.findall(file.read_text(encoding="utf-8")):
             pages[code] = Page(code, title_of_page(title.strip()), Phrase(text.strip()))
     return pages
 
 
 def known_codes() -> tuple[str, ...]:
     """Return all codes that have a page."""
-    return (*(rule.code for rule in all_rules()), *room_pages())
+    return (*(rule.code for rule in all_rules()), *read_room_pages())
 
 
-def nearest_codes(text: str) -> list[str]:
+def find_similar_codes(text: str) -> list[str]:
     """Return the codes and rule names that are similar to a text, for suggestions."""
     upper = text.upper()
     names = [rule.name for rule in all_rules()]
@@ -101,22 +103,22 @@ def nearest_codes(text: str) -> list[str]:
     return list(dict.fromkeys([*nearest(text, names), *nearest(upper, codes), *same_room[:3]]))[:4]
 
 
-def toml(value: OptionValue) -> str:
+def to_toml(value: OptionValue) -> str:
     """Return an option's value in TOML syntax."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
         return f'"{value}"'
     if isinstance(value, list):
-        return f"[{', '.join(toml(item) for item in value)}]"
+        return f"[{', '.join(to_toml(item) for item in value)}]"
     return repr(value)
 
 
-def _default_state(rule: Rule) -> Phrase:
+def _describe_default(rule: Rule) -> Phrase:
     if rule.default:
         return phrase("On by default.")
     return phrase('Off by default; `extend-select = ["{code}"]` enables it.', code=rule.code)
 
 
-def _lines(*lines: str) -> Phrase:
+def _join_lines(*lines: str) -> Phrase:
     return joined(lines, "\n")

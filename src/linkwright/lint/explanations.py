@@ -9,8 +9,8 @@ from linkwright.xmltree import Element
 from linkwright.xmltree.patches import element_range
 
 _COMMENT = lazy_pattern(r"<!--(.*?)-->", re.DOTALL)
-_ABOVE = lazy_pattern(r"<!--((?:(?!-->).)*)-->[ \t]*\r?\n[ \t]*\Z", re.DOTALL)
-_CODE = lazy_pattern(r"[<=]|linkwright:")
+_COMMENTS_ABOVE = lazy_pattern(r"<!--((?:(?!-->).)*)-->[ \t]*\r?\n[ \t]*\Z", re.DOTALL)
+_COMMENTED_CODE = lazy_pattern(r"[<=]|linkwright:")
 _WORD = lazy_pattern(r"[^\W\d_]{3,}")
 _HEADINGS = frozenset(
     {
@@ -44,12 +44,12 @@ def is_explained(element: Element | None, tag: str) -> bool:
     return any(
         map(
             _is_explanation,
-            (*_comments(element.first(tag), on_same_lines=True), *_comments(element, on_same_lines=False)),
+            (*_find_comments(element.first(tag), on_same_lines=True), *_find_comments(element, on_same_lines=False)),
         )
     )
 
 
-def _comments(element: Element | None, *, on_same_lines: bool) -> list[str]:
+def _find_comments(element: Element | None, *, on_same_lines: bool) -> list[str]:
     """Return the comments directly above an element or, if `on_same_lines` is set, on its lines."""
     element_span = element_range(element) if element is not None else None
     if element is None or element.source is None or element_span is None:
@@ -58,7 +58,9 @@ def _comments(element: Element | None, *, on_same_lines: bool) -> list[str]:
     line_start = text.rfind("\n", 0, start) + 1
     search_end = text.find("\n", end) if on_same_lines else start
     comments = [match[1] for match in _COMMENT.finditer(text, line_start, len(text) if search_end < 0 else search_end)]
-    comment_above = _ABOVE.search(text, max(0, text.rfind("<!--", 0, start)), line_start + len(text[line_start:start]))
+    comment_above = _COMMENTS_ABOVE.search(
+        text, max(0, text.rfind("<!--", 0, start)), line_start + len(text[line_start:start])
+    )
     if comment_above is not None and not text[line_start:start].strip():
         comments.append(comment_above[1])
     return comments
@@ -66,4 +68,4 @@ def _comments(element: Element | None, *, on_same_lines: bool) -> list[str]:
 
 def _is_explanation(comment: str) -> bool:
     words = {word.casefold() for word in _WORD.findall(comment)}
-    return not _CODE.search(comment) and bool(words - _HEADINGS)
+    return not _COMMENTED_CODE.search(comment) and bool(words - _HEADINGS)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-CHILDREN: Mapping[str, tuple[str, ...]] = {
+CHILD_TAGS: Mapping[str, tuple[str, ...]] = {
     "ros2_control": ("hardware", "joint", "sensor", "gpio", "transmission"),
     "ros2_control/hardware": ("plugin", "param", "group", "properties"),
     "ros2_control/hardware/properties": ("async",),
@@ -49,7 +49,7 @@ CHILDREN: Mapping[str, tuple[str, ...]] = {
 }  # fmt: skip
 """The elements that some program reads in an element, by the element's path from ``<robot>``."""
 
-ATTRIBUTES: Mapping[str, tuple[str, ...]] = {
+ATTRIBUTE_NAMES: Mapping[str, tuple[str, ...]] = {
     "gazebo": ("reference", "name", "version"),
     "ros2_control": ("name", "type", "rw_rate", "is_async", "thread_priority"),
     "ros2_control/joint": ("name", "mimic", "role"),
@@ -82,7 +82,7 @@ LINK_ELEMENTS = frozenset(
 )
 """Elements of a ``<gazebo reference="...">`` for a link."""
 
-INTERFACES = (
+INTERFACE_NAMES = (
     "position", "velocity", "effort", "acceleration", "torque", "force", "current", "temperature", "voltage",
     "stiffness", "damping", "mechanical_gain", "position.x", "position.y", "position.z", "orientation.x",
     "orientation.y", "orientation.z", "orientation.w",

@@ -9,7 +9,7 @@ from linkwright.urdf import Robot
 from linkwright.urdf.tree import walk
 
 
-def placements(robot: Robot) -> Mapping[str, Placement]:
+def compute_placements(robot: Robot) -> Mapping[str, Placement]:
     """Return each link's placement in the root link's frame with all joints at zero, by name."""
     poses = {robot.root: Placement(IDENTITY, (0.0, 0.0, 0.0))}
     for joint, _depth in walk(robot):

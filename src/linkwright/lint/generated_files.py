@@ -13,8 +13,8 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
 
-_IGNORE, _SUBMODULES = ".gitignore", ".gitmodules"
-_REPOSITORY = ".git"
+_GIT_IGNORE, _GIT_MODULES = ".gitignore", ".gitmodules"
+_GIT_FOLDER = ".git"
 _MAX_LEVELS = 8
 """The number of folders above a file that are searched for a ``.gitignore`` if none of them is a repository."""
 _MAP_FOLDERS = frozenset({"map", "maps"})
@@ -58,15 +58,15 @@ def is_ignored_by_git(path: Path) -> bool:
         path: the absolute path of the file, which need not exist.
     """
     is_ignored = False
-    for folder in _folders_upwards(path):
+    for folder in _list_folders_above(path):
         relative = path.relative_to(folder).as_posix()
-        for line in _lines(folder / _IGNORE):
+        for line in _read_lines(folder / _GIT_IGNORE):
             if _matches(line.removeprefix("!"), relative):
                 is_ignored = not line.startswith("!")
     return is_ignored
 
 
-def submodule_of(path: Path) -> str | None:
+def find_submodule(path: Path) -> str | None:
     """Return the path of the Git submodule that contains a file or folder, or None.
 
     The result is relative to the repository.
@@ -74,8 +74,8 @@ def submodule_of(path: Path) -> str | None:
     Args:
         path: the absolute path of the file or folder, which need not exist.
     """
-    for folder in _folders_upwards(path):
-        for line in _lines(folder / _SUBMODULES):
+    for folder in _list_folders_above(path):
+        for line in _read_lines(folder / _GIT_MODULES):
             key, _, value = line.partition("=")
             if key.strip() == "path" and path.is_relative_to(folder / value.strip()):
                 return value.strip()
@@ -83,7 +83,7 @@ def submodule_of(path: Path) -> str | None:
 
 
 @lru_cache(maxsize=256)
-def _lines(path: Path) -> tuple[str, ...]:
+def _read_lines(path: Path) -> tuple[str, ...]:
     """Return the lines of a ``.gitignore`` or ``.gitmodules``, except blank lines and comments.
 
     The result is empty if the file cannot be read.
@@ -95,7 +95,7 @@ def _lines(path: Path) -> tuple[str, ...]:
     return tuple(line for line in map(str.strip, lines) if line and not line.startswith("#"))
 
 
-def _folders_upwards(path: Path) -> list[Path]:
+def _list_folders_above(path: Path) -> list[Path]:
     """Return the folders from the root of the repository down to a file's folder.
 
     Only the nearest `_MAX_LEVELS` folders are returned.
@@ -103,7 +103,7 @@ def _folders_upwards(path: Path) -> list[Path]:
     folders = []
     for folder in list(path.parents)[:_MAX_LEVELS]:
         folders.append(folder)
-        if (folder / _REPOSITORY).exists():
+        if (folder / _GIT_FOLDER).exists():
             break
     return folders[::-1]
 

@@ -15,9 +15,9 @@ _INCLUDE = lazy_pattern(r"""<xacro:include\b[^>]*?\bfilename\s*=\s*["']([^"']+)[
 _ARGUMENT = lazy_pattern(r"<xacro:arg\b[^>]*>")
 _ATTRIBUTE = lazy_pattern(r"""\b(name|default)\s*=\s*["']([^"']+)["']""")
 _ARGUMENT_USE = lazy_pattern(r"\$\(arg\s+(\S+?)\s*\)")
-_OPTIONAL = lazy_pattern(r"\$\(optenv\s+\S+\s+([^)]*)\)")
-_IN_PACKAGE = lazy_pattern(r"\$\(find\s+([\w-]+)\s*\)[/\\]*(.*)")
-_PACKAGE = lazy_pattern(r"\$\(find\s+((?:[^()]|\([^()]*\))*)\)[/\\]*")
+_OPTIONAL_VARIABLE = lazy_pattern(r"\$\(optenv\s+\S+\s+([^)]*)\)")
+_PATH_IN_PACKAGE = lazy_pattern(r"\$\(find\s+([\w-]+)\s*\)[/\\]*(.*)")
+_PACKAGE_SUBSTITUTION = lazy_pattern(r"\$\(find\s+((?:[^()]|\([^()]*\))*)\)[/\\]*")
 _EXPRESSION = lazy_pattern(r"\$\{[^{}]*\}|\$\([^()]*\)")
 _MIN_LITERAL_CHARACTERS = len("_.xacro")
 """The minimum number of literal characters of a computed path. A shorter one could mean any file."""
@@ -85,15 +85,15 @@ def inclusions_in(text: str) -> Iterator[Inclusion]:
     defaults = {argument["name"]: argument.get("default", "") for argument in arguments if "name" in argument}
     for filename in _INCLUDE.findall(text):
         resolved = _ARGUMENT_USE.sub(lambda match: defaults.get(match[1], ""), filename)
-        resolved = _OPTIONAL.sub(r"\1", resolved).strip()
-        in_package = _IN_PACKAGE.fullmatch(resolved)
+        resolved = _OPTIONAL_VARIABLE.sub(r"\1", resolved).strip()
+        in_package = _PATH_IN_PACKAGE.fullmatch(resolved)
         package, path = in_package.groups() if in_package else ("", resolved)
-        yield Inclusion(package, path, _pattern(filename.strip()))
+        yield Inclusion(package, path, _make_pattern(filename.strip()))
 
 
-def _pattern(filename: str) -> str:
+def _make_pattern(filename: str) -> str:
     """Return the pattern of an include from its path as written; see `Inclusion.pattern`."""
-    package = _PACKAGE.match(filename)
+    package = _PACKAGE_SUBSTITUTION.match(filename)
     literals = _EXPRESSION.split(filename[package.end() :] if package else filename)
     is_computed = len(literals) > 1 or (package is not None and "$" in package[1])
     return (

@@ -17,9 +17,9 @@ from linkwright.files.whole_files import write_whole_file
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
 
-_QUOTED = lazy_pattern("'([^']*)'")
+_QUOTED_NAME = lazy_pattern("'([^']*)'")
 _NUMBER = lazy_pattern(r"\d(?:[\d.,\u00a0\u2009\u202f ]*\d)?")
-_VERSION = 1
+_FORMAT_VERSION = 1
 """The version of the format of baseline files."""
 
 
@@ -39,7 +39,7 @@ class Key(NamedTuple):
     @property
     def names(self) -> frozenset[str]:
         """The quoted names in the message."""
-        return frozenset(_QUOTED.findall(self.message))
+        return frozenset(_QUOTED_NAME.findall(self.message))
 
     @property
     def without_numbers(self) -> Key:
@@ -49,7 +49,7 @@ class Key(NamedTuple):
         return self._replace(message="'".join(parts))
 
 
-def key_of(finding: Diagnostic, folder: Path) -> Key:
+def make_key(finding: Diagnostic, folder: Path) -> Key:
     """Return the key of a finding.
 
     Args:
@@ -66,7 +66,7 @@ def key_of(finding: Diagnostic, folder: Path) -> Key:
 def count_keys(
     findings: Iterable[Diagnostic], folder: Path, names: Mapping[str, str | None] = MappingProxyType({})
 ) -> dict[Key, int]:
-    """Return the number of findings with each key; see `key_of`.
+    """Return the number of findings with each key; see `make_key`.
 
     Args:
         findings: the findings.
@@ -75,7 +75,7 @@ def count_keys(
     """
     counts: dict[Key, int] = {}
     for finding in findings:
-        key = key_of(finding, folder)
+        key = make_key(finding, folder)
         new_name = names.get(key.file)
         if new_name:
             message = key.message.replace(f"'{Path(key.file).name}'", f"'{Path(new_name).name}'")
@@ -84,7 +84,7 @@ def count_keys(
     return counts
 
 
-def new_findings(findings: Sequence[Diagnostic], folder: Path, counts: Mapping[Key, int]) -> list[Diagnostic]:
+def find_new_findings(findings: Sequence[Diagnostic], folder: Path, counts: Mapping[Key, int]) -> list[Diagnostic]:
     """Return the findings, leaving out the known number of findings with each key.
 
     A finding that differs from a known one only in numbers is not new. Of a finding that lists names, such as
@@ -93,7 +93,7 @@ def new_findings(findings: Sequence[Diagnostic], folder: Path, counts: Mapping[K
     remaining = dict(counts)
     rest: list[tuple[Key, Diagnostic]] = []
     for finding in findings:
-        key = key_of(finding, folder)
+        key = make_key(finding, folder)
         if remaining.get(key, 0) > 0:
             remaining[key] -= 1
         else:
@@ -122,12 +122,12 @@ def _with_new_names(finding: Diagnostic, key: Key, known_names: Sequence[frozens
     if len(lists) != 1:
         return finding
     ((argument, entries),) = lists.items()
-    listed_names = frozenset(name for item in entries for name in _QUOTED.findall(item))
+    listed_names = frozenset(name for item in entries for name in _QUOTED_NAME.findall(item))
     other_names = key.names - listed_names
     fingerprints: frozenset[str] = frozenset().union(
         *(names for names in known_names if other_names <= names and names & listed_names)
     )
-    new_items = [item for item in entries if not fingerprints.issuperset(_QUOTED.findall(item) or [item])]
+    new_items = [item for item in entries if not fingerprints.issuperset(_QUOTED_NAME.findall(item) or [item])]
     if len(new_items) == len(entries):
         return finding
     if not new_items:
@@ -144,7 +144,7 @@ def read_baseline(path: Path) -> dict[Key, int]:
     """
     try:
         data = json.loads(path.read_text(encoding="utf-8"))
-        items = {_VERSION: data["findings"]}[data["version"]]
+        items = {_FORMAT_VERSION: data["findings"]}[data["version"]]
         return {Key(item["code"], item["file"], item["message"]): int(item["count"]) for item in items}
     except (OSError, ValueError, LookupError, TypeError) as error:
         message = phrase(
@@ -164,5 +164,5 @@ def write_baseline(path: Path, findings: Iterable[Diagnostic], folder: Path) -> 
     items = [json.dumps({**key._asdict(), "count": count}, ensure_ascii=False) for key, count in sorted(counts.items())]
     lines = ",\n    ".join(items)
     list_text = f"[\n    {lines}\n  ]" if items else "[]"
-    write_whole_file(path, f'{{\n  "version": {_VERSION},\n  "findings": {list_text}\n}}\n')
+    write_whole_file(path, f'{{\n  "version": {_FORMAT_VERSION},\n  "findings": {list_text}\n}}\n')
     return sum(counts.values())

@@ -73,7 +73,7 @@ class MeshFacts:
     def path(self, use: MeshUse) -> Path | None:
         """Return the path of the file that a mesh's URI names, or None if the URI is not valid."""
         try:
-            return self._library.locate(use.mesh.filename, use.element).absolute()
+            return self._mesh_library.locate(use.mesh.filename, use.element).absolute()
         except LinkwrightError:
             return None
 
@@ -96,14 +96,14 @@ class MeshFacts:
 
     def _load(self, mesh: Mesh, element: Element | None) -> Outline:
         try:
-            return self._library.outline(mesh, element)
+            return self._mesh_library.outline(mesh, element)
         except LinkwrightError as error:
             if error.diagnostics[0].code == "INR104":
                 self.unread = error
             raise
 
     @cached_property
-    def _library(self) -> MeshLibrary:
+    def _mesh_library(self) -> MeshLibrary:
         from linkwright.inertia import MeshLibrary  # Imported here because a robot without meshes does not need it.
 
         return MeshLibrary(self._finder, self._folder)

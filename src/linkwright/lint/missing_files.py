@@ -12,7 +12,7 @@ from linkwright.lint.finding import with_related
 from linkwright.lint.generated_files import is_created_later
 from linkwright.lint.package import find_package
 
-_MISSING = "XML101"
+_MISSING_FILE_CODE = "XML101"
 
 
 def with_file_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
@@ -23,12 +23,16 @@ def with_file_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic
     """
     package_findings: dict[str, list[Diagnostic]] = {}
     for diagnostic in diagnostics:
-        if diagnostic.code != _MISSING or diagnostic.span is None or diagnostic.severity is not Severity.ERROR:
+        if (
+            diagnostic.code != _MISSING_FILE_CODE
+            or diagnostic.span is None
+            or diagnostic.severity is not Severity.ERROR
+        ):
             yield diagnostic
         elif (
             package_finding := None
-            if (built_finding := _built_file_finding(diagnostic))
-            else _package_file_finding(diagnostic)
+            if (built_finding := _adapt_to_built_file(diagnostic))
+            else _adapt_to_package_file(diagnostic)
         ) is not None:
             package_findings.setdefault(diagnostic.span.file, []).append(package_finding)
         else:
@@ -36,8 +40,8 @@ def with_file_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic
     yield from (with_related(first, others) for first, *others in package_findings.values())
 
 
-def _built_file_finding(diagnostic: Diagnostic) -> Diagnostic | None:
-    path = _missing_path(diagnostic)
+def _adapt_to_built_file(diagnostic: Diagnostic) -> Diagnostic | None:
+    path = _find_missing_path(diagnostic)
     package = find_package(path.parent)
     if package is None or not is_created_later(package, path.relative_to(package.folder).as_posix()):
         return None
@@ -45,11 +49,11 @@ def _built_file_finding(diagnostic: Diagnostic) -> Diagnostic | None:
     return diagnostic.with_changes(severity=Severity.INFO, hint=hint)
 
 
-def _package_file_finding(diagnostic: Diagnostic) -> Diagnostic | None:
+def _adapt_to_package_file(diagnostic: Diagnostic) -> Diagnostic | None:
     assert diagnostic.span is not None
     folder = Path(diagnostic.span.file).absolute().parent
     package = find_package(folder)
-    relative_path = os.path.relpath(_missing_path(diagnostic), folder)
+    relative_path = os.path.relpath(_find_missing_path(diagnostic), folder)
     if package is None or not (package.folder / relative_path).is_file():
         return None
     correct_path = Path(os.path.relpath(package.folder / relative_path, folder)).as_posix()
@@ -57,5 +61,5 @@ def _package_file_finding(diagnostic: Diagnostic) -> Diagnostic | None:
     return diagnostic.with_changes(severity=Severity.WARNING, hint=hint)
 
 
-def _missing_path(diagnostic: Diagnostic) -> Path:
+def _find_missing_path(diagnostic: Diagnostic) -> Path:
     return Path(os.path.abspath(str(as_phrase(diagnostic.message).arguments.get("path", ""))))  # noqa: PTH100 - resolve() follows links

@@ -10,7 +10,7 @@ from linkwright.diagnostics.phrase import as_phrase
 from linkwright.lint.package import PackageContext, find_package
 from linkwright.packages.manifest import MANIFEST
 
-_MISSING = "PKG101"
+_MISSING_PACKAGE_CODE = "PKG101"
 
 
 def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
@@ -20,7 +20,7 @@ def with_package_severity(diagnostics: Iterable[Diagnostic]) -> Iterator[Diagnos
     """
     packages: dict[Path, PackageContext | None] = {}
     for diagnostic in diagnostics:
-        if diagnostic.code != _MISSING or diagnostic.span is None:
+        if diagnostic.code != _MISSING_PACKAGE_CODE or diagnostic.span is None:
             yield diagnostic
             continue
         folder = Path(diagnostic.span.file).parent

@@ -23,14 +23,14 @@ if TYPE_CHECKING:
     from linkwright.packages.readers.package_xml import Manifest
     from linkwright.packages.readers.setup_py import SetupFile
 
-_SHARE = "share/${PROJECT_NAME}"
-_REST = lazy_pattern(r"[ \t]*(,?)[ \t]*(#[^\n]*)?")
+_SHARE_FOLDER = "share/${PROJECT_NAME}"
+_REST_OF_ENTRY = lazy_pattern(r"[ \t]*(,?)[ \t]*(#[^\n]*)?")
 _LAST_COMMAND = lazy_pattern(r"^[ \t]*ament_(auto_)?package[ \t]*\(", re.MULTILINE | re.IGNORECASE)
-_JOINED = lazy_pattern(r"\(\s*os\.path\.join\(\s*['\"]share['\"],\s*package_name\b")
+_JOINED_PATH = lazy_pattern(r"\(\s*os\.path\.join\(\s*['\"]share['\"],\s*package_name\b")
 _FIRST_IMPORT = lazy_pattern(r"^(import|from)[ \t]", re.MULTILINE)
 
 
-def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
+def make_dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     """Return the fix that adds dependencies to ``package.xml``, or None if this is not possible.
 
     The new lines follow the last dependency that is not only for tests or documentation, or else the license. They have
@@ -52,18 +52,21 @@ def dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     return Fix((Edit(source.name, last_range[1], last_range[1], text),))
 
 
-def setup_folders_fix(package: PackageContext, setup: SetupFile, folders: Iterable[str], *, safe: bool) -> Fix | None:
+def make_setup_folders_fix(
+    package: PackageContext, setup: SetupFile, folders: Iterable[str], *, safe: bool
+) -> Fix | None:
     """Return the fix that adds folders to ``data_files`` in ``setup.py``, or None."""
-    glob, imports = _glob(setup)
+    glob, imports = _find_glob(setup)
     if glob is None:
         return None
     entries = [
-        f"({_share_folder(setup, package.name, folder)}, {_patterns(package, folder, glob)})" for folder in folders
+        f"({_format_share_folder(setup, package.name, folder)}, {_format_patterns(package, folder, glob)})"
+        for folder in folders
     ]
-    return _data_files_fix(setup, entries, imports, safe=safe)
+    return _make_data_files_fix(setup, entries, imports, safe=safe)
 
 
-def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, file: str) -> Fix | None:
+def make_setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, file: str) -> Fix | None:
     """Return the fix that adds a file to the ``data_files`` of ``setup.py``.
 
     The result is None if the position of the new entry is uncertain.
@@ -74,11 +77,11 @@ def setup_file_fix(package: PackageContext, setup: SetupFile, destination: str, 
         destination: the folder relative to the prefix; an empty string for the share folder of the package.
         file: the path of the file in the package.
     """
-    into = f"'{destination}'" if destination else _share_folder(setup, package.name)
-    return _data_files_fix(setup, [f"({into}, ['{file}'])"], (), safe=True)
+    into = f"'{destination}'" if destination else _format_share_folder(setup, package.name)
+    return _make_data_files_fix(setup, [f"({into}, ['{file}'])"], (), safe=True)
 
 
-def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | None:
+def make_cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | None:
     """Return the fix that installs a folder by ``CMakeLists.txt``.
 
     The result is None if the position of the new command is uncertain.
@@ -92,7 +95,7 @@ def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | No
         safe: whether the fix is safe.
     """
     text, parent = source.text, str(PurePosixPath(folder).parent)
-    last = None if parent != "." else next(_last_folders(source), None)
+    last = None if parent != "." else next(_find_last_folders(source), None)
     if last is not None:
         end = last.end + (1 if last.is_quoted else 0)
         line = text.rfind("\n", 0, last.start) + 1
@@ -102,13 +105,13 @@ def cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix | No
     last_command = _LAST_COMMAND.search(text)
     if last_command is None:
         return None
-    destination = _SHARE if parent == "." else f"{_SHARE}/{parent}"
+    destination = _SHARE_FOLDER if parent == "." else f"{_SHARE_FOLDER}/{parent}"
     newline = line_ending(text)
     command = f"install(DIRECTORY {folder} DESTINATION {destination}){newline}{newline}"
     return Fix((Edit(source.name, last_command.start(), last_command.start(), command),), safe)
 
 
-def _last_folders(source: SourceText) -> Iterator[Token]:
+def _find_last_folders(source: SourceText) -> Iterator[Token]:
     """Yield the last folder of each unconditional command that installs into the share folder."""
     from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, statements
 
@@ -117,22 +120,27 @@ def _last_folders(source: SourceText) -> Iterator[Token]:
         depth += statement.name in BLOCK_ENDS
         depth -= statement.name in BLOCK_ENDS.values()
         if depth == 0 and statement.name == "install":
-            folders = _installed_folders(statement)
+            folders = _find_installed_folders(statement)
             if folders:
                 yield folders[-1]
 
 
-def _installed_folders(statement: Statement) -> tuple[Token, ...]:
+def _find_installed_folders(statement: Statement) -> tuple[Token, ...]:
     words = [token.text for token in statement.tokens]
-    if words[:1] != ["DIRECTORY"] or len(words) < 4 or words[-2] != "DESTINATION" or words[-1].rstrip("/") != _SHARE:
+    if (
+        words[:1] != ["DIRECTORY"]
+        or len(words) < 4
+        or words[-2] != "DESTINATION"
+        or words[-1].rstrip("/") != _SHARE_FOLDER
+    ):
         return ()
     folders = statement.tokens[1:-2]
     return () if any(folder.text.endswith("/") or "$" in folder.text for folder in folders) else folders
 
 
-def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, ...], *, safe: bool) -> Fix | None:
+def _make_data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, ...], *, safe: bool) -> Fix | None:
     """Return the fix that adds entries to ``data_files``, or None if this is not possible."""
-    data_files = _data_files_list(setup)
+    data_files = _find_data_files_list(setup)
     if data_files is None:
         return None
     source, text = setup.source, setup.source.text
@@ -140,7 +148,7 @@ def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, .
     if '"' in text and text.count('"') > text.count("'"):
         entries = [entry.replace("'", '"') for entry in entries]
     if elements:
-        edit = _after_last(source, elements[-1], entries)
+        edit = _insert_after_last(source, elements[-1], entries)
     else:
         edit = Edit(source.name, start + 1, start + 1, ", ".join(entries))
     if any(import_edit.start > edit.start for import_edit in imports):  # the import would come after its use
@@ -156,7 +164,7 @@ def _data_files_fix(setup: SetupFile, entries: list[str], imports: tuple[Edit, .
     return Fix(edits, safe)
 
 
-def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -> Edit:
+def _insert_after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -> Edit:
     """Return the edit that inserts entries after the last entry.
 
     If the last entry is on its own line, so is each new entry.
@@ -166,14 +174,14 @@ def _after_last(source: SourceText, last: tuple[int, int], entries: list[str]) -
     if indent.strip():
         return Edit(source.name, end, end, "".join(f", {entry}" for entry in entries))
     separator = f"{line_ending(text)}{indent}"
-    rest_match = _REST.match(text, end)
+    rest_match = _REST_OF_ENTRY.match(text, end)
     if rest_match is not None and rest_match[1] and rest_match[2]:  # a comment belongs to the entry before it
         offset = end + len(rest_match[0].rstrip("\r"))
         return Edit(source.name, offset, offset, "".join(f"{separator}{entry}," for entry in entries))
     return Edit(source.name, end, end, "".join(f",{separator}{entry}" for entry in entries))
 
 
-def _data_files_list(setup: SetupFile) -> tuple[int, list[tuple[int, int]]] | None:
+def _find_data_files_list(setup: SetupFile) -> tuple[int, list[tuple[int, int]]] | None:
     """Return the offset of the list ``data_files`` in the call of ``setup``, and its elements.
 
     The elements are ranges of offsets. The result is None if there is no such list.
@@ -195,7 +203,7 @@ def _data_files_list(setup: SetupFile) -> tuple[int, list[tuple[int, int]]] | No
     return ranges[0][0], ranges[1:]
 
 
-def _glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
+def _find_glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
     """Return the name of ``glob`` in ``setup.py``, and the edit that imports it.
 
     The edit is empty if the import exists. The name is None if there is no position for the import.
@@ -216,17 +224,17 @@ def _glob(setup: SetupFile) -> tuple[str | None, tuple[Edit, ...]]:
     return "glob", (Edit(setup.source.name, first.start(), first.start(), f"from glob import glob{line_ending(text)}"),)
 
 
-def _share_folder(setup: SetupFile, name: str, folder: str = "") -> str:
+def _format_share_folder(setup: SetupFile, name: str, folder: str = "") -> str:
     """Return the expression of a folder in the share folder, in the form of the other entries."""
     text, subpath = setup.source.text, f"/{folder}" if folder else ""
-    if _JOINED.search(text):
+    if _JOINED_PATH.search(text):
         return "os.path.join('share', package_name" + (f", '{folder}')" if folder else ")")
     if re.search(rf"^package_name\s*=\s*['\"]{re.escape(name)}['\"]", text, re.MULTILINE):
         return "'share/' + package_name" + (f" + '{subpath}'" if subpath else "")
     return f"'share/{name}{subpath}'"
 
 
-def _patterns(package: PackageContext, folder: str, glob: str) -> str:
+def _format_patterns(package: PackageContext, folder: str, glob: str) -> str:
     """Return the expression that lists the files in a folder.
 
     If the folder has subfolders, the expression has one pattern for each extension, because a folder in ``data_files``

@@ -43,7 +43,7 @@ def rules_of(scopes: Collection[Scope]) -> tuple[Rule, ...]:
     return tuple(rule for rule in _all_rules(include_packages=Scope.PACKAGE in scopes)[0] if rule.scope in scopes)
 
 
-def unusable_rules() -> tuple[Diagnostic, ...]:
+def find_unusable_rules() -> tuple[Diagnostic, ...]:
     """Return a warning (LINT301) for each external entry point whose rules cannot be used."""
     return _all_rules(include_packages=False)[1]
 
@@ -61,7 +61,7 @@ def is_external(rule: Rule) -> bool:
     return not rule.code.startswith(_OWN_PREFIX)
 
 
-def failed_rule(rule: Rule, error: Exception) -> Diagnostic:
+def make_failed_rule_finding(rule: Rule, error: Exception) -> Diagnostic:
     """Return the error (LINT304) about a rule of another package that raised an exception."""
     reason = foreign(f"{type(error).__name__}: {error}")
     trace = error.__traceback__
@@ -79,14 +79,14 @@ def failed_rule(rule: Rule, error: Exception) -> Diagnostic:
 def find_rule(code_or_name: str) -> Rule | None:
     """Return the rule with a code or name, ignoring case, or None if there is none."""
     key = code_or_name.strip().casefold()
-    rule = _index(include_packages=False).get(key)
+    rule = _index_rules(include_packages=False).get(key)
     if rule is None and (key.startswith(_OWN_PREFIX.casefold()) or not _CODE.fullmatch(key.upper())):
-        return _index(include_packages=True).get(key)
+        return _index_rules(include_packages=True).get(key)
     return rule
 
 
 @cache
-def _index(*, include_packages: bool) -> Mapping[str, Rule]:
+def _index_rules(*, include_packages: bool) -> Mapping[str, Rule]:
     return {
         key: rule
         for rule in _all_rules(include_packages=include_packages)[0]
@@ -106,7 +106,7 @@ def _all_rules(*, include_packages: bool) -> tuple[tuple[Rule, ...], tuple[Diagn
     entries = extensions(GROUP).values()
     include_packages = include_packages or not all(map(_is_ours, entries))
     for entry in entries:
-        entry_rules = _rules_of(
+        entry_rules = _load_rules_of(
             entry, {*rules, *(rule.name for rule in rules.values())}, include_packages=include_packages
         )
         if isinstance(entry_rules, Diagnostic):
@@ -120,27 +120,29 @@ def _is_ours(entry: EntryPoint) -> bool:
     return entry.value.startswith("linkwright.")
 
 
-def _rules_of(entry: EntryPoint, used_names: set[str], *, include_packages: bool) -> list[Rule] | Diagnostic:
+def _load_rules_of(entry: EntryPoint, used_names: set[str], *, include_packages: bool) -> list[Rule] | Diagnostic:
     """Return the rules of an entry point, or a diagnostic if they cannot be used.
 
     An exception in Linkwright's own rules is not caught.
     """
     if _is_ours(entry):
-        return _load(entry, used_names, is_ours=True, include_packages=include_packages)
+        return _load_rules(entry, used_names, is_ours=True, include_packages=include_packages)
     try:
-        return _load(entry, used_names, is_ours=False, include_packages=True)
+        return _load_rules(entry, used_names, is_ours=False, include_packages=True)
     except Exception as error:  # noqa: BLE001  # code of another package may raise any exception
-        return _unusable_finding(entry, error)
+        return _make_unusable_finding(entry, error)
 
 
-def _load(entry: EntryPoint, used_names: set[str], *, is_ours: bool, include_packages: bool) -> list[Rule]:
+def _load_rules(entry: EntryPoint, used_names: set[str], *, is_ours: bool, include_packages: bool) -> list[Rule]:
     """Return the rules of an entry point, and add their codes and names to `used_names`.
 
     Raises:
         ValueError: If a code or name is taken or malformed.
     """
     rules = [
-        _instance(rule) for module in _modules(entry.load(), is_ours, include_packages) for rule in _classes(module)
+        _make_instance(rule)
+        for module in _import_modules(entry.load(), is_ours, include_packages)
+        for rule in _list_rule_classes(module)
     ]
     for rule in rules:
         if (
@@ -159,19 +161,19 @@ _INSTANCES: dict[object, Rule] = {}
 """The instance of each rule class."""
 
 
-def _instance(kind: type[Rule]) -> Rule:
+def _make_instance(kind: type[Rule]) -> Rule:
     return _INSTANCES.get(kind) or _INSTANCES.setdefault(kind, kind())
 
 
-def _modules(module: ModuleType, is_ours: bool, include_packages: bool) -> Iterator[ModuleType]:
+def _import_modules(module: ModuleType, is_ours: bool, include_packages: bool) -> Iterator[ModuleType]:
     yield module
     for folder in getattr(module, "__path__", ()):
-        for name in sorted(_module_names(folder, is_ours=is_ours)):
+        for name in sorted(_list_module_names(folder, is_ours=is_ours)):
             if include_packages or not name.startswith(_PACKAGE_MODULE_PREFIXES):
                 yield import_module(f"{module.__name__}.{name}")
 
 
-def _module_names(folder: str, *, is_ours: bool) -> Iterator[str]:
+def _list_module_names(folder: str, *, is_ours: bool) -> Iterator[str]:
     if is_ours:  # our folder is in the file system and contains a file for each module
         yield from (file.stem for file in Path(folder).glob("*.py") if file.stem != "__init__")
         return
@@ -180,14 +182,14 @@ def _module_names(folder: str, *, is_ours: bool) -> Iterator[str]:
     yield from (entry.name for entry in iter_modules([folder]))
 
 
-def _classes(module: ModuleType) -> Iterator[type[Rule]]:
+def _list_rule_classes(module: ModuleType) -> Iterator[type[Rule]]:
     for value in vars(module).values():
         is_own = isinstance(value, type) and issubclass(value, Rule) and value.__module__ == module.__name__
         if is_own and not value.__name__.startswith("_") and "code" in vars(value):  # other classes are base classes
             yield value
 
 
-def _unusable_finding(entry: EntryPoint, error: Exception) -> Diagnostic:
+def _make_unusable_finding(entry: EntryPoint, error: Exception) -> Diagnostic:
     message = phrase(
         "the rules of '{module}' cannot be used: {reason}",
         module=entry.value,

@@ -16,14 +16,14 @@ def is_selector(text: str) -> bool:
         return True
     if not _CODE.fullmatch(text):
         return False
-    from linkwright.lint.explain import room_pages  # imported here because most checks have no selectors
+    from linkwright.lint.explain import read_room_pages  # imported here because most checks have no selectors
 
     return any(rule.code.startswith(text) for rule in all_rules()) or any(
-        code.startswith(text) for code in room_pages()
+        code.startswith(text) for code in read_room_pages()
     )
 
 
-def canonical(text: str) -> str:
+def to_canonical(text: str) -> str:
     """Return the canonical form of a selector: the code instead of the name of a rule.
 
     Other texts are returned unchanged.
@@ -32,7 +32,7 @@ def canonical(text: str) -> str:
     return rule.code if rule else text
 
 
-def selector_hint(text: str) -> Phrase:
+def make_selector_hint(text: str) -> Phrase:
     """Return a hint on a text that is not a valid selector."""
     candidates = [name for rule in all_rules() for name in (rule.name, rule.code)]
     suggestions = nearest(text, candidates, limit=1)

@@ -32,11 +32,11 @@ class SchemaElement(NamedTuple):
     @property
     def owner_suffix(self) -> str:
         """The text that follows an element's tag in a message, such as `` of joint 'elbow'``."""
-        return "" if self.owner is None or self.owner is self.element else f" of {_owner_name(self.owner)}"
+        return "" if self.owner is None or self.owner is self.element else f" of {_describe_owner(self.owner)}"
 
     def __str__(self) -> str:
         """Return the name of the element for messages, such as ``<limit> of joint 'elbow'``."""
-        return _owner_name(self.element) if self.owner is self.element else f"<{self.rule.tag}>{self.owner_suffix}"
+        return _describe_owner(self.element) if self.owner is self.element else f"<{self.rule.tag}>{self.owner_suffix}"
 
 
 class Structure:
@@ -112,7 +112,7 @@ def _is_expected(schema_element: SchemaElement, child: Element) -> bool:
     return schema_element.rule is schema.GEOMETRY and child is next(schema_element.element.elements(), None)
 
 
-def _owner_name(element: Element) -> str:
+def _describe_owner(element: Element) -> str:
     """Return a link, joint or material as named in messages, such as ``joint 'elbow'``."""
     name = element.attributes.get("name")
     return (

@@ -212,10 +212,12 @@ class Subject:
     @cached_property
     def tensor_flaws(self) -> list[tuple[Link, Inertial, Flaw]]:
         """The links with an impossible inertia tensor, each with its first flaw."""
-        from linkwright.lint.tensors import first_flaw
+        from linkwright.lint.tensors import find_first_flaw
 
         inertials = ((link, link.inertial) for link in self.links if link.inertial is not None)
-        return [(link, inertial, flaw) for link, inertial in inertials if (flaw := first_flaw(inertial)) is not None]
+        return [
+            (link, inertial, flaw) for link, inertial in inertials if (flaw := find_first_flaw(inertial)) is not None
+        ]
 
     @cached_property
     def frames(self) -> Mapping[str, Placement]:
@@ -223,9 +225,9 @@ class Subject:
 
         The mapping is empty if there is no robot.
         """
-        from linkwright.lint.frames import placements
+        from linkwright.lint.frames import compute_placements
 
-        return {} if self.robot is None else placements(self.robot)
+        return {} if self.robot is None else compute_placements(self.robot)
 
     @cached_property
     def package(self) -> PackageContext | None:

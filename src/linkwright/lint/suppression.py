@@ -15,7 +15,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, phra
 from linkwright.lint.finding import Finding
 from linkwright.lint.fix import Edit, Fix
 from linkwright.lint.registry import find_rule
-from linkwright.lint.selector_words import canonical, is_selector, selector_hint
+from linkwright.lint.selector_words import is_selector, make_selector_hint, to_canonical
 from linkwright.lint.selectors import matches
 from linkwright.lint.settings import Settings
 from linkwright.lint.subject import Subject
@@ -26,12 +26,12 @@ from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.patches import element_range, whole_lines
 from linkwright.xmltree.reader import read_bytes
 
-UNUSED = "LW001"
-UNKNOWN = "LW002"
+UNUSED_CODE = "LW001"
+UNKNOWN_CODE = "LW002"
 
-_VERB = r"linkwright:[ \t]*(?P<verb>ignore(?:-file)?)(?![\w-])"
-_IN_XML = lazy_pattern(rf"<!--\s*{_VERB}(?P<selectors>[^(]*?)(?:\((?:(?!-->).)*\)\s*)?-->", re.DOTALL)
-_IN_TEXT = lazy_pattern(rf"#[ \t]*{_VERB}(?P<selectors>[^(\n]*?)(?:\(.*)?$", re.MULTILINE)
+_DIRECTIVE = r"linkwright:[ \t]*(?P<verb>ignore(?:-file)?)(?![\w-])"
+_XML_COMMENT = lazy_pattern(rf"<!--\s*{_DIRECTIVE}(?P<selectors>[^(]*?)(?:\((?:(?!-->).)*\)\s*)?-->", re.DOTALL)
+_LINE_COMMENT = lazy_pattern(rf"#[ \t]*{_DIRECTIVE}(?P<selectors>[^(\n]*?)(?:\(.*)?$", re.MULTILINE)
 _NEXT_TAG = lazy_pattern(r"<!--.*?-->|<\?.*?\?>|<!\[CDATA\[.*?\]\]>|<(?P<tag>[^\s/>!?]+)|</", re.DOTALL)
 _SELECTOR = lazy_pattern(r"[^\s,]+")
 
@@ -66,7 +66,7 @@ class Directive:
         if not self.selectors:
             self.used_selectors.add("")
             return True
-        matching_selectors = [selector for selector, _ in self.selectors if matches([canonical(selector)], code)]
+        matching_selectors = [selector for selector, _ in self.selectors if matches([to_canonical(selector)], code)]
         self.used_selectors.update(matching_selectors)
         return bool(matching_selectors)
 
@@ -82,12 +82,12 @@ class Suppressions:
     def __init__(self, subject: Subject, settings: Settings) -> None:
         self._settings = settings
         self._overlay = subject.description.overlay
-        unused_rule = find_rule(UNUSED)
+        unused_rule = find_rule(UNUSED_CODE)
         self._reports_unused = unused_rule is not None and settings.runs(unused_rule) and subject.is_whole
         self._directives: dict[str, list[Directive]] = {}
         for path, document in subject.sources.items():
             if document.source is not None:
-                self._directives[str(path)] = list(directives(document.source))
+                self._directives[str(path)] = list(find_directives(document.source))
 
     def apply(self, diagnostics: Iterable[Diagnostic]) -> list[Diagnostic]:
         """Return the diagnostics that no comment suppresses, and the findings about the comments."""
@@ -102,14 +102,14 @@ class Suppressions:
         if not self._reports_unused:
             return False
         return any(
-            not directive.selectors or matches([canonical(selector) for selector, _ in directive.selectors], code)
+            not directive.selectors or matches([to_canonical(selector) for selector, _ in directive.selectors], code)
             for directive in self._all_directives()
         )
 
     def _suppresses(self, diagnostic: Diagnostic) -> bool:
         return any(
             directive.suppresses(diagnostic.code, offset)
-            for file, offset in _locations(diagnostic)
+            for file, offset in _find_locations(diagnostic)
             for directive in self._file_directives(file)
         )
 
@@ -120,7 +120,7 @@ class Suppressions:
                 text = decode(read_bytes(file), file) if text is None else text
             except LinkwrightError:
                 text = ""
-            self._directives[file] = list(directives(SourceText(file, text)))
+            self._directives[file] = list(find_directives(SourceText(file, text)))
         return self._directives[file]
 
     def _all_directives(self) -> Iterator[Directive]:
@@ -128,7 +128,7 @@ class Suppressions:
             yield from file_directives
 
     def _unknown_selector_findings(self) -> Iterator[Diagnostic]:
-        rule = find_rule(UNKNOWN)
+        rule = find_rule(UNKNOWN_CODE)
         if rule is None or not self._settings.runs(rule):
             return
         for directive in self._all_directives():
@@ -139,11 +139,11 @@ class Suppressions:
                     phrase("there is no rule '{selector}' to ignore", selector=selector),
                     span=directive.source.span(offset, offset + len(selector)),
                     source=directive.source,
-                    hint=selector_hint(selector),
+                    hint=make_selector_hint(selector),
                 )
 
     def _unused_comment_findings(self) -> Iterator[Diagnostic]:
-        rule = find_rule(UNUSED)
+        rule = find_rule(UNUSED_CODE)
         if rule is None or not self._reports_unused:
             return
         for directive in self._all_directives():
@@ -164,43 +164,45 @@ class Suppressions:
             )
 
 
-def directives(source: SourceText) -> Iterator[Directive]:
+def find_directives(source: SourceText) -> Iterator[Directive]:
     """Yield the suppression comments of a text in source order."""
     text = source.text
     if "linkwright:" not in text:
         return
     is_xml = text.lstrip("\ufeff \t\r\n").startswith("<")
-    for match in (_IN_XML if is_xml else _IN_TEXT).finditer(text):
+    for match in (_XML_COMMENT if is_xml else _LINE_COMMENT).finditer(text):
         selectors = tuple(
             (selector[0], match.start("selectors") + selector.start())
             for selector in _SELECTOR.finditer(match["selectors"])
         )
         ranges = (
-            None if match["verb"] == "ignore-file" else _suppressed_ranges(text, match.start(), match.end(), is_xml)
+            None
+            if match["verb"] == "ignore-file"
+            else _find_suppressed_ranges(text, match.start(), match.end(), is_xml)
         )
         yield Directive(source, match.start(), match.end(), selectors, ranges)
 
 
-def _suppressed_ranges(text: str, start: int, end: int, is_xml: bool) -> tuple[tuple[int, int], ...]:
+def _find_suppressed_ranges(text: str, start: int, end: int, is_xml: bool) -> tuple[tuple[int, int], ...]:
     line_start = text.rfind("\n", 0, start) + 1
     line_end = text.find("\n", end)
     line_end = len(text) if line_end < 0 else line_end + 1
     text_before, text_after = text[line_start:start].strip(), text[end:line_end].strip()
     line = (line_start, line_end)
     if text_before or not is_xml:
-        return (line,) if text_before else (_following_line(text, line_end),)
-    following_range = _following_element(text, end)
+        return (line,) if text_before else (_find_following_line(text, line_end),)
+    following_range = _find_following_element(text, end)
     if following_range is None:
         return (line,) if text_after else ()
     return (line, following_range) if text_after else (following_range,)
 
 
-def _following_line(text: str, start: int) -> tuple[int, int]:
+def _find_following_line(text: str, start: int) -> tuple[int, int]:
     end = text.find("\n", start)
     return start, len(text) if end < 0 else end + 1
 
 
-def _following_element(text: str, end: int) -> tuple[int, int] | None:
+def _find_following_element(text: str, end: int) -> tuple[int, int] | None:
     match = _NEXT_TAG.search(text, end)
     while match is not None and match["tag"] is None and match[0] != "</":
         match = _NEXT_TAG.search(text, match.end())
@@ -209,7 +211,7 @@ def _following_element(text: str, end: int) -> tuple[int, int] | None:
     return element_range(Element(match["tag"], source=SourceText("", text), offset=match.start()))
 
 
-def _locations(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
+def _find_locations(diagnostic: Diagnostic) -> Iterator[tuple[str, int]]:
     """Yield the file and character offset of a finding and of the calls that produced it.
 
     The calls are the macro calls and includes that contain the finding's element.

@@ -10,8 +10,8 @@ from linkwright.geometry.shapes import Matrix
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Inertial
 
-DIAGONAL = ("ixx", "iyy", "izz")
-PRODUCTS = ("ixy", "ixz", "iyz")
+DIAGONAL_NAMES = ("ixx", "iyy", "izz")
+PRODUCT_NAMES = ("ixy", "ixz", "iyz")
 _MAX_NAMED_LINKS = 4
 """The maximum number of other links that a message names."""
 
@@ -34,7 +34,7 @@ class Flaw:
     amount: float = 0.0
 
 
-def tensor(inertial: Inertial) -> Matrix:
+def read_tensor(inertial: Inertial) -> Matrix:
     """Return the inertia tensor given in ``<inertial>``, without its rotation, in kg m2."""
     i = inertial
     return (i.ixx, i.ixy, i.ixz), (i.ixy, i.iyy, i.iyz), (i.ixz, i.iyz, i.izz)
@@ -62,16 +62,16 @@ def _max_rounding_error(inertial: Inertial) -> float:
     return max(sum(map(rounding_error, row)) for row in rows)
 
 
-def first_flaw(inertial: Inertial) -> Flaw | None:
+def find_first_flaw(inertial: Inertial) -> Flaw | None:
     """Return the first flaw of a tensor, or None if it is valid."""
-    moments = [getattr(inertial, name) for name in DIAGONAL]
-    products = [getattr(inertial, name) for name in PRODUCTS]
+    moments = [getattr(inertial, name) for name in DIAGONAL_NAMES]
+    products = [getattr(inertial, name) for name in PRODUCT_NAMES]
     if not any(moments) and not any(products):
         return Flaw("zero")
-    for name, moment in zip(DIAGONAL, moments, strict=True):
+    for name, moment in zip(DIAGONAL_NAMES, moments, strict=True):
         if moment <= 0:
             return Flaw("diagonal", name, moment)
-    matrix = tensor(inertial)
+    matrix = read_tensor(inertial)
     if any(products):
         for name, limit in validity.excessive_products(matrix):
             return Flaw("product", name, limit)
@@ -79,7 +79,7 @@ def first_flaw(inertial: Inertial) -> Flaw | None:
             return Flaw("indefinite")
     excess = validity.triangle_excess(matrix)
     if excess > validity.TOLERANCE:
-        return Flaw("triangle", DIAGONAL[moments.index(max(moments))], excess)
+        return Flaw("triangle", DIAGONAL_NAMES[moments.index(max(moments))], excess)
     return None
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from linkwright.diagnostics import Span, words_of
 from linkwright.diagnostics.misspellings import find_misspelled
-from linkwright.lint.extension_names import CHILDREN
+from linkwright.lint.extension_names import CHILD_TAGS
 from linkwright.lint.structure import EXTENSIONS, SchemaElement
 from linkwright.lint.subject import Subject
 from linkwright.schema import ElementRule
@@ -46,7 +46,7 @@ _OTHER_ATTRIBUTES = {
 }
 
 
-def _parents_by_tag() -> dict[str, tuple[str, ...]]:
+def _index_parents() -> dict[str, tuple[str, ...]]:
     """Return the elements that may contain each element, by tag."""
     parents: dict[str, dict[str, None]] = {}
     pending: list[ElementRule] = [schema.ROBOT]
@@ -58,10 +58,10 @@ def _parents_by_tag() -> dict[str, tuple[str, ...]]:
     return {tag: tuple(sorted(parent_tags)) for tag, parent_tags in parents.items()}
 
 
-PARENT_TAGS = _parents_by_tag()
+PARENT_TAGS = _index_parents()
 
 
-def _all_attributes() -> frozenset[str]:
+def _list_attributes() -> frozenset[str]:
     """Return the names of all attributes of URDF elements."""
     names: set[str] = set()
     pending: list[ElementRule] = [schema.ROBOT]
@@ -73,10 +73,10 @@ def _all_attributes() -> frozenset[str]:
 
 
 _MASS_NAMES = frozenset({"weight", "density"})
-_EXTENSION_ELEMENTS = frozenset(tag for tags in CHILDREN.values() for tag in tags)
+_EXTENSION_ELEMENTS = frozenset(tag for tags in CHILD_TAGS.values() for tag in tags)
 _EXPECTED_ELEMENTS = frozenset({*PARENT_TAGS, *_OTHER_ELEMENTS, *_EXTENSION_ELEMENTS, *_MASS_NAMES})
 _EXPECTED_ATTRIBUTES = (
-    frozenset({*_all_attributes(), *PARENT_TAGS, *_OTHER_ELEMENTS, *_OTHER_ATTRIBUTES, *_MASS_NAMES})
+    frozenset({*_list_attributes(), *PARENT_TAGS, *_OTHER_ELEMENTS, *_OTHER_ATTRIBUTES, *_MASS_NAMES})
     - _SHARED_ATTRIBUTES
 )
 
@@ -95,7 +95,7 @@ def is_expected_attribute(name: str) -> bool:
     return name.casefold() in _EXPECTED_ATTRIBUTES
 
 
-def reader_hints(subject: Subject) -> dict[Span | None, str]:
+def find_reader_hints(subject: Subject) -> dict[Span | None, str]:
     """Return the hints of the URDF reader's diagnostics, by location.
 
     A diagnostic without a hint has an empty string.
@@ -103,7 +103,7 @@ def reader_hints(subject: Subject) -> dict[Span | None, str]:
     return {diagnostic.span: diagnostic.hint or "" for diagnostic in subject.reading.diagnostics}
 
 
-def intended_element(rule: ElementRule, child: Element) -> str | None:
+def find_intended_element(rule: ElementRule, child: Element) -> str | None:
     """Return the allowed element that an unknown element probably misspells, or None."""
     if child.tag in PARENT_TAGS:
         return None
@@ -124,7 +124,7 @@ def is_misspelled(name: str, intended: str) -> bool:
     return find_misspelled(name, [intended]) is not None
 
 
-def intended_attribute(schema_element: SchemaElement, attribute: str) -> str | None:
+def find_intended_attribute(schema_element: SchemaElement, attribute: str) -> str | None:
     """Return the absent attribute that an unknown attribute probably misspells, or None."""
     absent_attributes = [
         rule.name for rule in schema_element.rule.attributes if rule.name not in schema_element.element.attributes
@@ -135,7 +135,7 @@ def intended_attribute(schema_element: SchemaElement, attribute: str) -> str | N
     return find_misspelled(attribute, absent_attributes)
 
 
-def location_phrase(schema_element: SchemaElement) -> str:
+def describe_location(schema_element: SchemaElement) -> str:
     """Return the name of an element for messages, as the location of another element."""
     return "<robot>" if schema_element.rule is schema.ROBOT else str(schema_element)
 

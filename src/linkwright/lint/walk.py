@@ -15,19 +15,19 @@ if TYPE_CHECKING:
     from linkwright.lint.subject import Subject
 
 
-def joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:
+def iterate_joints(subject: Subject) -> Iterator[tuple[Joint, Element]]:
     """Yield the joints with their elements, in source order."""
     for joint in subject.joints:
         if joint.element is not None:
             yield joint, joint.element
 
 
-def joint_children(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]]:
+def iterate_joint_children(subject: Subject, tag: str) -> Iterator[tuple[Joint, Element, Element]]:
     """Yield each joint with a child element of a tag, the joint's element, and the child.
 
     Only the first such child is yielded, because readers use only this one.
     """
-    for joint, element in joints(subject):
+    for joint, element in iterate_joints(subject):
         child = element.first(tag)
         if child is not None:
             yield joint, element, child
@@ -50,33 +50,33 @@ def is_for_simulation(subject: Subject) -> bool:
     return next(subject.elements("gazebo"), None) is not None or any(map(_SIMULATORS.search, plugins))
 
 
-SURROUNDINGS = frozenset(("world", "map", "odom"))
+SURROUNDING_FRAMES = frozenset(("world", "map", "odom"))
 """Links that represent the surroundings: a link that is fixed to one does not move, and may be anywhere."""
-BOUNDED = ("revolute", "prismatic")
+BOUNDED_TYPES = ("revolute", "prismatic")
 """The types of joints that have bounds."""
-UNBOUNDED = 1000.0
+UNBOUNDED_RAD = 1000.0
 """The magnitude, in rad or m, above which bounds mean that there are no limits."""
 
 
-def limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
+def iterate_limits(subject: Subject, *types: str) -> Iterator[tuple[Joint, Element]]:
     """Yield the joints of some types that have a ``<limit>``, each with this element."""
-    for joint, _, limit in joint_children(subject, "limit"):
+    for joint, _, limit in iterate_joint_children(subject, "limit"):
         if joint.type in types:
             yield joint, limit
 
 
-def bounds(limit: Element) -> tuple[float, float] | None:
+def parse_bounds(limit: Element) -> tuple[float, float] | None:
     """Return the lower and upper bounds as urdfdom reads them, or None if one is not a number.
 
     A missing bound is 0.
     """
-    lower_and_upper = [value(limit, name) if name in limit.attributes else 0.0 for name in ("lower", "upper")]
+    lower_and_upper = [parse_number(limit, name) if name in limit.attributes else 0.0 for name in ("lower", "upper")]
     return (
         None if lower_and_upper[0] is None or lower_and_upper[1] is None else (lower_and_upper[0], lower_and_upper[1])
     )
 
 
-def value(element: Element, attribute: str) -> float | None:
+def parse_number(element: Element, attribute: str) -> float | None:
     """Return the value of an attribute as a number, or None if it is absent or not a number."""
     text = element.attributes.get(attribute)
     if text is None:
@@ -87,7 +87,7 @@ def value(element: Element, attribute: str) -> float | None:
         return None
 
 
-def values(element: Element, attribute: str) -> tuple[float, ...]:
+def parse_numbers(element: Element, attribute: str) -> tuple[float, ...]:
     """Return the numbers in an attribute, or an empty tuple if it is absent or malformed."""
     text = element.attributes.get(attribute)
     if text is None:

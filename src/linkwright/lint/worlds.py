@@ -21,7 +21,7 @@ from linkwright.lint.rules.inertia_tensor import (
     NonPositiveMoment,
     TriangleInequality,
 )
-from linkwright.lint.tensors import first_flaw
+from linkwright.lint.tensors import find_first_flaw
 from linkwright.sdf.figures import actor_model
 from linkwright.sdf.joints import Axis, Joint
 from linkwright.sdf.links import Collision, Inertial, Link, Visual
@@ -38,9 +38,9 @@ _FLAW_RULES = {
     rule.kind: rule for rule in (NonPositiveMoment(), ExcessiveProduct(), IndefiniteInertia(), TriangleInequality())
 }
 _URI_TAGS = ("uri", "filename")
-_MISSING_RESOURCES = frozenset({"SDF160", "SDF162"})
+_MISSING_RESOURCE_CODES = frozenset({"SDF160", "SDF162"})
 """Findings that have a common fix because models and meshes are missing on this machine."""
-_RESERVED_NAME = "SDF111"
+_RESERVED_NAME_CODE = "SDF111"
 """The finding on a reserved name. It is a warning if Gazebo classic accepts the name."""
 _CLASSIC_PACKAGES = ("gazebo_ros", "gazebo_ros_pkgs", "gazebo_plugins", "gazebo_dev", "gazebo_ros2_control")
 _ZERO_MASS, _NEGATIVE_MASS = ZeroMass(), NegativeMass()
@@ -79,12 +79,12 @@ def merge_missing_resources(findings: Iterable[Diagnostic]) -> list[Diagnostic]:
     groups: dict[tuple[str, Severity], list[Diagnostic]] = {}
     for diagnostic in findings:
         group = groups.setdefault((diagnostic.code, diagnostic.severity), [])
-        if diagnostic.code not in _MISSING_RESOURCES or not group:
+        if diagnostic.code not in _MISSING_RESOURCE_CODES or not group:
             merged.append(diagnostic)
         group.append(diagnostic)
     return [
         with_related(diagnostic, groups[diagnostic.code, diagnostic.severity][1:])
-        if diagnostic.code in _MISSING_RESOURCES
+        if diagnostic.code in _MISSING_RESOURCE_CODES
         else diagnostic
         for diagnostic in merged
     ]
@@ -99,7 +99,7 @@ def adapt_to_classic(findings: Iterable[Diagnostic], path: Path) -> Iterator[Dia
     manifest = None if package is None else package.manifest
     is_classic = manifest is not None and any(map(manifest.declares, _CLASSIC_PACKAGES))
     for diagnostic in findings:
-        is_accepted = is_classic and diagnostic.code == _RESERVED_NAME and diagnostic.severity is Severity.WARNING
+        is_accepted = is_classic and diagnostic.code == _RESERVED_NAME_CODE and diagnostic.severity is Severity.WARNING
         yield diagnostic.with_changes(severity=Severity.INFO) if is_accepted else diagnostic
 
 
@@ -109,7 +109,7 @@ def _step_size_findings(sdf: Sdf) -> Iterator[Diagnostic]:
             if not physics.max_step_size > 0 and physics.element is not None:
                 element = physics.element.first("max_step_size") or physics.element
                 message = phrase("the time step is not positive: {step:g} s", step=physics.max_step_size)
-                yield _warning("SDF122", message, element, phrase("write a positive time step, such as 0.001"))
+                yield _make_warning("SDF122", message, element, phrase("write a positive time step, such as 0.001"))
 
 
 def _model_findings(model: Model, *, static: bool) -> Iterator[Diagnostic]:
@@ -143,7 +143,7 @@ def _axis_findings(models: Iterable[Model]) -> Iterator[Diagnostic]:
             axis_element = joint.element.first(tag)
             xyz = axis_element.first("xyz") if axis_element is not None else None
             message = phrase("the axis of {owner} has no direction", owner=describe_element(joint.element))
-            finding = _warning(
+            finding = _make_warning(
                 "SDF122", message, xyz or joint.element, phrase("write the direction of the axis, such as 0 0 1")
             )
             if joint.type == "fixed":
@@ -181,7 +181,9 @@ def _missing_mesh_findings(models: Iterable[Model], finder: ResourceFinder) -> I
             )
             uri_elements = (child for child in element.walk() if child.tag in _URI_TAGS)
             uri_element = next((element for element in uri_elements if element.text().strip() == geometry.uri), element)
-            yield _warning("SDF162", message, uri_element, mesh_file.hint).with_changes(severity=mesh_file.severity)
+            yield _make_warning("SDF162", message, uri_element, mesh_file.hint).with_changes(
+                severity=mesh_file.severity
+            )
 
 
 def _inertial_findings(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
@@ -212,12 +214,12 @@ def _inertial_findings(link: Link, inertial: Inertial) -> Iterator[Diagnostic]:
         )
     ):
         message = phrase("the mass or inertia of link '{name}' is not a finite number", name=link.name)
-        yield _warning("SDF122", message, inertial.element, phrase("masses are in kg, moments in kg m2"))
+        yield _make_warning("SDF122", message, inertial.element, phrase("masses are in kg, moments in kg m2"))
         return
     if robot_inertial.mass <= 0:
         finding = (_NEGATIVE_MASS if robot_inertial.mass < 0 else _ZERO_MASS).finding(link.name, robot_inertial)
         yield finding.with_changes(hint=phrase("give a positive mass in kg"))
-    flaw = first_flaw(robot_inertial)
+    flaw = find_first_flaw(robot_inertial)
     if flaw is not None and flaw.kind in _FLAW_RULES:
         hint = phrase("a solid box has m (a2 + b2) / 12 about each axis, with a and b its edges across the axis")
         yield _FLAW_RULES[flaw.kind].finding(link.name, robot_inertial, flaw).with_changes(hint=hint)
@@ -237,12 +239,12 @@ def _size_findings(shape: Visual | Collision) -> Iterator[Diagnostic]:
     if sizes and not min(sizes) > 0 and shape.element is not None:
         geometry_element = shape.element.first("geometry") or shape.element
         message = phrase("{owner} has a size that is not positive", owner=describe_element(shape.element))
-        yield _warning(
+        yield _make_warning(
             "SDF122", message, next(geometry_element.elements(), geometry_element), phrase("sizes are in meters")
         )
 
 
-def _warning(code: str, message: Phrase, element: Element | None, hint: Phrase | None) -> Diagnostic:
+def _make_warning(code: str, message: Phrase, element: Element | None, hint: Phrase | None) -> Diagnostic:
     span = None if element is None else element.span()
     source = None if element is None else element.source
     return Diagnostic(code, message, span, Severity.WARNING, hint=hint, source=source)

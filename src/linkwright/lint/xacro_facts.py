@@ -26,14 +26,14 @@ from linkwright.xmltree.positions import attribute_value_range
 if TYPE_CHECKING:
     from linkwright.lint.package import PackageContext
 
-TAGS = frozenset(
+XACRO_TAGS = frozenset(
     f"xacro:{name}"
     for name in ("arg", "attribute", "call", "element", "if", "include", "insert_block", "macro", "property", "unless")
 )
 _BARE_TAGS = frozenset({"include", "insert_block", "macro"})
 _DIRECTIVE_IN_COMMENT = "xacro:eval-comments"
 _MAX_FOLDER_FILES = 200
-_CACHE_SIZE = 2_000_000
+_MAX_CACHED_CHARACTERS = 2_000_000
 """The maximum number of characters of the documents with cached facts."""
 _MAX_DEPTH = 1_000
 """The maximum nesting depth of the elements that are examined, the same as in an expansion."""
@@ -99,7 +99,7 @@ class FileFacts:
     Attributes:
         names: all names that the expressions or substituted values of the file mention.
         called_macros: the names of the macros that the file calls, without prefix and namespace.
-        calls_open: whether the file calls a macro whose name is computed.
+        has_open_calls: whether the file calls a macro whose name is computed.
     """
 
     document: Document
@@ -115,8 +115,8 @@ class FileFacts:
     called_macros: set[str] = field(default_factory=set)
     blocks: set[str] = field(default_factory=set)
     is_open: bool = False
-    arguments_open: bool = False
-    calls_open: bool = False
+    has_open_arguments: bool = False
+    has_open_calls: bool = False
     has_content: bool = False
 
     @cached_property
@@ -214,7 +214,7 @@ class FileFacts:
         elif tag == "xacro:insert_block":
             self.blocks.add(definition.name)
         else:
-            self._call(element, parents, order)
+            self._collect_call(element, parents, order)
 
     def _collect_macro(self, definition: Definition) -> None:
         name = definition.name.removeprefix("xacro:")
@@ -227,15 +227,15 @@ class FileFacts:
                     parameter.default, definition.element, "params", definition.parents, definition.order
                 )
 
-    def _call(self, element: Element, parents: tuple[Element, ...], order: int) -> None:
+    def _collect_call(self, element: Element, parents: tuple[Element, ...], order: int) -> None:
         tag, attributes = element.tag, element.attributes
         name = tag.removeprefix("xacro:")
         if tag in ("xacro:call", "xacro:element"):
             name = attributes.get("macro" if tag == "xacro:call" else "xacro:name", "").removeprefix("xacro:")
             if "$" in name:
-                self.calls_open = True
+                self.has_open_calls = True
                 return
-        if tag in TAGS and tag != "xacro:call":
+        if tag in XACRO_TAGS and tag != "xacro:call":
             return
         self.called_macros.add(name.rpartition(".")[2])
         self.calls.append(Definition(name, element, parents, order))
@@ -251,15 +251,15 @@ class FileFacts:
         self.used_arguments |= text_mentions.arguments
         self.pasted |= text_mentions.pasted_arguments
         self.is_open = self.is_open or text_mentions.is_open
-        self.arguments_open = self.arguments_open or text_mentions.arguments_open
+        self.has_open_arguments = self.has_open_arguments or text_mentions.has_open_arguments
 
 
-def _character_count(_: int, facts: FileFacts) -> int:
+def _count_characters(_: int, facts: FileFacts) -> int:
     source = facts.document.source
     return 1 if source is None else len(source.text) + 1
 
 
-_CACHE: BoundedCache[int, FileFacts] = BoundedCache(_CACHE_SIZE, _character_count)
+_CACHE: BoundedCache[int, FileFacts] = BoundedCache(_MAX_CACHED_CHARACTERS, _count_characters)
 """The facts about documents by `id`. An ID stays unique because the facts keep the documents alive."""
 
 
@@ -350,14 +350,14 @@ class XacroFacts:
         return any(facts.is_open for facts in self._all_facts()) or self._misses_files
 
     @cached_property
-    def arguments_open(self) -> bool:
+    def has_open_arguments(self) -> bool:
         """Whether an argument may be used through a computed name, or in a file that was not read."""
-        return any(facts.arguments_open for facts in self._all_facts()) or self._misses_files
+        return any(facts.has_open_arguments for facts in self._all_facts()) or self._misses_files
 
     @cached_property
-    def calls_open(self) -> bool:
+    def has_open_calls(self) -> bool:
         """Whether a macro may be called through a computed name, or in a file that was not read."""
-        return any(facts.calls_open for facts in self._all_facts()) or self._misses_files
+        return any(facts.has_open_calls for facts in self._all_facts()) or self._misses_files
 
     @cached_property
     def _misses_files(self) -> bool:

@@ -47,7 +47,7 @@ class Mentions:
         pasted_arguments: the subset of `arguments` whose values are substituted into an expression.
         packages: the offset of ``$(find package)`` in the text, by package.
         is_open: whether names are composed from values.
-        arguments_open: whether names of arguments are composed from values.
+        has_open_arguments: whether names of arguments are composed from values.
         bare_calls: the calls of functions by a deprecated name.
     """
 
@@ -56,7 +56,7 @@ class Mentions:
     pasted_arguments: frozenset[str] = frozenset()
     packages: tuple[tuple[str, int], ...] = ()
     is_open: bool = False
-    arguments_open: bool = False
+    has_open_arguments: bool = False
     bare_calls: tuple[BareCall, ...] = ()
 
 
@@ -76,7 +76,7 @@ def is_constant(text: str) -> bool:
         or text_mentions.arguments
         or text_mentions.packages
         or text_mentions.is_open
-        or text_mentions.arguments_open
+        or text_mentions.has_open_arguments
     ) and ("$(env" not in text and "$(optenv" not in text and "$(cwd" not in text and "$(dirname" not in text)
 
 
@@ -95,7 +95,7 @@ def _find_mentions(text: str) -> Mentions:
         frozenset(collector.pasted),
         tuple(collector.packages),
         collector.is_open,
-        collector.arguments_open,
+        collector.has_open_arguments,
         tuple(collector.bare_calls),
     )
 
@@ -107,7 +107,7 @@ class _MentionCollector:
     pasted: set[str] = field(default_factory=set)
     packages: list[tuple[str, int]] = field(default_factory=list)
     is_open: bool = False
-    arguments_open: bool = False
+    has_open_arguments: bool = False
     bare_calls: list[BareCall] = field(default_factory=list)
 
     def text(self, text: str, shift: int) -> None:
@@ -175,7 +175,7 @@ class _MentionCollector:
             if isinstance(argument, ast.Constant) and isinstance(argument.value, str):
                 self.arguments.add(argument.value)
             else:
-                self.arguments_open = True
+                self.has_open_arguments = True
         is_bare = isinstance(function, ast.Name) and function_name in DEPRECATED and function_name not in local_names
         if is_bare and start is not None and "$" not in text:
             self.bare_calls.append(BareCall(function_name, start + function.col_offset))
@@ -190,7 +190,7 @@ class _MentionCollector:
         command = words[0]
         if command == "arg":
             if "$" in body:
-                self.arguments_open = True
+                self.has_open_arguments = True
             else:
                 self.arguments.add(words[1])
         elif command == "find" and "$" not in body:

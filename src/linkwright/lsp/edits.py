@@ -13,7 +13,7 @@ from linkwright.language.proof import Edit
 from linkwright.lsp.server import LinkwrightServer
 
 
-def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.WorkspaceEdit:
+def to_workspace_edit(server: LinkwrightServer, edits: Iterable[Edit]) -> types.WorkspaceEdit:
     """Convert edits for the editor, with the versions of the open files.
 
     The editor rejects the edits if a file has another version.
@@ -34,7 +34,7 @@ def document_edits(server: LinkwrightServer, edits: Iterable[Edit]) -> types.Wor
     return types.WorkspaceEdit(document_changes=changes)
 
 
-def replacement(file: Path, old: str, new: str) -> Edit:
+def make_replacement(file: Path, old: str, new: str) -> Edit:
     """Return the edit that replaces the differing part of a text."""
     start = len(commonprefix([old, new]))  # noqa: RUF071 - it compares characters
     end = len(commonprefix([old[start:][::-1], new[start:][::-1]]))  # noqa: RUF071 - it compares characters
@@ -46,7 +46,7 @@ def new_file_edit(uri: str, text: str) -> types.WorkspaceEdit:
 
     Args:
         uri: the URI of the file, which does not exist.
-        text: the text.
+        text: the content of the new file.
     """
     start = types.Range(types.Position(0, 0), types.Position(0, 0))
     insertion = types.TextDocumentEdit(

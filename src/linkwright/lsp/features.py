@@ -6,7 +6,7 @@ from pathlib import Path
 
 from lsprotocol import types
 
-from linkwright.lsp.folders import watch_files
+from linkwright.lsp.client_features import watch_files
 from linkwright.lsp.requests import (
     actions,
     appearance,
@@ -19,7 +19,7 @@ from linkwright.lsp.requests import (
     texts,
     virtual_documents,
 )
-from linkwright.lsp.server import LinkwrightServer, path_of
+from linkwright.lsp.server import LinkwrightServer, path_from_uri
 
 _FILES_AND_FOLDERS = types.FileOperationRegistrationOptions(
     [types.FileOperationFilter(types.FileOperationPattern("**/*"), "file")]
@@ -32,12 +32,12 @@ def make_server() -> LinkwrightServer:
 
     @server.feature(types.INITIALIZED)
     async def initialized(server: LinkwrightServer, _: types.InitializedParams) -> None:
-        server.open_folders(_folders(server))
+        server.open_folders(_list_folders(server))
         await watch_files(server)
 
     @server.feature(types.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     def did_change_workspace_folders(server: LinkwrightServer, _: types.DidChangeWorkspaceFoldersParams) -> None:
-        server.open_folders(_folders(server))
+        server.open_folders(_list_folders(server))
 
     @server.feature(types.SHUTDOWN)
     def shutdown(server: LinkwrightServer, _: None) -> None:
@@ -96,8 +96,8 @@ def make_server() -> LinkwrightServer:
     return server
 
 
-def _folders(server: LinkwrightServer) -> list[Path]:
+def _list_folders(server: LinkwrightServer) -> list[Path]:
     """Return the folders that the editor has opened, or its root if it reports no folders."""
-    folders = [path for uri in server.workspace.folders if (path := path_of(uri)) is not None]
-    root = path_of(server.workspace.root_uri) if server.workspace.root_uri else None
+    folders = [path for uri in server.workspace.folders if (path := path_from_uri(uri)) is not None]
+    root = path_from_uri(server.workspace.root_uri) if server.workspace.root_uri else None
     return folders or ([root] if root else [])

@@ -15,7 +15,7 @@ from linkwright.diagnostics import Diagnostic
 from linkwright.language.workspace import Workspace
 
 
-async def findings_of_process(
+async def check_in_process(
     folders: Iterable[Path], subject: Path, texts: Mapping[Path, str]
 ) -> tuple[Diagnostic, ...] | None:
     """Check a description or package in a new process, and return the findings.
@@ -32,7 +32,7 @@ async def findings_of_process(
     """
     spawn = multiprocessing.get_context("spawn")
     receiver, sender = spawn.Pipe(duplex=False)
-    process = spawn.Process(target=_check, args=(sender, [*folders], subject, dict(texts)), daemon=True)
+    process = spawn.Process(target=_send_findings, args=(sender, [*folders], subject, dict(texts)), daemon=True)
     is_cancelled = threading.Event()
 
     def work() -> tuple[Diagnostic, ...] | None:
@@ -56,10 +56,10 @@ async def findings_of_process(
             process.kill()
 
 
-def _check(sender: Connection, folders: list[Path], subject: Path, texts: dict[Path, str]) -> None:
+def _send_findings(sender: Connection, folders: list[Path], subject: Path, texts: dict[Path, str]) -> None:
     """Send the findings about a subject."""
-    project = Workspace(folders)
+    workspace = Workspace(folders)
     with redirect_stdout(sys.stderr):  # Standard output carries only the responses of the server.
-        project.index.refresh()
-        sender.send(project.check_subject(subject, texts))
+        workspace.index.refresh()
+        sender.send(workspace.check_subject(subject, texts))
     sender.close()

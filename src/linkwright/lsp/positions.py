@@ -21,7 +21,7 @@ class TextPositions:
     """The conversion between character offsets of a text and positions of the protocol.
 
     Args:
-        text: the text.
+        text: the text of a file.
         encoding: the encoding whose code units a position counts.
     """
 
@@ -42,7 +42,7 @@ class TextPositions:
     def position(self, offset: int) -> types.Position:
         """Return the position of a character offset."""
         line, column = self._source.position(offset)
-        return self._at(line, column)
+        return self._position_at(line, column)
 
     def range(self, start: int, end: int) -> types.Range:
         """Return the range between two character offsets, with an exclusive end."""
@@ -50,13 +50,13 @@ class TextPositions:
 
     def range_of(self, span: Span) -> types.Range:
         """Return the range of a span, whose lines and columns count from 1."""
-        return types.Range(self._at(span.line, span.column), self._at(span.end_line, span.end_column))
+        return types.Range(self._position_at(span.line, span.column), self._position_at(span.end_line, span.end_column))
 
     def whole(self) -> types.Range:
         """Return the range of the whole text."""
         return self.range(0, len(self.text))
 
-    def _at(self, line: int, column: int) -> types.Position:
+    def _position_at(self, line: int, column: int) -> types.Position:
         prefix = self._source.line(line)[: column - 1]
         units = len(prefix) if prefix.isascii() else len(prefix.encode(self._codec)) // self._bytes
         return types.Position(line - 1, units)

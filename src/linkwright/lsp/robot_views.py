@@ -17,10 +17,10 @@ from typing import Any, Protocol
 
 from pygls.workspace import TextDocument
 
-from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES
 
 _ADDRESS = re.compile(rb"https?://\S+")
-_LOADED_FILES = (".yaml", ".yml")
+_LOADED_FILE_SUFFIXES = (".yaml", ".yml")
 """The suffixes of files that descriptions load."""
 
 
@@ -31,7 +31,7 @@ class TextEditor(Protocol):
         """Show the source of the element that the user has selected in a page.
 
         Args:
-            file: the file.
+            file: the file that contains the element.
             line: the line, from 1.
             column: the column, from 1.
         """
@@ -40,7 +40,7 @@ class TextEditor(Protocol):
         """Replace the text of a file after the user has edited the robot in a page.
 
         Args:
-            file: the file.
+            file: the file to change.
             version: the version of the document that was edited, or 0 if the file was not open.
             text: the new text.
         """
@@ -50,7 +50,7 @@ class RobotView:
     """The page of a description, which follows the texts and the cursor of the editor.
 
     Args:
-        editor: the editor.
+        editor: the editor that receives the reports of the page.
     """
 
     def __init__(self, editor: TextEditor) -> None:
@@ -170,6 +170,6 @@ def _texts(documents: Mapping[Path, TextDocument | None]) -> dict[str, Any]:
         "texts": {
             str(file): None if document is None else {"number": document.version or 0, "text": document.source}
             for file, document in documents.items()
-            if file.name.endswith((*DESCRIPTIONS, *_LOADED_FILES))
+            if file.name.endswith((*DESCRIPTION_SUFFIXES, *_LOADED_FILE_SUFFIXES))
         }
     }

@@ -25,12 +25,12 @@ from linkwright.language.definitions import NameDefinition
 from linkwright.language.format import Document, Format
 from linkwright.language.formats import format_of
 from linkwright.language.includes import real_path
-from linkwright.language.values import EvaluatedText, values_in
+from linkwright.language.values import EvaluatedText, evaluate_file
 from linkwright.language.workspace import MAX_CHARACTERS, Workspace
-from linkwright.lint.targets import XML_FILES
+from linkwright.lint.targets import XML_SUFFIXES
+from linkwright.lsp.client_features import show_progress
 from linkwright.lsp.findings import as_diagnostics
-from linkwright.lsp.folders import show_progress
-from linkwright.lsp.large_files import findings_of_process
+from linkwright.lsp.large_files import check_in_process
 from linkwright.lsp.positions import UTF_16, TextPositions
 from linkwright.lsp.protocol import LeanProtocol
 from linkwright.lsp.robot_views import RobotViews
@@ -41,11 +41,11 @@ from linkwright.xmltree.reader import read_bytes
 T = TypeVar("T")
 
 _log = logging.getLogger(__name__)
-_MAX_TEXTS = 200
+_MAX_SAVED_TEXTS = 200
 """The maximum number of saved texts that are stored, for the positions of findings."""
 _CACHE_DIVISOR = 8
 _CHECKS_PER_COLLECTION = 50
-_PAUSE_S = 0.3
+_LARGE_FILE_DELAY_S = 0.3
 """The time without a change of a large file after which a process checks the file."""
 _IDLE_S = 1.0
 """The time without a change after which the server collects garbage."""
@@ -63,7 +63,7 @@ class LinkwrightServer(LanguageServer):
     """The language server for one editor.
 
     Attributes:
-        project: the workspace, or None before the editor has opened its folders.
+        project: the checked folders, or None before the editor has opened its folders.
         robot_views: the pages that show robots.
     """
 
@@ -108,7 +108,7 @@ class LinkwrightServer(LanguageServer):
 
     def file_opened(self, uri: str) -> None:
         """Store the URI of an opened file, schedule its check, and prepare its format."""
-        path = path_of(uri)
+        path = path_from_uri(uri)
         if path is not None:
             self._uris[real_path(path)] = uri
             self.file_changed(uri)
@@ -122,8 +122,11 @@ class LinkwrightServer(LanguageServer):
                 self.window_show_message(types.ShowMessageParams(types.MessageType.Info, localized(notice)))
 
     def file_changed(self, uri: str) -> None:
-        """Schedule checks of a file and of the descriptions that include it, and update robot pages."""
-        path = path_of(uri)
+        """Schedule checks of a file and of the descriptions that include it.
+
+        The robot pages receive the new text.
+        """
+        path = path_from_uri(uri)
         if path is not None:
             self._changed[real_path(path)] = None
             self._has_changes.set()
@@ -131,7 +134,7 @@ class LinkwrightServer(LanguageServer):
 
     def file_saved(self, uri: str) -> None:
         """Update the workspace after a file on the disk has changed."""
-        path = path_of(uri)
+        path = path_from_uri(uri)
         if path is not None and self.project is not None:
             self.project.file_saved(real_path(path))
             self._values.clear()
@@ -142,20 +145,20 @@ class LinkwrightServer(LanguageServer):
 
         For other documents, the path is empty and the text is None.
         """
-        path = path_of(document.uri)
-        if path is None or not path.name.endswith((*XML_FILES, ".xml")):
+        path = path_from_uri(document.uri)
+        if path is None or not path.name.endswith((*XML_SUFFIXES, ".xml")):
             return Path(), None
-        return path, self._usual_positions(path)
+        return path, self._positions_unless_large(path)
 
     def supported_text(self, document: types.TextDocumentIdentifier) -> tuple[Path, TextPositions | None]:
         """Return the path and the text of a document in a supported format.
 
         The text is None if it is large or unreadable. For other documents, the path is empty and the text is None.
         """
-        path = path_of(document.uri)
-        if path is None or (format_of(path) is None and not path.name.endswith((*XML_FILES, ".xml"))):
+        path = path_from_uri(document.uri)
+        if path is None or (format_of(path) is None and not path.name.endswith((*XML_SUFFIXES, ".xml"))):
             return Path(), None
-        return path, self._usual_positions(path)
+        return path, self._positions_unless_large(path)
 
     async def when_prepared(self, path: Path) -> None:
         """Wait for the index, and for the imports that the format of a file needs."""
@@ -184,11 +187,11 @@ class LinkwrightServer(LanguageServer):
 
         The result is None if the file has no format of its own, or is too large or unreadable.
         """
-        path = path_of(document.uri)
+        path = path_from_uri(document.uri)
         format_ = None if path is None else format_of(path)
         if path is None or format_ is None or self.project is None:
             return None
-        positions = self._usual_positions(path)
+        positions = self._positions_unless_large(path)
         if positions is None:
             return None
         return FormatContext(format_, Document(self.project, self.texts(), real_path(path), positions.text), positions)
@@ -202,13 +205,13 @@ class LinkwrightServer(LanguageServer):
 
     async def expression_values(self, path: Path) -> list[EvaluatedText]:
         """Wait for the index, and return the values of the expressions in a file."""
-        project, file, texts = self.project, real_path(path), self.texts()
-        if project is None:
+        workspace, file, texts = self.project, real_path(path), self.texts()
+        if workspace is None:
             return []
         await self.when_indexed()
         cached = self._values.get(file)
         if cached is None or cached[0] != texts:
-            cached = texts, await self.run_in_check_thread(partial(values_in, project, texts, file))
+            cached = texts, await self.run_in_check_thread(partial(evaluate_file, workspace, texts, file))
             self._values = {file: cached}
         return cached[1]
 
@@ -260,13 +263,13 @@ class LinkwrightServer(LanguageServer):
             if cached is None or cached[0] != changed_ns:
                 cached = changed_ns, TextPositions(decode(read_bytes(file), str(file)), encoding)
                 self._saved_texts[file] = cached
-                if len(self._saved_texts) > _MAX_TEXTS:
+                if len(self._saved_texts) > _MAX_SAVED_TEXTS:
                     del self._saved_texts[next(iter(self._saved_texts))]
         except (OSError, LinkwrightError):
             return None
         return cached[1]
 
-    def _usual_positions(self, path: Path) -> TextPositions | None:
+    def _positions_unless_large(self, path: Path) -> TextPositions | None:
         """Return the positions of a file's text, or None if it is large or unreadable."""
         positions = self.positions(path)
         return None if positions is None or len(positions.text) > MAX_CHARACTERS else positions
@@ -287,12 +290,12 @@ class LinkwrightServer(LanguageServer):
 
     # --- checks -----------------------------------------------------------------------------------------------
 
-    async def _check_changes(self, project: Workspace) -> None:
+    async def _check_changes(self, workspace: Workspace) -> None:
         """Search the folders, then check files as they change, the newest first.
 
         A subject that waits for its check is checked once, however often it changes.
         """
-        search = asyncio.ensure_future(self._attempt(project.index.refresh, Path()))
+        search = asyncio.ensure_future(self._attempt(workspace.index.refresh, Path()))
         title = phrase("Linkwright: searching the folders for robot descriptions")
         self._progress_task = asyncio.ensure_future(show_progress(self, title, search))
         await search
@@ -310,13 +313,13 @@ class LinkwrightServer(LanguageServer):
             changed, self._changed = self._changed, {}
             texts = self.texts()
             for file in changed:
-                subjects = await self._attempt(partial(project.subjects, file, texts), file) or []
+                subjects = await self._attempt(partial(workspace.subjects, file, texts), file) or []
                 pending = {subject: pending.get(subject, set()) for subject in (*subjects, *pending)}
                 for subject in subjects or [file]:
                     pending.setdefault(subject, set()).add(file)
             if pending:
                 subject = next(iter(pending))
-                await self._check(project, subject, texts, pending.pop(subject))
+                await self._check(workspace, subject, texts, pending.pop(subject))
                 check_count += 1
 
     async def _is_idle(self) -> bool:
@@ -327,32 +330,32 @@ class LinkwrightServer(LanguageServer):
             return True
         return False
 
-    async def _check(self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
+    async def _check(self, workspace: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]) -> None:
         """Check one subject, and publish its findings.
 
         A subject with a large file is checked in another process, which does not delay other checks.
         """
-        if any(project.is_large(file, texts) for file in (subject, *changed)):
+        if any(workspace.is_large(file, texts) for file in (subject, *changed)):
             previous = self._large_checks.get(subject)
             if previous is not None:
                 previous.cancel()
-            check = self._check_in_process(project, subject, texts, changed)
+            check = self._check_in_process(workspace, subject, texts, changed)
             self._large_checks[subject] = asyncio.get_running_loop().create_task(check)
             return
-        self._publish(await self._attempt(partial(project.check, subject, texts, changed), subject) or {}, texts)
+        self._publish(await self._attempt(partial(workspace.check, subject, texts, changed), subject) or {}, texts)
 
     async def _check_in_process(
-        self, project: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]
+        self, workspace: Workspace, subject: Path, texts: dict[Path, str], changed: set[Path]
     ) -> None:
         """Check one subject in a separate process, and publish its findings."""
-        await asyncio.sleep(_PAUSE_S)
-        findings = await findings_of_process(project.folders, subject, texts)
+        await asyncio.sleep(_LARGE_FILE_DELAY_S)
+        findings = await check_in_process(workspace.folders, subject, texts)
         if self._large_checks.get(subject) is asyncio.current_task():
             del self._large_checks[subject]
         if findings is None:
             _log.error("The check of '%s' failed", subject)
             return
-        findings_by_file = await self._attempt(partial(project.record, subject, findings, texts, changed), subject)
+        findings_by_file = await self._attempt(partial(workspace.record, subject, findings, texts, changed), subject)
         self._publish(findings_by_file or {}, texts)
 
     def _cancel_checks(self) -> None:
@@ -378,7 +381,7 @@ class LinkwrightServer(LanguageServer):
             )
 
     async def _attempt(self, work: Callable[[], T], path: Path) -> T | None:
-        """Return the result of work in the check thread, or log an unexpected error and return None."""
+        """Return the result of work in the check thread, or log an error and return None."""
         try:
             return await self.run_in_check_thread(work)
         except Exception:  # noqa: BLE001 - the editor continues to work, and the log has the reason
@@ -396,7 +399,7 @@ class LinkwrightServer(LanguageServer):
         return await asyncio.get_running_loop().run_in_executor(self._check_thread, work)
 
 
-def path_of(uri: str) -> Path | None:
+def path_from_uri(uri: str) -> Path | None:
     """Return the path of a file's URI, or None for other URIs."""
     parts = urlsplit(uri)
     return Path(url2pathname(unquote(parts.path))) if parts.scheme == "file" else None

@@ -14,7 +14,7 @@ import numpy as np
 
 from linkwright.diagnostics import LinkwrightError, SourceText
 from linkwright.geometry.single import pose_quaternion, rpy_from_quaternion
-from linkwright.lint.by_link import inertia_findings
+from linkwright.lint.by_link import find_inertia_findings
 from linkwright.packages import PackageFinder
 from linkwright.page.protocol.description import (
     CallSite,
@@ -239,5 +239,5 @@ def implausible_inertias(robot: Robot, finder: PackageFinder) -> list[InertiaFin
     """Return the findings about implausible masses and inertias, with the names of the links."""
     return [
         InertiaFinding(link, finding.code, finding.message, finding.hint or "")
-        for link, finding in inertia_findings(robot, finder)
+        for link, finding in find_inertia_findings(robot, finder)
     ]

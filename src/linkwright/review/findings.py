@@ -10,8 +10,8 @@ from pathlib import Path, PurePosixPath
 from linkwright.diagnostics import Diagnostic, Severity
 from linkwright.lint.engine import Checked
 from linkwright.lint.finding import Finding
-from linkwright.lint.known_findings import count_keys, new_findings
-from linkwright.lint.targets import DESCRIPTIONS, Targets
+from linkwright.lint.known_findings import count_keys, find_new_findings
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES, Targets
 from linkwright.packages.manifest import MANIFEST
 from linkwright.review.folders import finding_with_package_uris, without_folder
 from linkwright.review.versions import Version, Versions
@@ -114,7 +114,7 @@ def compare_findings(
     added, fixed = (
         [
             version.with_relative_paths(finding)
-            for finding in new_findings(
+            for finding in find_new_findings(
                 own.diagnostics, version.root, count_keys(other.diagnostics, other_version.root, _invert(names))
             )
             if _is_comparable(finding, version, own, other, other_version, names, changed)
@@ -166,7 +166,7 @@ def _is_comparable(
     different errors reach different files. A finding in a file that has not changed is then not compared.
     """
     path = None if finding.span is None else version.relative(finding.span.file)
-    if path is None or not PurePosixPath(path).name.endswith(DESCRIPTIONS):
+    if path is None or not PurePosixPath(path).name.endswith(DESCRIPTION_SUFFIXES):
         return True
     other_path = names.get(path, path)
     if other_path in other.files or not other_version.file(other_path).exists():

@@ -10,7 +10,7 @@ from typing import TypeVar, cast
 from linkwright.diagnostics import Diagnostic
 from linkwright.diagnostics.phrase import Phrase, as_phrase
 from linkwright.review.changes import Review, Subject
-from linkwright.xacro.omissions import STAND_IN_FOLDER
+from linkwright.xacro.omissions import PLACEHOLDER_FOLDER
 
 _Value = TypeVar("_Value")
 
@@ -23,7 +23,7 @@ def without_folder(value: _Value, folder: Path) -> _Value:
 
     def change(text: str) -> str:
         text = text.replace(f"file://{folder}/", "").replace(f"{folder}/", "").replace(str(folder), ".")
-        return text.replace(f"{STAND_IN_FOLDER}/", "package://")
+        return text.replace(f"{PLACEHOLDER_FOLDER}/", "package://")
 
     return _change_texts(value, change)
 

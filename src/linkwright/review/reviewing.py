@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, counted, did_you_mean, phrase
 from linkwright.files.git_repository import ChangedFile
 from linkwright.lint.affected import TextFiles, may_be_read
-from linkwright.lint.targets import Targets, find_targets, included_robots, is_plain_robot
+from linkwright.lint.targets import Targets, find_included_robots, find_targets, is_plain_robot
 from linkwright.packages.manifest import MANIFEST, package_name
 from linkwright.review.behavior import compare_behavior
 from linkwright.review.changes import (
@@ -455,7 +455,7 @@ def _find_targets(version: Version) -> set[str]:
     A robot that another description includes counts as complete if a launch file starts it, too.
     """
     checker = version.checker()
-    started = [file for file in included_robots(version.root) if checker.calls(file, ())]
+    started = [file for file in find_included_robots(version.root) if checker.calls(file, ())]
     files = (version.relative(file) for file in (*find_targets([version.root]).files, *started))
     return {path for path in files if path is not None} | semantic_files(version)
 

@@ -46,7 +46,7 @@ class BoundedCache(Generic[_Key, _Value]):
         values, size_of, max_size = self.values, self._size_of, self._max_size // self.divisor
         values.pop(key, None)
         value_size = size_of(key, value)
-        self._size += value_size  # too large if the key existed; the sum below corrects it
+        self._size += value_size  # The size is too large if the key existed. The sum below corrects it.
         while self._size > max_size and values:
             self._size = value_size + sum(size_of(*item) for item in list(values.items()))
             if self._size > max_size:
@@ -91,9 +91,9 @@ class TextCompiler(Generic[_Form]):
         return form
 
 
-_LINKS = f"{os.sep}shares{os.sep}"
+_SHARE_LINKS = f"{os.sep}shares{os.sep}"
 _MAX_BYTES = 24_000_000
-"""The maximum total size of the files whose documents are cached. A thousand robots have as much, and a document takes
+"""The maximum total size of the files whose documents are cached. A thousand robots have this size. A document takes
 fifteen times as much memory as its file."""
 documents: BoundedCache[tuple[str, str], tuple[int, int, Document]] = BoundedCache(_MAX_BYTES, lambda _, file: file[1])
 """Path and current folder -> modification time, size and document."""
@@ -111,7 +111,7 @@ def read_document(path: str, overlay: Overlay | None = None) -> Document:
     Raises:
         LinkwrightError: see `linkwright.xmltree.parse_file`.
     """
-    if _LINKS in path:  # a folder with links to the files of an unbuilt package
+    if _SHARE_LINKS in path:  # a folder with links to the files of an unbuilt package
         from linkwright.packages.share_layout import source_of  # imported here because few robots need it
 
         path = source_of(path)

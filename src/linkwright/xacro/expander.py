@@ -20,7 +20,7 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.loading.lean_typing import NoReturn
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault, Frame, attribute_name_span, trail
-from linkwright.xacro.limits import LONG
+from linkwright.xacro.limits import LONG_TEXT_LENGTH
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.plan import (
     COMMENT,
@@ -46,12 +46,12 @@ class CommentSweeper:
         self._marker = Text("\n\n")
         self._marker_siblings: list[Node] | None = None
 
-    def sweep(self, siblings: list[Node], *, followed: bool) -> bool:
+    def sweep(self, siblings: list[Node], *, has_followers: bool) -> bool:
         """Remove the comments directly above a tag from the end of a list of siblings.
 
         Args:
             siblings: the expanded nodes above the tag.
-            followed: whether other nodes follow the tag.
+            has_followers: whether other nodes follow the tag.
 
         Returns:
             Whether the caller must call `move_marker` after expanding the tag.
@@ -65,7 +65,7 @@ class CommentSweeper:
                 del siblings[index]
                 index -= 1
             else:
-                return followed
+                return has_followers
         return False
 
     def move_marker(self, siblings: list[Node]) -> None:
@@ -178,7 +178,7 @@ class Expander:
             self._errors += error.diagnostics
             return None
         except RecursionError:
-            self._errors.append(self._nesting_diagnostic())
+            self._errors.append(self._make_nesting_diagnostic())
             return None
         expanded_node = container.children[0]
         assert isinstance(expanded_node, Element), "the expansion of an ordinary element is an element"
@@ -215,12 +215,12 @@ class Expander:
                 session.current_node, session.current_attribute = item, None
                 directives.get(item.tag, self._call)(self, Site(item, parent, scope, macros, flag))
             elif action == TEXT:
-                text = self._text(item, scope)
+                text = self._expand_text(item, scope)
                 output.append(text)
                 if text.data and not text.cdata and not text.data.isspace():
                     evaluate_comments = False
             elif action == COMMENT:
-                output.append(self._comment(item, scope) if evaluate_comments else item)
+                output.append(self._expand_comment(item, scope) if evaluate_comments else item)
             else:
                 evaluate_comments = flag
         self._nesting -= 1
@@ -298,17 +298,17 @@ class Expander:
                             value=value,
                         )
                     self.record_fault(fault)
-            if len(value) > LONG:
+            if len(value) > LONG_TEXT_LENGTH:
                 self._charge_text(node, value)
         return result
 
-    def directive(self, site: Site) -> None:
+    def expand_tag(self, site: Site) -> None:
         """Expand a xacro tag or a macro call."""
         self.session.current_node, self.session.current_attribute = site.node, None
         self._directives.get(site.node.tag, self._call)(self, site)
 
-    def _text(self, node: Text, scope: Scope) -> Text:
-        if len(node.data) > LONG:
+    def _expand_text(self, node: Text, scope: Scope) -> Text:
+        if len(node.data) > LONG_TEXT_LENGTH:
             self._charge_text(node, node.data)
         if node.cdata or "$" not in node.data:
             return node
@@ -319,11 +319,11 @@ class Expander:
             fault.locate_in_text(node)
             self.record_fault(fault)
             data = ""
-        if len(data) > LONG:
+        if len(data) > LONG_TEXT_LENGTH:
             self._charge_text(node, data)
         return Text(data, node.source, node.offset)
 
-    def _comment(self, node: Comment, scope: Scope) -> Comment:
+    def _expand_comment(self, node: Comment, scope: Scope) -> Comment:
         if "$" not in node.data:
             return node
         try:
@@ -367,7 +367,7 @@ class Expander:
     def sweep(self, site: Site) -> None:
         """Remove the comments above a tag that produces no output."""
         output = site.parent.children
-        if self.sweeper.sweep(output, followed=site.has_followers):
+        if self.sweeper.sweep(output, has_followers=site.has_followers):
             self.sweeper.move_marker(output)
 
     def splice(self, container: Element, site: Site) -> None:
@@ -432,7 +432,7 @@ class Expander:
             self.fail(fault)
 
     def _fail_too_many(self, node: Element) -> NoReturn:
-        fault = self.session.budget.too_many_elements()
+        fault = self.session.budget.too_many_elements_fault()
         fault.locate_at(node)
         self.fail(fault)
 
@@ -443,7 +443,7 @@ class Expander:
 
     # errors
 
-    def _nesting_diagnostic(self) -> Diagnostic:
+    def _make_nesting_diagnostic(self) -> Diagnostic:
         node = self.session.current_node
         span = node.span() if isinstance(node, Element) else None
         message = phrase("the description is nested too deeply")
@@ -457,7 +457,7 @@ class Expander:
         Raises:
             LinkwrightError: if there are too many errors, or if this error ends every walk.
         """
-        self.record_error(self._diagnostic(fault))
+        self.record_error(self._to_diagnostic(fault))
 
     def record_error(self, diagnostic: Diagnostic) -> None:
         """Record the diagnostic of an error after which the walk can continue.
@@ -478,7 +478,7 @@ class Expander:
 
     def fail(self, fault: Fault) -> NoReturn:
         """Raise the error of a fault that has a location."""
-        raise LinkwrightError(self._diagnostic(fault)) from None
+        raise LinkwrightError(self._to_diagnostic(fault)) from None
 
     def fail_at(
         self, code: str, message: Phrase, node: Element, span: Span | None, hint: Phrase | None = None, *notes: Note
@@ -487,7 +487,7 @@ class Expander:
         notes = (*notes, *trail(self.session.frame))
         raise LinkwrightError(Diagnostic(code, message, span, notes=notes, hint=hint, source=node.source))
 
-    def _diagnostic(self, fault: Fault) -> Diagnostic:
+    def _to_diagnostic(self, fault: Fault) -> Diagnostic:
         other_definition = fault.find_inactive_definition()
         if other_definition is not None and other_definition.hint is not None:
             fault.hint = other_definition.hint

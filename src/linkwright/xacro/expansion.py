@@ -10,7 +10,7 @@ from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.xacro.expander import Expander
 from linkwright.xacro.faults import Origin, origin_of
 from linkwright.xacro.limits import Limits, recursion_limit_for
-from linkwright.xacro.session import Inputs, PackageSource, main_document
+from linkwright.xacro.session import Inputs, PackageSource, read_main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Comment, Document, Element, Overlay, write
@@ -119,13 +119,13 @@ def expand(
     if text is None and is_text(path_or_text):
         name, text = TEXT_NAME, name
     inputs = Inputs(name, arguments or {}, packages, text, limits or Limits(), str(root_dir or ""), overlay)
-    session = inputs.session()
-    document = main_document(session, text)
+    session = inputs.create_session()
+    document = read_main_document(session, text)
     with recursion_limit_for(session.limits):
         expanded_document = Expander(session, DIRECTIVES, call_macro).expand_document(document)
     session.warn_of_unused_arguments()
     session.close()
-    expanded_document.prolog[:0] = banner(inputs.name)
+    expanded_document.prolog[:0] = make_banner(inputs.name)
     expanded_document.doctype_index += len(_BANNER)
     return Expansion(expanded_document, session.dependencies, session.arguments, tuple(session.diagnostics), inputs)
 
@@ -139,7 +139,7 @@ _BANNER = (
 )
 
 
-def banner(name: str) -> list[Comment]:
+def make_banner(name: str) -> list[Comment]:
     """Return the comments that begin an expanded text and name its source file."""
     displayed_name = name
     while "--" in displayed_name:  # XML does not allow two dashes in a comment

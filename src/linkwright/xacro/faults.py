@@ -91,9 +91,9 @@ def origin_of(element: Element) -> Origin:
     return Origin(element.span(), trail(frame if isinstance(frame, Frame) else None))
 
 
-# These patterns are not compiled here because few files need them.
+# These patterns are compiled on first use, because few files need them.
 _COMMENT = r"(?s)<!--.*?-->"
-_BLOCK = r"""<(/?)xacro:(if|unless|macro)\b(?:[^>"'/]|"[^"]*"|'[^']*'|/(?!>))*(/?)>"""
+_CONDITION_OR_MACRO_TAG = r"""<(/?)xacro:(if|unless|macro)\b(?:[^>"'/]|"[^"]*"|'[^']*'|/(?!>))*(/?)>"""
 """A tag that begins or ends a condition or a macro."""
 
 
@@ -200,7 +200,7 @@ def inactive_definition(
     """Return a definition of a name in a file that is not in effect at an offset, or None."""
     if f"<{prefix}{tag}" not in source.text:
         return None  # return early to avoid compiling the patterns below
-    text, definitions = _definitions(source.text, prefix + tag)
+    text, definitions = _find_definitions(source.text, prefix + tag)
     start = definitions.get(name)
     if start is None:
         return None
@@ -218,7 +218,7 @@ def inactive_definition(
 
 
 @lru_cache(maxsize=16)
-def _definitions(text: str, tag: str) -> tuple[str, dict[str, int]]:
+def _find_definitions(text: str, tag: str) -> tuple[str, dict[str, int]]:
     """Return a text without its comments, and the offset of the first element by name.
 
     Only elements with the given tag are considered.
@@ -241,7 +241,7 @@ def _is_conditional(preceding_text: str) -> bool:
     Definitions inside a macro are local.
     """
     open_tags: list[str] = []
-    for closing_slash, tag, self_closing_slash in re.findall(_BLOCK, preceding_text):
+    for closing_slash, tag, self_closing_slash in re.findall(_CONDITION_OR_MACRO_TAG, preceding_text):
         if closing_slash:
             while open_tags and open_tags.pop() != tag:
                 pass
@@ -300,7 +300,7 @@ def text_part_span(text: Text, start: int | None, end: int | None) -> Span | Non
     return source.span(raw_offset(content, text.offset, limit, start), raw_offset(content, text.offset, limit, end))
 
 
-def xml_hint(diagnostic: Diagnostic) -> Phrase | None:
+def find_xml_hint(diagnostic: Diagnostic) -> Phrase | None:
     """Return the hint of an XML error, or None.
 
     For an undeclared prefix ``xacro``, the hint is the namespace declaration.

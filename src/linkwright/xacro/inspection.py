@@ -95,12 +95,12 @@ def provenance_of_named(inputs: Inputs, name: str) -> tuple[Provenance, ...]:
     if not matches:
         matches = [element for element in root.walk() if element.attributes.get("name") == name]
     if not matches:
-        raise LinkwrightError(_missing_element(name, path, root))
+        raise LinkwrightError(_missing_element_diagnostic(name, path, root))
     tracer = Tracer(inputs, root)
     return tuple(tracer.trace(element) for element in matches)
 
 
-def _missing_element(name: str, file: str, root: Element) -> Diagnostic:
+def _missing_element_diagnostic(name: str, file: str, root: Element) -> Diagnostic:
     element_names = {
         element.attributes["name"]: None
         for element in root.elements()

@@ -6,7 +6,7 @@ Descriptions often come from unknown sources. The expansion of any description m
 from __future__ import annotations
 
 import sys
-from _thread import allocate_lock  # the lock of threading, without importing the rest of threading
+from _thread import allocate_lock  # This is the lock of threading, without the slow import of threading.
 from time import thread_time
 
 from linkwright.diagnostics import phrase
@@ -16,7 +16,9 @@ from linkwright.xmltree.nodes import seldom_collected
 
 
 class Limits(NamedTuple):
-    """The limits of one expansion, with defaults that are far above the needs of any real robot.
+    """The limits of one expansion.
+
+    The defaults are far above the needs of any real robot.
 
     Attributes:
         depth: the maximum number of nested macro calls and includes.
@@ -80,7 +82,7 @@ _MACRO_COST = 10
 _STEPS_PER_CLOCK_CHECK = 1_000
 _MACROS_PER_CLOCK_CHECK = 32
 
-LONG = 1_000
+LONG_TEXT_LENGTH = 1_000
 """The maximum number of characters of a text that is not charged to the budget."""
 
 
@@ -89,7 +91,7 @@ class Budget:
 
     Attributes:
         elements: the number of elements that may still be produced. The code that produces an element decrements it,
-            and raises `too_many_elements` if it becomes negative.
+            and raises `too_many_elements_fault` if it becomes negative.
     """
 
     __slots__ = (
@@ -110,10 +112,10 @@ class Budget:
         self._characters = limits.characters
         self._call_depth = 0
         self._macros = 0
-        self._clock_check_at = limits.steps  # the number of remaining steps at which the clock is read next
+        self._clock_check_at = limits.steps  # The number of remaining steps at which the clock is read next.
         self._end_time = thread_time() + limits.seconds
 
-    def too_many_elements(self) -> Fault:
+    def too_many_elements_fault(self) -> Fault:
         """Return the error for an expansion that exceeds the element limit (XAC602)."""
         message = phrase(
             "the expansion creates more than {limit:,} elements; a macro call counts as {cost}",
@@ -143,7 +145,7 @@ class Budget:
         """
         self.elements -= _MACRO_COST
         if self.elements < 0:
-            raise self.too_many_elements()
+            raise self.too_many_elements_fault()
         self._macros += 1
         if not self._macros % _MACROS_PER_CLOCK_CHECK:
             self._check_clock()

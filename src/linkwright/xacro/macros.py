@@ -11,9 +11,11 @@ from linkwright.loading.lean_dataclasses import NamedTuple
 from linkwright.xacro.faults import Fault
 from linkwright.xmltree import Element
 
-# These patterns are not compiled here because not every file needs them.
-_PARAMETER = r"\s*(?P<name>[^\s:=]+?)\s*:?=\s*(?P<forward>\^\|?)?(?P<expression>(?:\$\{.*?\}|\$\(.*?\))(?=\s|$))?"
-_NAME_ONLY = r"\s*(?P<name>\S+)\s*"
+# These patterns are compiled on first use, because some files do not need them.
+_PARAMETER_WITH_DEFAULT = (
+    r"\s*(?P<name>[^\s:=]+?)\s*:?=\s*(?P<forward>\^\|?)?(?P<expression>(?:\$\{.*?\}|\$\(.*?\))(?=\s|$))?"
+)
+_PARAMETER_NAME = r"\s*(?P<name>\S+)\s*"
 
 
 class Parameter(NamedTuple):
@@ -48,8 +50,8 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
     """
     parameters: list[Parameter] = []
     with_defaults: dict[str, Parameter] = {}
-    word_ends = _word_ends(text)
-    with_default, bare = re.compile(_PARAMETER), re.compile(_NAME_ONLY)
+    word_ends = _find_word_ends(text)
+    with_default, bare = re.compile(_PARAMETER_WITH_DEFAULT), re.compile(_PARAMETER_NAME)
     position = 0
     while position < len(text):
         match = with_default.match(text, position)
@@ -76,7 +78,7 @@ def parse_parameters(text: str) -> tuple[Parameter, ...]:
     return tuple(with_defaults.get(parameter.name, parameter) for parameter in parameters)
 
 
-def _word_ends(text: str) -> list[int]:
+def _find_word_ends(text: str) -> list[int]:
     """Return the end of the word that begins at each offset, or -1 for an unclosed quote.
 
     A word ends at whitespace, but may contain quoted whitespace. As in ros/xacro, a quote is closed by the first quote

@@ -18,14 +18,14 @@ from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xacro.plan import plan_of
-from linkwright.xacro.session import Inputs, Packages, Session, main_document
+from linkwright.xacro.session import Inputs, Packages, Session, read_main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Element
 
 UNEVALUATED = "\0"
 """The name of the attribute with the names of an element's unevaluated attributes. XML does not allow this name."""
-STAND_IN_FOLDER = "/.package-not-found"
+PLACEHOLDER_FOLDER = "/.package-not-found"
 """The folder that contains the share folders of missing packages in values. It does not exist."""
 _FIXED_SUBSTITUTION = lazy_pattern(r"\$\((?:find|cwd|dirname)\b[^()$]*\)")
 _MISSING_FILE = "XML101"
@@ -70,8 +70,8 @@ def expand_with_omissions(inputs: Inputs, packages: Packages) -> tuple[Expansion
         LinkwrightError: the errors that have other causes.
     """
     omissions = Omissions()
-    session = inputs._replace(packages=_StandInPackages(packages, omissions)).session()
-    document = main_document(session, inputs.text)
+    session = inputs._replace(packages=_PlaceholderPackages(packages, omissions)).create_session()
+    document = read_main_document(session, inputs.text)
     with recursion_limit_for(session.limits):
         expanded_document = _OmittingExpander(session, omissions).expand_document(document)
     session.close()
@@ -81,7 +81,7 @@ def expand_with_omissions(inputs: Inputs, packages: Packages) -> tuple[Expansion
     return expansion, omissions
 
 
-class _StandInPackages:
+class _PlaceholderPackages:
     """A finder that returns a nonexistent folder for a missing package."""
 
     def __init__(self, packages: Packages, omissions: Omissions) -> None:
@@ -94,15 +94,17 @@ class _StandInPackages:
             return self._packages.share(name)
         except LinkwrightError:
             self._omissions.packages.add(name)
-            return Path(STAND_IN_FOLDER, name)
+            return Path(PLACEHOLDER_FOLDER, name)
 
 
 class _OmittingExpander(Expander):
     """An expander that leaves out missing files, and tags that need their definitions."""
 
     def __init__(self, session: Session, omissions: Omissions) -> None:
-        directives: Mapping[str, Directive] = {tag: self._tolerant(directive) for tag, directive in DIRECTIVES.items()}
-        super().__init__(session, directives, self._tolerant(call_macro))
+        directives: Mapping[str, Directive] = {
+            tag: self._leave_out_on_failure(directive) for tag, directive in DIRECTIVES.items()
+        }
+        super().__init__(session, directives, self._leave_out_on_failure(call_macro))
         self._omissions = omissions
         self._unevaluated_count = 0
 
@@ -119,13 +121,13 @@ class _OmittingExpander(Expander):
         return result
 
     def record_fault(self, fault: Fault) -> None:
-        """Record the error of an attribute or text, unless a missing file may define the missing name."""
+        """Record the error of an attribute or text, unless a missing file may be the cause."""
         if self._omissions and fault.code in _UNKNOWN_NAMES:
             self._unevaluated_count += 1
         else:
             super().record_fault(fault)
 
-    def _tolerant(self, directive: Directive) -> Directive:
+    def _leave_out_on_failure(self, directive: Directive) -> Directive:
         """Return a directive that leaves out its tag if the tag needs a missing file or definition."""
 
         def expand(expander: Expander, site: Site) -> None:
@@ -144,8 +146,8 @@ class _OmittingExpander(Expander):
         """Leave out a tag with an error, and return whether this is possible."""
         node = site.node
         if node.tag == "xacro:include" and code == _MISSING_FILE:
-            path = self.session.absolute(self.text_value(node, "filename", site.scope))
-            if path.startswith(STAND_IN_FOLDER):
+            path = self.session.relative_to_current_file(self.text_value(node, "filename", site.scope))
+            if path.startswith(PLACEHOLDER_FOLDER):
                 return True
             if "$" in _FIXED_SUBSTITUTION.sub("", node.attributes["filename"]):
                 return False  # another value of an argument may lead to an existing file

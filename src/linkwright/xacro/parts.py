@@ -23,7 +23,7 @@ from linkwright.xacro.faults import Fault
 from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.plan import PREFIX, plan_of
-from linkwright.xacro.session import Inputs, Session, main_document
+from linkwright.xacro.session import Inputs, Session, read_main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Document, Element, Text
@@ -59,9 +59,9 @@ def expand_parts(inputs: Inputs, error: LinkwrightError) -> Expansion:
     """
     if any(map(is_final, error.diagnostics)):
         raise error
-    session = inputs.session()
+    session = inputs.create_session()
     try:
-        document = main_document(session, inputs.text)
+        document = read_main_document(session, inputs.text)
     except LinkwrightError:
         raise error from None
     expander = _PartsExpander(session)
@@ -129,13 +129,13 @@ class _PartsExpander(Expander):
     def record_fault(self, fault: Fault) -> None:
         """Record the error of an attribute or text, unless an earlier gap may have caused it."""
         self._failures += 1
-        diagnostic = self._diagnostic(fault)
+        diagnostic = self._to_diagnostic(fault)
         if self.is_trusted or diagnostic.code in _SELF_CONTAINED_CODES or is_final(diagnostic):
             self.record_error(diagnostic)
 
-    def _text(self, node: Text, scope: Scope) -> Text:
+    def _expand_text(self, node: Text, scope: Scope) -> Text:
         failures_before = self._failures
-        text = super()._text(node, scope)
+        text = super()._expand_text(node, scope)
         if self._failures == failures_before and (self.is_trusted or text is node):
             return text
         return Text(_GAP, node.source, node.offset)

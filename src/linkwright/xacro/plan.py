@@ -11,7 +11,7 @@ If the text of an element has no dollar sign and no xacro prefix, the element is
 from __future__ import annotations
 
 from linkwright.loading.lean_typing import Any, TypeAlias
-from linkwright.xacro.limits import LONG
+from linkwright.xacro.limits import LONG_TEXT_LENGTH
 from linkwright.xmltree import Comment, Document, Element, Node, Text
 from linkwright.xmltree.nodes import CachedText
 
@@ -119,7 +119,7 @@ def _plan_attributes(plan: Plan, attributes: dict[str, str]) -> None:
     for name, value in attributes.items():
         if "x" in name and (name == _DECLARATION or name.startswith(PREFIX)):
             has_only_plain_names = False
-        elif "$" in value or len(value) > LONG:
+        elif "$" in value or len(value) > LONG_TEXT_LENGTH:
             plan.evaluated.append(name)
     if plan.evaluated or not has_only_plain_names:
         plan.size = 0
@@ -158,7 +158,7 @@ class _StepBuilder:
             step: Step
             if isinstance(node, Text):
                 data = node.data
-                if "$" not in data and len(data) <= LONG:
+                if "$" not in data and len(data) <= LONG_TEXT_LENGTH:
                     unchanged_nodes.append(node)
                     self._nodes_since_element += 1
                     if not has_switch or node.cdata or not data or data.isspace():
@@ -174,7 +174,7 @@ class _StepBuilder:
                     step = (TAG, node, index < last_index)
                     self.all_unchanged = False
                 else:
-                    inner = _inner_plan(node, end_offset, depth)
+                    inner = _plan_child(node, end_offset, depth)
                     if inner is not None and inner.size:
                         self.size += inner.size
                         self.height = max(self.height, inner.height)
@@ -219,7 +219,7 @@ class _StepBuilder:
         self._nodes_since_element = self._run_size = self._run_height = 0
 
 
-def _inner_plan(node: Element, end_offset: int, depth: int) -> Plan | None:
+def _plan_child(node: Element, end_offset: int, depth: int) -> Plan | None:
     """Return the plan of an ordinary child, or None if it is nested too deeply for now.
 
     `end_offset` is the offset after the text of the child.
@@ -229,7 +229,7 @@ def _inner_plan(node: Element, end_offset: int, depth: int) -> Plan | None:
         return child_plan
     source = node.source
     if child_plan is None and source is not None and end_offset >= 0:
-        size = _unchanged_element_count(source.text[node.offset : end_offset])
+        size = _count_unchanged_elements(source.text[node.offset : end_offset])
         if size:
             node.plan = child_plan = Plan(node.attributes, size)
             return child_plan
@@ -241,7 +241,7 @@ def _inner_plan(node: Element, end_offset: int, depth: int) -> Plan | None:
     return child_plan
 
 
-def _unchanged_element_count(text: str) -> int:
+def _count_unchanged_elements(text: str) -> int:
     """Return the number of elements in the text of an unchanged element, or 0 if it may change.
 
     The result is also 0 for a text with character references or comments, and for a text long enough to be charged.
@@ -249,6 +249,6 @@ def _unchanged_element_count(text: str) -> int:
     if any(marker in text for marker in _CHANGE_MARKERS):
         return 0
     segments = text.split("<")
-    if len(text) > LONG and max(map(len, segments)) > LONG:
+    if len(text) > LONG_TEXT_LENGTH and max(map(len, segments)) > LONG_TEXT_LENGTH:
         return 0
     return len(segments) - 1 - text.count("</")

@@ -26,7 +26,7 @@ from linkwright.xacro.expressions.sandbox import Module
 from linkwright.xacro.expressions.scope import Namespace, Scope
 from linkwright.xacro.expressions.template import compile_template, package_fault, templates
 from linkwright.xacro.expressions.yaml_data import YamlDict, YamlError
-from linkwright.xacro.faults import Fault, Frame, attribute_span, text_part_span, trail, xml_hint
+from linkwright.xacro.faults import Fault, Frame, attribute_span, find_xml_hint, text_part_span, trail
 from linkwright.xacro.limits import Budget, Limits
 from linkwright.xacro.plan import plan_document
 from linkwright.xmltree import Document, Element, Overlay, Text, parse
@@ -153,7 +153,7 @@ class Session:
 
     # names
 
-    def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
+    def undefined_name_fault(self, name: str, environment: Environment, start: int, end: int) -> Fault:
         """Return the fault for a name that no scope defines."""
         provided_names = self.globals.values
         python = provided_names["python"].values
@@ -177,7 +177,7 @@ class Session:
         fault.missing_name = name
         return fault
 
-    def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
+    def attribute_hint(self, owner: Any, name: str) -> Phrase | None:
         """Return a hint with a similar name for an attribute that a value does not have, or None."""
         candidates: Iterable[Any] = ()
         if isinstance(owner, Module):
@@ -223,7 +223,7 @@ class Session:
 
             from linkwright.packages import PackageFinder
 
-            start = Path(self.on_disk(self._main_file)).resolve().parent
+            start = Path(self.resolve_path(self._main_file)).resolve().parent
             packages = self._packages = PackageFinder(start=start, extra=packages)
         try:
             return str(packages.share(name))
@@ -237,20 +237,20 @@ class Session:
         """The working directory: the value of ``$(cwd)``."""
         return os.path.abspath(self.root_dir)  # noqa: PTH100 - a string is needed
 
-    def on_disk(self, path: str) -> str:
+    def resolve_path(self, path: str) -> str:
         """Return the path on disk for a path that may be relative to `root_dir`."""
         return os.path.join(self.root_dir, path)  # noqa: PTH118 - kept as it is written
 
     def read(self, path: str) -> Document:
         """Return the document of a file; see `read_document`."""
-        document = read_document(self.on_disk(path), self._overlay)
+        document = read_document(self.resolve_path(path), self._overlay)
         plan_document(document)
         if document.encoding != UTF_8 and document.source is not None:
             self._warn_of_encoding(document.source, document.encoding)
         return document
 
-    def absolute(self, name: str) -> str:
-        """Return a relative file name with the folder of the file being processed prepended."""
+    def relative_to_current_file(self, name: str) -> str:
+        """Return the path of a file whose name is relative to the file being processed."""
         return os.path.join(os.path.dirname(self.file), name)  # noqa: PTH118, PTH120 - kept as it is written
 
     def add_dependency(self, file: str) -> None:
@@ -265,27 +265,27 @@ class Session:
         """
         from linkwright.xacro.expressions import yaml_data
 
-        path = self.absolute(name)
+        path = self.relative_to_current_file(name)
         self.add_dependency(path)
         try:
-            text, encoding = self._overlay.read(self.on_disk(path))
+            text, encoding = self._overlay.read(self.resolve_path(path))
         except LinkwrightError as error:
             diagnostic = error.diagnostics[0]
             fault = Fault(
                 "XAC506",
                 diagnostic.message,
-                hint=diagnostic.hint if diagnostic.code == "XML106" else _nearest_file(self.on_disk(path)),
+                hint=diagnostic.hint if diagnostic.code == "XML106" else _suggest_file(self.resolve_path(path)),
             )
             raise fault from None
         try:
-            return yaml_data.load(text, self._unit_value)
+            return yaml_data.load(text, self._evaluate_unit)
         except YamlError as error:
-            raise _yaml_fault(path, text, error) from None
+            raise _make_yaml_fault(path, text, error) from None
         finally:
             if encoding != UTF_8:
                 self._warn_of_encoding(SourceText(path, text), encoding)
 
-    def _unit_value(self, expression: str) -> Any:
+    def _evaluate_unit(self, expression: str) -> Any:
         return compile_expression(expression).evaluate(self.globals)
 
     def dotify(self, mapping: Any = (), **items: Any) -> YamlDict:
@@ -295,7 +295,7 @@ class Session:
     # findings
 
     def warn_of_unused_arguments(self) -> None:
-        """Warn about passed arguments that no file declares or uses, because they may be misspelled."""
+        """Warn about passed arguments that no file declares or uses."""
         self.current_node = self.frame = None
         for name in self.arguments:
             if name not in self.known_arguments:
@@ -331,7 +331,7 @@ class Session:
         """
         node = self.current_node
         if span is None and node is not None:
-            span = self._call_span(node, called)
+            span = self._find_call_span(node, called)
         if (code, message, span) in self._reported:
             return None
         self._reported.add((code, message, span))
@@ -345,7 +345,7 @@ class Session:
         self.diagnostics.remove(diagnostic)
         self._reported.discard((diagnostic.code, diagnostic.message, diagnostic.span))
 
-    def _call_span(self, node: Element | Text, function: str | None) -> Span | None:
+    def _find_call_span(self, node: Element | Text, function: str | None) -> Span | None:
         attribute = self.current_attribute
         if isinstance(node, Element) and attribute is None:
             return node.span()
@@ -370,15 +370,15 @@ class Session:
         notes = trail(self.frame)
         self.diagnostics.append(Diagnostic("XAC905", message, source.span(0), Severity.WARNING, notes, hint, source))
 
-    def with_deprecation_warning(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    def with_deprecation_warning(self, qualified_name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """Return a function that warns when it is called by its deprecated bare name."""
-        bare = better.partition(".")[2]
+        bare = qualified_name.partition(".")[2]
 
         def warning(*arguments: Any, **keywords: Any) -> Any:
             self.warn(
                 "XAC507",
                 phrase("calling '{name}' by its bare name is deprecated", name=bare),
-                hint=phrase("write {form}", form=better),
+                hint=phrase("write {form}", form=qualified_name),
                 called=bare,
             )
             return function(*arguments, **keywords)
@@ -396,18 +396,18 @@ class Session:
         return report
 
 
-# Not compiled here because nearly every value is printable and has none of these characters.
-_NOT_XML = "[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
+# Compiled on first use: most values are printable and have none of these characters.
+_FORBIDDEN_CHARACTERS = "[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]"
 
 
 def _check_characters(text: str) -> None:
-    match = None if text.isprintable() else re.search(_NOT_XML, text)
+    match = None if text.isprintable() else re.search(_FORBIDDEN_CHARACTERS, text)
     if match:
         message = phrase("the value contains a character that XML cannot represent: U+{ord:04X}", ord=ord(match[0]))
         raise Fault("XAC206", message, hint=phrase("write '\\\\' for a backslash: '\\' in a string begins an escape"))
 
 
-def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
+def _make_yaml_fault(path: str, text: str, error: YamlError) -> Fault:
     fault = Fault("XAC506", phrase("'{path}' is not valid YAML: {message}", path=path, message=foreign(error.message)))
     if error.line:
         fault.source = source = SourceText(path, text)
@@ -421,7 +421,7 @@ def _yaml_fault(path: str, text: str, error: YamlError) -> Fault:
     return fault
 
 
-def _nearest_file(path: str) -> Phrase | None:
+def _suggest_file(path: str) -> Phrase | None:
     folder, name = os.path.split(path)
     try:
         return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are needed, not paths
@@ -440,12 +440,12 @@ class Inputs(NamedTuple):
     root_dir: str = ""
     overlay: Overlay | None = None
 
-    def session(self) -> Session:
-        """Return a new session for these inputs."""
+    def create_session(self) -> Session:
+        """Create a session for these inputs."""
         return Session(self.name, self.arguments, self.packages, self.limits, self.root_dir, self.overlay)
 
 
-def main_document(session: Session, text: str | None = None) -> Document:
+def read_main_document(session: Session, text: str | None = None) -> Document:
     """Return the parsed document of a session's file, or of a text that replaces it.
 
     Raises:
@@ -455,7 +455,7 @@ def main_document(session: Session, text: str | None = None) -> Document:
         document = session.read(session.file) if text is None else parse(text, session.file)
     except LinkwrightError as error:
         first = error.diagnostics[0]
-        hint = xml_hint(first)
+        hint = find_xml_hint(first)
         if hint == first.hint:
             raise
         raise LinkwrightError(

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 GROWTH_LIMIT = 1_000_000
 """The maximum number of characters to which all entities of one document may expand."""
 
-_ENTITY_REFERENCE = r"&([^\s#;&<]+);"  # not compiled here because few files need it
+_ENTITY_REFERENCE = r"&([^\s#;&<]+);"  # compiled on first use, because few files need it
 
 
 class EntityGuard:
@@ -75,7 +75,7 @@ class EntityGuard:
         return expanded_length
 
 
-_BEYOND_ASCII = rb"[\x80-\xff]+"  # not compiled here because few files need it
+_BEYOND_ASCII = rb"[\x80-\xff]+"  # compiled on first use, because few files need it
 _CDATA_START = len("<![CDATA[")
 
 

@@ -8,14 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.lsp.positions import TextPositions
-from linkwright.lsp.python.open_texts import OpenText, as_range
+from linkwright.lsp.python.open_texts import OpenText, to_range
 
 TEXTS = st.text(alphabet="ab 中😀\n", max_size=30)
 WORD = "x = 中😀\nvalue = 1\n"
 
 
 def make_finding(text: str, start: int, end: int) -> dict[str, Any]:
-    return {"range": as_range(TextPositions(text), start, end), "message": "m"}
+    return {"range": to_range(TextPositions(text), start, end), "message": "m"}
 
 
 def make_range(line: int, start: int, end: int) -> dict[str, Any]:
@@ -27,7 +27,7 @@ def test_ranged_and_full_changes_give_editor_text(before: str, inserted: str, bo
     start, end = sorted(min(bound, len(before)) for bound in bounds)
     after = before[:start] + inserted + before[end:]
     ranges = OpenText("file:///a.py", before, 1, "utf-16")
-    ranges.change(2, [{"range": as_range(TextPositions(before), start, end), "text": inserted}])
+    ranges.change(2, [{"range": to_range(TextPositions(before), start, end), "text": inserted}])
     full_text = OpenText("file:///a.py", before, 1, "utf-16")
     full_text.change(2, [{"text": after}])
     assert (ranges.text, ranges.version) == (full_text.text, full_text.version) == (after, 2)

@@ -13,7 +13,7 @@ from linkwright.urdf import Box, Collision, Geometry, Inertial, Link, Mesh, Sphe
 from linkwright.urdf.schema import GEOMETRY
 
 
-def shapes_of(subject: Subject) -> Iterator[tuple[Link, Visual | Collision]]:
+def iterate_shapes(subject: Subject) -> Iterator[tuple[Link, Visual | Collision]]:
     """Yield every visual and collision with its link."""
     for link in subject.links:
         yield from ((link, visual) for visual in link.visuals)
@@ -29,12 +29,12 @@ def is_scenery(subject: Subject) -> bool:
     return len(links) == 1 and links[0].inertial is not None and links[0].inertial.mass == 0
 
 
-def kind_of(shape: Visual | Collision) -> str:
+def name_kind(shape: Visual | Collision) -> str:
     """Return the kind of a shape, ``visual`` or ``collision``."""
     return "visual" if isinstance(shape, Visual) else "collision"
 
 
-def sizes_of(geometry: Geometry) -> tuple[tuple[str, float], ...]:
+def list_sizes(geometry: Geometry) -> tuple[tuple[str, float], ...]:
     """Return the name and length in m of each size of a shape, or an empty tuple for a mesh."""
     if isinstance(geometry, Mesh):
         return ()
@@ -72,8 +72,8 @@ class NonPositiveSize(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, shape in shapes_of(subject):
-            sizes = sizes_of(shape.geometry)
+        for link, shape in iterate_shapes(subject):
+            sizes = list_sizes(shape.geometry)
             invalid_size = next(((name, size) for name, size in sizes if size <= 0), None)
             if invalid_size is not None:
                 name, size = invalid_size
@@ -83,7 +83,7 @@ class NonPositiveSize(Rule):
                     phrase(
                         "'{name}' of the {shape} {kind} of link '{link_name}' is {value}",
                         name=name,
-                        shape=term(kind_of(shape)),
+                        shape=term(name_kind(shape)),
                         kind=shape_name,
                         link_name=link.name,
                         value=phrase("zero") if size == 0 else phrase("negative"),
@@ -123,14 +123,14 @@ class HugeSize(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         largest = self.option(subject, "largest", float)
-        for link, shape in () if is_scenery(subject) else shapes_of(subject):
-            name, size = max(sizes_of(shape.geometry), key=lambda item: item[1], default=("", 0.0))
+        for link, shape in () if is_scenery(subject) else iterate_shapes(subject):
+            name, size = max(list_sizes(shape.geometry), key=lambda item: item[1], default=("", 0.0))
             if size > largest:
                 shape_name = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
                         "the {shape} {kind} of link '{name}' measures {size:g} m",
-                        shape=term(kind_of(shape)),
+                        shape=term(name_kind(shape)),
                         kind=shape_name,
                         name=link.name,
                         size=size,
@@ -169,14 +169,14 @@ class TinySize(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         smallest = self.option(subject, "smallest", float)
-        for link, shape in shapes_of(subject):
-            sizes = sizes_of(shape.geometry)
+        for link, shape in iterate_shapes(subject):
+            sizes = list_sizes(shape.geometry)
             if sizes and all(0 < size < smallest for _, size in sizes):
                 shape_name = type(shape.geometry).__name__.lower()
                 yield self.report(
                     phrase(
                         "the {shape} {kind} of link '{name}' is smaller than {smallest:g} mm",
-                        shape=term(kind_of(shape)),
+                        shape=term(name_kind(shape)),
                         kind=shape_name,
                         name=link.name,
                         smallest=smallest * 1000,

@@ -12,7 +12,7 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.rules.geometry import is_scenery
 from linkwright.lint.rules.meshes import MeshInMillimeters
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import SURROUNDINGS
+from linkwright.lint.walk import SURROUNDING_FRAMES
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Collision, Link, Mesh, Visual
 from linkwright.xmltree import Element
@@ -62,7 +62,7 @@ class MissingCollision(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         bodies = subject.bodies
-        movable_bodies = [body for body in bodies.all if SURROUNDINGS.isdisjoint(body.links)]
+        movable_bodies = [body for body in bodies.all if SURROUNDING_FRAMES.isdisjoint(body.links)]
         visible_bodies = [body for body in movable_bodies if any(link.visuals for link in bodies.members(body))]
         bodies_without_collision = [
             body for body in visible_bodies if not any(_has_collision(link.element) for link in bodies.members(body))
@@ -156,7 +156,7 @@ class CollisionAwayFromVisual(Rule):
     name = "collision-apart"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, visual_box, collision_box in _comparable_links(subject):
+        for link, visual_box, collision_box in _iterate_comparable_links(subject):
             gap = visual_box.gap(collision_box)
             is_apart = _MAX_GAP > gap > max(0.25 * min(visual_box.diagonal, collision_box.diagonal), 1e-3)
             if is_apart and not _is_moved_to_a_child(subject, link, collision_box):
@@ -167,12 +167,12 @@ class CollisionAwayFromVisual(Rule):
                         gap=gap * 100,
                     ),
                     link.collisions[0].element,
-                    notes=[Note(phrase("the first visual is here"), _span_of(link.visuals[0]))],
-                    hint=_origin_hint(link, visual_box),
+                    notes=[Note(phrase("the first visual is here"), _find_span(link.visuals[0]))],
+                    hint=_make_origin_hint(link, visual_box),
                 )
 
 
-def _origin_hint(link: Link, visual_box: Bounds) -> Phrase:
+def _make_origin_hint(link: Link, visual_box: Bounds) -> Phrase:
     """Return a hint for fixing a collision shape that is far from its visual.
 
     If both have the same ``<origin>``, the hint is about a mesh that is far from its own origin.
@@ -213,7 +213,7 @@ class CollisionSize(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
-        for link, visual_box, collision_box in _comparable_links(subject):
+        for link, visual_box, collision_box in _iterate_comparable_links(subject):
             ratio = collision_box.diagonal / visual_box.diagonal
             if not 1 / factor <= ratio <= factor:
                 yield self.report(
@@ -229,7 +229,7 @@ class CollisionSize(Rule):
                         times=1 / ratio,
                     ),
                     link.collisions[0].element,
-                    notes=[Note(phrase("the first visual is here"), _span_of(link.visuals[0]))],
+                    notes=[Note(phrase("the first visual is here"), _find_span(link.visuals[0]))],
                     hint=phrase("check the sizes, and the 'scale' of meshes"),
                 )
 
@@ -240,7 +240,7 @@ def _is_moved_to_a_child(subject: Subject, link: Link, collision_box: Bounds) ->
         return False
     child_names = {joint.child for joint in subject.joints if joint.parent == link.name}
     for child in (link for link in subject.links if link.name in child_names):
-        visual_box = _bounds(subject, child.visuals) if child.visuals else None
+        visual_box = _compute_bounds(subject, child.visuals) if child.visuals else None
         if visual_box is not None:
             box_in_parent = visual_box.moved(subject.frames[child.name].seen_from(subject.frames[link.name]))
             if box_in_parent.gap(collision_box) == 0:
@@ -248,19 +248,19 @@ def _is_moved_to_a_child(subject: Subject, link: Link, collision_box: Bounds) ->
     return False
 
 
-def _links_with_both_shapes(subject: Subject) -> Iterator[Link]:
+def _iterate_links_with_both_shapes(subject: Subject) -> Iterator[Link]:
     """Yield the links that have both visuals and collisions."""
     return (link for link in subject.links if link.visuals and link.collisions)
 
 
-def _comparable_links(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
+def _iterate_comparable_links(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]:
     """Yield each link with comparable shapes, and the boxes of its visuals and collisions.
 
     Links with tiny or unreadable shapes, or with meshes that are probably in millimeters, are left out.
     """
     largest = math.inf if is_scenery(subject) else MeshInMillimeters().option(subject, "largest", float)
-    for link in _links_with_both_shapes(subject):
-        visual_box, collision_box = _bounds(subject, link.visuals), _bounds(subject, link.collisions)
+    for link in _iterate_links_with_both_shapes(subject):
+        visual_box, collision_box = _compute_bounds(subject, link.visuals), _compute_bounds(subject, link.collisions)
         if (
             visual_box is None
             or collision_box is None
@@ -274,7 +274,7 @@ def _comparable_links(subject: Subject) -> Iterator[tuple[Link, Bounds, Bounds]]
             yield link, visual_box, collision_box
 
 
-def _bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
+def _compute_bounds(subject: Subject, shapes: Iterable[Visual | Collision]) -> Bounds | None:
     """Return the box around shapes in the link frame, or None if it is unknown."""
     from linkwright.geometry.shapes import union
 
@@ -287,5 +287,5 @@ def _has_collision(element: Element | None) -> bool:
     return element is not None and element.first("collision") is not None
 
 
-def _span_of(shape: Visual) -> Span | None:
+def _find_span(shape: Visual) -> Span | None:
     return shape.element.span() if shape.element is not None else None

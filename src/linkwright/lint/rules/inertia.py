@@ -9,13 +9,13 @@ from linkwright.lint.finding import Finding
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.tensors import DIAGONAL, PRODUCTS, name_others
+from linkwright.lint.tensors import DIAGONAL_NAMES, PRODUCT_NAMES, name_others
 from linkwright.lint.walk import is_for_simulation
 from linkwright.urdf import Inertial, Link
 from linkwright.xmltree import Element
 
 
-def child_or_inertial(inertial: Inertial, tag: str) -> Element | None:
+def find_child_or_inertial(inertial: Inertial, tag: str) -> Element | None:
     """Return a child of an ``<inertial>``, or the ``<inertial>`` itself if the child is missing.
 
     The result is None if the inertial does not come from an element.
@@ -99,7 +99,9 @@ class MissingInertial(Rule):
                 if fixed_links
                 else []
             )
-            notes.insert(0, Note(phrase("joint '{name}' moves it", name=body.joint.name), _span(body.joint.element)))
+            notes.insert(
+                0, Note(phrase("joint '{name}' moves it", name=body.joint.name), _find_span(body.joint.element))
+            )
             yield self.report(
                 phrase("moving link '{name}' has no <inertial>, although {reason}", name=links[0].name, reason=reason),
                 element,
@@ -143,7 +145,7 @@ class ZeroMass(Rule):
         """Return the finding on a mass of zero, in a robot or a world."""
         return self.report(
             phrase("the mass of link '{name}' is zero", name=name),
-            child_or_inertial(inertial, "mass"),
+            find_child_or_inertial(inertial, "mass"),
             "value",
             hint=phrase("give its mass in kg, or leave <inertial> out if the link is only a frame"),
         )
@@ -182,7 +184,7 @@ class NegativeMass(Rule):
         """Return the finding on a negative mass, in a robot or a world."""
         return self.report(
             phrase("the mass of link '{name}' is negative: {mass:g} kg", name=name, mass=inertial.mass),
-            child_or_inertial(inertial, "mass"),
+            find_child_or_inertial(inertial, "mass"),
             "value",
             hint=phrase("give a positive mass in kg"),
         )
@@ -224,7 +226,7 @@ class TinyMass(Rule):
             (link, inertial, total), *others = tiny_bodies
             yield self.report(
                 phrase("the mass of moving link '{name}' is tiny: {total:g} kg", name=link.name, total=total),
-                child_or_inertial(inertial, "mass"),
+                find_child_or_inertial(inertial, "mass"),
                 "value",
                 notes=[Note(name_others([other.name for other, *_ in others]))] if others else [],
                 hint=phrase("masses are in kg; give the link a mass that solvers can work with"),
@@ -262,7 +264,7 @@ class HugeMass(Rule):
             if inertial.mass > largest:
                 yield self.report(
                     phrase("the mass of link '{name}' is {mass:g} kg", name=link.name, mass=inertial.mass),
-                    child_or_inertial(inertial, "mass"),
+                    find_child_or_inertial(inertial, "mass"),
                     "value",
                     hint=phrase("masses are in kg; if this is in grams, write {mass:g}", mass=inertial.mass / 1000),
                 )
@@ -329,7 +331,7 @@ def _is_frame(subject: Subject, link: Link) -> bool:
 
 def _is_scenery(subject: Subject, inertial: Inertial) -> bool:
     """Return whether the robot is a single link with zero inertia, which Bullet keeps fixed."""
-    return len(subject.links) == 1 and not any(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
+    return len(subject.links) == 1 and not any(getattr(inertial, name) for name in (*DIAGONAL_NAMES, *PRODUCT_NAMES))
 
 
 def _is_broken(link: Link) -> bool:
@@ -337,5 +339,5 @@ def _is_broken(link: Link) -> bool:
     return link.element is not None and link.element.first("inertial") is not None and link.inertial is None
 
 
-def _span(element: Element | None) -> Span | None:
+def _find_span(element: Element | None) -> Span | None:
     return element.span() if element is not None else None

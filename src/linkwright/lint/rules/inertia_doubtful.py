@@ -9,9 +9,9 @@ from linkwright.lint.explanations import is_explained
 from linkwright.lint.extents import MAX_PLACEHOLDER_MASS
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.inertia import child_or_inertial, links_with_inertial
+from linkwright.lint.rules.inertia import find_child_or_inertial, links_with_inertial
 from linkwright.lint.subject import Subject
-from linkwright.lint.tensors import DIAGONAL, PRODUCTS, name_others
+from linkwright.lint.tensors import DIAGONAL_NAMES, PRODUCT_NAMES, name_others
 from linkwright.urdf import Inertial, Link
 
 
@@ -44,7 +44,7 @@ class PlaceholderInertia(Rule):
     options = (Option("links", 3, "the smallest number of links with the same tensor that is reported"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for group in _shared_tensors(subject, self.option(subject, "links", int)):
+        for group in _find_shared_tensors(subject, self.option(subject, "links", int)):
             link, inertial = group[0]
             others = name_others([other.name for other, _ in group[1:]])
             yield self.report(
@@ -53,7 +53,7 @@ class PlaceholderInertia(Rule):
                     name=link.name,
                     count=len(group) - 1,
                 ),
-                child_or_inertial(inertial, "inertia"),
+                find_child_or_inertial(inertial, "inertia"),
                 notes=[Note(others)],
                 hint=phrase("run `linkwright inertia` to compute the inertia of each link from its shapes"),
                 severity=Severity.INFO if is_explained(inertial.element, "inertia") else None,
@@ -64,13 +64,13 @@ SKIPPED_FOR_PLACEHOLDERS = frozenset({"LW322", "LW323", "LW324", "LW325"})
 """The codes of the rules that skip a link if `PlaceholderInertia` reports its inertia."""
 
 
-def placeholder_links(subject: Subject) -> set[str]:
+def find_placeholder_links(subject: Subject) -> set[str]:
     """Return the names of the links whose inertia `PlaceholderInertia` reports."""
     min_links = PlaceholderInertia().option(subject, "links", int)
-    return {link.name for group in _shared_tensors(subject, min_links) for link, _ in group}
+    return {link.name for group in _find_shared_tensors(subject, min_links) for link, _ in group}
 
 
-def _shared_tensors(subject: Subject, min_links: int) -> Iterator[list[tuple[Link, Inertial]]]:
+def _find_shared_tensors(subject: Subject, min_links: int) -> Iterator[list[tuple[Link, Inertial]]]:
     """Yield groups of links that share a tensor of three equal moments, but differ in shape.
 
     A group has at least `min_links` links and at least `min_links` different shapes, and contains at least half of
@@ -78,12 +78,12 @@ def _shared_tensors(subject: Subject, min_links: int) -> Iterator[list[tuple[Lin
     """
     groups: dict[tuple[float, ...], list[tuple[Link, Inertial]]] = {}
     for link, inertial in links_with_inertial(subject):
-        values = tuple(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS))
+        values = tuple(getattr(inertial, name) for name in (*DIAGONAL_NAMES, *PRODUCT_NAMES))
         if any(values) and inertial.mass >= MAX_PLACEHOLDER_MASS and subject.bodies.turns(link.name):
             groups.setdefault(values, []).append((link, inertial))
     count = sum(map(len, groups.values()))
     for (ixx, iyy, izz, *_), group in groups.items():
-        shapes = {_shape_key(link) for link, _ in group} - {()}
+        shapes = {_make_shape_key(link) for link, _ in group} - {()}
         if ixx == iyy == izz and min(len(group), len(shapes)) >= min_links and 2 * len(group) >= count:
             yield group
 
@@ -127,7 +127,7 @@ class RotatedIsotropicInertia(Rule):
                         "about every axis",
                         name=link.name,
                     ),
-                    child_or_inertial(inertial, "origin"),
+                    find_child_or_inertial(inertial, "origin"),
                     "rpy",
                     hint=phrase("leave 'rpy' out, or give the moments of the shape"),
                 )
@@ -171,11 +171,11 @@ class TinyInertia(Rule):
                         links=body.links[0],
                         moment=moment,
                     ),
-                    child_or_inertial(inertial_links[0].inertial, "inertia"),
+                    find_child_or_inertial(inertial_links[0].inertial, "inertia"),
                     hint=phrase("simulate with a larger inertia, or give the joint damping"),
                 )
 
 
-def _shape_key(link: Link) -> tuple[object, ...]:
+def _make_shape_key(link: Link) -> tuple[object, ...]:
     """Return a key that is the same for links with the same shapes."""
     return tuple(shape.geometry for shape in (link.collisions or link.visuals))

@@ -15,10 +15,10 @@ from linkwright.lint.explanations import is_explained
 from linkwright.lint.extents import MAX_MARKER_SIZE, MAX_PLACEHOLDER_MASS
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.inertia import child_or_inertial, links_with_inertial
-from linkwright.lint.rules.inertia_doubtful import placeholder_links
+from linkwright.lint.rules.inertia import find_child_or_inertial, links_with_inertial
+from linkwright.lint.rules.inertia_doubtful import find_placeholder_links
 from linkwright.lint.subject import Subject
-from linkwright.lint.tensors import DIAGONAL, PRODUCTS, first_flaw, name_others
+from linkwright.lint.tensors import DIAGONAL_NAMES, PRODUCT_NAMES, find_first_flaw, name_others
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.urdf import Inertial, Link, Mesh
 
@@ -103,16 +103,16 @@ class DensityTooHigh(Rule):
                     phrase(
                         "link '{name}' has a density of {density} kg/m3",
                         name=link.name,
-                        density=_grouped_digits(inertial.mass / volume),
+                        density=_group_digits(inertial.mass / volume),
                     ),
-                    child_or_inertial(inertial, "mass"),
+                    find_child_or_inertial(inertial, "mass"),
                     "value",
                     notes=[
                         Note(
                             phrase(
                                 "{mass:g} kg in {volume}; osmium has 22 600 kg/m3",
                                 mass=inertial.mass,
-                                volume=_volume_text(volume),
+                                volume=_format_volume(volume),
                             )
                         )
                     ],
@@ -178,9 +178,9 @@ class DensityTooLow(Rule):
                         name=link.name,
                         mass=mass / volume,
                     ),
-                    child_or_inertial(inertial, "mass"),
+                    find_child_or_inertial(inertial, "mass"),
                     "value",
-                    notes=[Note(phrase("{mass:g} kg in {volume}", mass=mass, volume=_volume_text(volume)))],
+                    notes=[Note(phrase("{mass:g} kg in {volume}", mass=mass, volume=_format_volume(volume)))],
                     hint=phrase("check the units: masses are in kg and lengths in m"),
                 )
 
@@ -218,7 +218,7 @@ class CenterOutside(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         margin = self.option(subject, "margin", float)
-        for link, inertial, bounds in _without_placeholders(subject):
+        for link, inertial, bounds in _iterate_measured_links(subject):
             center = inertial.origin.xyz
             if max(map(abs, center)) > _MAX_ORIGIN_DISTANCE or _is_at_the_joint(subject, link, inertial):
                 continue
@@ -230,14 +230,14 @@ class CenterOutside(Rule):
                     phrase(
                         "the center of mass of link '{name}' is {length} outside its shapes",
                         name=link.name,
-                        length=_length_text(distance),
+                        length=_format_length(distance),
                     ),
-                    child_or_inertial(inertial, "origin"),
+                    find_child_or_inertial(inertial, "origin"),
                     "xyz",
-                    notes=[_extent_note(bounds)],
+                    notes=[_make_extent_note(bounds)],
                     hint=phrase("write the origin in meters; this looks like millimeters")
                     if fits_in_millimeters and distance > 1
-                    else _COMPUTE,
+                    else _COMPUTE_HINT,
                 )
 
 
@@ -277,7 +277,7 @@ class InertialOriginMissing(Rule):
     name = "center-of-mass-forgotten"
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, inertial, bounds in _without_placeholders(subject):
+        for link, inertial, bounds in _iterate_measured_links(subject):
             element = inertial.element
             if element is None or not _is_at_the_joint(subject, link, inertial):
                 continue
@@ -289,7 +289,7 @@ class InertialOriginMissing(Rule):
                         name=link.name,
                     ),
                     element,
-                    notes=[_extent_note(bounds)],
+                    notes=[_make_extent_note(bounds)],
                     hint=phrase('add <origin xyz="{x:g} {y:g} {z:g}"/>, if that is where its mass is', x=x, y=y, z=z),
                 )
 
@@ -329,10 +329,10 @@ class InertiaTooLarge(Rule):
 
         factor = self.option(subject, "factor", float)
         excessive_inertias: dict[tuple[float, ...], list[tuple[Link, Inertial, Bounds, float]]] = {}
-        for link, inertial, bounds in _without_placeholders(subject):
+        for link, inertial, bounds in _iterate_measured_links(subject):
             limit = largest_moment_within(bounds.nearest(inertial.origin.xyz), bounds, inertial.mass)
-            if max(inertial.ixx, inertial.iyy, inertial.izz) > factor * limit and first_flaw(inertial) is None:
-                key = (inertial.mass, *(getattr(inertial, name) for name in (*DIAGONAL, *PRODUCTS)))
+            if max(inertial.ixx, inertial.iyy, inertial.izz) > factor * limit and find_first_flaw(inertial) is None:
+                key = (inertial.mass, *(getattr(inertial, name) for name in (*DIAGONAL_NAMES, *PRODUCT_NAMES)))
                 excessive_inertias.setdefault(key, []).append((link, inertial, bounds, limit))
         for (link, inertial, bounds, limit), *others in excessive_inertias.values():
             yield self._finding(link, inertial, bounds, limit, [other.name for other, *_ in others])
@@ -340,9 +340,9 @@ class InertiaTooLarge(Rule):
     def _finding(
         self, link: Link, inertial: Inertial, bounds: Bounds, limit: float, others: Sequence[str]
     ) -> Diagnostic:
-        name = max(DIAGONAL, key=lambda item: getattr(inertial, item))
+        name = max(DIAGONAL_NAMES, key=lambda item: getattr(inertial, item))
         largest = getattr(inertial, name)
-        uniform_moment = _largest_uniform_moment(bounds, inertial.mass)
+        uniform_moment = _compute_largest_uniform_moment(bounds, inertial.mass)
         limit_phrase = phrase(
             "a mass of {mass:g} kg within these shapes has a moment of inertia of at most {limit:.2g} kg m2",
             mass=inertial.mass,
@@ -354,12 +354,12 @@ class InertiaTooLarge(Rule):
                 name=link.name,
                 largest=largest,
             ),
-            child_or_inertial(inertial, "inertia"),
+            find_child_or_inertial(inertial, "inertia"),
             name,
             notes=[Note(limit_phrase), *([Note(name_others(others))] if others else [])],
-            hint=_COMPUTE
+            hint=_COMPUTE_HINT
             if uniform_moment <= 0 or _is_round_number(inertial)
-            else _unit_hint(largest / uniform_moment) or _COMPUTE,
+            else _make_unit_hint(largest / uniform_moment) or _COMPUTE_HINT,
         )
 
 
@@ -394,23 +394,23 @@ class InertiaTooSmall(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         factor = self.option(subject, "factor", float)
-        for link, inertial, _ in _without_placeholders(subject):
+        for link, inertial, _ in _iterate_measured_links(subject):
             boxes = subject.extents.separate_bounds(link)
             largest = max(inertial.ixx, inertial.iyy, inertial.izz)
             if not boxes or largest <= 0:
                 continue
-            uniform_moment = min(_largest_uniform_moment(box, inertial.mass) for box in boxes)
+            uniform_moment = min(_compute_largest_uniform_moment(box, inertial.mass) for box in boxes)
             if largest * factor < uniform_moment and (
-                (flaw := first_flaw(inertial)) is None or flaw.kind == "triangle"
+                (flaw := find_first_flaw(inertial)) is None or flaw.kind == "triangle"
             ):
                 yield self.report(
                     phrase(
                         "the inertia of link '{name}' is {factor} times smaller than the "
                         "inertia of a solid of its size",
                         name=link.name,
-                        factor=_grouped_digits(uniform_moment / largest),
+                        factor=_group_digits(uniform_moment / largest),
                     ),
-                    child_or_inertial(inertial, "inertia"),
+                    find_child_or_inertial(inertial, "inertia"),
                     notes=[
                         Note(
                             phrase(
@@ -421,13 +421,13 @@ class InertiaTooSmall(Rule):
                             )
                         )
                     ],
-                    hint=_COMPUTE,
+                    hint=_COMPUTE_HINT,
                 )
 
 
-def _without_placeholders(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
+def _iterate_measured_links(subject: Subject) -> Iterator[tuple[Link, Inertial, Bounds]]:
     """Yield the measured links except those whose tensor `PlaceholderInertia` reports."""
-    placeholder_names = subject.once(placeholder_links) if subject.extents.measurable_links else set()
+    placeholder_names = subject.once(find_placeholder_links) if subject.extents.measurable_links else set()
     return (item for item in subject.extents.measurable_links if item[0].name not in placeholder_names)
 
 
@@ -447,10 +447,10 @@ def _is_origin_off_center(bounds: Bounds) -> bool:
     return any(abs(center) - 0.45 * size > _LENGTH_TOLERANCE for center, size in axes)
 
 
-_COMPUTE = phrase("run `linkwright inertia` to compute it from the link's shapes")
+_COMPUTE_HINT = phrase("run `linkwright inertia` to compute it from the link's shapes")
 
 
-def _largest_uniform_moment(bounds: Bounds, mass: float) -> float:
+def _compute_largest_uniform_moment(bounds: Bounds, mass: float) -> float:
     """Return the largest moment of a solid box of this mass about its center, in kg m2."""
     squares = sorted(edge**2 for edge in bounds.size)
     return mass * (squares[1] + squares[2]) / 12
@@ -464,7 +464,7 @@ def _is_round_number(inertial: Inertial) -> bool:
     return inertial.ixx == inertial.iyy == inertial.izz == float(f"{inertial.ixx:.0e}")
 
 
-def _unit_hint(ratio: float) -> Phrase | None:
+def _make_unit_hint(ratio: float) -> Phrase | None:
     """Return a hint if an error matches the ratio of two units within a factor of 3, or None."""
     factor, unit = min(_UNITS, key=lambda item: max(item[0] / ratio, ratio / item[0]))
     if max(factor / ratio, ratio / factor) > 3:
@@ -472,20 +472,20 @@ def _unit_hint(ratio: float) -> Phrase | None:
     return phrase("if it is in {unit}, divide it by {factor:.0f}", unit=unit, factor=factor)
 
 
-def _extent_note(bounds: Bounds) -> Note:
+def _make_extent_note(bounds: Bounds) -> Note:
     low, high = (" ".join(f"{coordinate:.3g}" for coordinate in corner) for corner in (bounds.low, bounds.high))
     return Note(phrase("the shapes reach from {low} to {high} in the link frame", low=low, high=high))
 
 
-def _length_text(meters: float) -> Phrase:
+def _format_length(meters: float) -> Phrase:
     return phrase("{length:.3g} m", length=meters) if meters >= 1 else phrase("{length:.3g} cm", length=meters * 100)
 
 
-def _volume_text(cubic_meters: float) -> Phrase:
+def _format_volume(cubic_meters: float) -> Phrase:
     if cubic_meters >= 0.1:
         return phrase("{volume:.3g} m3", volume=cubic_meters)
     return phrase("{volume:.3g} cm3", volume=cubic_meters * 1e6)
 
 
-def _grouped_digits(number: float) -> str:
+def _group_digits(number: float) -> str:
     return f"{number:,.0f}".replace(",", " ")

@@ -8,9 +8,9 @@ from collections.abc import Iterable, Iterator
 from linkwright.diagnostics import Diagnostic, Note, phrase
 from linkwright.lint.finding import Finding
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.inertia import child_or_inertial
+from linkwright.lint.rules.inertia import find_child_or_inertial
 from linkwright.lint.subject import Subject
-from linkwright.lint.tensors import DIAGONAL, Flaw, tensor
+from linkwright.lint.tensors import DIAGONAL_NAMES, Flaw, read_tensor
 from linkwright.urdf import Inertial, Link
 
 
@@ -71,7 +71,7 @@ class ZeroInertia(_FlawRule):
                 continue
             yield self.report(
                 phrase("link '{name}' has a mass of {mass:g} kg and no inertia", name=link.name, mass=inertial.mass),
-                child_or_inertial(inertial, "inertia"),
+                find_child_or_inertial(inertial, "inertia"),
                 hint=phrase("run `linkwright inertia` to compute it from the link's shapes")
                 if link.visuals or link.collisions
                 else phrase(
@@ -111,7 +111,7 @@ class NonPositiveMoment(_TensorRule):
         problem = phrase("zero") if flaw.amount == 0 else phrase("negative: {amount:g}", amount=flaw.amount)
         return self.report(
             phrase("'{attribute}' of link '{name}' is {problem}", attribute=flaw.attribute, name=name, problem=problem),
-            child_or_inertial(inertial, "inertia"),
+            find_child_or_inertial(inertial, "inertia"),
             flaw.attribute,
             hint=phrase("run `linkwright inertia` to compute ixx, iyy and izz, which must be positive, in kg m2"),
         )
@@ -153,7 +153,7 @@ class ExcessiveProduct(_TensorRule):
                 name=name,
                 value=value,
             ),
-            child_or_inertial(inertial, "inertia"),
+            find_child_or_inertial(inertial, "inertia"),
             flaw.attribute,
             notes=[Note(phrase("with these moments, its magnitude can be at most {amount:.3g}", amount=flaw.amount))],
             hint=phrase("check the order ixx ixy ixz iyy iyz izz, and that all are in kg m2"),
@@ -190,8 +190,8 @@ class IndefiniteInertia(_TensorRule):
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
         return self.report(
             phrase("the inertia tensor of link '{name}' is not positive definite", name=name),
-            child_or_inertial(inertial, "inertia"),
-            notes=[_principal_moments_note(inertial)],
+            find_child_or_inertial(inertial, "inertia"),
+            notes=[_make_principal_moments_note(inertial)],
             hint=phrase("check the signs of the products, and that all components are about the center of mass"),
         )
 
@@ -224,9 +224,9 @@ class TriangleInequality(_TensorRule):
 
     def finding(self, name: str, inertial: Inertial, flaw: Flaw) -> Finding:
         is_diagonal = not (inertial.ixy or inertial.ixz or inertial.iyz)
-        first, second = (item for item in DIAGONAL if item != flaw.attribute)
+        first, second = (item for item in DIAGONAL_NAMES if item != flaw.attribute)
         message = phrase("one moment of inertia of link '{name}' is larger than the other two together", name=name)
-        notes = [_principal_moments_note(inertial)]
+        notes = [_make_principal_moments_note(inertial)]
         if is_diagonal:
             moment_sum = getattr(inertial, first) + getattr(inertial, second)
             message = phrase(
@@ -237,7 +237,7 @@ class TriangleInequality(_TensorRule):
             notes = [Note(phrase("{first} + {second} = {small:g}", first=first, second=second, small=moment_sum))]
         return self.report(
             message,
-            child_or_inertial(inertial, "inertia"),
+            find_child_or_inertial(inertial, "inertia"),
             flaw.attribute if is_diagonal else None,
             notes=notes,
             hint=phrase(
@@ -247,10 +247,10 @@ class TriangleInequality(_TensorRule):
         )
 
 
-def _principal_moments_note(inertial: Inertial) -> Note:
+def _make_principal_moments_note(inertial: Inertial) -> Note:
     from linkwright.geometry.validity import largest_entry, relative_moments
 
-    matrix = tensor(inertial)
+    matrix = read_tensor(inertial)
     largest = largest_entry(matrix)
     moments = " ".join(f"{moment * largest:.4g}" for moment in relative_moments(matrix))
     return Note(phrase("its principal moments are {moments}", moments=moments))

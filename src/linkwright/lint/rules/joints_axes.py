@@ -10,7 +10,7 @@ from linkwright.lint.fix import add_attribute, remove_element, replace_value
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import format_number, joint_children, joints, values
+from linkwright.lint.walk import format_number, iterate_joint_children, iterate_joints, parse_numbers
 from linkwright.urdf import Joint
 from linkwright.urdf.values import shortest_text
 
@@ -50,7 +50,7 @@ class AxisZero(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every moving joint with an ``<axis>`` of zero length."""
-        for joint, _, axis in joint_children(subject, "axis"):
+        for joint, _, axis in iterate_joint_children(subject, "axis"):
             if joint.type not in _MOVING_TYPES:
                 continue
             if "xyz" not in axis.attributes:
@@ -64,7 +64,7 @@ class AxisZero(Rule):
                     hint=phrase('add xyz="0 0 1", or remove <axis> for 1 0 0'),
                     fix=add_attribute(axis, "xyz", "1 0 0", safe=False),
                 )
-            elif values(axis, "xyz") == (0, 0, 0):
+            elif parse_numbers(axis, "xyz") == (0, 0, 0):
                 yield self.report(
                     phrase("the axis of {type} joint '{name}' is 0 0 0", type=joint.type, name=joint.name),
                     axis,
@@ -102,8 +102,8 @@ class AxisNotUnit(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every moving joint whose axis length differs from 1 by more than rounding explains."""
-        for joint, _, axis in joint_children(subject, "axis"):
-            direction = values(axis, "xyz")
+        for joint, _, axis in iterate_joint_children(subject, "axis"):
+            direction = parse_numbers(axis, "xyz")
             if joint.type not in _MOVING_TYPES or len(direction) != 3 or not any(direction):
                 continue
             length = sqrt(sum(coordinate * coordinate for coordinate in direction))
@@ -156,7 +156,7 @@ class AxisImplicit(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every revolute or continuous joint without an axis."""
-        for joint, element in joints(subject):
+        for joint, element in iterate_joints(subject):
             if joint.type in ("revolute", "continuous") and element.first("axis") is None and not _is_locked(joint):
                 yield self.report(
                     phrase(
@@ -201,7 +201,7 @@ class AxisOnFixed(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every ``<axis>`` of a fixed or floating joint, because readers ignore it."""
-        for joint, _, axis in joint_children(subject, "axis"):
+        for joint, _, axis in iterate_joint_children(subject, "axis"):
             if joint.type in ("fixed", "floating"):
                 yield self.report(
                     phrase("{type} joint '{name}' has an <axis>, which is not read", type=joint.type, name=joint.name),
@@ -241,8 +241,8 @@ class AxisTilted(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every axis that is close to a coordinate axis without being exactly aligned."""
         max_tilt = radians(self.option(subject, "largest-tilt", float))
-        for joint, _, axis in joint_children(subject, "axis"):
-            direction = values(axis, "xyz")
+        for joint, _, axis in iterate_joint_children(subject, "axis"):
+            direction = parse_numbers(axis, "xyz")
             if joint.type not in _MOVING_TYPES or len(direction) != 3 or not any(direction):
                 continue
             main_index = max(range(3), key=lambda index, vector=direction: abs(vector[index]))  # type: ignore[misc]
@@ -295,7 +295,7 @@ class JointNotPublished(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every floating and planar joint."""
-        for joint, element in joints(subject):
+        for joint, element in iterate_joints(subject):
             if joint.type == "floating":
                 yield self.report(
                     phrase(

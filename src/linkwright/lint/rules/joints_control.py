@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, remove_element, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import format_number, joint_children, value
+from linkwright.lint.walk import format_number, iterate_joint_children, parse_number
 from linkwright.urdf import Joint
 from linkwright.xmltree import Element
 
@@ -50,7 +50,7 @@ class SoftLimitsOutside(Rule):
 
         A small excess at one end is accepted if the other soft limit is inside its limit.
         """
-        for joint, _, safety in joint_children(subject, "safety_controller"):
+        for joint, _, safety in iterate_joint_children(subject, "safety_controller"):
             if joint.type not in ("revolute", "prismatic") or joint.limit is None or joint.safety is None:
                 continue
             lower, upper = joint.limit.lower, joint.limit.upper
@@ -124,7 +124,7 @@ class SoftLimitsInverted(Rule):
 
         If no soft limits are given, both are 0 and have no effect.
         """
-        for joint, _, safety in joint_children(subject, "safety_controller"):
+        for joint, _, safety in iterate_joint_children(subject, "safety_controller"):
             controller = joint.safety
             if controller is None or controller.soft_lower_limit == controller.soft_upper_limit == 0:
                 continue
@@ -177,9 +177,9 @@ class SafetyGainNegative(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every gain below 0."""
-        for joint, _, safety in joint_children(subject, "safety_controller"):
+        for joint, _, safety in iterate_joint_children(subject, "safety_controller"):
             for name in ("k_velocity", "k_position"):
-                gain = value(safety, name)
+                gain = parse_number(safety, name)
                 if gain is not None and gain < 0:
                     yield self.report(
                         phrase(
@@ -224,9 +224,9 @@ class DynamicsNegative(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every negative damping or friction."""
-        for joint, _, dynamics in joint_children(subject, "dynamics"):
+        for joint, _, dynamics in iterate_joint_children(subject, "dynamics"):
             for name in ("damping", "friction"):
-                coefficient = value(dynamics, name)
+                coefficient = parse_number(dynamics, name)
                 if coefficient is not None and coefficient < 0:
                     edit = value_edit(dynamics, name, dynamics.attributes[name].strip().lstrip("-"))
                     yield self.report(
@@ -273,7 +273,7 @@ class DynamicsOnFixed(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every fixed joint with dynamics."""
-        for joint, _, dynamics in joint_children(subject, "dynamics"):
+        for joint, _, dynamics in iterate_joint_children(subject, "dynamics"):
             if joint.type == "fixed":
                 yield self.report(
                     phrase("<dynamics> of fixed joint '{name}' has no effect", name=joint.name),
@@ -310,12 +310,12 @@ class CalibrationOutside(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every reference position that a bounded joint cannot reach."""
-        for joint, _, calibration in joint_children(subject, "calibration"):
+        for joint, _, calibration in iterate_joint_children(subject, "calibration"):
             lower, upper = (joint.limit.lower, joint.limit.upper) if joint.limit else (-inf, inf)
             if joint.type not in ("revolute", "prismatic") or not lower < upper:
                 continue
             for name in ("rising", "falling"):
-                position = value(calibration, name)
+                position = parse_number(calibration, name)
                 if position is not None and not lower - _TOLERANCE <= position <= upper + _TOLERANCE:
                     yield self.report(
                         phrase(

@@ -9,7 +9,15 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import BOUNDED, bounds, format_number, is_for_simulation, joint_children, limits, value
+from linkwright.lint.walk import (
+    BOUNDED_TYPES,
+    format_number,
+    is_for_simulation,
+    iterate_joint_children,
+    iterate_limits,
+    parse_bounds,
+    parse_number,
+)
 
 
 class _ZeroLimitRule(Rule):
@@ -27,11 +35,11 @@ class _ZeroLimitRule(Rule):
             for element in subject.elements("gazebo")
             if element.first("springStiffness") is not None
         }
-        for joint, limit in limits(subject, *BOUNDED, "continuous"):
-            range_bounds = bounds(limit)
-            if range_bounds is not None and range_bounds[0] == range_bounds[1] and joint.type in BOUNDED:
+        for joint, limit in iterate_limits(subject, *BOUNDED_TYPES, "continuous"):
+            range_bounds = parse_bounds(limit)
+            if range_bounds is not None and range_bounds[0] == range_bounds[1] and joint.type in BOUNDED_TYPES:
                 continue  # a joint without a range cannot move in any case; LW202 reports it
-            if joint.mimic is None and joint.name not in sprung_joints and value(limit, self.attribute) == 0:
+            if joint.mimic is None and joint.name not in sprung_joints and parse_number(limit, self.attribute) == 0:
                 yield self.report(
                     phrase(
                         "'{attribute}' in <limit> of joint '{name}' is 0: {consequence}",
@@ -105,8 +113,8 @@ class _NegativeLimitRule(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return  # the reader reports negative limits in files of URDF 1.2
-        for joint, _, limit in joint_children(subject, "limit"):
-            magnitude = value(limit, self.attribute)
+        for joint, _, limit in iterate_joint_children(subject, "limit"):
+            magnitude = parse_number(limit, self.attribute)
             if magnitude is not None and magnitude < 0:
                 edit = value_edit(limit, self.attribute, limit.attributes[self.attribute].strip().lstrip("-"))
                 yield self.report(
@@ -208,8 +216,8 @@ class VelocityInDegrees(Rule):
 
         No motor drives such a joint at this speed in rad/s.
         """
-        for joint, limit in limits(subject, "revolute"):
-            speed = value(limit, "velocity")
+        for joint, limit in iterate_limits(subject, "revolute"):
+            speed = parse_number(limit, "velocity")
             if speed is None or not 45 <= speed <= 720 or speed % 15 != 0:
                 continue
             yield self.report(

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.lint.fix import is_literal, remove_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import format_number, joints, value
+from linkwright.lint.walk import format_number, iterate_joints, parse_number
 from linkwright.urdf import Joint
 from linkwright.xmltree import Element
 
@@ -19,18 +19,18 @@ _TOLERANCE = 1e-3
 """The fraction of its range by which a follower may exceed its limits: rounded factors are not mistakes."""
 
 
-def _followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
+def _iterate_followers(subject: Subject) -> Iterator[tuple[Joint, Element]]:
     """Yield the joints that follow another joint, each with its ``<mimic>`` element."""
-    for joint, element in joints(subject):
+    for joint, element in iterate_joints(subject):
         mimic = element.first("mimic")
         if joint.mimic is not None and mimic is not None:
             yield joint, mimic
 
 
-def _followers_with_leaders(subject: Subject) -> Iterator[tuple[Joint, Joint, Element]]:
+def _iterate_followers_with_leaders(subject: Subject) -> Iterator[tuple[Joint, Joint, Element]]:
     """Yield each follower with its leader and ``<mimic>``, if the leader is another joint."""
     joints_by_name = {joint.name: joint for joint in subject.joints}
-    for joint, mimic in _followers(subject):
+    for joint, mimic in _iterate_followers(subject):
         leader = joints_by_name.get(mimic.attributes["joint"])
         if leader is not None and leader.name != joint.name:
             yield joint, leader, mimic
@@ -62,7 +62,7 @@ class MimicOnFixed(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every fixed joint that mimics another."""
-        for joint, mimic in _followers(subject):
+        for joint, mimic in _iterate_followers(subject):
             if joint.type == "fixed" and joint.element is not None and is_literal(joint.element, "type"):
                 yield self.report(
                     phrase(
@@ -97,7 +97,7 @@ class MimicOfFixed(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every movable follower of a fixed joint."""
-        for joint, leader, mimic in _followers_with_leaders(subject):
+        for joint, leader, mimic in _iterate_followers_with_leaders(subject):
             if leader.type == "fixed" and joint.type != "fixed":
                 yield self.report(
                     phrase(
@@ -108,7 +108,7 @@ class MimicOfFixed(Rule):
                     mimic,
                     "joint",
                     hint=phrase("give the name of a joint that moves"),
-                    notes=_definition_note(leader),
+                    notes=_make_definition_note(leader),
                 )
 
 
@@ -136,8 +136,8 @@ class MimicMultiplierZero(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every follower whose multiplier is 0."""
-        for joint, mimic in _followers(subject):
-            if value(mimic, "multiplier") == 0:
+        for joint, mimic in _iterate_followers(subject):
+            if parse_number(mimic, "multiplier") == 0:
                 yield self.report(
                     phrase(
                         "joint '{name}' mimics '{joint}' with multiplier 0, so it never moves",
@@ -177,8 +177,8 @@ class MimicBeyondLimits(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every bounded follower whose leader moves it out of its range."""
-        for joint, leader, mimic in _followers_with_leaders(subject):
-            follower_range, leader_range = _position_range(joint), _position_range(leader)
+        for joint, leader, mimic in _iterate_followers_with_leaders(subject):
+            follower_range, leader_range = _find_position_range(joint), _find_position_range(leader)
             if follower_range is None or leader_range is None or joint.mimic is None:
                 continue
             factor, offset = joint.mimic.multiplier, joint.mimic.offset
@@ -203,7 +203,7 @@ class MimicBeyondLimits(Rule):
                     lower=format_number(positions[0]),
                     upper=format_number(positions[1]),
                 ),
-                notes=_definition_note(leader),
+                notes=_make_definition_note(leader),
             )
 
 
@@ -236,7 +236,7 @@ class MimicChain(Rule):
         A longer chain is thus reported at one of its joints. The URDF reader reports cycles.
         """
         joints_by_name = {joint.name: joint for joint in subject.joints}
-        for joint, leader, mimic in _followers_with_leaders(subject):
+        for joint, leader, mimic in _iterate_followers_with_leaders(subject):
             if leader.mimic is None or joint.mimic is None:
                 continue
             first_joint = joints_by_name.get(leader.mimic.joint)
@@ -259,7 +259,7 @@ class MimicChain(Rule):
                     factor=format_number(factor),
                     offset=format_number(offset),
                 ),
-                notes=_definition_note(leader),
+                notes=_make_definition_note(leader),
             )
 
 
@@ -290,7 +290,7 @@ class MimicOtherKind(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every follower with multiplier 1 if only one of the two joints is prismatic."""
-        for joint, leader, mimic in _followers_with_leaders(subject):
+        for joint, leader, mimic in _iterate_followers_with_leaders(subject):
             is_revolute_follower = joint.type in _REVOLUTE_TYPES and leader.type in _PRISMATIC_TYPES
             is_prismatic_follower = joint.type in _PRISMATIC_TYPES and leader.type in _REVOLUTE_TYPES
             if (
@@ -311,7 +311,7 @@ class MimicOtherKind(Rule):
                     mimic,
                     "multiplier" if "multiplier" in mimic.attributes else "joint",
                     hint=phrase('add multiplier="...", such as the radius of the wheel between them'),
-                    notes=_definition_note(leader),
+                    notes=_make_definition_note(leader),
                 )
 
 
@@ -343,7 +343,7 @@ class MimicDrivenByControl(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every command interface of a follower."""
-        followers = {joint.name: joint for joint, _ in _followers(subject)}
+        followers = {joint.name: joint for joint, _ in _iterate_followers(subject)}
         for system in subject.elements("ros2_control"):
             for control_joint in system.elements("joint"):
                 joint = followers.get(control_joint.attributes.get("name", ""))
@@ -360,11 +360,11 @@ class MimicDrivenByControl(Rule):
                     ),
                     command,
                     hint=phrase('remove <command_interface>, or write <joint name="..." mimic="false"> there'),
-                    notes=_definition_note(joint),
+                    notes=_make_definition_note(joint),
                 )
 
 
-def _position_range(joint: Joint) -> tuple[float, float] | None:
+def _find_position_range(joint: Joint) -> tuple[float, float] | None:
     """Return the range of positions of a joint in rad or m, or None if it is missing or invalid."""
     if joint.type not in ("revolute", "prismatic") or joint.limit is None:
         return None
@@ -372,7 +372,7 @@ def _position_range(joint: Joint) -> tuple[float, float] | None:
     return (lower, upper) if -inf < lower < upper < inf else None
 
 
-def _definition_note(joint: Joint) -> tuple[Note, ...]:
+def _make_definition_note(joint: Joint) -> tuple[Note, ...]:
     return (
         (Note(phrase("joint '{name}' is defined here", name=joint.name), joint.element.span()),)
         if joint.element

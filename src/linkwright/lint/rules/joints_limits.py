@@ -10,7 +10,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.fix import Fix, remove_element, value_edit
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import BOUNDED, UNBOUNDED, bounds, format_number, limits
+from linkwright.lint.walk import BOUNDED_TYPES, UNBOUNDED_RAD, format_number, iterate_limits, parse_bounds
 from linkwright.loading.deferred import lazy_pattern
 
 _SENSOR_NAME = lazy_pattern(
@@ -52,8 +52,8 @@ class LimitInverted(Rule):
         """
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
-        for joint, limit in limits(subject, *BOUNDED):
-            range_bounds = bounds(limit)
+        for joint, limit in iterate_limits(subject, *BOUNDED_TYPES):
+            range_bounds = parse_bounds(limit)
             if range_bounds is None or range_bounds[0] <= range_bounds[1]:
                 continue
             edits = [
@@ -107,8 +107,8 @@ class LimitEmpty(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every bounded joint whose two bounds are equal."""
-        for joint, limit in limits(subject, *BOUNDED):
-            range_bounds = bounds(limit)
+        for joint, limit in iterate_limits(subject, *BOUNDED_TYPES):
+            range_bounds = parse_bounds(limit)
             has_bounds = "lower" in limit.attributes or "upper" in limit.attributes
             if range_bounds is not None and has_bounds and range_bounds[0] == range_bounds[1]:
                 yield self.report(
@@ -161,7 +161,7 @@ class LimitBoundsMissing(Rule):
         """
         if subject.robot is not None and subject.robot.version >= (1, 2):
             return
-        for joint, limit in limits(subject, *BOUNDED):
+        for joint, limit in iterate_limits(subject, *BOUNDED_TYPES):
             if "lower" not in limit.attributes and "upper" not in limit.attributes:
                 if joint.type == "revolute":
                     hint = phrase(
@@ -210,7 +210,7 @@ class LimitOneBound(Rule):
         """Report every bounded joint with only one bound."""
         from linkwright.lint.fix import add_attribute
 
-        for joint, limit in limits(subject, *BOUNDED):
+        for joint, limit in iterate_limits(subject, *BOUNDED_TYPES):
             missing_bounds = [name for name in ("lower", "upper") if name not in limit.attributes]
             if len(missing_bounds) == 1:
                 yield self.report(
@@ -253,12 +253,12 @@ class LimitOnContinuous(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every continuous joint with a limited range on which its author may rely."""
-        for joint, limit in limits(subject, "continuous"):
-            range_bounds = bounds(limit)
+        for joint, limit in iterate_limits(subject, "continuous"):
+            range_bounds = parse_bounds(limit)
             if (
                 range_bounds is None
                 or range_bounds[0] == range_bounds[1]
-                or max(abs(range_bounds[0]), abs(range_bounds[1])) > UNBOUNDED
+                or max(abs(range_bounds[0]), abs(range_bounds[1])) > UNBOUNDED_RAD
             ):
                 continue
             if range_bounds[1] - range_bounds[0] >= 2 * pi - 0.02:
@@ -303,7 +303,7 @@ class LimitOnFixed(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every fixed joint with a limit."""
-        for joint, limit in limits(subject, "fixed"):
+        for joint, limit in iterate_limits(subject, "fixed"):
             yield self.report(
                 phrase("<limit> of fixed joint '{name}' has no effect", name=joint.name),
                 limit,
@@ -339,8 +339,8 @@ class ZeroOutsideLimits(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every bounded joint whose range does not contain 0."""
-        for joint, limit in limits(subject, *BOUNDED):
-            range_bounds = bounds(limit)
+        for joint, limit in iterate_limits(subject, *BOUNDED_TYPES):
+            range_bounds = parse_bounds(limit)
             if (
                 range_bounds is not None
                 and range_bounds[0] < range_bounds[1]

@@ -10,7 +10,13 @@ from linkwright.lint.fix import Fix, value_edit
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import SURROUNDINGS, format_number, joint_children, joints, values
+from linkwright.lint.walk import (
+    SURROUNDING_FRAMES,
+    format_number,
+    iterate_joint_children,
+    iterate_joints,
+    parse_numbers,
+)
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf.values import looks_like_degrees
 from linkwright.xmltree import Element
@@ -45,9 +51,9 @@ class OriginFar(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint whose origin is implausibly far away in meters."""
         max_distance = self.option(subject, "farthest", float)
-        for joint, _, origin in joint_children(subject, "origin"):
-            xyz = values(origin, "xyz")
-            if len(xyz) != 3 or joint.parent in SURROUNDINGS:
+        for joint, _, origin in iterate_joint_children(subject, "origin"):
+            xyz = parse_numbers(origin, "xyz")
+            if len(xyz) != 3 or joint.parent in SURROUNDING_FRAMES:
                 continue
             distance = sqrt(sum(coordinate * coordinate for coordinate in xyz))
             if distance > max_distance:
@@ -93,8 +99,8 @@ class AngleInDegrees(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every origin with an implausibly large rotation."""
-        for owner, origin in _origins(subject):
-            rpy = values(origin, "rpy")
+        for owner, origin in _iterate_origins(subject):
+            rpy = parse_numbers(origin, "rpy")
             if len(rpy) == 3 and not looks_like_degrees(*rpy) and 4 * pi < max(map(abs, rpy)) <= 360:
                 yield self.report(
                     phrase(
@@ -142,11 +148,11 @@ class AngleRounded(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every angle that is a simple fraction of pi, rounded to two to five decimal places."""
-        for owner, origin in _origins(subject):
+        for owner, origin in _iterate_origins(subject):
             texts = origin.attributes.get("rpy", "").split()
-            if len(values(origin, "rpy")) != 3 or len(texts) != 3:
+            if len(parse_numbers(origin, "rpy")) != 3 or len(texts) != 3:
                 continue
-            exact_texts = [_pi_fraction(text) for text in texts]
+            exact_texts = [_find_pi_fraction(text) for text in texts]
             if any(exact_texts):
                 suggestion = " ".join(exact_text or old for exact_text, old in zip(exact_texts, texts, strict=True))
                 edit = value_edit(origin, "rpy", suggestion)
@@ -195,7 +201,7 @@ class OriginMissing(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint without an origin between two links with visuals."""
         visible_links = {link.name for link in subject.links if link.visuals}
-        for joint, element in joints(subject):
+        for joint, element in iterate_joints(subject):
             if element.first("origin") is None and {joint.parent, joint.child} <= visible_links:
                 yield self.report(
                     phrase(
@@ -215,7 +221,7 @@ _PI_FRACTIONS = (1.0, 1 / 2, 1 / 3, 2 / 3, 1 / 4, 3 / 4, 3 / 2, 2.0)
 _DECIMAL = lazy_pattern(r"[+-]?[0-9]+\.[0-9]{2,5}")
 
 
-def _pi_fraction(text: str) -> str | None:
+def _find_pi_fraction(text: str) -> str | None:
     """Return the exact value of the fraction of pi that a rounded number approximates, or None."""
     if not _DECIMAL.fullmatch(text):
         return None
@@ -227,8 +233,8 @@ def _pi_fraction(text: str) -> str | None:
     return None
 
 
-def _origins(subject: Subject) -> Iterator[tuple[str, Element]]:
-    for joint, _, origin in joint_children(subject, "origin"):
+def _iterate_origins(subject: Subject) -> Iterator[tuple[str, Element]]:
+    for joint, _, origin in iterate_joint_children(subject, "origin"):
         yield phrase("joint '{name}'", name=joint.name), origin
     for link in subject.links:
         if link.element is None:

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
-from linkwright.lint.walk import UNBOUNDED, bounds, format_number, limits, value
+from linkwright.lint.walk import UNBOUNDED_RAD, format_number, iterate_limits, parse_bounds, parse_number
 from linkwright.urdf.values import looks_like_degrees
 
 
@@ -44,8 +44,8 @@ class LimitInDegrees(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every limit of a revolute joint that is plausible in degrees, but not in radians."""
         max_angle = self.option(subject, "most-turns", float) * 2 * pi
-        for joint, limit in limits(subject, "revolute"):
-            range_bounds = bounds(limit)
+        for joint, limit in iterate_limits(subject, "revolute"):
+            range_bounds = parse_bounds(limit)
             if range_bounds is None or max(map(abs, range_bounds)) > 360 or looks_like_degrees(*range_bounds):
                 continue
             for name, angle in zip(("lower", "upper"), range_bounds, strict=True):
@@ -96,9 +96,9 @@ class LimitPracticallyUnbounded(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every revolute joint with both bounds beyond a thousand radians."""
-        for joint, limit in limits(subject, "revolute"):
-            range_bounds = bounds(limit)
-            if range_bounds is not None and range_bounds[0] <= -UNBOUNDED and range_bounds[1] >= UNBOUNDED:
+        for joint, limit in iterate_limits(subject, "revolute"):
+            range_bounds = parse_bounds(limit)
+            if range_bounds is not None and range_bounds[0] <= -UNBOUNDED_RAD and range_bounds[1] >= UNBOUNDED_RAD:
                 yield self.report(
                     phrase(
                         "revolute joint '{name}' turns from {lower} to {upper} rad",
@@ -142,8 +142,8 @@ class LimitInMillimeters(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every limit of a prismatic joint that is implausible in meters."""
         max_position = self.option(subject, "longest", float)
-        for joint, limit in limits(subject, "prismatic"):
-            range_bounds = bounds(limit)
+        for joint, limit in iterate_limits(subject, "prismatic"):
+            range_bounds = parse_bounds(limit)
             if (
                 range_bounds is not None
                 and -range_bounds[0] == range_bounds[1] > 0
@@ -151,8 +151,8 @@ class LimitInMillimeters(Rule):
             ):
                 continue  # limits such as -100 to 100 mean that there are no limits
             for name in ("lower", "upper"):
-                position = value(limit, name)
-                if position is not None and max_position < abs(position) <= 10 * UNBOUNDED:
+                position = parse_number(limit, name)
+                if position is not None and max_position < abs(position) <= 10 * UNBOUNDED_RAD:
                     yield self.report(
                         phrase(
                             "'{name}' in <limit> of prismatic joint '{joint_name}' is {distance} m",

@@ -210,7 +210,7 @@ class LaunchedFileMissing(Rule):
             message,
             span=shared_file.span,
             source=file.source,
-            hint=_suggestion(package, shared_file) if is_own_package else None,
+            hint=_make_suggestion(package, shared_file) if is_own_package else None,
         )
 
 
@@ -237,7 +237,7 @@ def _may_be_moved(package: PackageContext) -> bool:
     return True
 
 
-def _suggestion(package: PackageContext, shared_file: SharedFile) -> Phrase | None:
+def _make_suggestion(package: PackageContext, shared_file: SharedFile) -> Phrase | None:
     name = shared_file.path.rpartition("/")[2]
     same_names = [file for file in package.files if file.rpartition("/")[2] == name]
     if same_names:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, counted, joined, nearest, phrase, quoted, quoted_names
 from linkwright.lint.dependencies import depends_indirectly_on, is_always_installed, would_form_cycle
-from linkwright.lint.package_fixes import dependency_fix
+from linkwright.lint.package_fixes import make_dependency_fix
 from linkwright.lint.rule import Rule, Scope
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.lint.rules.package_python import is_ament_python
@@ -92,7 +92,9 @@ class LaunchedPackageUnknown(Rule):
         for file in package.launch_files.values():
             for package_reference in [*(node.package for node in file.nodes), *file.shares]:
                 similar_name = (
-                    None if package_reference is None else _intended_package(package_reference.text, package, subject)
+                    None
+                    if package_reference is None
+                    else _find_intended_package(package_reference.text, package, subject)
                 )
                 if package_reference is not None and similar_name is not None:
                     message = phrase("there is no package '{package}'", package=package_reference.text)
@@ -137,7 +139,7 @@ class LaunchedExecutableUnknown(PackageRule):
             if node.package is None or node.executable is None:
                 continue
             name, executable = node.package.text, node.executable.text.removesuffix(".py")
-            executables = _executables_of(name) if name != package.name else _own_executables(package)
+            executables = _list_executables(name) if name != package.name else _list_own_executables(package)
             if executables is None or executable in executables or node.executable.text in executables:
                 continue
             similar_name = next(iter(nearest(executable, executables, 1)), None)
@@ -193,13 +195,13 @@ class UndeclaredLaunchDependency(Rule):
             return
         missing_packages = {
             name: note
-            for name, note in _used_packages(package).items()
+            for name, note in _find_used_packages(package).items()
             if not (
                 is_always_installed(name)
                 or manifest.declares(name)
                 or depends_indirectly_on(manifest, name, subject.finder)
             )
-            and _intended_package(name, package, subject) is None
+            and _find_intended_package(name, package, subject) is None
             and not would_form_cycle(manifest, name, subject.finder)
         }
         if not missing_packages:
@@ -214,11 +216,11 @@ class UndeclaredLaunchDependency(Rule):
         hint = counted(
             "add <exec_depend>{name}</exec_depend>", "add an <exec_depend> for each", len(names), name=names[0]
         )
-        fix = dependency_fix(manifest, names)
+        fix = make_dependency_fix(manifest, names)
         yield self.report(message, manifest.root, notes=[missing_packages[name] for name in names], hint=hint, fix=fix)
 
 
-def _used_packages(package: PackageContext) -> dict[str, Note]:
+def _find_used_packages(package: PackageContext) -> dict[str, Note]:
     """Return the packages that launch files use, by name, each with a note on its first use."""
     first_uses: dict[str, Note] = {}
     for file in package.launch_files.values():
@@ -242,14 +244,14 @@ def _used_packages(package: PackageContext) -> dict[str, Note]:
     return {name: note for name, note in first_uses.items() if re.fullmatch(r"[a-zA-Z]\w*", name)}
 
 
-def _executables_of(name: str) -> frozenset[str] | None:
+def _list_executables(name: str) -> frozenset[str] | None:
     """Return the executables of a well-known package, or None if not all are known."""
     if name not in PROVIDED_PACKAGES:
         return EXTERNAL_EXECUTABLES.get(name)
     return substituted_executables()[name]
 
 
-def _own_executables(package: PackageContext) -> frozenset[str] | None:
+def _list_own_executables(package: PackageContext) -> frozenset[str] | None:
     """Return the executables of a package, or None if not all are known."""
     setup, cmake = package.setup, package.cmake
     if cmake is not None:
@@ -278,7 +280,7 @@ def _is_known(name: str, package: PackageContext, subject: Subject) -> bool:
     return name == package.name or (manifest is not None and manifest.declares(name)) or bool(subject.finder.find(name))
 
 
-def _intended_package(name: str, package: PackageContext, subject: Subject) -> str | None:
+def _find_intended_package(name: str, package: PackageContext, subject: Subject) -> str | None:
     """Return the known package whose name was probably misspelled, or None.
 
     The result is None if a package with the given name exists.

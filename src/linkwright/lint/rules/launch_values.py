@@ -83,7 +83,7 @@ class CommandWithoutBlank(LaunchRule):
                 span=python_file.span(program),
                 source=file.source,
                 hint=hint,
-                fix=_blank_fix(program, python_file),
+                fix=_make_blank_fix(program, python_file),
             )
 
 
@@ -121,8 +121,8 @@ class DescriptionNotTyped(Rule):
         if package is None:
             return
         for file in package.launch_files.values():
-            descriptions = [] if file.python_file is None else list(_untyped_descriptions(file.python_file))
-            invalid_description = _first_invalid_yaml_description(file, package, subject) if descriptions else None
+            descriptions = [] if file.python_file is None else list(_find_untyped_descriptions(file.python_file))
+            invalid_description = _find_invalid_yaml_description(file, package, subject) if descriptions else None
             if invalid_description is None:
                 continue
             path, reason = invalid_description
@@ -221,7 +221,7 @@ class FixedFrameUnknown(PackageRule):
         files = [file for file in package.files if file.endswith(".rviz")]
         if not files or not package.descriptions:
             return
-        names, patterns = _link_names(package)
+        names, patterns = _find_link_names(package)
         if not names:
             return
         for file in files:
@@ -247,7 +247,7 @@ class FixedFrameUnknown(PackageRule):
                 )
 
 
-def _link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
+def _find_link_names(package: PackageContext) -> tuple[set[str], list[list[str]]]:
     """Return the literal link names of a package, and the parts of computed names.
 
     The parts of a name are the literal texts between its xacro expressions. Both results are empty if a description
@@ -294,7 +294,7 @@ class _UntypedDescription(NamedTuple):
     fix: Fix | None
 
 
-def _untyped_descriptions(python_file: PythonFile) -> Iterator[_UntypedDescription]:
+def _find_untyped_descriptions(python_file: PythonFile) -> Iterator[_UntypedDescription]:
     for node in ast.walk(python_file.tree):
         if not isinstance(node, ast.Dict):
             continue
@@ -323,7 +323,7 @@ def _is_command(call: ast.Call) -> bool:
     return called_name(call).rpartition(".")[2] == "Command"
 
 
-def _first_invalid_yaml_description(
+def _find_invalid_yaml_description(
     file: LaunchFile, package: PackageContext, subject: Subject
 ) -> tuple[str, str] | None:
     """Return the path of the first description that is not valid YAML, with the reason, or None.
@@ -342,14 +342,14 @@ def _first_invalid_yaml_description(
             text = examine(share / shared_file.path, packages=subject.finder).text
         except LinkwrightError:
             continue  # the check of that file reports the error
-        reason = _yaml_problem(text)
+        reason = _find_yaml_problem(text)
         if reason is not None:
             return shared_file.path, reason
     return None
 
 
 @lru_cache(maxsize=32)
-def _yaml_problem(text: str) -> str | None:
+def _find_yaml_problem(text: str) -> str | None:
     """Return the reason why launch cannot parse a text as a YAML string, or None."""
     import yaml
 
@@ -382,7 +382,7 @@ def _begins_with_blank(node: ast.expr, python_file: PythonFile) -> bool:
     )
 
 
-def _blank_fix(program: ast.expr, python_file: PythonFile) -> Fix | None:
+def _make_blank_fix(program: ast.expr, python_file: PythonFile) -> Fix | None:
     """Return the fix that adds a space after a program's name, or None if this is not possible.
 
     The space is added before the closing quote of the name, or as a separate part of the command.

@@ -9,7 +9,7 @@ from linkwright.diagnostics import Diagnostic, Note, Phrase, Severity, Span, phr
 from linkwright.lint.fix import remove_element
 from linkwright.lint.meshes import material_element
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.geometry import shapes_of
+from linkwright.lint.rules.geometry import iterate_shapes
 from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf import Link, Material, Mesh, Visual
@@ -23,7 +23,7 @@ _MAX_COLOR_DIFFERENCE = 0.1001
 """The largest difference of a channel from 0 to 1 at which colors look alike, with room for rounding."""
 
 
-def definitions(subject: Subject) -> Iterator[Material]:
+def iterate_definitions(subject: Subject) -> Iterator[Material]:
     """Yield every material with a color or texture, first at robot level, then in visuals."""
     elements = [*subject.elements("material")]
     for link in subject.elements("link"):
@@ -36,9 +36,9 @@ def definitions(subject: Subject) -> Iterator[Material]:
             yield material
 
 
-def visuals(subject: Subject) -> Iterator[tuple[Link, Visual]]:
+def iterate_visuals(subject: Subject) -> Iterator[tuple[Link, Visual]]:
     """Yield every visual with its link."""
-    for link, shape in shapes_of(subject):
+    for link, shape in iterate_shapes(subject):
         if isinstance(shape, Visual):
             yield link, shape
 
@@ -74,7 +74,7 @@ class RedefinedMaterial(Rule):
         first_definitions: dict[str, Material] = {}
         global_names = {element.attributes.get("name") for element in subject.elements("material")}
         reported_keys: set[tuple[object, ...]] = set()
-        for material in definitions(subject):
+        for material in iterate_definitions(subject):
             if not material.name:
                 continue
             first_definition = first_definitions.setdefault(material.name, material)
@@ -92,13 +92,15 @@ class RedefinedMaterial(Rule):
                 phrase(
                     "material '{name}' is defined again with another {difference}, which is never shown",
                     name=material.name,
-                    difference=_difference(first_definition, material),
+                    difference=_describe_difference(first_definition, material),
                 ),
                 element,
                 "name",
                 notes=[
                     Note(
-                        phrase("the first definition, '{color}', is used", color=_appearance_text(first_definition)),
+                        phrase(
+                            "the first definition, '{color}', is used", color=_describe_appearance(first_definition)
+                        ),
                         first_definition.element.span(),
                     )
                 ],
@@ -135,7 +137,7 @@ class InvisibleMaterial(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         checked_names: set[str] = set()
-        for material in definitions(subject):
+        for material in iterate_definitions(subject):
             element = material.element
             if material.name:
                 if material.name in checked_names or _INVISIBLE_NAME.search(material.name):
@@ -275,7 +277,7 @@ class NoMaterial(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, visual in visuals(subject):
+        for link, visual in iterate_visuals(subject):
             geometry = visual.geometry
             has_no_color = not isinstance(geometry, Mesh) or geometry.filename.lower().endswith(".stl")
             if has_no_color and material_element(visual) is None:
@@ -312,7 +314,7 @@ class MaterialNamesDifferInCase(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         first_materials: dict[str, Material] = {}
         reported_names: set[str] = set()
-        for material in definitions(subject):
+        for material in iterate_definitions(subject):
             first_material = first_materials.setdefault(material.name.casefold(), material)
             if first_material.name != material.name and material.name not in reported_names:
                 reported_names.add(material.name)
@@ -327,14 +329,14 @@ class MaterialNamesDifferInCase(Rule):
                     notes=[
                         Note(
                             phrase("'{name}' is defined here", name=first_material.name),
-                            _span_of(first_material.element),
+                            _find_span(first_material.element),
                         )
                     ],
                     hint=phrase("use the same name in both places"),
                 )
 
 
-def _difference(first: Material, second: Material) -> Phrase:
+def _describe_difference(first: Material, second: Material) -> Phrase:
     return phrase("color") if first.rgba != second.rgba else phrase("texture")
 
 
@@ -348,11 +350,11 @@ def _looks_alike(first: Material, second: Material) -> bool:
     )
 
 
-def _appearance_text(material: Material) -> str:
+def _describe_appearance(material: Material) -> str:
     if material.rgba is not None:
         return " ".join(f"{channel:g}" for channel in material.rgba)
     return str(material.texture)
 
 
-def _span_of(element: Element | None) -> Span | None:
+def _find_span(element: Element | None) -> Span | None:
     return element.span() if element is not None else None

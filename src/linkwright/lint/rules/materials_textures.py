@@ -8,9 +8,9 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Note, phrase
 from linkwright.lint.meshes import material_element
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.materials import definitions, visuals
-from linkwright.lint.rules.meshes_addresses import file_hint
-from linkwright.lint.rules.meshes_files import file_with_other_case
+from linkwright.lint.rules.materials import iterate_definitions, iterate_visuals
+from linkwright.lint.rules.meshes_addresses import make_file_hint
+from linkwright.lint.rules.meshes_files import find_file_with_other_case
 from linkwright.lint.subject import Subject
 from linkwright.urdf import Mesh
 from linkwright.xmltree import Element
@@ -57,7 +57,7 @@ class MissingTexture(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for element, uri in _textures(subject):
+        for element, uri in _iterate_textures(subject):
             base_folder = Path(element.source.name).parent if element.source is not None else subject.path.parent
             notes, hint = [], None
             try:
@@ -67,8 +67,8 @@ class MissingTexture(Rule):
             else:
                 if path.is_file():
                     continue
-                hint = file_hint(path, _IMAGE_SUFFIXES)
-                same_name_file = file_with_other_case(path.absolute())
+                hint = make_file_hint(path, _IMAGE_SUFFIXES)
+                same_name_file = find_file_with_other_case(path.absolute())
                 if same_name_file is not None:
                     notes.append(
                         Note(
@@ -107,7 +107,7 @@ class TextureFormat(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for element, uri in _textures(subject):
+        for element, uri in _iterate_textures(subject):
             suffix = Path(uri).suffix
             if suffix.lower() not in _IMAGE_SUFFIXES:
                 yield self.report(
@@ -147,7 +147,7 @@ class TextureOnStl(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        for link, visual in visuals(subject):
+        for link, visual in iterate_visuals(subject):
             geometry, material = visual.geometry, visual.material
             if material is None or material.texture is None or material.rgba is not None:
                 continue
@@ -163,9 +163,9 @@ class TextureOnStl(Rule):
                 )
 
 
-def _textures(subject: Subject) -> Iterator[tuple[Element, str]]:
+def _iterate_textures(subject: Subject) -> Iterator[tuple[Element, str]]:
     """Yield each ``<texture>`` element with the URI of its image."""
-    for material in definitions(subject):
+    for material in iterate_definitions(subject):
         element = material.element.first("texture") if material.element is not None else None
         if element is not None and material.texture is not None:
             yield element, material.texture

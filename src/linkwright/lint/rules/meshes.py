@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from linkwright.geometry.outlines import Outline
 
 
-def readable_meshes(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, Outline]]:
+def iterate_readable_meshes(subject: Subject, kind: str | None = None) -> Iterator[tuple[MeshUse, Outline]]:
     """Yield the uses of readable meshes with their scaled outlines.
 
     `kind` is ``visual``, ``collision``, or None for both.
@@ -30,7 +30,7 @@ def readable_meshes(subject: Subject, kind: str | None = None) -> Iterator[tuple
                 yield use, mesh
 
 
-def file_name(use: MeshUse) -> str:
+def get_file_name(use: MeshUse) -> str:
     """Return the last component of a mesh's URI."""
     return use.mesh.filename.rpartition("/")[2]
 
@@ -69,7 +69,7 @@ class ZeroScale(Rule):
                     phrase(
                         "the scale of the {kind} mesh '{file_name}' of link '{name}' contains a zero",
                         kind=use.kind,
-                        file_name=file_name(use),
+                        file_name=get_file_name(use),
                         name=use.link.name,
                     ),
                     use.element,
@@ -115,7 +115,7 @@ class NegativeScale(Rule):
                     phrase(
                         "the collision mesh '{file_name}' of link '{name}' is mirrored, which turns its"
                         " triangles inside out",
-                        file_name=file_name(use),
+                        file_name=get_file_name(use),
                         name=use.link.name,
                     ),
                     use.element,
@@ -160,7 +160,7 @@ class UnevenScale(Rule):
                         "the scale of the {kind} mesh '{file_name}' of link '{name}' differs {factors:.3g} times"
                         " between axes",
                         kind=use.kind,
-                        file_name=file_name(use),
+                        file_name=get_file_name(use),
                         name=use.link.name,
                         factors=factors[2] / factors[0],
                     ),
@@ -198,7 +198,7 @@ class MeshInMillimeters(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         largest = self.option(subject, "largest", float)
-        for use, mesh in () if is_scenery(subject) else readable_meshes(subject):
+        for use, mesh in () if is_scenery(subject) else iterate_readable_meshes(subject):
             edge = max(mesh.bounds.size)
             if edge > largest:
                 scale = " ".join(f"{factor * 0.001:g}" for factor in use.mesh.scale)
@@ -206,14 +206,14 @@ class MeshInMillimeters(Rule):
                     phrase(
                         "the {kind} mesh '{file_name}' of link '{name}' measures {edge:.4g} m",
                         kind=use.kind,
-                        file_name=file_name(use),
+                        file_name=get_file_name(use),
                         name=use.link.name,
                         edge=edge,
                     ),
                     use.element,
                     "filename",
                     hint=phrase('write scale="{scale}" if the file is in millimeters', scale=scale),
-                    fix=_scale_fix(use, scale),
+                    fix=_make_scale_fix(use, scale),
                 )
 
 
@@ -245,7 +245,7 @@ class MeshTooSmall(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         smallest = self.option(subject, "smallest", float)
-        for use, mesh in readable_meshes(subject):
+        for use, mesh in iterate_readable_meshes(subject):
             edge = max(mesh.bounds.size)
             if edge < smallest and all(use.mesh.scale):
                 is_scaled_down = max(map(abs, use.mesh.scale)) < 0.1
@@ -254,7 +254,7 @@ class MeshTooSmall(Rule):
                     phrase(
                         "the {kind} mesh '{file_name}' of link '{name}' measures only {edge:.3g} mm",
                         kind=use.kind,
-                        file_name=file_name(use),
+                        file_name=get_file_name(use),
                         name=use.link.name,
                         edge=edge * 1000,
                     ),
@@ -263,7 +263,7 @@ class MeshTooSmall(Rule):
                     hint=phrase("leave 'scale' out: the file is in meters already")
                     if is_scaled_down
                     else phrase('write scale="{scale}"', scale=scale),
-                    fix=_scale_fix(use, scale),
+                    fix=_make_scale_fix(use, scale),
                 )
 
 
@@ -302,7 +302,7 @@ class ScalesDiffer(Rule):
                     phrase(
                         "the mesh '{file_name}' of link '{name}' is scaled {ratio:.4g} times"
                         " {comparison} than elsewhere",
-                        file_name=file_name(use),
+                        file_name=get_file_name(use),
                         name=use.link.name,
                         ratio=max(ratio, 1 / ratio),
                         comparison=phrase("larger") if ratio > 1 else phrase("smaller"),
@@ -319,7 +319,7 @@ class ScalesDiffer(Rule):
                 )
 
 
-def _scale_fix(use: MeshUse, scale: str) -> Fix | None:
+def _make_scale_fix(use: MeshUse, scale: str) -> Fix | None:
     if "scale" in use.element.attributes:
         return replace_value(use.element, "scale", scale, safe=False)
     return add_attribute(use.element, "scale", scale, safe=False)

@@ -20,17 +20,17 @@ from linkwright.xmltree import Element
 from linkwright.xmltree.positions import attribute_value_range
 
 _SCHEME = lazy_pattern(r"([A-Za-z][A-Za-z0-9+.-]+):")
-HOME = lazy_pattern(
+HOME_PATH = lazy_pattern(
     r"(?:file://(?:localhost)?)?(/home/[^/]+|/Users/[^/]+|/root|[A-Za-z]:[\\/]Users[\\/][^\\/]+|/opt/ros/[^/]+)[\\/]"
 )
 _INSTALLED_FILE = lazy_pattern(r".*?/opt/ros/[^/]+/share/(.+)")
-_MUJOCO, _HEADER_BYTES = b"<mujoco", 4_000
+_MUJOCO_TAG, _HEADER_BYTES = b"<mujoco", 4_000
 """The root element of a MuJoCo model, and the number of bytes at the beginning of the file that contain it."""
 MESH_SUFFIXES = (".stl", ".stlb", ".dae", ".obj", ".glb", ".gltf", ".ply", ".fbx", ".3ds", ".mesh")
 """The mesh formats that RViz reads."""
 
 
-def source_value(element: Element, attribute: str) -> str:
+def read_source_value(element: Element, attribute: str) -> str:
     """Return an attribute's value as written in the file, with unevaluated expressions."""
     source = element.source
     value_range = attribute_value_range(source.text, element.offset, attribute) if source is not None else None
@@ -69,7 +69,7 @@ class MalformedUri(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use in subject.meshes.uses:
             uri = use.mesh.filename
-            problem, corrected = uri_problem(uri)
+            problem, corrected = find_uri_problem(uri)
             if problem:
                 yield self.report(
                     phrase("the mesh URI '{uri}' {problem}", uri=uri, problem=problem),
@@ -114,7 +114,7 @@ class RelativePath(Rule):
         is_for_ros = relative_uses and subject.package and not _is_beside_mujoco(subject.path.parent)
         for use in relative_uses:
             uri = use.mesh.filename
-            corrected = _as_package_uri(subject.meshes.path(use))
+            corrected = _to_package_uri(subject.meshes.path(use))
             yield self.report(
                 phrase("the mesh path '{uri}' is relative, which RViz cannot resolve", uri=uri),
                 use.element,
@@ -135,7 +135,7 @@ def _is_beside_mujoco(folder: Path) -> bool:
     Robot descriptions in such a folder use paths relative to the folder.
     """
     with suppress(OSError):
-        return any(_MUJOCO in file.read_bytes()[:_HEADER_BYTES] for file in folder.glob("*.xml"))
+        return any(_MUJOCO_TAG in file.read_bytes()[:_HEADER_BYTES] for file in folder.glob("*.xml"))
     return False
 
 
@@ -166,12 +166,12 @@ class MachineSpecificPath(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use in subject.meshes.uses:
-            machine_folder = HOME.match(source_value(use.element, "filename"))
+            machine_folder = HOME_PATH.match(read_source_value(use.element, "filename"))
             if machine_folder is not None:
                 path = subject.meshes.path(use)
                 installed_match = _INSTALLED_FILE.fullmatch(use.mesh.filename)
-                corrected = f"package://{installed_match[1]}" if installed_match else _as_package_uri(path)
-                corrected = corrected or _in_known_package(subject, path)
+                corrected = f"package://{installed_match[1]}" if installed_match else _to_package_uri(path)
+                corrected = corrected or _find_in_known_package(subject, path)
                 message = (
                     phrase(
                         "the mesh URI contains the folder of one ROS distribution, '{folder}'", folder=machine_folder[1]
@@ -216,7 +216,7 @@ class UnknownEnding(Rule):
         for use in subject.meshes.uses:
             name = use.mesh.filename.rpartition("/")[2]
             suffix = Path(name).suffix
-            if not name or suffix.lower() in MESH_SUFFIXES or uri_problem(use.mesh.filename)[0]:
+            if not name or suffix.lower() in MESH_SUFFIXES or find_uri_problem(use.mesh.filename)[0]:
                 continue
             yield self.report(
                 phrase(
@@ -274,7 +274,7 @@ class UnportableMeshName(Rule):
                 )
 
 
-def uri_problem(uri: str) -> tuple[str | None, str | None]:
+def find_uri_problem(uri: str) -> tuple[str | None, str | None]:
     """Return the mistake in a URI and the corrected URI.
 
     The mistake is the end of a sentence, such as ``is empty``, or None if there is none. The corrected URI is None if
@@ -284,7 +284,7 @@ def uri_problem(uri: str) -> tuple[str | None, str | None]:
         return phrase("is empty"), None
     if "\\" in uri:
         corrected = uri.replace("\\", "/")
-        return phrase("contains backslashes"), corrected if uri_problem(corrected)[0] is None else None
+        return phrase("contains backslashes"), corrected if find_uri_problem(corrected)[0] is None else None
     if uri != uri.strip():
         return phrase("has spaces around it"), uri.strip()
     match = _SCHEME.match(uri)
@@ -312,16 +312,16 @@ def uri_problem(uri: str) -> tuple[str | None, str | None]:
     return phrase("has the unknown scheme '{scheme}'", scheme=scheme), None
 
 
-def _as_package_uri(path: Path | None) -> str | None:
+def _to_package_uri(path: Path | None) -> str | None:
     """Return the ``package://`` URI of an existing file in a package, or None."""
     if path is None or not path.is_file():
         return None
-    normalized = Path(normalized_path(path))
+    normalized = Path(normalize_path(path))
     package = enclosing_package(normalized.parent)
     return None if package is None else f"package://{package[0]}/{normalized.relative_to(package[1]).as_posix()}"
 
 
-def _in_known_package(subject: Subject, path: Path | None) -> str | None:
+def _find_in_known_package(subject: Subject, path: Path | None) -> str | None:
     """Return the ``package://`` URI for a path on another computer, or None.
 
     The path must contain the name of a package that is found on this computer.
@@ -335,7 +335,7 @@ def _in_known_package(subject: Subject, path: Path | None) -> str | None:
     return None
 
 
-def file_hint(path: Path, suffixes: Sequence[str]) -> Phrase:
+def make_file_hint(path: Path, suffixes: Sequence[str]) -> Phrase:
     """Return a hint on a missing file that names existing files with one of the suffixes.
 
     The suffixes are in lower case.
@@ -351,6 +351,6 @@ def file_hint(path: Path, suffixes: Sequence[str]) -> Phrase:
     return phrase("choose from {names}", names=joined(shown_names))
 
 
-def normalized_path(path: Path) -> str:
+def normalize_path(path: Path) -> str:
     """Return a path without ``..`` and ``.``, but with unresolved symbolic links."""
     return os.path.normpath(path)

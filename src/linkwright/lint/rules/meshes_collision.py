@@ -8,7 +8,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, Severity, phrase
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.meshes import file_name, readable_meshes
+from linkwright.lint.rules.meshes import get_file_name, iterate_readable_meshes
 from linkwright.lint.subject import Subject
 
 
@@ -38,7 +38,7 @@ class HeavyCollision(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         max_triangles = self.option(subject, "triangles", int)
         reported_paths: set[Path] = set()
-        for use, mesh in readable_meshes(subject, "collision"):
+        for use, mesh in iterate_readable_meshes(subject, "collision"):
             path = subject.meshes.path(use)
             count = mesh.count
             if count > max_triangles and path is not None and path not in reported_paths:
@@ -46,9 +46,9 @@ class HeavyCollision(Rule):
                 yield self.report(
                     phrase(
                         "the collision mesh '{file_name}' of link '{name}' has {count} triangles",
-                        file_name=file_name(use),
+                        file_name=get_file_name(use),
                         name=use.link.name,
-                        count=_grouped_digits(count),
+                        count=_group_digits(count),
                     ),
                     use.element,
                     "filename",
@@ -86,15 +86,15 @@ class VisualAsCollision(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         max_triangles = self.option(subject, "triangles", int)
         visual_files = {(use.link.name, path) for use, path in subject.meshes.files if use.kind == "visual"}
-        for use, mesh in readable_meshes(subject, "collision"):
+        for use, mesh in iterate_readable_meshes(subject, "collision"):
             if (use.link.name, subject.meshes.path(use)) in visual_files and mesh.count > max_triangles:
                 yield self.report(
                     phrase(
                         "the collision of link '{name}' uses the mesh of its visual, '{file_name}', with"
                         " {count} triangles",
                         name=use.link.name,
-                        file_name=file_name(use),
-                        count=_grouped_digits(mesh.count),
+                        file_name=get_file_name(use),
+                        count=_group_digits(mesh.count),
                     ),
                     use.element,
                     "filename",
@@ -127,14 +127,14 @@ class OpenMesh(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         reported_paths: set[Path] = set()
-        for use, mesh in readable_meshes(subject, "collision"):
+        for use, mesh in iterate_readable_meshes(subject, "collision"):
             path = subject.meshes.path(use)
             if path is not None and path not in reported_paths and not mesh.is_watertight:
                 reported_paths.add(path)
                 yield self.report(
                     phrase(
                         "the collision mesh '{file_name}' of link '{name}' is not watertight",
-                        file_name=file_name(use),
+                        file_name=get_file_name(use),
                         name=use.link.name,
                     ),
                     use.element,
@@ -143,5 +143,5 @@ class OpenMesh(Rule):
                 )
 
 
-def _grouped_digits(number: int) -> str:
+def _group_digits(number: int) -> str:
     return f"{number:,}".replace(",", " ")

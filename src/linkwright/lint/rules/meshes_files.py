@@ -13,18 +13,18 @@ from linkwright.lint.meshes import MeshUse
 from linkwright.lint.missing_packages import is_declared
 from linkwright.lint.rule import Rule
 from linkwright.lint.rules.meshes_addresses import (
-    HOME,
+    HOME_PATH,
     MESH_SUFFIXES,
-    file_hint,
-    normalized_path,
-    source_value,
-    uri_problem,
+    find_uri_problem,
+    make_file_hint,
+    normalize_path,
+    read_source_value,
 )
 from linkwright.lint.subject import Subject
 from linkwright.packages import PackageNotFoundError, enclosing_package
 
 
-def file_with_other_case(path: Path) -> Path | None:
+def find_file_with_other_case(path: Path) -> Path | None:
     """Return an existing file whose path differs only in upper and lower case, or None."""
     current = Path(path.anchor)
     is_different = False
@@ -57,7 +57,7 @@ def _is_listed(folder: Path, name: str) -> bool:
     return True
 
 
-def _folder_hint(use: MeshUse, name: str) -> Phrase | None:
+def _make_folder_hint(use: MeshUse, name: str) -> Phrase | None:
     """Return a hint about a folder whose name was written as a package, or None.
 
     The folder must be near the description.
@@ -115,7 +115,7 @@ class UnknownPackage(Rule):
         uses_by_package: dict[str, list[MeshUse]] = {}
         hints: dict[str, Phrase | None] = {}
         for use in subject.meshes.uses:
-            if not use.mesh.filename.startswith("package://") or uri_problem(use.mesh.filename)[0]:
+            if not use.mesh.filename.startswith("package://") or find_uri_problem(use.mesh.filename)[0]:
                 continue
             package = use.mesh.filename[len("package://") :].partition("/")[0]
             if package in uses_by_package:
@@ -125,7 +125,7 @@ class UnknownPackage(Rule):
                 subject.finder.resolve(use.mesh.filename)
             except PackageNotFoundError as error:
                 uses_by_package[package] = [use]
-                hints[package] = _folder_hint(use, package) or error.diagnostics[0].hint
+                hints[package] = _make_folder_hint(use, package) or error.diagnostics[0].hint
             except LinkwrightError:
                 continue
         for package, uses in uses_by_package.items():
@@ -167,11 +167,11 @@ class MissingFile(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         missing_files: dict[Path, list[tuple[MeshUse, Path]]] = {}
         for use, path in subject.meshes.files:
-            if uri_problem(use.mesh.filename)[0] or HOME.match(source_value(use.element, "filename")):
+            if find_uri_problem(use.mesh.filename)[0] or HOME_PATH.match(read_source_value(use.element, "filename")):
                 continue  # another rule already reports this mesh
-            if path.is_file() or file_with_other_case(path) is not None or is_ignored_by_git(path):
+            if path.is_file() or find_file_with_other_case(path) is not None or is_ignored_by_git(path):
                 continue
-            missing_files.setdefault(_last_folder(path), []).append((use, path))
+            missing_files.setdefault(_find_last_folder(path), []).append((use, path))
         for folder, uses in missing_files.items():
             files = dict.fromkeys(path for _, path in uses)
             first_use, path = uses[0]
@@ -199,7 +199,7 @@ class MissingFile(Rule):
                     use.element,
                     "filename",
                     notes=[Note(phrase("its path would be {path}", path=display_path(path)))],
-                    hint=file_hint(path, MESH_SUFFIXES),
+                    hint=make_file_hint(path, MESH_SUFFIXES),
                 )
 
 
@@ -232,10 +232,10 @@ class WrongCase(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         for use, path in subject.meshes.files:
-            existing_file = file_with_other_case(path)
+            existing_file = find_file_with_other_case(path)
             if existing_file is None or not existing_file.is_file():
                 continue
-            corrected = _with_case_of(use.mesh.filename, existing_file)
+            corrected = _match_case(use.mesh.filename, existing_file)
             yield self.report(
                 phrase(
                     "the mesh file is named '{name}', not '{path_name}': upper and lower case differ",
@@ -285,14 +285,14 @@ class OutsidePackage(Rule):
             return
         for use, path in files:
             uri = use.mesh.filename
-            if HOME.match(source_value(use.element, "filename")):
+            if HOME_PATH.match(read_source_value(use.element, "filename")):
                 continue  # another rule already reports this mesh
-            normalized = Path(normalized_path(path))
+            normalized = Path(normalize_path(path))
             message = None
             if uri.startswith("package://"):
                 package = uri[len("package://") :].partition("/")[0]
                 share = subject.finder.find(package)
-                if share is not None and not normalized.is_relative_to(normalized_path(share)):
+                if share is not None and not normalized.is_relative_to(normalize_path(share)):
                     message = phrase(
                         "the path of the mesh '{uri}' leaves the package '{package}'", uri=uri, package=package
                     )
@@ -343,7 +343,7 @@ class UnreadableMesh(Rule):
             yield self.report(diagnostic.message, use.element, "filename", hint=hint)
 
 
-def _with_case_of(uri: str, existing_file: Path) -> str:
+def _match_case(uri: str, existing_file: Path) -> str:
     """Return a URI with the upper and lower case of an existing file at the end of its path."""
     parts = uri.split("/")
     for index, name in enumerate(reversed(existing_file.parts), start=1):
@@ -353,6 +353,6 @@ def _with_case_of(uri: str, existing_file: Path) -> str:
     return "/".join(parts)
 
 
-def _last_folder(path: Path) -> Path:
+def _find_last_folder(path: Path) -> Path:
     """Return the deepest existing folder on the path of a file."""
     return next((folder for folder in path.parents if folder.is_dir()), Path(path.anchor))

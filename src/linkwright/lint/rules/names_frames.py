@@ -9,7 +9,7 @@ from math import radians
 from linkwright.diagnostics import Diagnostic, Note, Severity, phrase
 from linkwright.geometry.shapes import Matrix, angle_between, rotation
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.meshes_addresses import source_value
+from linkwright.lint.rules.meshes_addresses import read_source_value
 from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.urdf import Box, Geometry, Joint, Mesh, parent_joints
@@ -246,7 +246,11 @@ class FixedFrameInRobot(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for link in subject.links:
             frame = link.name.rpartition("/")[2]
-            if frame in ("map", "odom") and link.element is not None and frame in source_value(link.element, "name"):
+            if (
+                frame in ("map", "odom")
+                and link.element is not None
+                and frame in read_source_value(link.element, "name")
+            ):
                 message = phrase(
                     "'{name}' is a frame that localization publishes (REP 105), not a link",
                     name=link.name,

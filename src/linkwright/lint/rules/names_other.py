@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from linkwright.diagnostics import Diagnostic, Note, phrase
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.names_text import named_elements
+from linkwright.lint.rules.names_text import iterate_named_elements
 from linkwright.lint.subject import Subject
 
 
@@ -40,8 +40,8 @@ class JointNameIsLinkName(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        links = {name: element for kind, name, element in named_elements(subject) if kind == "link"}
-        for kind, name, element in named_elements(subject):
+        links = {name: element for kind, name, element in iterate_named_elements(subject) if kind == "link"}
+        for kind, name, element in iterate_named_elements(subject):
             if kind == "joint" and name in links:
                 note = Note(phrase("the link is defined here"), links[name].attribute_span("name"))
                 hint = phrase("name the joint '{name}_joint'", name=name.removesuffix("_link"))

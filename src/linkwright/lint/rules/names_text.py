@@ -15,7 +15,7 @@ _USUAL_CHARACTERS = lazy_pattern(r"[A-Za-z0-9_./\- ]*")
 _REPEATED_SUFFIX = lazy_pattern(r"(?:^|.*[_-])(link|joint|frame)[_-]\1$", re.IGNORECASE)
 
 
-def named_elements(subject: Subject) -> Iterator[tuple[str, str, Element]]:
+def iterate_named_elements(subject: Subject) -> Iterator[tuple[str, str, Element]]:
     """Yield the kind, name and element of every link and joint that has a name, in source order."""
     for kind in ("link", "joint"):
         for element in subject.elements(kind):
@@ -51,7 +51,7 @@ class NameEdgeBlank(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for kind, name, element in named_elements(subject):
+        for kind, name, element in iterate_named_elements(subject):
             if name != name.strip():
                 message = phrase(
                     "the name of the {kind} '{name}' begins or ends with a space", kind=term(kind), name=name
@@ -87,7 +87,7 @@ class NameBlank(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for kind, name, element in named_elements(subject):
+        for kind, name, element in iterate_named_elements(subject):
             stripped = name.strip()
             if re.search(r"\s", stripped):
                 hint = phrase("write '{name}' in all places", name=re.sub(chr(92) + "s+", "_", stripped))
@@ -128,7 +128,7 @@ class NameLeadingSlash(Rule):
     severity = Severity.ERROR
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for kind, name, element in named_elements(subject):
+        for kind, name, element in iterate_named_elements(subject):
             if kind == "link" and name.startswith("/"):
                 message = phrase("the name of the link '{name}' begins with a slash, which tf2 refuses", name=name)
                 yield self.report(
@@ -162,7 +162,7 @@ class NameNotAscii(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for kind, name, element in named_elements(subject):
+        for kind, name, element in iterate_named_elements(subject):
             non_ascii = sorted({character for character in name if not character.isascii()})
             if non_ascii:
                 characters_text = ", ".join(f"'{character}' (U+{ord(character):04X})" for character in non_ascii)
@@ -201,7 +201,7 @@ class NameUnusualCharacter(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for kind, name, element in named_elements(subject):
+        for kind, name, element in iterate_named_elements(subject):
             unusual = sorted(
                 {character for character in name if character.isascii() and not _USUAL_CHARACTERS.fullmatch(character)}
             )
@@ -243,7 +243,7 @@ class NameUpperCase(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for kind, name, element in named_elements(subject):
+        for kind, name, element in iterate_named_elements(subject):
             if name != name.lower() or "-" in name:
                 snake_case = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).replace("-", "_").lower()
                 message = phrase(
@@ -286,7 +286,7 @@ class NamesDifferInCase(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         first_elements: dict[tuple[str, str], tuple[str, Element]] = {}
-        for kind, name, element in named_elements(subject):
+        for kind, name, element in iterate_named_elements(subject):
             first_name, first_element = first_elements.setdefault((kind, name.casefold()), (name, element))
             if first_name != name:
                 message = phrase(
@@ -324,7 +324,7 @@ class NameSuffixDoubled(Rule):
     holds_for_parts = True
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for kind, name, element in named_elements(subject):
+        for kind, name, element in iterate_named_elements(subject):
             match = _REPEATED_SUFFIX.fullmatch(name)
             if match:
                 message = phrase(

@@ -42,7 +42,7 @@ class Wheel(NamedTuple):
     axis: Vector3
 
 
-def wheels(subject: Subject, joint_type: str = "continuous") -> Iterator[Wheel]:
+def iterate_wheels(subject: Subject, joint_type: str = "continuous") -> Iterator[Wheel]:
     """Yield the wheels of a robot whose joints have the given type, in source order."""
     robot, frames = subject.robot, subject.frames
     if robot is None:
@@ -58,7 +58,7 @@ def wheels(subject: Subject, joint_type: str = "continuous") -> Iterator[Wheel]:
                 yield Wheel(joint, robot.links[joint.child], frame, unit_axis)
 
 
-def joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
+def iterate_joints_above(robot: Robot, joint: Joint) -> Iterator[Joint]:
     """Yield a joint and the joints above it, up to the root."""
     joints_by_child = {joint.child: joint for joint in robot.joints.values()}
     while (parent_joint := joints_by_child.get(joint.parent)) is not None:
@@ -72,16 +72,16 @@ def is_wheel(joint: Joint) -> bool:
     return "wheel" in names.lower() and not _OTHER_PART.search(names)
 
 
-def words(name: str) -> list[str]:
+def split_words(name: str) -> list[str]:
     """Return the words of a name in lower case: left, wheel and joint for ``leftWheel_joint``."""
     return [word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])|\d+", name)]
 
 
-def pairs(all_wheels: list[Wheel]) -> Iterator[tuple[Wheel, Wheel]]:
+def iterate_pairs(all_wheels: list[Wheel]) -> Iterator[tuple[Wheel, Wheel]]:
     """Yield pairs of left and right wheels whose names differ only in the side."""
-    wheels_by_words = {tuple(words(wheel.joint.name)): wheel for wheel in all_wheels}
+    wheels_by_words = {tuple(split_words(wheel.joint.name)): wheel for wheel in all_wheels}
     for wheel in all_wheels:
-        name_words = words(wheel.joint.name)
+        name_words = split_words(wheel.joint.name)
         side_indexes = [index for index, word in enumerate(name_words) if word in _OPPOSITE_SIDES]
         if len(side_indexes) != 1:
             continue
@@ -119,12 +119,12 @@ class WheelSide(Rule):
     name = "wheel-side"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for left, right in pairs(list(wheels(subject))):
+        for left, right in iterate_pairs(list(iterate_wheels(subject))):
             gap = subtract_vectors(left.frame.position, right.frame.position)
             if gap[1] < -_POSITION_TOLERANCE_M and abs(gap[1]) > abs(gap[0]) and left.joint.element is not None:
                 note = Note(
                     phrase("'{name}' is at y = {position:g}", name=right.joint.name, position=right.frame.position[1]),
-                    _span_of(right.joint),
+                    _find_span(right.joint),
                 )
                 message = phrase(
                     "'{name}' is on the right of '{joint_name}', at y = {position:g}",
@@ -172,9 +172,11 @@ class WheelHasLimits(Rule):
             return
         continuous_joints = [joint for joint in robot.joints.values() if joint.type == "continuous"]
         carrier_links = {
-            upper_joint.parent for joint in continuous_joints for upper_joint in (joint, *joints_above(robot, joint))
+            upper_joint.parent
+            for joint in continuous_joints
+            for upper_joint in (joint, *iterate_joints_above(robot, joint))
         }
-        for wheel in wheels(subject, "revolute"):
+        for wheel in iterate_wheels(subject, "revolute"):
             joint = wheel.joint
             if joint.child in carrier_links or "wheel" not in joint.child.lower() or _allows_many_turns(joint):
                 continue
@@ -217,15 +219,15 @@ class WheelAxis(Rule):
     name = "wheel-axis"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for wheel in wheels(subject):
-            discs = list(_disc_axes(wheel.link))
+        for wheel in iterate_wheels(subject):
+            discs = list(_iterate_disc_axes(wheel.link))
             axis = wheel.joint.axis
             axis_length = length(axis)
             if not discs or axis_length == 0 or wheel.joint.element is None:
                 continue
             if any(abs(dot(disc, axis)) / axis_length >= _AXIS_TOLERANCE for disc in discs):
                 continue
-            cylinder_axis_text = _axis_text(discs[0])
+            cylinder_axis_text = _format_axis(discs[0])
             element = wheel.joint.element.first("axis")
             axis_text = " ".join(f"{value:g}" for value in axis)
             message = phrase(
@@ -268,10 +270,10 @@ class WheelAxesOpposed(Rule):
     name = "wheels-turn-against"
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for left, right in pairs(list(wheels(subject))):
+        for left, right in iterate_pairs(list(iterate_wheels(subject))):
             if dot(left.axis, right.axis) < -_AXIS_TOLERANCE and right.joint.element is not None:
                 note = Note(
-                    phrase("'{name}' turns in the opposite direction", name=left.joint.name), _span_of(left.joint)
+                    phrase("'{name}' turns in the opposite direction", name=left.joint.name), _find_span(left.joint)
                 )
                 message = phrase(
                     "'{name}' and '{joint_name}' turn in opposite directions at velocities of the same sign",
@@ -310,7 +312,7 @@ class WheelsNotMirrored(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for left, right in pairs(list(wheels(subject))):
+        for left, right in iterate_pairs(list(iterate_wheels(subject))):
             (lx, ly, lz), (rx, ry, rz) = left.frame.position, right.frame.position
             if (
                 max(abs(lx - rx), abs(ly + ry), abs(lz - rz)) > _POSITION_TOLERANCE_M
@@ -318,7 +320,7 @@ class WheelsNotMirrored(Rule):
             ):
                 note = Note(
                     phrase("'{name}' is at {lx:.4g} {ly:.4g} {lz:.4g}", name=left.joint.name, lx=lx, ly=ly, lz=lz),
-                    _span_of(left.joint),
+                    _find_span(left.joint),
                 )
                 message = phrase(
                     "'{name}', at {rx:.4g} {ry:.4g} {rz:.4g}, does not mirror '{joint_name}'",
@@ -358,7 +360,7 @@ class WheelsTurnBackward(Rule):
     default = False
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
-        for left, right in pairs(list(wheels(subject))):
+        for left, right in iterate_pairs(list(iterate_wheels(subject))):
             if max(left.axis[1], right.axis[1]) < -_AXIS_TOLERANCE and left.joint.element is not None:
                 message = phrase(
                     "positive velocities of '{name}' and '{joint_name}' drive backward",
@@ -383,7 +385,7 @@ def _is_driven(subject: Subject, joint: Joint) -> bool:
     )
 
 
-def _disc_axes(link: Link) -> Iterator[Vector3]:
+def _iterate_disc_axes(link: Link) -> Iterator[Vector3]:
     """Yield the axes of a link's flat cylinders in the link's frame."""
     shapes: tuple[Visual | Collision, ...] = (*link.collisions, *link.visuals)
     for visual_or_collision in shapes:
@@ -397,7 +399,7 @@ def _rolls_about_own_axis(wheel: Wheel) -> bool:
 
     If the link has no flat cylinder, the axis must point to the side.
     """
-    discs = list(_disc_axes(wheel.link))
+    discs = list(_iterate_disc_axes(wheel.link))
     if not discs:
         return abs(wheel.axis[1]) >= _AXIS_TOLERANCE
     axis_length = length(wheel.joint.axis)
@@ -409,7 +411,7 @@ def _allows_many_turns(joint: Joint) -> bool:
     return joint.limit is not None and joint.limit.upper - joint.limit.lower > 1000.0
 
 
-def _axis_text(axis: Vector3) -> str:
+def _format_axis(axis: Vector3) -> str:
     """Return an axis as text, rounded, and reversed if its largest component is negative.
 
     The sign of a wheel's axis has no meaning here.
@@ -418,5 +420,5 @@ def _axis_text(axis: Vector3) -> str:
     return " ".join(f"{round(sign * value, 3) + 0.0:g}" for value in axis)
 
 
-def _span_of(joint: Joint) -> Span | None:
+def _find_span(joint: Joint) -> Span | None:
     return joint.element.span() if joint.element is not None else None

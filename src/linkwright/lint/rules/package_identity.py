@@ -264,11 +264,11 @@ class ManifestPlaceholder(ManifestRule):
                     yield self.report(
                         phrase("<{tag}> is a placeholder: '{text}'", tag=tag, text=text),
                         element,
-                        hint=_placeholder_hint(tag),
+                        hint=_make_placeholder_hint(tag),
                     )
 
 
-def _placeholder_hint(tag: str) -> Phrase:
+def _make_placeholder_hint(tag: str) -> Phrase:
     if tag == "license":
         return phrase("write its SPDX identifier, such as Apache-2.0, MIT or BSD-3-Clause")
     return (

@@ -10,8 +10,8 @@ import re
 from collections.abc import Callable, Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Phrase, Severity, nearest, phrase, quoted
-from linkwright.lint.generated_files import is_created_by_cmake, is_ignored_by_git, submodule_of
-from linkwright.lint.package_fixes import cmake_folder_fix, setup_folders_fix
+from linkwright.lint.generated_files import find_submodule, is_created_by_cmake, is_ignored_by_git
+from linkwright.lint.package_fixes import make_cmake_folder_fix, make_setup_folders_fix
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
@@ -73,7 +73,7 @@ class PatternMatchesNothing(PackageRule):
             if not item.is_pattern or item.files(package.folder):
                 continue
             folder = item.text.rpartition("/")[0]
-            suggested_folder = nearest_folder(package, folder)
+            suggested_folder = find_similar_folder(package, folder)
             if suggested_folder:
                 hint: Phrase | None = phrase(
                     "did you mean the folder '{similar_folder}'?", similar_folder=suggested_folder
@@ -139,13 +139,13 @@ class FolderNotInstalled(PackageRule):
         installed_folders = {file.rpartition("/")[0] for file in files}
         empty_patterns = [item for item in setup.installed if item.is_pattern and not item.files(package.folder)]
         intended_folders = {
-            nearest_folder(package, item.text.rpartition("/")[0]) for item in empty_patterns
+            find_similar_folder(package, item.text.rpartition("/")[0]) for item in empty_patterns
         }  # LW821 reports these folders
         uninstalled_folders: dict[str, list[str]] = {}
-        for folder in _uninstalled_folders(
+        for folder in _find_uninstalled_folders(
             package, lambda folder: folder in installed_folders or folder in intended_folders
         ):
-            uninstalled_folders.setdefault(_top_folder(folder), []).append(folder)
+            uninstalled_folders.setdefault(_find_top_folder(folder), []).append(folder)
         for folder, *others in uninstalled_folders.values():
             message = phrase("setup.py does not install the folder '{folder}'", folder=folder)
             if others:
@@ -154,7 +154,7 @@ class FolderNotInstalled(PackageRule):
                 "add ('share/{name}/{folder}', glob('{folder}/*')) to data_files", name=package.name, folder=folder
             )
             severity = self._severity(package, [folder, *others])
-            fix = setup_folders_fix(package, setup, [folder, *others], safe=severity is not Severity.INFO)
+            fix = make_setup_folders_fix(package, setup, [folder, *others], safe=severity is not Severity.INFO)
             yield self.report(
                 message, span=setup.data_files_span, source=setup.source, hint=hint, fix=fix, severity=severity
             )
@@ -167,10 +167,10 @@ class FolderNotInstalled(PackageRule):
             is_covered = any(_covers(item.text, folder) for item in cmake.directories)
             return is_covered or any(item.text.startswith(f"{folder}/") for item in cmake.files)
 
-        partly_installed = {_top_folder(folder) for folder in filter(is_installed, shared_folders(package))}
+        partly_installed = {_find_top_folder(folder) for folder in filter(is_installed, list_shared_folders(package))}
         uninstalled_folders = (
-            folder if _top_folder(folder) in partly_installed else _top_folder(folder)
-            for folder in _uninstalled_folders(package, is_installed)
+            folder if _find_top_folder(folder) in partly_installed else _find_top_folder(folder)
+            for folder in _find_uninstalled_folders(package, is_installed)
         )
         for folder in dict.fromkeys(uninstalled_folders):
             message = phrase("CMakeLists.txt does not install the folder '{folder}'", folder=folder)
@@ -182,14 +182,14 @@ class FolderNotInstalled(PackageRule):
             )
             span = cmake.span(cmake.project) if cmake.project else None
             severity = self._severity(package, [folder])
-            fix = cmake_folder_fix(cmake.source, folder, safe=severity is not Severity.INFO)
+            fix = make_cmake_folder_fix(cmake.source, folder, safe=severity is not Severity.INFO)
             yield self.report(message, span=span, source=cmake.source, hint=hint, fix=fix, severity=severity)
 
     def _severity(self, package: PackageContext, folders: Iterable[str]) -> Severity:
         """Return the severity, informational for settings that no launch file of the package reads."""
         prefixes = tuple(f"{folder}/" for folder in folders)
         shared_files = [file for file in package.files if file.startswith(prefixes) and _is_shared(file)]
-        is_unread = not any(path.startswith(prefixes) for path in _paths_named_by_launch_files(package))
+        is_unread = not any(path.startswith(prefixes) for path in _find_paths_in_launch_files(package))
         return Severity.INFO if is_unread and all(map(_SETTINGS_FILE.search, shared_files)) else self.severity
 
 
@@ -279,20 +279,20 @@ class InstalledFileMissing(PackageRule):
                 ):
                     continue
                 message = phrase("setup.py installs '{text}', which does not exist", text=item.text)
-                hint = checkout_hint(package, item.text) or nearest_file_hint(package, item.text)
+                hint = make_checkout_hint(package, item.text) or make_similar_file_hint(package, item.text)
                 yield self.report(message, span=item.span, source=setup.source, hint=hint)
         if cmake is not None:
             for argument in cmake.required_paths:
                 text = argument.text.rstrip("/")
                 if text and not text.startswith("/") and "<" not in text and not _exists_or_is_generated(package, text):
                     message = phrase("CMakeLists.txt installs '{text}', which does not exist", text=argument.text)
-                    suggested_folder = nearest_folder(package, text)
+                    suggested_folder = find_similar_folder(package, text)
                     suggestion = (
                         phrase("did you mean {names}?", names=quoted(suggested_folder))
                         if suggested_folder
-                        else nearest_file_hint(package, text)
+                        else make_similar_file_hint(package, text)
                     )
-                    hint = checkout_hint(package, text) or suggestion
+                    hint = make_checkout_hint(package, text) or suggestion
                     yield self.report(message, span=cmake.span(argument), source=argument.source, hint=hint)
 
 
@@ -306,35 +306,35 @@ def _exists_or_is_generated(package: PackageContext, path: str) -> bool:
     return package.has(path) or is_ignored or is_created_by_cmake(package, path)
 
 
-def shared_folders(package: PackageContext) -> list[str]:
+def list_shared_folders(package: PackageContext) -> list[str]:
     """Return the sorted folders that directly contain files for the share folder."""
     return sorted({file.rpartition("/")[0] for file in package.files if "/" in file and _is_shared(file)})
 
 
-def _uninstalled_folders(package: PackageContext, is_installed: Callable[[str], bool]) -> list[str]:
+def _find_uninstalled_folders(package: PackageContext, is_installed: Callable[[str], bool]) -> list[str]:
     """Return the shared folders that are not installed.
 
     Only folders with a usual name, and folders that a launch file uses, are returned.
     """
-    launch_paths = _paths_named_by_launch_files(package)
+    launch_paths = _find_paths_in_launch_files(package)
     return [
         folder
-        for folder in shared_folders(package)
+        for folder in list_shared_folders(package)
         if not is_installed(folder)
-        and (_top_folder(folder) in _USUAL_FOLDERS or any(path.startswith(f"{folder}/") for path in launch_paths))
+        and (_find_top_folder(folder) in _USUAL_FOLDERS or any(path.startswith(f"{folder}/") for path in launch_paths))
     ]
 
 
-def _paths_named_by_launch_files(package: PackageContext) -> set[str]:
+def _find_paths_in_launch_files(package: PackageContext) -> set[str]:
     """Return the paths in share folders that the package's launch files name."""
     return {shared_file.path for file in package.launch_files.values() for shared_file in file.paths}
 
 
-def _top_folder(folder: str) -> str:
+def _find_top_folder(folder: str) -> str:
     return folder.partition("/")[0]
 
 
-def nearest_folder(package: PackageContext, folder: str) -> str | None:
+def find_similar_folder(package: PackageContext, folder: str) -> str | None:
     """Return the folder with the name most similar to a missing folder's, or None.
 
     Only folders in the same parent folder are compared. The result is also None if the folder exists.
@@ -355,15 +355,15 @@ def _covers(directory: str, folder: str) -> bool:
     return directory in ("", ".") or folder == directory or folder.startswith(f"{directory}/")
 
 
-def checkout_hint(package: PackageContext, path: str) -> Phrase | None:
+def make_checkout_hint(package: PackageContext, path: str) -> Phrase | None:
     """Return a hint to check out the Git submodule that contains a path of the package, or None."""
-    submodule = submodule_of(package.folder / path)
+    submodule = find_submodule(package.folder / path)
     if submodule is None:
         return None
     return phrase("'{folder}' is a Git submodule: run git submodule update --init", folder=submodule)
 
 
-def nearest_file_hint(package: PackageContext, path: str) -> Phrase | None:
+def make_similar_file_hint(package: PackageContext, path: str) -> Phrase | None:
     """Return a hint that names the most similar file in the folder of a path, or None."""
     folder = path.rpartition("/")[0]
     siblings = [file for file in package.files if file.rpartition("/")[0] == folder]

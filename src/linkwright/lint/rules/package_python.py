@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 
 from linkwright.diagnostics import Diagnostic, Severity, foreign, phrase
-from linkwright.lint.package_fixes import setup_file_fix
-from linkwright.lint.rules.package_install import checkout_hint, nearest_file_hint
+from linkwright.lint.package_fixes import make_setup_file_fix
+from linkwright.lint.rules.package_install import make_checkout_hint, make_similar_file_hint
 from linkwright.lint.rules.package_manifest import PackageRule
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
@@ -147,12 +147,12 @@ class MarkerNotInstalled(PackageRule):
                     name=package.name,
                 )
             )
-            fix = setup_file_fix(package, setup, _INDEX_FOLDER, f"resource/{package.name}") if has_marker else None
+            fix = make_setup_file_fix(package, setup, _INDEX_FOLDER, f"resource/{package.name}") if has_marker else None
             yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint, fix=fix)
         if not any(item.text == "package.xml" for item in setup.installed):
             message = phrase("setup.py does not install package.xml")
             hint = phrase("add ('share/{name}', ['package.xml']) to data_files", name=package.name)
-            fix = setup_file_fix(package, setup, "", "package.xml")
+            fix = make_setup_file_fix(package, setup, "", "package.xml")
             yield self.report(message, span=setup.data_files_span, source=setup.source, hint=hint, fix=fix)
 
 
@@ -198,7 +198,7 @@ class EntryPointMissing(PackageRule):
                     module=entry.module,
                 )
                 yield self.report(
-                    message, span=entry.span, source=setup.source, hint=nearest_file_hint(package, f"{path}.py")
+                    message, span=entry.span, source=setup.source, hint=make_similar_file_hint(package, f"{path}.py")
                 )
             elif entry.function is not None and not _defines(package, file, entry.function.partition(".")[0]):
                 message = phrase(
@@ -245,7 +245,7 @@ class PythonPackageMissing(PackageRule):
             path = name.replace(".", "/")
             if name and not package.has(path):
                 message = phrase("setup.py names the Python package '{name}', which has no folder", name=name)
-                hint = checkout_hint(package, path) or phrase("add an empty file '{path}/__init__.py'", path=path)
+                hint = make_checkout_hint(package, path) or phrase("add an empty file '{path}/__init__.py'", path=path)
                 yield self.report(message, span=span, source=setup.source, hint=hint)
 
 

@@ -15,7 +15,7 @@ from linkwright.geometry.polygon import turn
 from linkwright.geometry.shapes import Placement, placement, rotated
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
-from linkwright.lint.rules.names_wheels import joints_above, wheels
+from linkwright.lint.rules.names_wheels import iterate_joints_above, iterate_wheels
 from linkwright.lint.subject import Subject
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_dataclasses import NamedTuple
@@ -42,7 +42,7 @@ class Contact(NamedTuple):
     is_wheel: bool
 
 
-def contacts(subject: Subject) -> list[Contact] | None:
+def find_contacts(subject: Subject) -> list[Contact] | None:
     """Return a robot's contacts with the ground, or None if they are not known.
 
     The contacts are not known if there is no robot, or if a wheel or caster cannot be measured.
@@ -51,7 +51,7 @@ def contacts(subject: Subject) -> list[Contact] | None:
     if robot is None:
         return None
     base = frames.get("base_link", frames[robot.root])
-    wheel_names = {wheel.link.name for wheel in wheels(subject)}
+    wheel_names = {wheel.link.name for wheel in iterate_wheels(subject)}
     all_contacts = []
     for name, link in robot.links.items():
         is_wheel = name in wheel_names
@@ -61,7 +61,7 @@ def contacts(subject: Subject) -> list[Contact] | None:
         for shape in link.collisions or link.visuals:
             pose = placement(shape.origin).inside(frames[name]).seen_from(base)
             x, y, z = pose.position
-            depth = _depth(shape.geometry, pose.rotation[2][2])
+            depth = _measure_depth(shape.geometry, pose.rotation[2][2])
             if depth is not None and (lowest_point is None or z - depth < lowest_point[2]):
                 lowest_point = (x, y, z - depth)
         if lowest_point is None:
@@ -93,14 +93,14 @@ class WheelsNotLevel(Rule):
     options = (Option("tolerance", 0.01, "largest distance of a wheel from the ground, in m"),)
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
-        all_contacts = subject.once(contacts)
+        all_contacts = subject.once(find_contacts)
         if all_contacts is None or sum(contact.is_wheel for contact in all_contacts) < 2:
             return
         tolerance = self.option(subject, "tolerance", float)
         wheel_contacts = [contact for contact in all_contacts if contact.is_wheel]
         ground = min(contact.lowest_point[2] for contact in wheel_contacts)
         lowest_wheel = min(wheel_contacts, key=lambda item: item.lowest_point[2]).link
-        lifted_wheels = _lifted_wheels(subject)
+        lifted_wheels = _find_lifted_wheels(subject)
         for contact in all_contacts:
             gap = contact.lowest_point[2] - ground
             if abs(gap) > tolerance and lifted_wheels.isdisjoint((contact.link.name, lowest_wheel.name)):
@@ -116,12 +116,12 @@ class WheelsNotLevel(Rule):
                     ),
                     contact.link.element,
                     "name",
-                    notes=[Note(phrase("'{name}' is defined here", name=lowest_wheel.name), _span_of(lowest_wheel))],
+                    notes=[Note(phrase("'{name}' is defined here", name=lowest_wheel.name), _find_span(lowest_wheel))],
                     hint=phrase("check the heights of their joints, and the radii of the wheels"),
                 )
 
 
-def _lifted_wheels(subject: Subject) -> set[str]:
+def _find_lifted_wheels(subject: Subject) -> set[str]:
     """Return the names of the wheels and casters that a joint above them can lift.
 
     Steering joints, which rotate about z, are ignored.
@@ -131,7 +131,7 @@ def _lifted_wheels(subject: Subject) -> set[str]:
     if robot is None:
         return names
     for joint in robot.joints.values():
-        for upper_joint in joints_above(robot, joint):
+        for upper_joint in iterate_joints_above(robot, joint):
             if upper_joint.type == "fixed" or upper_joint.child not in frames:
                 continue
             horizontal = hypot(*rotated(frames[upper_joint.child].rotation, upper_joint.axis)[:2])
@@ -163,14 +163,14 @@ class CenterBeyondWheels(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         robot = subject.robot
-        all_contacts = subject.once(contacts)
+        all_contacts = subject.once(find_contacts)
         if robot is None or all_contacts is None or len(all_contacts) < 3:
             return
-        corners = _convex_hull([contact.lowest_point[:2] for contact in all_contacts])
-        center = _center_of_mass(robot, subject.frames)
+        corners = _compute_convex_hull([contact.lowest_point[:2] for contact in all_contacts])
+        center = _compute_center_of_mass(robot, subject.frames)
         if len(corners) < 3 or center is None:
             return
-        distance = _distance_outside(center, corners)
+        distance = _compute_distance_outside(center, corners)
         if distance > self.option(subject, "margin", float):
             heaviest_link = max(
                 (link for link in robot.links.values() if link.inertial is not None),
@@ -197,7 +197,7 @@ class CenterBeyondWheels(Rule):
             )
 
 
-def _depth(shape: object, upward: float) -> float | None:
+def _measure_depth(shape: object, upward: float) -> float | None:
     """Return the extent of a wheel's shape below its center in m, or None for other shapes.
 
     `upward` is the upward component of the shape's z axis.
@@ -209,7 +209,7 @@ def _depth(shape: object, upward: float) -> float | None:
     return None
 
 
-def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | None:
+def _compute_center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | None:
     """Return x and y in m of a robot's center of mass in the base frame, or None if massless."""
     base = frames.get("base_link", frames[robot.root])
     total = x = y = 0.0
@@ -222,7 +222,7 @@ def _center_of_mass(robot: Robot, frames: Mapping[str, Placement]) -> Point | No
     return (x / total, y / total) if total > 0 else None
 
 
-def _convex_hull(points: Sequence[Point]) -> list[Point]:
+def _compute_convex_hull(points: Sequence[Point]) -> list[Point]:
     """Return the corners of the convex hull in counter-clockwise order.
 
     There are fewer than three corners if all points are on a line. The algorithm is Andrew's monotone chain.
@@ -240,7 +240,7 @@ def _convex_hull(points: Sequence[Point]) -> list[Point]:
     return half_hull(sorted_points) + half_hull(reversed(sorted_points))
 
 
-def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
+def _compute_distance_outside(point: Point, corners: Sequence[Point]) -> float:
     """Return the distance of a point from a convex polygon, or 0 if the point is inside.
 
     The distance is measured from the line through the edge that the point exceeds most. The corners are
@@ -254,5 +254,5 @@ def _distance_outside(point: Point, corners: Sequence[Point]) -> float:
     return max_distance
 
 
-def _span_of(link: Link) -> Span | None:
+def _find_span(link: Link) -> Span | None:
     return link.element.span() if link.element is not None else None

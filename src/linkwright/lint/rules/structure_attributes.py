@@ -10,10 +10,10 @@ from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
 from linkwright.lint.unknown_names import (
     attribute_name_span,
-    intended_attribute,
+    find_intended_attribute,
+    find_reader_hints,
     is_expected_attribute,
     is_misspelled,
-    reader_hints,
 )
 
 
@@ -44,9 +44,9 @@ class MisspelledAttribute(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread attribute that is probably a misspelled URDF attribute."""
-        hints = reader_hints(subject)
+        hints = find_reader_hints(subject)
         for schema_element, attribute in subject.structure.unknown_attributes:
-            intended = intended_attribute(schema_element, attribute)
+            intended = find_intended_attribute(schema_element, attribute)
             if intended is None or f"'{attribute}'" in hints.get(schema_element.element.span(), ""):
                 continue
             span = attribute_name_span(schema_element.element, attribute)
@@ -87,11 +87,11 @@ class UnknownAttribute(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread attribute that `MisspelledAttribute` does not report."""
-        hints = reader_hints(subject)
+        hints = find_reader_hints(subject)
         for schema_element, attribute in subject.structure.unknown_attributes:
             if not is_expected_attribute(attribute):
                 continue
-            if intended_attribute(schema_element, attribute) is not None:
+            if find_intended_attribute(schema_element, attribute) is not None:
                 continue
             if f"'{attribute}'" in hints.get(schema_element.element.span(), ""):
                 continue

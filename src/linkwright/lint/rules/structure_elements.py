@@ -12,13 +12,13 @@ from linkwright.lint.subject import Subject
 from linkwright.lint.unknown_names import (
     INNER_EXTENSIONS,
     PARENT_TAGS,
-    intended_element,
+    describe_location,
+    find_intended_element,
+    find_reader_hints,
     is_expected_element,
     is_misspelled,
-    location_phrase,
-    reader_hints,
 )
-from linkwright.lint.walk import values
+from linkwright.lint.walk import parse_numbers
 from linkwright.urdf import schema
 from linkwright.xmltree import Element
 
@@ -51,13 +51,13 @@ class MisspelledElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread element that probably misspells an element allowed in its parent."""
-        reported_spans = reader_hints(subject)
+        reported_spans = find_reader_hints(subject)
         for schema_element, child in subject.structure.unknown_elements:
-            intended = intended_element(schema_element.rule, child)
+            intended = find_intended_element(schema_element.rule, child)
             if intended is None or child.span() in reported_spans:
                 continue
             yield self.report(
-                phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=location_phrase(schema_element)),
+                phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=describe_location(schema_element)),
                 child,
                 hint=phrase("did you mean <{tag}>?", tag=intended),
                 fix=rename_element(child, intended, safe=False) if is_misspelled(child.tag, intended) else None,
@@ -102,7 +102,7 @@ class MisplacedElement(Rule):
 
         Elements without an effect, and elements that the URDF reader reports, are left out.
         """
-        reported_spans = reader_hints(subject)
+        reported_spans = find_reader_hints(subject)
         for schema_element, child in subject.structure.unknown_elements:
             parent_tags = PARENT_TAGS.get(child.tag, ())
             if (
@@ -113,9 +113,9 @@ class MisplacedElement(Rule):
                 continue
             if child.tag == "origin" and _is_zero(child):
                 continue
-            parents_text = " or ".join(f"<{tag}>" for tag in _nearest_parents(parent_tags, schema_element))
+            parents_text = " or ".join(f"<{tag}>" for tag in _find_nearest_parents(parent_tags, schema_element))
             yield self.report(
-                phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=location_phrase(schema_element)),
+                phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=describe_location(schema_element)),
                 child,
                 hint=phrase("put it directly in {tags}", tags=parents_text),
             )
@@ -123,10 +123,10 @@ class MisplacedElement(Rule):
 
 def _is_zero(origin: Element) -> bool:
     """Return whether an origin is zero, so that it would have no effect even if it were read."""
-    return not any(float(value) for name in ("xyz", "rpy") for value in values(origin, name))
+    return not any(float(value) for name in ("xyz", "rpy") for value in parse_numbers(origin, name))
 
 
-def _nearest_parents(parent_tags: Sequence[str], schema_element: SchemaElement) -> Sequence[str]:
+def _find_nearest_parents(parent_tags: Sequence[str], schema_element: SchemaElement) -> Sequence[str]:
     """Return the allowed parents of a misplaced element that are closest to its current parent.
 
     The closest parents are children of the current parent, then the parent of the current parent, then all allowed
@@ -166,16 +166,16 @@ class UnknownElement(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every unread element that the other rules do not report."""
-        reported_spans = reader_hints(subject)
+        reported_spans = find_reader_hints(subject)
         for schema_element, child in subject.structure.unknown_elements:
             if schema_element.rule is schema.ROBOT or child.tag in INNER_EXTENSIONS or child.tag in PARENT_TAGS:
                 continue
             if not is_expected_element(child.tag):
                 continue
-            if intended_element(schema_element.rule, child) is None and child.span() not in reported_spans:
+            if find_intended_element(schema_element.rule, child) is None and child.span() not in reported_spans:
                 allowed = ", ".join(f"<{rule.tag}>" for rule in schema_element.rule.children)
                 yield self.report(
-                    phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=location_phrase(schema_element)),
+                    phrase("<{tag}> in {parent} is not read", tag=child.tag, parent=describe_location(schema_element)),
                     child,
                     hint=phrase("use only {known} here", known=allowed)
                     if allowed

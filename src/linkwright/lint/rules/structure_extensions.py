@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, phrase, quoted
 from linkwright.diagnostics.misspellings import find_misspelled
-from linkwright.lint.extension_names import ATTRIBUTES, CHILDREN
+from linkwright.lint.extension_names import ATTRIBUTE_NAMES, CHILD_TAGS
 from linkwright.lint.fix import rename_attribute, rename_element
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -44,14 +44,14 @@ class MisspelledExtension(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every element and attribute in the extensions whose name misspells a known name."""
         for extension in subject.elements():
-            if extension.tag not in CHILDREN:
+            if extension.tag not in CHILD_TAGS:
                 continue
             pending = [(extension, extension.tag)]
             while pending:
                 element, path = pending.pop()
                 yield from self._attribute_findings(element, path)
                 for child in element.elements():
-                    allowed_tags = CHILDREN.get(path)
+                    allowed_tags = CHILD_TAGS.get(path)
                     if allowed_tags is None:
                         continue
                     if child.tag not in allowed_tags:
@@ -73,7 +73,7 @@ class MisspelledExtension(Rule):
             )
 
     def _attribute_findings(self, element: Element, path: str) -> Iterator[Diagnostic]:
-        allowed = ATTRIBUTES.get(path, ())
+        allowed = ATTRIBUTE_NAMES.get(path, ())
         for attribute in element.attributes:
             if attribute in allowed:
                 continue

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from linkwright.diagnostics import Diagnostic, Note, Severity, did_you_mean, phrase, quoted
 from linkwright.diagnostics.misspellings import find_misspelled
-from linkwright.lint.extension_names import INTERFACES, JOINT_ELEMENTS, LINK_ELEMENTS
+from linkwright.lint.extension_names import INTERFACE_NAMES, JOINT_ELEMENTS, LINK_ELEMENTS
 from linkwright.lint.fix import replace_value
 from linkwright.lint.rule import Rule
 from linkwright.lint.subject import Subject
@@ -21,11 +21,11 @@ _PLACEHOLDER_CHARACTERS = frozenset("${}")
 """Characters of a name with a placeholder that a program did not fill in."""
 
 
-def _names(subject: Subject, tag: str) -> set[str]:
+def _collect_names(subject: Subject, tag: str) -> set[str]:
     return {element.attributes.get("name", "") for element in subject.elements(tag)}
 
 
-def _without_siblings(name: str, candidates: Iterable[str]) -> list[str]:
+def _filter_by_numbers(name: str, candidates: Iterable[str]) -> list[str]:
     """Return the candidates that contain the same numbers as a name.
 
     Other names are siblings: ``arm_1`` is not a misspelling of ``arm_2``.
@@ -33,7 +33,7 @@ def _without_siblings(name: str, candidates: Iterable[str]) -> list[str]:
     return [candidate for candidate in candidates if _NUMBER.findall(candidate) == _NUMBER.findall(name)]
 
 
-def _intended_kind(gazebo: Element, name: str) -> str:
+def _guess_kind(gazebo: Element, name: str) -> str:
     """Return the kind of object that a `<gazebo>` probably refers to.
 
     The kind is ``link`` or ``joint``, or empty if it is unknown. It is derived from the content of the `<gazebo>` or,
@@ -60,7 +60,7 @@ def _is_ros1_control(element: Element) -> bool:
     return element.tag == "plugin" and library in ("libgazebo_ros_control.so", "gazebo_ros_control")
 
 
-def _control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
+def _iterate_control_joints(subject: Subject) -> Iterator[tuple[Element, Element]]:
     """Yield every ``<ros2_control>`` with each of its joints."""
     for system in subject.elements("ros2_control"):
         for joint in system.elements("joint"):
@@ -95,16 +95,16 @@ class GazeboReferenceUnknown(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every reference to a link or joint that does not exist."""
-        links, joints = _names(subject, "link"), _names(subject, "joint")
+        links, joints = _collect_names(subject, "link"), _collect_names(subject, "joint")
         references = [
             (element, name) for element in subject.elements("gazebo") if (name := element.attributes.get("reference"))
         ]
         unknown_references = [(element, name) for element, name in references if name not in links | joints]
         are_exceptions = 2 * len(unknown_references) < len(references)
         for element, name in unknown_references:
-            kind = _intended_kind(element, name)
+            kind = _guess_kind(element, name)
             candidates = {"link": links, "joint": joints}.get(kind, links | joints)
-            plausible_names = _without_siblings(name, candidates)
+            plausible_names = _filter_by_numbers(name, candidates)
             intended = find_misspelled(name, plausible_names)
             suggestion = did_you_mean(name, plausible_names)
             yield self.report(
@@ -141,7 +141,7 @@ class TransmissionJointUnknown(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every transmission of a missing joint, also in ``<ros2_control>``."""
-        joint_names = _names(subject, "joint")
+        joint_names = _collect_names(subject, "joint")
         transmissions = list(subject.elements("transmission"))
         transmissions += [
             nested for system in subject.elements("ros2_control") for nested in system.elements("transmission")
@@ -154,7 +154,7 @@ class TransmissionJointUnknown(Rule):
                         phrase("<transmission> names joint '{name}', which does not exist", name=name),
                         joint,
                         "name",
-                        hint=did_you_mean(name, _without_siblings(name, joint_names))
+                        hint=did_you_mean(name, _filter_by_numbers(name, joint_names))
                         or phrase("give the name of a joint"),
                     )
 
@@ -184,10 +184,10 @@ class ControlJointUnknown(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint of ros2_control that the robot does not have."""
-        joint_names = _names(subject, "joint")
+        joint_names = _collect_names(subject, "joint")
         if not joint_names:
             return  # a file without joints describes only the hardware
-        for _, joint in _control_joints(subject):
+        for _, joint in _iterate_control_joints(subject):
             name = joint.attributes.get("name")
             if name and name not in joint_names:
                 intended = find_misspelled(name, joint_names)
@@ -195,7 +195,7 @@ class ControlJointUnknown(Rule):
                     phrase("<ros2_control> names the joint '{name}', which the robot does not have", name=name),
                     joint,
                     "name",
-                    hint=did_you_mean(name, _without_siblings(name, joint_names))
+                    hint=did_you_mean(name, _filter_by_numbers(name, joint_names))
                     or phrase('add <joint name="{name}" ...> to the robot', name=name),
                     fix=replace_value(joint, "name", intended, safe=False) if intended else None,
                 )
@@ -228,12 +228,14 @@ class ControlInterfaceMisspelled(Rule):
 
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every joint interface whose name is close to a standard name."""
-        for _, joint in _control_joints(subject):
+        for _, joint in _iterate_control_joints(subject):
             for interface in joint.elements():
                 if interface.tag not in ("command_interface", "state_interface"):
                     continue
                 name = interface.attributes.get("name", "")
-                intended = find_misspelled(name, INTERFACES) if name.isalpha() and name not in INTERFACES else None
+                intended = (
+                    find_misspelled(name, INTERFACE_NAMES) if name.isalpha() and name not in INTERFACE_NAMES else None
+                )
                 if intended is not None:
                     yield self.report(
                         phrase("no controller requests an interface '{name}'", name=name),
@@ -280,7 +282,7 @@ class ControlPluginMissing(Rule):
             if hardware is None and any(find_misspelled(child.tag, ["hardware"]) for child in system.elements()):
                 continue  # a misspelled <hardware>, which another rule reports
             plugin = hardware.first("plugin") if hardware is not None else None
-            if plugin is None and ("<hardware" if hardware is None else "<plugin") in _source_text(system):
+            if plugin is None and ("<hardware" if hardware is None else "<plugin") in _read_source_text(system):
                 continue  # the file has this element in a branch that xacro left out
             if plugin is None or not plugin.text().strip():
                 missing_tag = "<hardware>" if hardware is None else "<plugin>"
@@ -297,7 +299,7 @@ class ControlPluginMissing(Rule):
                 )
 
 
-def _source_text(element: Element) -> str:
+def _read_source_text(element: Element) -> str:
     """Return the text of an element in its file, including the parts that xacro left out."""
     element_span = element_range(element)
     return "" if element.source is None or element_span is None else element.source.text[slice(*element_span)]
@@ -369,7 +371,7 @@ class ControlOfFixedJoint(Rule):
     def check(self, subject: Subject) -> Iterable[Diagnostic]:
         """Report every command interface of a fixed joint."""
         fixed_joints = {joint.name: joint for joint in subject.joints if joint.type == "fixed"}
-        for _, control_joint in _control_joints(subject):
+        for _, control_joint in _iterate_control_joints(subject):
             joint = fixed_joints.get(control_joint.attributes.get("name", ""))
             command = control_joint.first("command_interface")
             if joint is None or command is None or joint.element is None:

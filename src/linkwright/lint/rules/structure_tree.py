@@ -100,7 +100,7 @@ class DisconnectedPart(Rule):
         roots = [name for name in links if name not in parents]
         if len(roots) < 2:
             return
-        sizes = Counter(root for root in _roots_of(links, parents).values() if root is not None)
+        sizes = Counter(root for root in _find_roots(links, parents).values() if root is not None)
         main_root = max(roots, key=lambda root: (sizes[root], -roots.index(root)))
         reported_root = roots[1] if roots[1] != main_root else roots[0]  # the reader's finding is at the second root
         for root in roots:
@@ -213,7 +213,7 @@ class NewerVersion(Rule):
             )
 
 
-def _roots_of(names: Iterable[str], parents: Mapping[str, str]) -> dict[str, str | None]:
+def _find_roots(names: Iterable[str], parents: Mapping[str, str]) -> dict[str, str | None]:
     """Return the topmost link above each link, or None if the joints form a cycle."""
     roots: dict[str, str | None] = {}
     for name in names:

@@ -21,7 +21,7 @@ from linkwright.xmltree import Element
 if TYPE_CHECKING:
     from linkwright.lint.xacro_facts import Definition, FileFacts, XacroFacts
 
-ADDRESS = "http://www.ros.org/wiki/xacro"
+NAMESPACE_URI = "http://www.ros.org/wiki/xacro"
 _OLD_NAMESPACE_URI = lazy_pattern(r"https?://(www\.)?ros\.org/(wiki/xacro|xacro)/?(#interface)?")
 _REQUIRED_ATTRIBUTES: dict[str, tuple[str, ...]] = {
     "property": ("name",),
@@ -32,7 +32,7 @@ _REQUIRED_ATTRIBUTES: dict[str, tuple[str, ...]] = {
     "unless": ("value",),
     "insert_block": ("name",),
 }
-_CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
+_CONDITION_TAGS = frozenset({"xacro:if", "xacro:unless"})
 _SIMULATOR_ELEMENTS = frozenset({"gazebo", "plugin", "ros2_control", "sensor", "world", "sdf", "transmission"})
 _ABSOLUTE_PATH = lazy_pattern(r"(/|~|file:///|[A-Za-z]:[\\/])")
 
@@ -67,8 +67,10 @@ class XacroPrefixMissing(Rule):
 
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         documents = subject.sources.values()
-        elements_by_root = [(document.root, list(_description_elements(document.root))) for document in documents]
-        macros = _macro_names(elements for _, elements in elements_by_root)
+        elements_by_root = [
+            (document.root, list(_iterate_description_elements(document.root))) for document in documents
+        ]
+        macros = _collect_macro_names(elements for _, elements in elements_by_root)
         for root, elements in elements_by_root:
             if root.tag != "robot":
                 continue
@@ -85,15 +87,15 @@ class XacroPrefixMissing(Rule):
                     hint = phrase(
                         'write <xacro:{tag} ...>, and declare the prefix on the root: xmlns:xacro="{address}"',
                         tag=element.tag,
-                        address=ADDRESS,
+                        address=NAMESPACE_URI,
                     )
-                    declaration = add_attribute(root, "xmlns:xacro", ADDRESS)
+                    declaration = add_attribute(root, "xmlns:xacro", NAMESPACE_URI)
                     if fix is not None and declaration is not None:
                         fix = Fix((*declaration.edits, *fix.edits), safe=False)
                 yield self.report(message, element, hint=hint, fix=fix)
 
 
-def _macro_names(documents: Iterable[Iterable[Element]]) -> set[str]:
+def _collect_macro_names(documents: Iterable[Iterable[Element]]) -> set[str]:
     """Return the names of all macros that some documents define, except names of URDF elements."""
     macros = (
         element.attributes.get("name", "")
@@ -101,11 +103,11 @@ def _macro_names(documents: Iterable[Iterable[Element]]) -> set[str]:
         for element in elements
         if element.tag == "xacro:macro"
     )
-    return set(macros) - _element_tags(ROBOT)
+    return set(macros) - _collect_tags(ROBOT)
 
 
-def _element_tags(rule: ElementRule) -> set[str]:
-    return {rule.tag}.union(*map(_element_tags, rule.children))
+def _collect_tags(rule: ElementRule) -> set[str]:
+    return {rule.tag}.union(*map(_collect_tags, rule.children))
 
 
 class XacroNamespaceMissing(XacroRule):
@@ -140,14 +142,14 @@ class XacroNamespaceMissing(XacroRule):
         root = file.document.root
         if "xmlns:xacro" in root.attributes or not file.uses:
             return
-        if any(_REQUIRED_ATTRIBUTES.get(element.tag) for element in _description_elements(root)):
+        if any(_REQUIRED_ATTRIBUTES.get(element.tag) for element in _iterate_description_elements(root)):
             return  # the prefix is missing, too, which another rule reports
         message = phrase("this file has xacro expressions but does not declare the prefix 'xacro'")
-        fix = add_attribute(root, "xmlns:xacro", ADDRESS)
+        fix = add_attribute(root, "xmlns:xacro", NAMESPACE_URI)
         yield self.report(
             message,
             root,
-            hint=phrase('write <{tag} ... xmlns:xacro="{address}">', tag=root.tag, address=ADDRESS),
+            hint=phrase('write <{tag} ... xmlns:xacro="{address}">', tag=root.tag, address=NAMESPACE_URI),
             fix=fix,
         )
 
@@ -181,15 +183,15 @@ class XacroNamespaceAddress(Rule):
     def check(self, subject: Subject) -> Iterator[Diagnostic]:
         for document in subject.sources.values():
             root = document.root
-            uri = root.attributes.get("xmlns:xacro", ADDRESS)
-            if uri == ADDRESS:
+            uri = root.attributes.get("xmlns:xacro", NAMESPACE_URI)
+            if uri == NAMESPACE_URI:
                 continue
             if _OLD_NAMESPACE_URI.fullmatch(uri):
                 message = phrase("the prefix 'xacro' is declared with an old URI")
             else:
                 message = phrase("the prefix 'xacro' is not declared with the URI of ROS")
-            fix = replace_value(root, "xmlns:xacro", ADDRESS)
-            hint = phrase('write xmlns:xacro="{address}"', address=ADDRESS)
+            fix = replace_value(root, "xmlns:xacro", NAMESPACE_URI)
+            hint = phrase('write xmlns:xacro="{address}"', address=NAMESPACE_URI)
             yield self.report(message, root, "xmlns:xacro", hint=hint, fix=fix)
 
 
@@ -307,7 +309,7 @@ class UndeclaredPackage(Rule):
         if subject.expansion is None:
             return
         from linkwright.lint.dependencies import would_form_cycle
-        from linkwright.lint.package_fixes import dependency_fix
+        from linkwright.lint.package_fixes import make_dependency_fix
         from linkwright.xacro.faults import attribute_span
 
         facts = subject.xacro
@@ -317,7 +319,7 @@ class UndeclaredPackage(Rule):
         reported_packages: set[str] = set()
         for is_optional, file in product((False, True), facts.package_files.values()):
             for use in file.uses:
-                if _CONDITIONS.isdisjoint(parent.tag for parent in use.parents) is is_optional:
+                if _CONDITION_TAGS.isdisjoint(parent.tag for parent in use.parents) is is_optional:
                     continue
                 for name, offset in use.mentions.packages:
                     if name in reported_packages or package.manifest.declares(name) or use.attribute is None:
@@ -333,7 +335,7 @@ class UndeclaredPackage(Rule):
                     )
                     hint = phrase("add <exec_depend>{name}</exec_depend> to package.xml", name=name)
                     severity = Severity.INFO if is_optional else None
-                    fix = dependency_fix(package.manifest, [name])
+                    fix = make_dependency_fix(package.manifest, [name])
                     yield self.report(
                         message, use.element, use.attribute, span=span, hint=hint, fix=fix, severity=severity
                     )
@@ -375,7 +377,7 @@ class RecursiveMacro(XacroRule):
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         for file in facts.package_files.values():
             for macro in file.macros:
-                call = _unconditional_call(macro, file)
+                call = _find_unconditional_call(macro, file)
                 if call is not None:
                     note = Note(phrase("the macro '{name}' is defined here", name=macro.name), macro.element.span())
                     message = phrase(
@@ -457,7 +459,7 @@ class MacroDefinedTwice(XacroRule):
                     )
 
 
-def _unconditional_call(macro: Definition, file: FileFacts) -> Definition | None:
+def _find_unconditional_call(macro: Definition, file: FileFacts) -> Definition | None:
     for call in file.calls_by_macro.get(id(macro.element), ()):
         if call.name != macro.name or call.element.tag != f"xacro:{macro.name}":
             continue
@@ -467,7 +469,7 @@ def _unconditional_call(macro: Definition, file: FileFacts) -> Definition | None
     return None
 
 
-def _description_elements(root: Element) -> Iterator[Element]:
+def _iterate_description_elements(root: Element) -> Iterator[Element]:
     """Yield the elements of a description, except the content for simulators and plugins."""
     pending = [root]
     while pending:

@@ -83,7 +83,7 @@ class UnusedProperty(XacroRule):
                     phrase("nothing uses the property '{name}'", name=name),
                     element,
                     "name",
-                    hint=_hint(name, facts.names),
+                    hint=_make_hint(name, facts.names),
                     fix=remove_element(element, safe=False),
                     severity=Severity.INFO if _belongs_to_table(definition, file, facts.names) else None,
                 )
@@ -118,7 +118,7 @@ class UnusedArgument(XacroRule):
     needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        if facts.arguments_open:
+        if facts.has_open_arguments:
             return
         for file in facts.package_files.values():
             for definition in file.arguments:
@@ -128,7 +128,7 @@ class UnusedArgument(XacroRule):
                         phrase("nothing uses the argument '{name}'", name=name),
                         definition.element,
                         "name",
-                        hint=_hint(name, facts.used_arguments, "$(arg ...)"),
+                        hint=_make_hint(name, facts.used_arguments, "$(arg ...)"),
                         fix=remove_element(definition.element, safe=False),
                     )
 
@@ -168,7 +168,7 @@ class UnusedMacro(XacroRule):
     needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        if facts.is_library or facts.calls_open:
+        if facts.is_library or facts.has_open_calls:
             return
         for definition in facts.main.macros:
             if definition.name and definition.name not in facts.called_macros:
@@ -176,7 +176,7 @@ class UnusedMacro(XacroRule):
                     phrase("nothing calls the macro '{name}'", name=definition.name),
                     definition.element,
                     "name",
-                    hint=_hint(definition.name, facts.called_macros, f"<xacro:{definition.name} .../>"),
+                    hint=_make_hint(definition.name, facts.called_macros, f"<xacro:{definition.name} .../>"),
                     fix=remove_element(definition.element, safe=False),
                 )
 
@@ -207,10 +207,10 @@ class UnusedInclude(XacroRule):
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
         if facts.is_library or any(
-            file.is_open or file.calls_open or file.has_bare_tags for file in facts.files.values()
+            file.is_open or file.has_open_calls or file.has_bare_tags for file in facts.files.values()
         ):
             return
-        paths = _included_paths(facts)
+        paths = _find_included_paths(facts)
         for file in facts.package_files.values():
             for include in file.includes:
                 path = paths.get(id(include.element))
@@ -256,9 +256,9 @@ class UnusedMacroParameter(XacroRule):
     needs_all_sets = True
 
     def check_xacro(self, facts: XacroFacts) -> Iterator[Diagnostic]:
-        if facts.calls_open:
+        if facts.has_open_calls:
             return  # Macros that are called by a computed name must all accept the same parameters.
-        shared_names = _shared_parameters(facts)
+        shared_names = _find_shared_parameters(facts)
         for file in facts.package_files.values():
             if file.has_bare_tags:
                 continue
@@ -272,7 +272,7 @@ class UnusedMacroParameter(XacroRule):
     def _check_macro(self, macro: Definition, file: FileFacts, facts: XacroFacts) -> Iterator[tuple[str, Diagnostic]]:
         from linkwright.lint.xacro_facts import parameter_span
 
-        used_names, blocks, is_open = _used_inside(macro.element, file)
+        used_names, blocks, is_open = _find_used_names(macro.element, file)
         calls_others = bool(file.calls_by_macro.get(id(macro.element)))
         for parameter in file.parameters(macro.element):
             name = parameter.name.lstrip("*")
@@ -296,7 +296,7 @@ class UnusedMacroParameter(XacroRule):
                 yield name, self.report(message, macro.element, "params", span=span, hint=hint)
 
 
-def _shared_parameters(facts: XacroFacts) -> set[str]:
+def _find_shared_parameters(facts: XacroFacts) -> set[str]:
     """Return the names of parameters that several macros share by convention.
 
     A macro need not use such a parameter.
@@ -310,7 +310,7 @@ def _shared_parameters(facts: XacroFacts) -> set[str]:
     return {name for name, count in counts.items() if count > 1}
 
 
-def _used_inside(macro: Element, file: FileFacts) -> tuple[set[str], set[str], bool]:
+def _find_used_names(macro: Element, file: FileFacts) -> tuple[set[str], set[str], bool]:
     """Return the names and the blocks that a macro's body mentions.
 
     The third result is whether the body may also mention other names.
@@ -373,14 +373,14 @@ def _is_first(definition: Definition, file: FileFacts) -> bool:
     return first is definition
 
 
-def _hint(name: str, used_names: frozenset[str], form: str = "${...}") -> Phrase:
+def _make_hint(name: str, used_names: frozenset[str], form: str = "${...}") -> Phrase:
     intended = find_misspelled(name, used_names)
     if intended is not None:
         return phrase("rename it to '{close}', which is used, or remove it", close=intended)
     return phrase("use it with {form}, or remove it", form=form)
 
 
-def _included_paths(facts: XacroFacts) -> dict[int, Path]:
+def _find_included_paths(facts: XacroFacts) -> dict[int, Path]:
     """Return the path of the file that each include reads, by the `id` of the include's element.
 
     Includes with a namespace, and includes whose file is not unique, are left out.

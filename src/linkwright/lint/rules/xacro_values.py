@@ -8,7 +8,7 @@ from itertools import pairwise
 from linkwright.diagnostics import Diagnostic, Note, Phrase, Span, phrase
 from linkwright.lint.rules.xacro_rule import XacroRule
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.xacro.expressions.scope import literal
+from linkwright.xacro.expressions.scope import parse_literal
 from linkwright.xmltree import Element
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class LiteralChangesType(XacroRule):
             for definition in file.properties:
                 value = definition.element.attributes.get("value")
                 if value is not None and _is_changed_by_literal_rule(value):
-                    use = _use_in_name(definition.name, facts, None)
+                    use = _find_use_in_name(definition.name, facts, None)
                     if use is not None:
                         yield self._finding(definition.element, "value", definition.name, value, use, quotes="''")
 
@@ -68,19 +68,19 @@ class LiteralChangesType(XacroRule):
         _, macro = macros[0]
         for name, value in call.element.attributes.items():
             if _is_changed_by_literal_rule(value):
-                use = _use_in_name(name, facts, macro.element)
+                use = _find_use_in_name(name, facts, macro.element)
                 if use is not None:
                     yield self._finding(call.element, name, name, value, use, quotes="'")
 
     def _finding(
         self, element: Element, attribute: str, name: str, value: str, use: tuple[Element, str], quotes: str
     ) -> Diagnostic:
-        converted = literal(value)
+        converted = parse_literal(value)
         note = Note(phrase("'{name}' becomes part of a name here", name=name), use[0].attribute_span(use[1]))
         message = phrase(
             "xacro reads '{value}' as {kind} and writes '{changed}' into a name",
             value=value,
-            kind=_kind(converted),
+            kind=_describe_kind(converted),
             changed=converted,
         )
         hint = phrase(
@@ -273,14 +273,14 @@ class ParameterHidesGlobal(XacroRule):
 
 def _is_changed_by_literal_rule(value: str) -> bool:
     """Return whether xacro's conversion of literals changes the text of a value."""
-    return "$" not in value and "'" not in value and str(literal(value)) != value
+    return "$" not in value and "'" not in value and str(parse_literal(value)) != value
 
 
-def _kind(value: object) -> Phrase:
+def _describe_kind(value: object) -> Phrase:
     return phrase("a boolean") if isinstance(value, bool) else phrase("a number")
 
 
-def _use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[Element, str] | None:
+def _find_use_in_name(name: str, facts: XacroFacts, macro: Element | None) -> tuple[Element, str] | None:
     """Return an element and its attribute that uses ``${name}`` as part of a name, or None.
 
     The element is inside `macro` or, if `macro` is None, outside all macros that hide the name.

@@ -21,7 +21,7 @@ class OpenText:
 
     Args:
         uri: the URI of the file.
-        text: the text.
+        text: the content when the editor opens the file.
         version: the version of the text.
         encoding: the encoding whose code units positions count.
 
@@ -50,20 +50,20 @@ class OpenText:
             changes: the content changes of the protocol, each for the text after the previous one.
         """
         findings = [finding for own in self._findings.values() for finding in own]
-        places = [offsets(self._positions, finding["range"]) for finding in findings]
+        places = [to_offsets(self._positions, finding["range"]) for finding in findings]
         for change in changes:
             old_text, changed_range = self.text, change.get("range")
             if changed_range is None:
                 text = change["text"]
             else:
-                start, end = offsets(self._positions, changed_range)
+                start, end = to_offsets(self._positions, changed_range)
                 text = old_text[:start] + change["text"] + old_text[end:]
             self._positions = TextPositions(text, self._encoding)
-            moved = _Replacement(old_text, text).moved
+            moved = _Replacement(old_text, text).move
             places = [moved(*offset_pair) for offset_pair in places]
         self.version = version
         for finding, (start, end) in zip(findings, places, strict=True):
-            finding["range"] = as_range(self._positions, start, end)
+            finding["range"] = to_range(self._positions, start, end)
 
     def set_findings(self, server: str, findings: Sequence[Finding]) -> None:
         """Replace the findings of a server about the current text."""
@@ -79,7 +79,7 @@ class OpenText:
 
     def word_before(self, position: Mapping[str, int]) -> str:
         """Return the part of a name before a position."""
-        offset = self._positions.offset(_position(position))
+        offset = self._positions.offset(_to_position(position))
         start = offset
         while start > 0 and (self.text[start - 1].isalnum() or self.text[start - 1] == "_"):
             start -= 1
@@ -87,7 +87,7 @@ class OpenText:
 
     def text_in(self, range_: Mapping[str, Any]) -> str:
         """Return the text of a range."""
-        start, end = offsets(self._positions, range_)
+        start, end = to_offsets(self._positions, range_)
         return self.text[start:end]
 
 
@@ -105,7 +105,7 @@ class _Replacement:
         self._start, self._end = start, len(old_text) - suffix_length
         self._growth = len(new_text) - len(old_text)
 
-    def moved(self, start: int, end: int) -> tuple[int, int]:
+    def move(self, start: int, end: int) -> tuple[int, int]:
         """Return the range in the new text that corresponds to a range of the old text.
 
         Text that is inserted at one of its ends remains outside the range.
@@ -118,16 +118,16 @@ class _Replacement:
         return offset + self._growth if offset >= self._end else self._start
 
 
-def offsets(positions: TextPositions, range_: Mapping[str, Any]) -> tuple[int, int]:
+def to_offsets(positions: TextPositions, range_: Mapping[str, Any]) -> tuple[int, int]:
     """Return the character offsets of a range of the protocol."""
-    return positions.offset(_position(range_["start"])), positions.offset(_position(range_["end"]))
+    return positions.offset(_to_position(range_["start"])), positions.offset(_to_position(range_["end"]))
 
 
-def as_range(positions: TextPositions, start: int, end: int) -> dict[str, Any]:
+def to_range(positions: TextPositions, start: int, end: int) -> dict[str, Any]:
     """Return the range of the protocol between two character offsets."""
     places = {"start": positions.position(start), "end": positions.position(end)}
     return {name: {"line": position.line, "character": position.character} for name, position in places.items()}
 
 
-def _position(position: Mapping[str, int]) -> types.Position:
+def _to_position(position: Mapping[str, int]) -> types.Position:
     return types.Position(position["line"], position["character"])

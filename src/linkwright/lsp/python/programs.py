@@ -37,11 +37,11 @@ def installed_programs() -> list[Program]:
 
     Programs in the interpreter's folder precede programs on the search path.
     """
-    programs = ((name, _path_of(name)) for name in ("ty", "ruff"))
+    programs = ((name, _find_program(name)) for name in ("ty", "ruff"))
     return [Program(name, (str(path), "server")) for name, path in programs if path is not None]
 
 
-def _path_of(name: str) -> Path | None:
+def _find_program(name: str) -> Path | None:
     """Return the path of a program, or None if it is not installed.
 
     A program in the current folder is not used, because it may be malicious.

@@ -1,4 +1,7 @@
-"""A router that presents several language servers as one: Linkwright's own, and the servers for Python files."""
+"""A router that presents several language servers as one.
+
+The servers are Linkwright's own and the servers for Python files.
+"""
 
 from __future__ import annotations
 
@@ -15,31 +18,31 @@ from typing import Any
 
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.lsp.python.answers import (
+from linkwright.lsp.python.open_texts import OpenText
+from linkwright.lsp.python.programs import Program, program_environment
+from linkwright.lsp.python.responses import (
     CAPABILITIES,
     CODE_ACTION,
     OWN_SERVER,
     RENAME,
     combine_responses,
+    find_server_of_action,
     is_final_response,
-    marked_action,
-    server_of_action,
+    mark_action,
 )
-from linkwright.lsp.python.open_texts import OpenText
-from linkwright.lsp.python.programs import Program, program_environment
 from linkwright.lsp.python.servers import INITIALIZE_ID, Message, Peer, PythonServer
 from linkwright.lsp.python.workspace_stubs import WorkspaceStubs
-from linkwright.lsp.server import path_of
+from linkwright.lsp.server import path_from_uri
 
 _log = logging.getLogger(__name__)
 _RESPONSE_TIMEOUT_S = 5.0
 """The time in which other servers must respond after Linkwright's own server has responded."""
 _MAX_STARTS = 3
 _METHOD_NOT_FOUND = -32601
-_PUBLISH = "textDocument/publishDiagnostics"
+_PUBLISH_DIAGNOSTICS = "textDocument/publishDiagnostics"
 _TEXT_NOTIFICATIONS = ("textDocument/didChange", "textDocument/didSave", "textDocument/didClose")
 _FILES_CHANGED = "workspace/didChangeWatchedFiles"
-_CHANGED = 2
+_FILE_CHANGED = 2
 _WARNING = 2
 _INTERFACE_FILES = (".msg", ".srv", ".action", ".idl", "package.xml")
 _FORWARDED = ("window/showMessage",)
@@ -59,7 +62,7 @@ _CLIENT_FEATURES = (
 
 
 @dataclass(slots=True)
-class _Question:
+class _PendingRequest:
     """A request of the editor that is sent to several servers."""
 
     method: str
@@ -80,7 +83,7 @@ class Router:
     of their arrival.
 
     Args:
-        editor: the editor.
+        editor: the connection to the editor.
         own_server: Linkwright's own server.
         programs: the other servers.
     """
@@ -97,9 +100,9 @@ class Router:
         self._environment: dict[str, str] | None = None
         self._stubs: WorkspaceStubs | None = None
         self._search = ThreadPoolExecutor(1, thread_name_prefix="modules")
-        self._held: list[tuple[str, Message]] | None = None
+        self._queued: list[tuple[str, Message]] | None = None
         self._texts: dict[str, OpenText] = {}
-        self._questions: dict[Any, _Question] = {}
+        self._requests: dict[Any, _PendingRequest] = {}
         self._resolving: dict[Any, str] = {}
         self._events: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -126,12 +129,12 @@ class Router:
 
     def _run(self) -> None:
         while True:
-            deadlines = [question.deadline for question in self._questions.values() if question.deadline is not None]
+            deadlines = [request.deadline for request in self._requests.values() if request.deadline is not None]
             wait = max(0.0, min(deadlines) - time.monotonic()) if deadlines else None
             try:
                 event = self._events.get(timeout=wait)
             except Empty:
-                self._answer_late()
+                self._respond_without_late_servers()
                 continue
             if event is None:
                 return
@@ -150,9 +153,9 @@ class Router:
         if method == "codeAction/resolve":
             self._resolve(message)
             return
-        text = self._texts.get(_uri(parameters))
+        text = self._texts.get(_find_uri(parameters))
         if "id" in message and method in CAPABILITIES and text is not None:
-            self._ask(message, text)
+            self._send_to_all(message, text)
             return
         if method == "initialize":
             self._initialize, self._initialize_id = parameters, message["id"]
@@ -164,13 +167,13 @@ class Router:
         elif method in _TEXT_NOTIFICATIONS and text is not None:
             self._on_text_changed(message, text)
         elif method == "$/cancelRequest":
-            for name in self._questions[parameters["id"]].awaited if parameters["id"] in self._questions else ():
+            for name in self._requests[parameters["id"]].awaited if parameters["id"] in self._requests else ():
                 self._send(name, message)
         elif method == _FILES_CHANGED:
             self._send_all(message)
             if any(change["uri"].endswith(_INTERFACE_FILES) for change in parameters["changes"]):
                 self._renew_stubs()
-        if method == "textDocument/didSave" and _uri(parameters).endswith(_INTERFACE_FILES):
+        if method == "textDocument/didSave" and _find_uri(parameters).endswith(_INTERFACE_FILES):
             self._renew_stubs()
 
     def _open_text(self, item: Message) -> None:
@@ -178,10 +181,10 @@ class Router:
             return
         text = OpenText(item["uri"], item["text"], item["version"], self._encoding)
         self._texts[text.uri] = text
-        if self._environment is None and self._held is None:
+        if self._environment is None and self._queued is None:
             self._prepare()
         for server in self._servers.values():
-            server.send(_opening(text))
+            server.send(_make_open_notification(text))
 
     def _on_text_changed(self, message: Message, text: OpenText) -> None:
         self._send_all(message)
@@ -189,19 +192,21 @@ class Router:
             text.change(message["params"]["textDocument"]["version"], message["params"]["contentChanges"])
         elif message["method"] == "textDocument/didClose":
             del self._texts[text.uri]
-            self._editor.send(_publication({"uri": text.uri, "diagnostics": text.findings_of(OWN_SERVER)}))
+            self._editor.send(
+                _make_publish_notification({"uri": text.uri, "diagnostics": text.findings_of(OWN_SERVER)})
+            )
 
-    def _ask(self, message: Message, text: OpenText) -> None:
+    def _send_to_all(self, message: Message, text: OpenText) -> None:
         """Send a request to all servers, and record that their responses must be combined."""
-        others = self._servers if self._held is None else self._programs
-        question = _Question(message["method"], message["params"], text, awaited=[OWN_SERVER, *others])
-        self._questions[message["id"]] = question
-        for name in tuple(question.awaited):
+        others = self._servers if self._queued is None else self._programs
+        request = _PendingRequest(message["method"], message["params"], text, awaited=[OWN_SERVER, *others])
+        self._requests[message["id"]] = request
+        for name in tuple(request.awaited):
             self._send(name, _for_server(message, name))
 
     def _resolve(self, message: Message) -> None:
         """Send a code action to the server that offered it."""
-        server_and_action = server_of_action(message["params"])
+        server_and_action = find_server_of_action(message["params"])
         if server_and_action is None or server_and_action[0] not in self._servers:
             self._own_server.send(message)
             return
@@ -212,14 +217,14 @@ class Router:
     # --- from the servers -------------------------------------------------------------------------------------
 
     def _on_own(self, message: Message) -> None:
-        if "method" not in message and message.get("id") in self._questions:
-            self._on_answered(OWN_SERVER, message)
+        if "method" not in message and message.get("id") in self._requests:
+            self._on_response(OWN_SERVER, message)
             return
         if "method" not in message and message.get("id") == self._initialize_id and "result" in message:
             self._initialize_id = None
             self._encoding = message["result"]["capabilities"].get("positionEncoding", self._encoding)
-            message = _with_python(message)
-        if message.get("method") == _PUBLISH and message["params"]["uri"] in self._texts:
+            message = _add_python_features(message)
+        if message.get("method") == _PUBLISH_DIAGNOSTICS and message["params"]["uri"] in self._texts:
             self._publish(OWN_SERVER, message["params"])
             return
         self._editor.send(message)
@@ -235,17 +240,17 @@ class Router:
             elif self._resolving.pop(message.get("id"), None) is not None:
                 self._editor.send(_with_marked_action(server.name, message))
             else:
-                self._on_answered(server.name, message)
+                self._on_response(server.name, message)
         elif "id" in message:
             error = {"code": _METHOD_NOT_FOUND, "message": "not supported"}
             server.send({"jsonrpc": "2.0", "id": message["id"], "error": error})
-        elif message["method"] == _PUBLISH:
+        elif message["method"] == _PUBLISH_DIAGNOSTICS:
             self._publish(server.name, message["params"])
         elif message["method"] in _FORWARDED:
             self._editor.send(message)
 
     def _publish(self, name: str, published: Message) -> None:
-        """Publish the findings of all servers about a text, unless a server's findings are outdated."""
+        """Publish the findings of all servers about a text, unless the new ones are outdated."""
         text = self._texts.get(published["uri"])
         if text is None or published.get("version") not in (None, text.version):
             return
@@ -254,54 +259,55 @@ class Router:
 
     def _publish_all(self, text: OpenText) -> None:
         parameters = {"uri": text.uri, "version": text.version, "diagnostics": text.findings()}
-        self._editor.send(_publication(parameters))
+        self._editor.send(_make_publish_notification(parameters))
 
-    def _on_answered(self, name: str, message: Message) -> None:
-        """Store the response of a server, and respond to the editor once all servers have responded."""
+    def _on_response(self, name: str, message: Message) -> None:
+        """Store a response, and respond to the editor once all servers have responded."""
         identifier = message.get("id")
-        question = self._questions.get(identifier)
-        if question is None or name not in question.awaited:
+        request = self._requests.get(identifier)
+        if request is None or name not in request.awaited:
             return
-        question.awaited.remove(name)
-        question.responses[name] = message
+        request.awaited.remove(name)
+        request.responses[name] = message
         if name == OWN_SERVER:
-            question.deadline = time.monotonic() + _RESPONSE_TIMEOUT_S
-            if "error" not in message and is_final_response(question.method, message.get("result")):
-                question.awaited.clear()
-            if "error" in message and question.method == RENAME:  # no other server tries a refused rename
-                question.awaited.clear()
-        if not question.awaited:
-            self._answer(identifier, question)
+            request.deadline = time.monotonic() + _RESPONSE_TIMEOUT_S
+            if "error" not in message and is_final_response(request.method, message.get("result")):
+                request.awaited.clear()
+            if "error" in message and request.method == RENAME:  # The other servers must not try a refused rename.
+                request.awaited.clear()
+        if not request.awaited:
+            self._respond(identifier, request)
 
-    def _answer(self, identifier: Any, question: _Question) -> None:
-        del self._questions[identifier]
-        names = [name for name in (OWN_SERVER, *self._programs) if name in question.responses]
+    def _respond(self, identifier: Any, request: _PendingRequest) -> None:
+        del self._requests[identifier]
+        names = [name for name in (OWN_SERVER, *self._programs) if name in request.responses]
         responses = [
-            (name, question.responses[name].get("result")) for name in names if "error" not in question.responses[name]
+            (name, request.responses[name].get("result")) for name in names if "error" not in request.responses[name]
         ]
-        result = combine_responses(question.method, responses, question.text, question.parameters)
-        own_response = question.responses.get(OWN_SERVER, {})
+        result = combine_responses(request.method, responses, request.text, request.parameters)
+        own_response = request.responses.get(OWN_SERVER, {})
         if result is None and "error" in own_response:
             self._editor.send(own_response)
         else:
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": result})
 
-    def _answer_late(self) -> None:
+    def _respond_without_late_servers(self) -> None:
         """Respond to timed-out requests without the responses of the late servers."""
         now = time.monotonic()
-        for identifier, question in list(self._questions.items()):
-            if question.deadline is not None and question.deadline <= now:
-                self._answer(identifier, question)
+        for identifier, request in list(self._requests.items()):
+            if request.deadline is not None and request.deadline <= now:
+                self._respond(identifier, request)
 
     # --- the other servers ------------------------------------------------------------------------------------
 
     def _prepare(self) -> None:
         """Search the workspace for modules and messages, and then start the servers."""
-        self._held = []
-        folders = _folders(self._initialize)
+        self._queued = []
+        folders = _list_folders(self._initialize)
 
         def search() -> None:
-            self._stubs = stubs = WorkspaceStubs(folders)  # set here, so that close() also removes them during a search
+            # The attribute is set now, so that close() also removes the stubs during a search.
+            self._stubs = stubs = WorkspaceStubs(folders)
             stubs.update()
             self._events.put(partial(self._on_prepared, program_environment(folders, stubs.folder)))
 
@@ -311,8 +317,8 @@ class Router:
         self._environment = environment
         for program in self._programs.values():
             self._start(program)
-        held, self._held = self._held or [], None
-        for name, message in held:
+        queued, self._queued = self._queued or [], None
+        for name, message in queued:
             self._send(name, message)
 
     def _start(self, program: Program) -> None:
@@ -320,7 +326,7 @@ class Router:
         assert self._environment is not None, "it was prepared"
         self._starts[program.name] = starts = self._starts.get(program.name, 0) + 1
         if starts <= _MAX_STARTS:
-            parameters = _initialization(self._initialize, self._encoding)
+            parameters = _make_initialize_parameters(self._initialize, self._encoding)
             try:
                 server = PythonServer(program, self._environment, parameters, self._on_received)
             except OSError:
@@ -328,12 +334,10 @@ class Router:
             else:
                 self._servers[program.name] = server
                 for text in self._texts.values():
-                    server.send(_opening(text))
+                    server.send(_make_open_notification(text))
                 return
-        for identifier in [
-            pending for pending, question in self._questions.items() if program.name in question.awaited
-        ]:
-            self._on_answered(program.name, {"id": identifier, "result": None})
+        for identifier in [pending for pending, request in self._requests.items() if program.name in request.awaited]:
+            self._on_response(program.name, {"id": identifier, "result": None})
         message = phrase("'{program}' cannot be run, so Python files are edited without it", program=program.name)
         shown = {"type": _WARNING, "message": localized(message)}
         self._editor.send({"jsonrpc": "2.0", "method": "window/showMessage", "params": shown})
@@ -345,9 +349,9 @@ class Router:
         """Respond to the open requests of a server that has ended, and restart the server."""
         del self._servers[server.name]
         server.close()
-        for identifier, question in list(self._questions.items()):
-            if server.name in question.awaited:
-                self._on_answered(server.name, {"id": identifier, "result": None})
+        for identifier, request in list(self._requests.items()):
+            if server.name in request.awaited:
+                self._on_response(server.name, {"id": identifier, "result": None})
         for identifier in [pending for pending, name in self._resolving.items() if name == server.name]:
             del self._resolving[identifier]
             self._editor.send({"jsonrpc": "2.0", "id": identifier, "result": None})
@@ -364,7 +368,7 @@ class Router:
             return
 
         def update() -> None:
-            changes = [{"uri": file.as_uri(), "type": _CHANGED} for file in stubs.update()]
+            changes = [{"uri": file.as_uri(), "type": _FILE_CHANGED} for file in stubs.update()]
             message = {"jsonrpc": "2.0", "method": _FILES_CHANGED, "params": {"changes": changes}}
             self._events.put(partial(self._send_all, message))
 
@@ -379,35 +383,38 @@ class Router:
         if name == OWN_SERVER:
             self._own_server.send(message)
             return
-        if self._held is not None:
-            self._held.append((name, message))
+        if self._queued is not None:
+            self._queued.append((name, message))
             return
         server = self._servers.get(name)
         capability = CAPABILITIES.get(message.get("method", ""))
         if server is None or (
             capability and server.capabilities is not None and not server.capabilities.get(capability)
         ):
-            self._on_answered(name, {"id": message.get("id"), "result": None})
+            self._on_response(name, {"id": message.get("id"), "result": None})
         else:
             server.send(message)
 
 
-def _uri(parameters: Message) -> str:
+def _find_uri(parameters: Message) -> str:
     document = parameters.get("textDocument") if isinstance(parameters, dict) else None
     return str(document.get("uri", "")) if isinstance(document, dict) else ""
 
 
-def _opening(text: OpenText) -> Message:
+def _make_open_notification(text: OpenText) -> Message:
     document = {"uri": text.uri, "languageId": "python", "version": text.version, "text": text.text}
     return {"jsonrpc": "2.0", "method": "textDocument/didOpen", "params": {"textDocument": document}}
 
 
-def _publication(parameters: Message) -> Message:
-    return {"jsonrpc": "2.0", "method": _PUBLISH, "params": parameters}
+def _make_publish_notification(parameters: Message) -> Message:
+    return {"jsonrpc": "2.0", "method": _PUBLISH_DIAGNOSTICS, "params": parameters}
 
 
 def _for_server(message: Message, name: str) -> Message:
-    """Return a request for a server. A request for code actions contains only the server's own findings."""
+    """Return the form of a request for a server.
+
+    A request for code actions contains only the server's own findings.
+    """
     if message["method"] != CODE_ACTION:
         return message
     context = message["params"]["context"]
@@ -418,10 +425,10 @@ def _for_server(message: Message, name: str) -> Message:
 
 
 def _with_marked_action(name: str, message: Message) -> Message:
-    return {**message, "result": marked_action(name, message["result"])} if message.get("result") else message
+    return {**message, "result": mark_action(name, message["result"])} if message.get("result") else message
 
 
-def _with_python(message: Message) -> Message:
+def _add_python_features(message: Message) -> Message:
     """Return the response to ``initialize`` with the features of the servers for Python files."""
     capabilities = dict(message["result"]["capabilities"])
     completion, actions = capabilities["completionProvider"], capabilities["codeActionProvider"]
@@ -431,7 +438,7 @@ def _with_python(message: Message) -> Message:
     return {**message, "result": {**message["result"], "capabilities": capabilities}}
 
 
-def _initialization(parameters: Message, encoding: str) -> Message:
+def _make_initialize_parameters(parameters: Message, encoding: str) -> Message:
     """Return the parameters of ``initialize`` for a server.
 
     They are the editor's parameters, without those that the router does not support.
@@ -439,7 +446,7 @@ def _initialization(parameters: Message, encoding: str) -> Message:
     capabilities = parameters.get("capabilities", {})
     document, workspace = capabilities.get("textDocument", {}), capabilities.get("workspace", {})
     folders = parameters.get("workspaceFolders") or [
-        {"uri": folder.as_uri(), "name": folder.name} for folder in _folders(parameters)
+        {"uri": folder.as_uri(), "name": folder.name} for folder in _list_folders(parameters)
     ]
     return {
         "rootUri": parameters.get("rootUri"),
@@ -452,9 +459,9 @@ def _initialization(parameters: Message, encoding: str) -> Message:
     }
 
 
-def _folders(parameters: Message) -> list[Path]:
+def _list_folders(parameters: Message) -> list[Path]:
     """Return the folders that the editor has opened."""
     uris = [folder["uri"] for folder in parameters.get("workspaceFolders") or ()]
     root = parameters.get("rootUri")
-    paths = [path_of(uri) for uri in uris or ([root] if root else [])]
+    paths = [path_from_uri(uri) for uri in uris or ([root] if root else [])]
     return [path for path in paths if path is not None]

@@ -18,7 +18,7 @@ Message = dict[str, Any]
 """A message of the protocol: a request, a response or a notification."""
 
 INITIALIZE_ID = "linkwright-initialize"
-_ENDING_S = 2.0
+_EXIT_TIMEOUT_S = 2.0
 
 
 class Peer(Protocol):
@@ -42,7 +42,7 @@ class Peer(Protocol):
 class Stream:
     """A message stream to the editor or to Linkwright's own server.
 
-    A thread writes, so that a program that reads slowly delays no other one.
+    A separate thread writes, so that a peer that reads slowly does not delay the others.
 
     Args:
         name: the name of the peer.
@@ -62,7 +62,7 @@ class Stream:
     def close(self) -> None:
         """Close the stream after all messages were written."""
         self._waiting.put(None)
-        self._thread.join(_ENDING_S)
+        self._thread.join(_EXIT_TIMEOUT_S)
 
     def _write(self, output: IO[bytes]) -> None:
         with suppress(OSError, ValueError), output:  # The peer has ended.
@@ -154,7 +154,7 @@ class PythonServer:
         """Close the input of the process, so that the process ends, or end it after a timeout."""
         self._stream.close()
         try:
-            self._process.wait(_ENDING_S)
+            self._process.wait(_EXIT_TIMEOUT_S)
         except subprocess.TimeoutExpired:
             self._process.kill()
             self._process.wait()

@@ -33,7 +33,7 @@ class WorkspaceStubs:
 
     def update(self) -> list[Path]:
         """Write the stubs of the current interface files, and return the changed files."""
-        stubs = self._stubs()
+        stubs = self._generate_stubs()
         changed = [
             self.folder / path for path in {*stubs, *self._written} if stubs.get(path) != self._written.get(path)
         ]
@@ -51,7 +51,7 @@ class WorkspaceStubs:
         """Remove the folder."""
         self._scratch.cleanup()
 
-    def _stubs(self) -> dict[str, str]:
+    def _generate_stubs(self) -> dict[str, str]:
         finder, library = PackageFinder(start=self._folders), Library()
         stubs: dict[str, str] = {}
         with use_finder(finder):

@@ -11,13 +11,13 @@ from pygls.exceptions import JsonRpcException
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.diagnostics.translation import localized
-from linkwright.language.extraction import selected_value
+from linkwright.language.extraction import find_selected_value
 from linkwright.language.includes import real_path
-from linkwright.language.refactoring import Action, Offer, Refactoring, offers_at, refactor
-from linkwright.lsp.edits import document_edits, new_file_edit
+from linkwright.language.refactoring import Action, Offer, Refactoring, find_offers, refactor
+from linkwright.lsp.edits import new_file_edit, to_workspace_edit
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.requests.fixes import quick_fixes, suppression_actions
-from linkwright.lsp.server import LinkwrightServer, path_of
+from linkwright.lsp.server import LinkwrightServer, path_from_uri
 
 _ACTION_KINDS = (
     types.CodeActionKind.QuickFix,
@@ -65,10 +65,10 @@ def _can_create_files(server: LinkwrightServer) -> bool:
     return edits is not None and types.ResourceOperationKind.Create in (edits.resource_operations or ())
 
 
-def _workspace_edit(server: LinkwrightServer, refactoring: Refactoring) -> types.WorkspaceEdit:
+def _to_workspace_edit(server: LinkwrightServer, refactoring: Refactoring) -> types.WorkspaceEdit:
     if refactoring.new_file is not None:
         return new_file_edit(server.uri_of(refactoring.new_file.file), refactoring.new_file.text)
-    return document_edits(server, refactoring.edits)
+    return to_workspace_edit(server, refactoring.edits)
 
 
 async def _prove_refactoring(
@@ -80,13 +80,13 @@ async def _prove_refactoring(
         LinkwrightError: LANG105, the edits cannot be proved.
         JsonRpcException: ContentModified, a text has changed meanwhile.
     """
-    project = server.project
-    assert project is not None
+    workspace = server.project
+    assert workspace is not None
     await server.when_indexed()
-    result = await server.run_in_check_thread(lambda: refactor(project, texts, action, real_path(path), start, end))
+    result = await server.run_in_check_thread(lambda: refactor(workspace, texts, action, real_path(path), start, end))
     if server.texts() != texts:
         raise _content_modified_error()
-    return _workspace_edit(server, result)
+    return _to_workspace_edit(server, result)
 
 
 def _content_modified_error() -> JsonRpcException:
@@ -97,7 +97,7 @@ def _content_modified_error() -> JsonRpcException:
 async def _offer_refactorings(
     server: LinkwrightServer, offers: Iterable[Offer], path: Path, positions: TextPositions, selection: tuple[int, int]
 ) -> list[types.CodeAction]:
-    """Return the code actions of refactorings, with edits unless the editor resolves them later."""
+    """Return the code actions of refactorings, with edits unless the editor resolves these."""
     actions = []
     for offer in offers:
         title, kind = localized(offer.title), offer.action.value
@@ -122,7 +122,7 @@ async def _offer_refactorings(
 async def _with_edit(server: LinkwrightServer, action: types.CodeAction) -> types.CodeAction:
     """Return an action with its proved edit."""
     data = action.data if isinstance(action.data, dict) else {}
-    path, texts = path_of(str(data.get("uri", ""))), server.texts()
+    path, texts = path_from_uri(str(data.get("uri", ""))), server.texts()
     positions = None if path is None else server.positions(path)
     start, end = data.get("start"), data.get("end")
     if path is None or positions is None or not isinstance(start, int) or not isinstance(end, int):
@@ -146,25 +146,25 @@ def add_requests(server: LinkwrightServer) -> None:
 
     @server.feature(types.TEXT_DOCUMENT_CODE_ACTION, types.CodeActionOptions([*_ACTION_KINDS], resolve_provider=True))
     async def code_action(server: LinkwrightServer, params: types.CodeActionParams) -> list[types.CodeAction] | None:
-        path = path_of(params.text_document.uri)
+        path = path_from_uri(params.text_document.uri)
         positions = None if path is None else server.positions(path)
-        project, only = server.project, params.context.only
-        if path is None or positions is None or project is None:
+        workspace, only = server.project, params.context.only
+        if path is None or positions is None or workspace is None:
             return None
         texts = server.texts()
         actions: list[types.CodeAction] = []
         if _may_be_requested(_ACTION_KINDS[:2], only):
-            actions += quick_fixes(server, project.fixable_findings(real_path(path), texts), params, positions)
-            actions += suppression_actions(server, project.findings(real_path(path), texts), params, path, positions)
+            actions += quick_fixes(server, workspace.fixable_findings(real_path(path), texts), params, positions)
+            actions += suppression_actions(server, workspace.findings(real_path(path), texts), params, path, positions)
         if _may_be_requested(_ACTION_KINDS[2:], only):
             start, end = positions.offset(params.range.start), positions.offset(params.range.end)
             names = await server.defined_names(path)
             server.check_unchanged(path, positions)
-            if end == start + 1 and selected_value(positions.text, start, end) is None:
+            if end == start + 1 and find_selected_value(positions.text, start, end) is None:
                 end = start  # ALE and Helix send the character under their block cursor.
             offers = [
                 offer
-                for offer in offers_at(positions.text, path, start, end, names)
+                for offer in find_offers(positions.text, path, start, end, names)
                 if is_requested(offer.action.value, only)
                 and (offer.action is not Action.CONVERT_TO_XACRO or _can_create_files(server))
             ]

@@ -16,19 +16,19 @@ from pygls.exceptions import JsonRpcException
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.diagnostics.translation import localized
-from linkwright.language.expanded import ExpandedText, expanded_text
+from linkwright.language.expanded import ExpandedText, expand_to_text
 from linkwright.language.includes import real_path
 from linkwright.language.workspace import Workspace
-from linkwright.lint.targets import DESCRIPTIONS
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES
 from linkwright.lsp.positions import UTF_16, TextPositions
-from linkwright.lsp.server import LinkwrightServer, path_of
+from linkwright.lsp.server import LinkwrightServer, path_from_uri
 
 SCHEME = "linkwright-expansion"
 
 
-def is_expanded(file: Path) -> bool:
+def is_expandable(file: Path) -> bool:
     """Return whether a file has the suffix of a description, which can be expanded."""
-    return file.name.endswith(DESCRIPTIONS)
+    return file.name.endswith(DESCRIPTION_SUFFIXES)
 
 
 def expansion_uri(entry: Path, arguments: Mapping[str, str]) -> str:
@@ -38,46 +38,46 @@ def expansion_uri(entry: Path, arguments: Mapping[str, str]) -> str:
     return f"{uri}?{query}" if query else uri
 
 
-def description_of(uri: str) -> tuple[Path, dict[str, str]] | None:
+def parse_expansion_uri(uri: str) -> tuple[Path, dict[str, str]] | None:
     """Return the description and arguments in an expansion's URI, or None for other URIs."""
     parts = urlsplit(uri)
-    entry = path_of(f"file://{parts.path}") if parts.scheme == SCHEME else None
+    entry = path_from_uri(f"file://{parts.path}") if parts.scheme == SCHEME else None
     if entry is None:
         return None
     pairs = (unquote(pair).partition(":=") for pair in parts.query.split("&") if pair)
     return real_path(entry), {name: value for name, _, value in pairs}
 
 
-def _expansions(
-    project: Workspace, texts: Mapping[Path, str], file: Path
+def _expand_entries(
+    workspace: Workspace, texts: Mapping[Path, str], file: Path
 ) -> Iterator[tuple[Path, Mapping[str, str], ExpandedText]]:
     """Yield one expansion of each description that includes a file.
 
     The expansion uses the first argument set without an error.
     """
-    for entry in project.index.entries(file, texts):
-        for arguments, _ in project.argument_calls(entry):
+    for entry in workspace.index.entries(file, texts):
+        for arguments, _ in workspace.argument_calls(entry):
             try:
-                yield entry, arguments, expanded_text(project, texts, entry, arguments)
+                yield entry, arguments, expand_to_text(workspace, texts, entry, arguments)
             except LinkwrightError:
                 continue
             break
 
 
-def implementations(
-    project: Workspace, texts: Mapping[Path, str], file: Path, offset: int, encoding: types.PositionEncodingKind | str
+def find_implementations(
+    workspace: Workspace, texts: Mapping[Path, str], file: Path, offset: int, encoding: types.PositionEncodingKind | str
 ) -> list[types.Location]:
     """Return the expansions of the element at an offset of a file.
 
     Args:
-        project: the workspace.
+        workspace: the folders that the editor has opened.
         texts: the texts of the open files.
-        file: the file.
+        file: a description, or a file that descriptions include.
         offset: the character offset in its text.
         encoding: the encoding of the positions.
     """
     locations = []
-    for entry, arguments, expansion in _expansions(project, texts, file):
+    for entry, arguments, expansion in _expand_entries(workspace, texts, file):
         positions = TextPositions(expansion.text, encoding)
         uri = expansion_uri(entry, arguments)
         locations += [
@@ -87,13 +87,13 @@ def implementations(
     return locations
 
 
-def source_locations(server: LinkwrightServer, uri: str, position: types.Position) -> list[types.Location] | None:
+def find_source_locations(server: LinkwrightServer, uri: str, position: types.Position) -> list[types.Location] | None:
     """Return the source of the element at a position in an expansion, or None for other URIs."""
-    description = description_of(uri)
+    description = parse_expansion_uri(uri)
     if description is None or server.project is None:
         return None
     try:
-        expansion = expanded_text(server.project, server.texts(), *description)
+        expansion = expand_to_text(server.project, server.texts(), *description)
     except LinkwrightError:  # The document still shows the text from before the error.
         return []
     encoding = server.workspace.position_encoding or UTF_16
@@ -110,11 +110,11 @@ async def expansion_content(server: LinkwrightServer, uri: str) -> str | None:
     Raises:
         JsonRpcException: RequestFailed, the description cannot be expanded.
     """
-    description, project, texts = description_of(uri), server.project, server.texts()
-    if description is None or project is None:
+    description, workspace, texts = parse_expansion_uri(uri), server.project, server.texts()
+    if description is None or workspace is None:
         return None
     try:
-        expansion = await server.run_in_check_thread(lambda: expanded_text(project, texts, *description))
+        expansion = await server.run_in_check_thread(lambda: expand_to_text(workspace, texts, *description))
     except LinkwrightError as error:
         message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
         raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
@@ -129,11 +129,11 @@ def add_requests(server: LinkwrightServer) -> None:
         server: LinkwrightServer, params: types.ImplementationParams
     ) -> list[types.Location] | None:
         path, positions = server.xml_text(params.text_document)
-        project, texts = server.project, server.texts()
-        if positions is None or project is None or not is_expanded(path) or not server.opens_virtual_documents:
+        workspace, texts = server.project, server.texts()
+        if positions is None or workspace is None or not is_expandable(path) or not server.opens_virtual_documents:
             return None
         await server.when_indexed()
         offset, encoding = positions.offset(params.position), server.workspace.position_encoding or UTF_16
         return await server.run_in_check_thread(
-            lambda: implementations(project, texts, real_path(path), offset, encoding)
+            lambda: find_implementations(workspace, texts, real_path(path), offset, encoding)
         )

@@ -15,8 +15,8 @@ from linkwright.language.includes import real_path
 from linkwright.language.occurrences import occurrences_in
 from linkwright.language.outline import Outline
 from linkwright.language.parameters import block_parameters
-from linkwright.language.renaming import references
-from linkwright.language.values import EvaluatedText, outermost_texts, short_values
+from linkwright.language.renaming import find_references
+from linkwright.language.values import EvaluatedText, outermost_texts, shorten_values
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.requests.robot_pages import SHOW_ROBOT
 from linkwright.lsp.server import LinkwrightServer
@@ -41,7 +41,7 @@ def value_hints(
     """
     for text in outermost_texts(values):
         source = positions.text[text.start : text.end]
-        label = short_values(text)
+        label = shorten_values(text)
         if start <= text.end <= end and label and label != source and not source.startswith("$(find"):
             yield types.InlayHint(positions.position(text.end), f"= {label}", padding_left=True)
 
@@ -77,13 +77,13 @@ async def _with_use_count(server: LinkwrightServer, lens: types.CodeLens) -> typ
     """Return a lens with the number of uses of its name, and their locations."""
     data: dict[str, Any] = lens.data if isinstance(lens.data, dict) else {}
     path, positions = server.xml_text(types.TextDocumentIdentifier(str(data.get("uri", ""))))
-    project = server.project
-    if positions is None or project is None:
+    workspace = server.project
+    if positions is None or workspace is None:
         return lens
     await server.when_indexed()
     texts, file = server.texts(), real_path(path)
     name = next((name for name in occurrences_in(positions.text, file) if name.start == data.get("offset")), None)
-    uses = [] if name is None else await server.run_in_check_thread(lambda: references(project, texts, name))
+    uses = [] if name is None else await server.run_in_check_thread(lambda: find_references(workspace, texts, name))
     locations = []
     for use in uses:
         use_positions = None if use.is_definition else server.positions(use.file)

@@ -18,17 +18,17 @@ from linkwright.language.hover import definitions_at
 from linkwright.language.hover_facts import facts_at
 from linkwright.language.includes import real_path
 from linkwright.language.links import file_references
-from linkwright.language.renaming import occurrence_at, references
-from linkwright.language.suppressing import code_at
-from linkwright.language.values import EvaluatedText, describe_values, value_at
+from linkwright.language.renaming import find_references, occurrence_at
+from linkwright.language.suppressions import find_code_at
+from linkwright.language.values import EvaluatedText, describe_values, find_value_at
 from linkwright.language.xml_completion import complete
 from linkwright.language.xml_hover import explain_at
 from linkwright.lint.explain import find_page
 from linkwright.lsp.positions import PositionsOf, TextPositions
-from linkwright.lsp.requests.expansions import source_locations
-from linkwright.lsp.server import FormatContext, LinkwrightServer, path_of
+from linkwright.lsp.requests.expansions import find_source_locations
+from linkwright.lsp.server import FormatContext, LinkwrightServer, path_from_uri
 
-_KINDS = {
+_COMPLETION_KINDS = {
     ItemKind.ELEMENT: types.CompletionItemKind.Class,
     ItemKind.ATTRIBUTE: types.CompletionItemKind.Property,
     ItemKind.VALUE: types.CompletionItemKind.EnumMember,
@@ -77,9 +77,9 @@ def _completion_item(
     edit = types.TextEdit(positions.range(item.start, offset), item.snippet if is_snippet else plain)
     return types.CompletionItem(
         item.label,
-        kind=_KINDS[item.kind],
+        kind=_COMPLETION_KINDS[item.kind],
         detail=item.detail or None,
-        documentation=_markdown(item.description) if item.description else None,
+        documentation=_to_markdown(item.description) if item.description else None,
         insert_text_format=types.InsertTextFormat.Snippet if is_snippet else types.InsertTextFormat.PlainText,
         # Without this text, Neovim offers the item regardless of the typed text.
         filter_text=f"<{item.label}" if opens_tag else item.label,
@@ -103,10 +103,10 @@ def hover(
         values: the values of the expressions in the file.
         facts: the facts about the link, joint, mesh or package at the position.
         positions: the text of the file.
-        position: the position.
+        position: the position of the mouse or cursor.
     """
     offset = positions.offset(position)
-    explanation, evaluated_text = explain_at(document, offset, names), value_at(values, offset)
+    explanation, evaluated_text = explain_at(document, offset, names), find_value_at(values, offset)
     parts = [] if explanation is None else [localized(explanation.text)]
     span = None if explanation is None else (explanation.start, explanation.end)
     if evaluated_text is not None:
@@ -115,19 +115,19 @@ def hover(
     parts += facts
     if not parts:
         return None
-    return types.Hover(_markdown("\n\n".join(parts)), None if span is None else positions.range(*span))
+    return types.Hover(_to_markdown("\n\n".join(parts)), None if span is None else positions.range(*span))
 
 
 def suppression_hover(server: LinkwrightServer, params: types.HoverParams) -> types.Hover | None:
     """Return the page of the rule in the suppression comment at a position, or None."""
-    path = path_of(params.text_document.uri)
+    path = path_from_uri(params.text_document.uri)
     positions = None if path is None else server.positions(path)
-    code_and_start = None if positions is None else code_at(positions.text, positions.offset(params.position))
+    code_and_start = None if positions is None else find_code_at(positions.text, positions.offset(params.position))
     page = None if code_and_start is None else find_page(code_and_start[0])
     if positions is None or code_and_start is None or page is None:
         return None
     code, start = code_and_start
-    return types.Hover(_markdown(page.markdown), positions.range(start, start + len(code)))
+    return types.Hover(_to_markdown(page.markdown), positions.range(start, start + len(code)))
 
 
 def definitions(
@@ -139,24 +139,24 @@ def definitions(
 ) -> list[types.Location]:
     """Return the definitions of the name at a position."""
     matches = definitions_at(positions.text, positions.offset(position), names)
-    return [*_locations(matches, positions_of, uri_of)]
+    return [*_to_locations(matches, positions_of, uri_of)]
 
 
 async def parameter_definitions(
     server: LinkwrightServer, path: Path, positions: TextPositions, position: types.Position
 ) -> list[types.Location]:
     """Return the declaration of the macro parameter at a position, or an empty list."""
-    project, texts = server.project, server.texts()
+    workspace, texts = server.project, server.texts()
     name = occurrence_at(positions.text, real_path(path), positions.offset(position))
-    if project is None or name is None or name.kind is not NameKind.PARAMETER:
+    if workspace is None or name is None or name.kind is not NameKind.PARAMETER:
         return []
     await server.when_indexed()
-    uses = await server.run_in_check_thread(lambda: references(project, texts, name))
+    uses = await server.run_in_check_thread(lambda: find_references(workspace, texts, name))
     declared = (Target(use.file, use.start, use.end) for use in uses if use.is_definition)
     return [*target_locations(declared, server.positions, server.uri_of)]
 
 
-def _locations(
+def _to_locations(
     names: Iterable[NameDefinition], positions_of: PositionsOf, uri_of: Callable[[Path], str]
 ) -> Iterable[types.Location]:
     for name in names:
@@ -171,11 +171,11 @@ def format_hover(context: FormatContext, position: types.Position) -> types.Hove
     return (
         None
         if explanation is None
-        else types.Hover(_markdown(explanation.text), context.positions.range(explanation.start, explanation.end))
+        else types.Hover(_to_markdown(explanation.text), context.positions.range(explanation.start, explanation.end))
     )
 
 
-def targets_at(context: FormatContext, position: types.Position) -> list[Target]:
+def find_targets(context: FormatContext, position: types.Position) -> list[Target]:
     """Return the definitions that a format finds for the name at a position."""
     return [*context.format.define(context.document, context.positions.offset(position))]
 
@@ -191,7 +191,7 @@ def target_locations(
         yield types.Location(uri_of(target.file), range_)
 
 
-def _markdown(text: str | Phrase) -> types.MarkupContent:
+def _to_markdown(text: str | Phrase) -> types.MarkupContent:
     return types.MarkupContent(types.MarkupKind.Markdown, localized(text))
 
 
@@ -232,16 +232,16 @@ def add_requests(server: LinkwrightServer) -> None:
         if context is not None:
             return await server.run_in_check_thread(lambda: format_hover(context, params.position))
         path, positions = server.xml_text(params.text_document)
-        project, texts = server.project, server.texts()
-        if positions is None or project is None:
+        workspace, texts = server.project, server.texts()
+        if positions is None or workspace is None:
             return None
         names, values = await server.defined_names(path), await server.expression_values(path)
         text, offset = positions.text, positions.offset(params.position)
         facts = await server.run_in_check_thread(
-            lambda: facts_at(project, texts, real_path(path), text, offset, values)
+            lambda: facts_at(workspace, texts, real_path(path), text, offset, values)
         )
         server.check_unchanged(path, positions)
-        document = Document(project, texts, real_path(path), text)
+        document = Document(workspace, texts, real_path(path), text)
         return hover(document, names, values, facts, positions, params.position)
 
     @server.feature(types.TEXT_DOCUMENT_DEFINITION)
@@ -250,10 +250,10 @@ def add_requests(server: LinkwrightServer) -> None:
     ) -> list[types.Location] | None:
         context = await server.indexed_format_context(params.text_document)
         if context is not None:
-            targets = await server.run_in_check_thread(lambda: targets_at(context, params.position))
+            targets = await server.run_in_check_thread(lambda: find_targets(context, params.position))
             return [*target_locations(targets, server.positions, server.uri_of)]
         source = await server.run_in_check_thread(
-            lambda: source_locations(server, params.text_document.uri, params.position)
+            lambda: find_source_locations(server, params.text_document.uri, params.position)
         )
         path, positions = server.xml_text(params.text_document)
         if positions is None or server.project is None:

@@ -12,12 +12,12 @@ from linkwright.language.definitions import NameDefinition, NameKind
 from linkwright.language.includes import real_path
 from linkwright.language.links import FileReference, file_references
 from linkwright.language.occurrences import Occurrence, occurrences_in
-from linkwright.language.renaming import occurrence_at, references
-from linkwright.language.uses import uses_at
+from linkwright.language.renaming import find_references, occurrence_at
+from linkwright.language.uses import find_uses
 from linkwright.lsp.positions import TextPositions
-from linkwright.lsp.server import LinkwrightServer, path_of
+from linkwright.lsp.server import LinkwrightServer, path_from_uri
 
-_KINDS = {
+_SYMBOL_KINDS = {
     NameKind.MACRO: types.SymbolKind.Function,
     NameKind.PROPERTY: types.SymbolKind.Variable,
     NameKind.ARGUMENT: types.SymbolKind.Variable,
@@ -28,13 +28,13 @@ _KINDS = {
 _MAX_SYMBOLS = 500
 
 
-def matching_names(names: Iterable[NameDefinition], query: str) -> list[NameDefinition]:
+def find_matching_names(names: Iterable[NameDefinition], query: str) -> list[NameDefinition]:
     """Return the names that contain the characters of a query in order, the best first.
 
     Names that contain the query as a whole come before the others, and short names before long ones.
 
     Args:
-        names: the names.
+        names: the definitions to filter.
         query: the query, in upper or lower case. An empty query matches all names.
     """
     query = query.lower()
@@ -48,16 +48,16 @@ def matching_names(names: Iterable[NameDefinition], query: str) -> list[NameDefi
     return [lower_names[number][1] for *_, number in sorted(ranked)]
 
 
-def _symbols(server: LinkwrightServer, names: Iterable[NameDefinition]) -> Iterator[types.WorkspaceSymbol]:
+def _to_symbols(server: LinkwrightServer, names: Iterable[NameDefinition]) -> Iterator[types.WorkspaceSymbol]:
     for name in names:
         positions = server.positions(name.file)
-        if positions is not None and name.kind in _KINDS:
+        if positions is not None and name.kind in _SYMBOL_KINDS:
             range_ = positions.range(name.start, name.start + len(name.name))
             location = types.Location(server.uri_of(name.file), range_)
-            yield types.WorkspaceSymbol(location, name.name, _KINDS[name.kind], container_name=name.file.name)
+            yield types.WorkspaceSymbol(location, name.name, _SYMBOL_KINDS[name.kind], container_name=name.file.name)
 
 
-def uses_in_file(text: str, path: Path, offset: int) -> list[Occurrence]:
+def find_uses_in_file(text: str, path: Path, offset: int) -> list[Occurrence]:
     """Return all occurrences in a file of the name at an offset."""
     name = occurrence_at(text, path, offset)
     if name is None:
@@ -70,7 +70,7 @@ def uses_in_file(text: str, path: Path, offset: int) -> list[Occurrence]:
     ]
 
 
-def _macro_item(server: LinkwrightServer, macro: Occurrence) -> types.CallHierarchyItem | None:
+def _make_macro_item(server: LinkwrightServer, macro: Occurrence) -> types.CallHierarchyItem | None:
     positions = server.positions(macro.file)
     if positions is None:
         return None
@@ -81,7 +81,7 @@ def _macro_item(server: LinkwrightServer, macro: Occurrence) -> types.CallHierar
     )
 
 
-def _file_item(server: LinkwrightServer, file: Path, positions: TextPositions) -> types.CallHierarchyItem:
+def _make_file_item(server: LinkwrightServer, file: Path, positions: TextPositions) -> types.CallHierarchyItem:
     """Return the item of a file, as the caller of macros outside macro definitions."""
     start = positions.range(0, 0)
     return types.CallHierarchyItem(file.name, types.SymbolKind.File, server.uri_of(file), start, start)
@@ -91,14 +91,14 @@ class _MacroCalls:
     """The incoming and outgoing calls of a macro.
 
     Args:
-        server: the server.
+        server: the language server.
         texts: the texts of the open files.
         item: the macro whose calls are searched.
     """
 
     def __init__(self, server: LinkwrightServer, texts: Mapping[Path, str], item: types.CallHierarchyItem) -> None:
         self._server = server
-        path = path_of(item.uri)
+        path = path_from_uri(item.uri)
         self._file = real_path(path) if path is not None else Path()
         data: Any = item.data
         start = data.get("start") if isinstance(data, dict) else getattr(data, "start", None)
@@ -107,7 +107,7 @@ class _MacroCalls:
         macros = (name for name in occurrences_in(text, self._file) if name.kind is NameKind.MACRO)
         self._macro = next((name for name in macros if name.start == start), None)
         self._uses = (
-            references(server.project, texts, self._macro) if self._macro is not None and server.project else []
+            find_references(server.project, texts, self._macro) if self._macro is not None and server.project else []
         )
         self._texts = texts
 
@@ -122,9 +122,9 @@ class _MacroCalls:
             if positions is None:
                 continue
             opening_tags = [
-                use for use in uses if not positions.text.startswith("</", _tag_start(positions.text, use.start))
+                use for use in uses if not positions.text.startswith("</", _find_tag_start(positions.text, use.start))
             ]
-            item = self._definition(owner, file) if owner else _file_item(self._server, file, positions)
+            item = self._find_definition(owner, file) if owner else _make_file_item(self._server, file, positions)
             if item is not None:
                 yield types.CallHierarchyIncomingCall(
                     item, [positions.range(use.start, use.end) for use in opening_tags]
@@ -138,33 +138,33 @@ class _MacroCalls:
         calls: dict[str, list[types.Range]] = {}
         for use in occurrences_in(positions.text, self._file):
             is_call = use.kind is NameKind.MACRO and not use.is_definition and use.owner == self._macro.name
-            if is_call and not positions.text.startswith("</", _tag_start(positions.text, use.start)):
+            if is_call and not positions.text.startswith("</", _find_tag_start(positions.text, use.start)):
                 calls.setdefault(use.name, []).append(positions.range(use.start, use.end))
         for name, ranges in calls.items():
-            item = self._definition(name, self._file)
+            item = self._find_definition(name, self._file)
             if item is not None:
                 yield types.CallHierarchyOutgoingCall(item, ranges)
 
-    def _definition(self, macro: str, file: Path) -> types.CallHierarchyItem | None:
-        project = self._server.project
-        for other in () if project is None else project.index.related_files(file, self._texts):
+    def _find_definition(self, macro: str, file: Path) -> types.CallHierarchyItem | None:
+        workspace = self._server.project
+        for other in () if workspace is None else workspace.index.related_files(file, self._texts):
             positions = self._server.positions(other)
             for name in occurrences_in("" if positions is None else positions.text, other):
                 if name.kind is NameKind.MACRO and name.is_definition and name.name == macro:
-                    return _macro_item(self._server, name)
+                    return _make_macro_item(self._server, name)
         return None
 
 
-def _tag_start(text: str, offset: int) -> int:
+def _find_tag_start(text: str, offset: int) -> int:
     return text.rfind("<", 0, offset)
 
 
 def _document_links(
-    server: LinkwrightServer, positions: TextPositions, references: Iterable[FileReference]
+    server: LinkwrightServer, positions: TextPositions, find_references: Iterable[FileReference]
 ) -> list[types.DocumentLink]:
     return [
         types.DocumentLink(positions.range(link.start, link.end), server.uri_of(link.file))
-        for link in references
+        for link in find_references
         if link.file.is_file()
     ]
 
@@ -192,24 +192,24 @@ def add_requests(server: LinkwrightServer) -> None:
     async def workspace_symbol(
         server: LinkwrightServer, params: types.WorkspaceSymbolParams
     ) -> list[types.WorkspaceSymbol] | None:
-        project, texts = server.project, server.texts()
-        if project is None:
+        workspace, texts = server.project, server.texts()
+        if workspace is None:
             return None
         await server.when_indexed()
-        names = await server.run_in_check_thread(lambda: project.all_names(texts))
-        return [*_symbols(server, matching_names(names, params.query)[:_MAX_SYMBOLS])]
+        names = await server.run_in_check_thread(lambda: workspace.all_names(texts))
+        return [*_to_symbols(server, find_matching_names(names, params.query)[:_MAX_SYMBOLS])]
 
     @server.feature(types.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT)
     def document_highlight(
         server: LinkwrightServer, params: types.DocumentHighlightParams
     ) -> list[types.DocumentHighlight] | None:
-        path_at_cursor = path_of(params.text_document.uri)
+        path_at_cursor = path_from_uri(params.text_document.uri)
         if path_at_cursor is not None:  # Editors send this request when the cursor has moved.
             server.robot_views.cursor_moved(real_path(path_at_cursor), params.position.line + 1)
         context = server.format_context(params.text_document)
         if context is not None:
             offset = context.positions.offset(params.position)
-            uses = uses_at(context.document, context.format, offset, in_file=True)
+            uses = find_uses(context.document, context.format, offset, in_file=True)
             if uses:
                 return [types.DocumentHighlight(context.positions.range(use.start, use.end)) for use in uses]
         path, positions = server.xml_text(params.text_document)
@@ -218,7 +218,7 @@ def add_requests(server: LinkwrightServer) -> None:
         kinds = {True: types.DocumentHighlightKind.Write, False: types.DocumentHighlightKind.Read}
         return [
             types.DocumentHighlight(positions.range(name.start, name.end), kinds[name.is_definition])
-            for name in uses_in_file(positions.text, real_path(path), positions.offset(params.position))
+            for name in find_uses_in_file(positions.text, real_path(path), positions.offset(params.position))
         ]
 
     @server.feature(types.TEXT_DOCUMENT_PREPARE_CALL_HIERARCHY)
@@ -226,15 +226,17 @@ def add_requests(server: LinkwrightServer) -> None:
         server: LinkwrightServer, params: types.CallHierarchyPrepareParams
     ) -> list[types.CallHierarchyItem] | None:
         path, positions = server.xml_text(params.text_document)
-        project, texts = server.project, server.texts()
-        if positions is None or project is None:
+        workspace, texts = server.project, server.texts()
+        if positions is None or workspace is None:
             return None
         name = occurrence_at(positions.text, real_path(path), positions.offset(params.position))
         if name is None or name.kind is not NameKind.MACRO:
             return None
         await server.when_indexed()
-        occurrences = await server.run_in_check_thread(lambda: references(project, texts, name))
-        return [item for use in occurrences if use.is_definition and (item := _macro_item(server, use)) is not None]
+        occurrences = await server.run_in_check_thread(lambda: find_references(workspace, texts, name))
+        return [
+            item for use in occurrences if use.is_definition and (item := _make_macro_item(server, use)) is not None
+        ]
 
     @server.feature(types.CALL_HIERARCHY_INCOMING_CALLS)
     async def incoming_calls(

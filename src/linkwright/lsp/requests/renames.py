@@ -16,11 +16,11 @@ from linkwright.language.mentions import Mention
 from linkwright.language.occurrences import Occurrence
 from linkwright.language.proof import Edit
 from linkwright.language.renamable_names import RenamableName, renamable_name_at, rename_name
-from linkwright.language.renaming import occurrence_at, references
-from linkwright.language.uses import uses_at
-from linkwright.lsp.edits import document_edits
+from linkwright.language.renaming import find_references, occurrence_at
+from linkwright.language.uses import find_uses
+from linkwright.lsp.edits import to_workspace_edit
 from linkwright.lsp.requests.names import target_locations
-from linkwright.lsp.server import LinkwrightServer, path_of
+from linkwright.lsp.server import LinkwrightServer, path_from_uri
 
 
 def _uncertain_mentions_message(server: LinkwrightServer, mentions: Iterable[Mention]) -> str:
@@ -35,12 +35,12 @@ def _uncertain_mentions_message(server: LinkwrightServer, mentions: Iterable[Men
     )
 
 
-def file_edits(server: LinkwrightServer, files: Iterable[types.FileRename]) -> tuple[list[Edit], list[Mention]]:
+def make_file_edits(server: LinkwrightServer, files: Iterable[types.FileRename]) -> tuple[list[Edit], list[Mention]]:
     """Return the edits that keep references to renamed files valid, and uncertain mentions."""
     edits: list[Edit] = []
     unchanged: list[Mention] = []
     for file in files:
-        old, new = path_of(file.old_uri), path_of(file.new_uri)
+        old, new = path_from_uri(file.old_uri), path_from_uri(file.new_uri)
         if server.project is not None and old is not None and new is not None and old.is_file():
             renaming = rename_file(server.project, server.texts(), real_path(old), real_path(new))
             edits += renaming.edits
@@ -66,7 +66,7 @@ def add_requests(server: LinkwrightServer) -> None:
         context = await server.indexed_format_context(params.text_document)
         if context is not None:
             offset = context.positions.offset(params.position)
-            uses = await server.run_in_check_thread(lambda: uses_at(context.document, context.format, offset))
+            uses = await server.run_in_check_thread(lambda: find_uses(context.document, context.format, offset))
             use_locations = [*target_locations(uses, server.positions, server.uri_of)]
             if use_locations:
                 return use_locations[0 if params.context.include_declaration else 1 :]
@@ -75,7 +75,7 @@ def add_requests(server: LinkwrightServer) -> None:
             return None
         await server.when_indexed()
         locations = []
-        for other in references(server.project, texts, name):
+        for other in find_references(server.project, texts, name):
             positions = server.positions(other.file)
             if positions is not None and (params.context.include_declaration or not other.is_definition):
                 locations.append(types.Location(server.uri_of(other.file), positions.range(other.start, other.end)))
@@ -95,22 +95,24 @@ def add_requests(server: LinkwrightServer) -> None:
         server: LinkwrightServer, document: types.TextDocumentIdentifier, position: types.Position
     ) -> RenamableName | None:
         path, positions = server.xml_text(document)
-        project = server.project
-        if positions is None or project is None:
+        workspace = server.project
+        if positions is None or workspace is None:
             return None
         await server.when_indexed()
         texts, offset = server.texts(), positions.offset(position)
-        return await server.run_in_check_thread(lambda: renamable_name_at(project, texts, real_path(path), offset))
+        return await server.run_in_check_thread(lambda: renamable_name_at(workspace, texts, real_path(path), offset))
 
     @server.feature(types.TEXT_DOCUMENT_RENAME, types.RenameOptions(prepare_provider=True))
     async def rename_request(server: LinkwrightServer, params: types.RenameParams) -> types.WorkspaceEdit | None:
         texts = server.texts()
         renamable = await find_renamable_name(server, params.text_document, params.position)
-        project = server.project
-        if renamable is None or project is None:
+        workspace = server.project
+        if renamable is None or workspace is None:
             return None
         try:
-            renaming = await server.run_in_check_thread(lambda: rename_name(project, texts, renamable, params.new_name))
+            renaming = await server.run_in_check_thread(
+                lambda: rename_name(workspace, texts, renamable, params.new_name)
+            )
         except LinkwrightError as error:
             message = "\n".join(localized(diagnostic.message) for diagnostic in error.diagnostics)
             raise JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed)) from None
@@ -122,7 +124,7 @@ def add_requests(server: LinkwrightServer) -> None:
             notes.append(_uncertain_mentions_message(server, renaming.unchanged))
         if notes:
             server.window_show_message(types.ShowMessageParams(types.MessageType.Info, "\n".join(notes)))
-        return document_edits(server, renaming.edits)
+        return to_workspace_edit(server, renaming.edits)
 
     files = types.FileOperationFilter(types.FileOperationPattern("**/*"), "file")
 
@@ -132,11 +134,11 @@ def add_requests(server: LinkwrightServer) -> None:
     ) -> types.WorkspaceEdit | None:
         await server.when_indexed()
         texts = server.texts()
-        edits, unchanged = await server.run_in_check_thread(lambda: file_edits(server, params.files))
+        edits, unchanged = await server.run_in_check_thread(lambda: make_file_edits(server, params.files))
         if server.texts() != texts:  # The editor renames the file without edits.
             return None
         if unchanged:
             server.window_show_message(
                 types.ShowMessageParams(types.MessageType.Info, _uncertain_mentions_message(server, unchanged))
             )
-        return document_edits(server, edits) if edits else None
+        return to_workspace_edit(server, edits) if edits else None

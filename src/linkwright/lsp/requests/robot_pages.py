@@ -13,9 +13,9 @@ from pygls.exceptions import JsonRpcException
 from linkwright.diagnostics import phrase
 from linkwright.diagnostics.translation import localized
 from linkwright.language.includes import real_path
-from linkwright.lint.targets import DESCRIPTIONS
-from linkwright.lsp.edits import document_edits, replacement
-from linkwright.lsp.server import LinkwrightServer, path_of
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES
+from linkwright.lsp.edits import make_replacement, to_workspace_edit
+from linkwright.lsp.server import LinkwrightServer, path_from_uri
 
 SHOW_ROBOT = "linkwright.showRobot"
 
@@ -26,7 +26,7 @@ class PageEditor:
     It implements `linkwright.lsp.robot_views.TextEditor`.
 
     Args:
-        server: the server.
+        server: the language server.
     """
 
     def __init__(self, server: LinkwrightServer) -> None:
@@ -44,14 +44,14 @@ class PageEditor:
 
     def replace_text(self, file: Path, version: int, text: str) -> None:
         """Replace the text of a file, or warn if it has another version or the editor cannot edit."""
-        server, workspace = self._server, self._server.client_capabilities.workspace
+        server, capabilities = self._server, self._server.client_capabilities.workspace
         document, positions = server.documents().get(file), server.positions(file)
         current_version = 0 if document is None else document.version or 0
-        if positions is None or current_version != version or workspace is None or not workspace.apply_edit:
+        if positions is None or current_version != version or capabilities is None or not capabilities.apply_edit:
             message = phrase("the edit in the page was not applied to '{file}'; repeat it", file=file.name)
             server.window_show_message(types.ShowMessageParams(types.MessageType.Warning, localized(message)))
             return
-        edit = document_edits(server, [replacement(file, positions.text, text)])
+        edit = to_workspace_edit(server, [make_replacement(file, positions.text, text)])
         server.workspace_apply_edit(types.ApplyWorkspaceEditParams(edit))
 
 
@@ -59,32 +59,32 @@ async def show_robot(server: LinkwrightServer, uri: str, *, opens: bool) -> str:
     """Start the page of the description that a file belongs to, and return its address.
 
     Args:
-        server: the server.
+        server: the language server.
         uri: the URI of a description, or of a file that a description includes.
         opens: whether to open the page in the user's browser.
 
     Raises:
         JsonRpcException: RequestFailed, the file is not a description, or its page cannot be served.
     """
-    path, project, texts = path_of(uri), server.project, server.texts()
-    if path is None or project is None or not path.name.endswith(DESCRIPTIONS):
-        raise _failed(localized(phrase("only the robots of URDF, xacro and SDF files can be shown")))
+    path, workspace, texts = path_from_uri(uri), server.project, server.texts()
+    if path is None or workspace is None or not path.name.endswith(DESCRIPTION_SUFFIXES):
+        raise _request_failed_error(localized(phrase("only the robots of URDF, xacro and SDF files can be shown")))
     await server.when_indexed()
-    entry = (await server.run_in_check_thread(lambda: project.index.entries(real_path(path), texts)))[0]
+    entry = (await server.run_in_check_thread(lambda: workspace.index.entries(real_path(path), texts)))[0]
     try:
         address = await server.robot_views.address(entry, server.documents())
     except OSError as error:
-        raise _failed(str(error)) from None
+        raise _request_failed_error(str(error)) from None
     if address is None:
-        raise _failed(
+        raise _request_failed_error(
             localized(phrase("the page of '{file}' has ended; run linkwright view to see why", file=entry.name))
         )
     if opens:
-        await _open(server, address)
+        await _open_page(server, address)
     return address
 
 
-async def _open(server: LinkwrightServer, address: str) -> None:
+async def _open_page(server: LinkwrightServer, address: str) -> None:
     window = server.client_capabilities.window
     shows = window is not None and window.show_document is not None and window.show_document.support
     is_shown = shows and await server.window_show_document_async(types.ShowDocumentParams(address, external=True))
@@ -92,7 +92,7 @@ async def _open(server: LinkwrightServer, address: str) -> None:
         server.window_show_message(types.ShowMessageParams(types.MessageType.Info, address))
 
 
-def _failed(message: str) -> JsonRpcException:
+def _request_failed_error(message: str) -> JsonRpcException:
     return JsonRpcException(message, code=int(types.LSPErrorCodes.RequestFailed))
 
 

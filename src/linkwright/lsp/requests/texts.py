@@ -10,12 +10,12 @@ from lsprotocol import types
 from linkwright.diagnostics import LinkwrightError
 from linkwright.language.format import Symbol
 from linkwright.language.outline import Outline, OutlineElement
-from linkwright.lint.configuration import settings_for
+from linkwright.lint.configuration import find_settings
 from linkwright.lsp.positions import TextPositions
 from linkwright.lsp.server import LinkwrightServer
 from linkwright.xmltree.formatting import changes, format_text
 
-_KINDS = {
+_SYMBOL_KINDS = {
     "robot": types.SymbolKind.Module,
     "world": types.SymbolKind.Module,
     "model": types.SymbolKind.Class,
@@ -46,7 +46,7 @@ def format_edits(
     """
     text = positions.text
     try:
-        formatted = format_text(text, str(path), settings_for(path)[0].style)
+        formatted = format_text(text, str(path), find_settings(path)[0].style)
     except LinkwrightError:
         return None
     starts = [0]
@@ -58,7 +58,7 @@ def format_edits(
     ]
 
 
-def symbols(positions: TextPositions) -> list[types.DocumentSymbol]:
+def list_symbols(positions: TextPositions) -> list[types.DocumentSymbol]:
     """Return the named elements of a text as nested symbols."""
     return [*_convert_elements(Outline.of(positions.text).elements, positions)]
 
@@ -66,12 +66,12 @@ def symbols(positions: TextPositions) -> list[types.DocumentSymbol]:
 def _convert_elements(elements: Iterable[OutlineElement], positions: TextPositions) -> Iterable[types.DocumentSymbol]:
     for element in elements:
         children = [*_convert_elements(element.children, positions)]
-        if not element.is_named and element.tag.name not in _KINDS:
+        if not element.is_named and element.tag.name not in _SYMBOL_KINDS:
             yield from children
             continue
         yield types.DocumentSymbol(
             element.label,
-            _KINDS.get(element.tag.name, types.SymbolKind.Field),
+            _SYMBOL_KINDS.get(element.tag.name, types.SymbolKind.Field),
             positions.range(element.tag.start, element.end),
             positions.range(element.tag.start, element.tag.end),
             children=children,
@@ -85,7 +85,7 @@ def _convert_symbol(symbol: Symbol, positions: TextPositions) -> types.DocumentS
     return types.DocumentSymbol(symbol.name, kind, range_, range_, detail=symbol.detail or None, children=children)
 
 
-def folds(positions: TextPositions) -> list[types.FoldingRange]:
+def find_folds(positions: TextPositions) -> list[types.FoldingRange]:
     """Return the folding ranges of elements and comments that span several lines."""
     outline = Outline.of(positions.text)
 
@@ -102,7 +102,7 @@ def folds(positions: TextPositions) -> list[types.FoldingRange]:
     ]
 
 
-def selections(positions: TextPositions, cursors: Iterable[types.Position]) -> list[types.SelectionRange]:
+def find_selections(positions: TextPositions, cursors: Iterable[types.Position]) -> list[types.SelectionRange]:
     """Return the nested selection ranges around each position.
 
     These are the attribute value, attribute, tag, content and element, and those of the enclosing elements.
@@ -128,7 +128,7 @@ def selections(positions: TextPositions, cursors: Iterable[types.Position]) -> l
     return selection_ranges
 
 
-def linked_tags(positions: TextPositions, position: types.Position) -> types.LinkedEditingRanges | None:
+def find_linked_tags(positions: TextPositions, position: types.Position) -> types.LinkedEditingRanges | None:
     """Return the ranges of the start and end tag names at a position, or None."""
     offset = positions.offset(position)
     for element in reversed(Outline.of(positions.text).elements_around(offset)):
@@ -167,23 +167,23 @@ def add_requests(server: LinkwrightServer) -> None:
         if context is not None and context.format.symbols is not None:
             return [_convert_symbol(symbol, context.positions) for symbol in context.format.symbols(context.document)]
         _, positions = server.xml_text(params.text_document)
-        return None if positions is None else symbols(positions)
+        return None if positions is None else list_symbols(positions)
 
     @server.feature(types.TEXT_DOCUMENT_FOLDING_RANGE)
     def folding_range(server: LinkwrightServer, params: types.FoldingRangeParams) -> list[types.FoldingRange] | None:
         _, positions = server.xml_text(params.text_document)
-        return None if positions is None else folds(positions)
+        return None if positions is None else find_folds(positions)
 
     @server.feature(types.TEXT_DOCUMENT_SELECTION_RANGE)
     def selection_range(
         server: LinkwrightServer, params: types.SelectionRangeParams
     ) -> list[types.SelectionRange] | None:
         _, positions = server.xml_text(params.text_document)
-        return None if positions is None else selections(positions, params.positions)
+        return None if positions is None else find_selections(positions, params.positions)
 
     @server.feature(types.TEXT_DOCUMENT_LINKED_EDITING_RANGE)
     def linked_editing_range(
         server: LinkwrightServer, params: types.LinkedEditingRangeParams
     ) -> types.LinkedEditingRanges | None:
         _, positions = server.xml_text(params.text_document)
-        return None if positions is None else linked_tags(positions, params.position)
+        return None if positions is None else find_linked_tags(positions, params.position)

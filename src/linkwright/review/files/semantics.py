@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, Phrase, counted, joined_first, phrase, quoted_names, term
-from linkwright.lint.targets import walk
+from linkwright.lint.targets import find_files_and_packages
 from linkwright.review.changes import MAX_NAMES
 from linkwright.review.file_pair import FilePair
 from linkwright.review.lenient_xml import read_lenient_root
@@ -86,7 +86,7 @@ def disabled_collisions(folder: Path) -> frozenset[frozenset[str]]:
     Xacro expressions in the names of links, such as prefixes, count as empty.
     """
     pairs: set[frozenset[str]] = set()
-    for file in walk(folder, (".srdf", ".srdf.xacro"))[0]:
+    for file in find_files_and_packages(folder, (".srdf", ".srdf.xacro"))[0]:
         with suppress(LinkwrightError, OSError):
             pairs |= {
                 frozenset(_EXPRESSION.sub("", element.attributes.get(name, "")) for name in ("link1", "link2"))

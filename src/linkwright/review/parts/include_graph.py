@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from linkwright.lint.inclusions import folders_by_package
-from linkwright.lint.targets import DESCRIPTIONS, walk
+from linkwright.lint.targets import DESCRIPTION_SUFFIXES, find_files_and_packages
 from linkwright.review.parts.outline import Outline, try_read_outline
 from linkwright.review.versions import Version
 
@@ -46,7 +46,7 @@ class IncludeGraph:
 
     @cached_property
     def _description_files(self) -> tuple[list[Path], list[Path]]:
-        return walk(self._version.root, DESCRIPTIONS)
+        return find_files_and_packages(self._version.root, DESCRIPTION_SUFFIXES)
 
     @cached_property
     def _outlines(self) -> dict[str, Outline]:

@@ -10,7 +10,7 @@ from linkwright.descriptions.argument_sets import ArgumentSet
 from linkwright.descriptions.pairs import Model, Pair
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.diagnostics.phrase import as_phrase
-from linkwright.lint.argument_sets import UNDECLARED, UNUSED
+from linkwright.lint.argument_sets import UNDECLARED_CODE, UNUSED_CODE
 from linkwright.review.changes import Change
 from linkwright.review.file_pair import Fault, FilePair
 from linkwright.review.folders import without_folder
@@ -118,7 +118,7 @@ def find_switched_cases(pair: FilePair, compared: Sequence[Case]) -> Iterator[Ca
         str(as_phrase(remark.message).arguments.get("name"))
         for case in (base.old, base.new)
         for remark in case.remarks
-        if remark.code == UNUSED
+        if remark.code == UNUSED_CODE
     }
     opposites = {
         name: _OPPOSITES[value]
@@ -189,7 +189,7 @@ def _needs_values(failure: _Failure) -> bool:
 
 def _argument_without_value(result: Description | LinkwrightError) -> tuple[str, bool] | None:
     """Return the name of an undeclared argument and whether a condition uses it; None for other results."""
-    if isinstance(result, Description) or result.diagnostics[0].code != UNDECLARED:
+    if isinstance(result, Description) or result.diagnostics[0].code != UNDECLARED_CODE:
         return None
     first = result.diagnostics[0]
     source, span = first.source, first.span

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from linkwright.descriptions import Description, examine
 from linkwright.diagnostics import LinkwrightError
-from linkwright.lint.targets import walk
+from linkwright.lint.targets import find_files_and_packages
 from linkwright.review.file_pair import FilePair
 from linkwright.review.files.semantics import compare_roots
 from linkwright.review.parts.expanded import expanded_places
@@ -20,7 +20,7 @@ _DEFINITIONS = frozenset({"xacro:macro", "xacro:property", "xacro:arg", "xacro:i
 
 def semantic_files(version: Version) -> set[str]:
     """Return the paths of the semantic descriptions in xacro that are more than definitions for other files."""
-    files, _ = walk(version.root, (SUFFIX,))
+    files, _ = find_files_and_packages(version.root, (SUFFIX,))
     paths = (version.relative(file) for file in files if _is_complete(file))
     return {path for path in paths if path is not None}
 

@@ -12,7 +12,7 @@ from linkwright.standins.xacro_api.errors import XacroException, translate_error
 from linkwright.standins.xacro_api.stacks import STATE, abs_filename_spec
 from linkwright.xacro.expressions import yaml_data
 from linkwright.xacro.expressions.builtin_names import tokenize
-from linkwright.xacro.expressions.scope import Namespace, Scope, truth
+from linkwright.xacro.expressions.scope import Namespace, Scope, evaluate_truth
 from linkwright.xacro.expressions.template import substitute
 from linkwright.xacro.faults import Fault
 from linkwright.xacro.session import Inputs, Session
@@ -91,7 +91,7 @@ def get_boolean_value(value: Any, condition: object = None) -> bool:
         XacroException: the value is a string that is neither true, false nor an integer.
     """
     try:
-        return truth(value)
+        return evaluate_truth(value)
     except ValueError:
         subject = f"the condition '{condition}'" if condition is not None else "the condition"
         raise XacroException(f"{subject} gives '{value}', which is neither true nor false") from None
@@ -113,12 +113,12 @@ def create_global_symbols() -> dict[str, Any]:
 class ConstructUnits(enum.Enum):
     """The YAML tags for values with units, each with the size of the unit in meters or radians."""
 
-    radians = ("!radians", yaml_data.UNITS["!radians"])
-    degrees = ("!degrees", yaml_data.UNITS["!degrees"])
-    meters = ("!meters", yaml_data.UNITS["!meters"])
-    millimeters = ("!millimeters", yaml_data.UNITS["!millimeters"])
-    foot = ("!foot", yaml_data.UNITS["!foot"])
-    inches = ("!inches", yaml_data.UNITS["!inches"])
+    radians = ("!radians", yaml_data.UNIT_FACTORS["!radians"])
+    degrees = ("!degrees", yaml_data.UNIT_FACTORS["!degrees"])
+    meters = ("!meters", yaml_data.UNIT_FACTORS["!meters"])
+    millimeters = ("!millimeters", yaml_data.UNIT_FACTORS["!millimeters"])
+    foot = ("!foot", yaml_data.UNIT_FACTORS["!foot"])
+    inches = ("!inches", yaml_data.UNIT_FACTORS["!inches"])
 
 
 class YamlDictWrapper(dict[Any, Any]):
@@ -163,7 +163,7 @@ class _SymbolView(dict[str, Any]):
     def __getitem__(self, name: str) -> Any:
         value = self._table[name]
         if isinstance(value, (YamlDictWrapper, YamlListWrapper)):
-            return yaml_data.dotted(value)
+            return yaml_data.copy_with_dot_access(value)
         if isinstance(value, dict) and hasattr(value, "unevaluated"):  # the value is the symbol table of a namespace
             return Namespace(None, self._session, _SymbolView(value, self._session))
         return value
@@ -181,7 +181,7 @@ def _create_scope(session: Session, symbols: Mapping[str, Any] | None) -> Scope:
 
 def _create_session() -> Session:
     file = abs_filename_spec("text")
-    return Inputs(file, STATE.arguments, root_dir=_find_root_folder()).session()
+    return Inputs(file, STATE.arguments, root_dir=_find_root_folder()).create_session()
 
 
 def _find_root_folder() -> str:

@@ -17,7 +17,7 @@ from linkwright.standins.xacro_api import dom
 from linkwright.standins.xacro_api.command_line import process_args
 from linkwright.standins.xacro_api.errors import XacroException, translate_error
 from linkwright.standins.xacro_api.stacks import STATE, StackExpander, StackSession, init_stacks
-from linkwright.xacro.expansion import Expansion, banner
+from linkwright.xacro.expansion import Expansion, make_banner
 from linkwright.xacro.limits import recursion_limit_for
 from linkwright.xacro.session import Inputs
 from linkwright.xmltree import Document
@@ -139,7 +139,7 @@ def process_file(
     except LinkwrightError as error:
         raise translate_error(error, call) from None
     expansion = _expand(tree, name, mappings, call)
-    expansion.document.prolog[:0] = comments = banner(name)
+    expansion.document.prolog[:0] = comments = make_banner(name)
     expansion.document.doctype_index += len(comments)
     document = XacroDocument()
     dom.fill_document(document, expansion.document)

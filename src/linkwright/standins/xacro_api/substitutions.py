@@ -36,7 +36,7 @@ def resolve_args(
     if not arg_str:
         return arg_str
     arguments = (context or {}).get("arg", {})
-    session = Inputs(filename or "./text", arguments).session()
+    session = Inputs(filename or "./text", arguments).create_session()
     try:
         return session.evaluate_text(arg_str, Scope(session.globals, session))
     except Fault as fault:

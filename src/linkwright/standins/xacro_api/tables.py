@@ -10,7 +10,7 @@ from linkwright.standins.xacro_api import color
 from linkwright.standins.xacro_api.errors import XacroException
 from linkwright.standins.xacro_api.evaluation import eval_text
 from linkwright.standins.xacro_api.stacks import STATE, print_location
-from linkwright.xacro.expressions.scope import literal
+from linkwright.xacro.expressions.scope import parse_literal
 
 _DOCUMENT_VERBOSITY, _FULL_VERBOSITY = 2, 3
 """The verbosities above which the properties of the document, or all properties, are logged."""
@@ -76,13 +76,13 @@ class Table(dict[str, Any]):
 
     @staticmethod
     def _eval_literal(value: Any) -> Any:
-        return literal(value)
+        return parse_literal(value)
 
     def _setitem(self, key: str, value: Any, unevaluated: bool) -> None:
         if key in self.root:
             color.warning(f"redefining global symbol: {key}")
             print_location()
-        value = literal(value)
+        value = parse_literal(value)
         dict.__setitem__(self, key, value)
         self.unevaluated.discard(key)
         if unevaluated and isinstance(value, str):
@@ -98,7 +98,7 @@ class Table(dict[str, Any]):
             )
         self.recursive.append(key)
         try:
-            value = literal(eval_text(dict.__getitem__(self, key), self))
+            value = parse_literal(eval_text(dict.__getitem__(self, key), self))
         finally:
             self.recursive.remove(key)
         dict.__setitem__(self, key, value)

@@ -24,13 +24,13 @@ class RefusalError(Exception):
 
 _MAX_EQUAL_HASHES = 1_000
 """The maximum number of keys with the same hash. Python compares each of them with all others."""
-_MAX_COMPARED = 200_000_000
+_MAX_COMPARISONS = 200_000_000
 """The maximum number of character comparisons in one call."""
 _MAX_NUMBERS = 1_000
 _QUICK_CODECS = frozenset({"utf-8", "utf-16", "utf-32", "ascii", "iso8859-1", "iso8859-15", "cp1252", "unicode-escape"})
-_MAX_CODED = 10_000
+_MAX_CODED_CHARACTERS = 10_000
 """The maximum number of characters for a codec that is not in `_QUICK_CODECS`."""
-_SECONDS = 0.5
+_REGEX_TIMEOUT_S = 0.5
 """The time limit of a regular expression, as for all expressions from files (decision 0020)."""
 
 HASHING = frozenset(
@@ -65,10 +65,10 @@ def check_keys(items: Collection[Any]) -> None:
     Raises:
         RefusalError: if more than a thousand different keys have the same hash.
     """
-    for alike, count in Counter(map(_hash_of, items)).items():
+    for hash_value, count in Counter(map(_hash_of, items)).items():
         if (
             count > _MAX_EQUAL_HASHES
-            and len({repr(item) for item in items if _hash_of(item) == alike}) > _MAX_EQUAL_HASHES
+            and len({repr(item) for item in items if _hash_of(item) == hash_value}) > _MAX_EQUAL_HASHES
         ):
             raise RefusalError(
                 phrase(
@@ -87,7 +87,7 @@ def _hash_of(item: Any) -> int:
 
 def _bounded_search(name: str) -> Callable[..., Any]:
     def search(text: Any, part: Any, *rest: Any) -> Any:
-        if isinstance(part, (str, bytes)) and len(part) * len(text) > _MAX_COMPARED:
+        if isinstance(part, (str, bytes)) and len(part) * len(text) > _MAX_COMPARISONS:
             raise RefusalError(phrase("the strings are too long for '{name}'", name=name))
         return getattr(text, name)(part, *rest)
 
@@ -102,7 +102,7 @@ def _bounded_strip(name: str) -> Callable[..., Any]:
     def strip(text: str, characters: str | None = None) -> Any:
         if isinstance(characters, str):
             characters = "".join(dict.fromkeys(characters))
-            if len(characters) * len(text) > _MAX_COMPARED:
+            if len(characters) * len(text) > _MAX_COMPARISONS:
                 raise RefusalError(phrase("the strings are too long for '{name}'", name=name))
         return getattr(text, name)(characters)
 
@@ -122,7 +122,7 @@ def check_codec(value: Any, encoding: str) -> None:
     if name in _QUICK_CODECS or not isinstance(value, (str, bytes)):
         return
     longest = max(map(len, value.split("."))) if name == "idna" and isinstance(value, str) else len(value)
-    if longest > _MAX_CODED:
+    if longest > _MAX_CODED_CHARACTERS:
         raise RefusalError(phrase("the string is too long for the encoding '{encoding}'", encoding=encoding))
 
 
@@ -168,9 +168,9 @@ MATHEMATICS: dict[str, Any] = {
 }
 """Functions of ``math`` that are bounded."""
 
-# These patterns are not compiled here because few files need them.
+# These patterns are compiled on first use, because few files need them.
 _CLASS_BEGINS = r"\[\^?\]?"
-_WRITTEN = r"(?s)\\.|\]"
+_ESCAPE_OR_BRACKET = r"(?s)\\.|\]"
 
 
 def split(pattern: str, text: str) -> list[str]:
@@ -186,15 +186,15 @@ def split(pattern: str, text: str) -> list[str]:
         RefusalError: if the split takes too long.
     """
     begins = re.match(_CLASS_BEGINS, pattern)
-    element_match = re.compile(_WRITTEN).finditer(pattern, begins.end() if begins else 0)
+    element_match = re.compile(_ESCAPE_OR_BRACKET).finditer(pattern, begins.end() if begins else 0)
     ends = next((match.end() for match in element_match if match[0] == "]"), 0)
     if ends == len(pattern):
         return re.split(pattern, text)
     import regex
 
-    re.compile(pattern)  # raises the same error message as ros/xacro
+    re.compile(pattern)  # This call raises the same error as ros/xacro.
     try:
-        return regex.split(pattern, text, timeout=_SECONDS)
+        return regex.split(pattern, text, timeout=_REGEX_TIMEOUT_S)
     except regex.error as error:
         raise re.error(str(error)) from None
     except TimeoutError:

@@ -19,10 +19,10 @@ from linkwright.xacro.expressions.bounded import RefusalError
 from linkwright.xacro.expressions.sandbox import CALLABLE_TYPES, MAX_BITS, MAX_LENGTH, Module
 from linkwright.xacro.faults import Fault
 
-BARE = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
+BARE_NAMES = ("list", "dict", "map", "len", "str", "float", "int", "bool", "min", "max", "round")
 """The functions of Python that expressions may call by their bare names."""
-_PYTHON = (
-    *BARE,
+_PYTHON_GROUP_NAMES = (
+    *BARE_NAMES,
     *("abs", "all", "any", "complex", "divmod", "enumerate", "filter", "frozenset", "hash", "isinstance"),
     *("issubclass", "ord", "range", "repr", "reversed", "set", "slice", "sorted", "sum", "tuple", "type"),
     *("vars", "zip"),
@@ -130,7 +130,7 @@ MATHEMATICS: dict[str, Any] = {
 }
 """Everything public in Python's ``math``."""
 
-_PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name)) for name in _PYTHON}
+_PYTHON_NAMES: dict[str, Any] = {name: _GUARDED.get(name, getattr(builtins, name)) for name in _PYTHON_GROUP_NAMES}
 
 
 def tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
@@ -156,8 +156,8 @@ class Provider(Protocol):
         """Return the value of a YAML file."""
         ...
 
-    def absolute(self, name: str) -> str:
-        """Return a relative file name with the folder of the file being processed prepended."""
+    def relative_to_current_file(self, name: str) -> str:
+        """Return the path of a file whose name is relative to the file being processed."""
         ...
 
     def dotify(self, mapping: Any = (), **items: Any) -> Any:
@@ -172,7 +172,7 @@ class Provider(Protocol):
         """Return the function that shows messages, such as ``xacro.message`` or ``xacro.error``."""
         ...
 
-    def with_deprecation_warning(self, better: str, function: Callable[..., Any]) -> Callable[..., Any]:
+    def with_deprecation_warning(self, qualified_name: str, function: Callable[..., Any]) -> Callable[..., Any]:
         """Return a function that warns when it is called by its deprecated bare name."""
         ...
 
@@ -181,7 +181,7 @@ def global_names(session: Provider) -> dict[str, Any]:
     """Return the names in the outermost scope of one expansion, with their values."""
     functions: dict[str, Any] = {
         "load_yaml": session.load_yaml,
-        "abs_filename": session.absolute,
+        "abs_filename": session.relative_to_current_file,
         "dotify": session.dotify,
     }
     xacro = Module(
@@ -203,7 +203,7 @@ def global_names(session: Provider) -> dict[str, Any]:
     for name in ("sorted", "range"):
         deprecated[name] = session.with_deprecation_warning(f"python.{name}", _PYTHON_NAMES[name])
     return {
-        **{name: _PYTHON_NAMES[name] for name in BARE},
+        **{name: _PYTHON_NAMES[name] for name in BARE_NAMES},
         "True": True,
         "False": False,
         **MATHEMATICS,

@@ -40,7 +40,7 @@ class Parameters(NamedTuple):
     keywords: str | None
     defaults: dict[str, Any]
 
-    def bound(self, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> dict[str, Any]:
+    def bind_arguments(self, arguments: tuple[Any, ...], keywords: dict[str, Any]) -> dict[str, Any]:
         """Return the values of the parameters in a call, by name.
 
         Raises:
@@ -97,7 +97,7 @@ class Function:
         budget = self._enclosing.session.budget
         budget.enter_lambda()
         try:
-            return self._body(Local(self._enclosing, self._parameters.bound(arguments, keywords)))
+            return self._body(Local(self._enclosing, self._parameters.bind_arguments(arguments, keywords)))
         finally:
             budget.leave_lambda()
 

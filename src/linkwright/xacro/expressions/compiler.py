@@ -18,7 +18,7 @@ from linkwright.xacro.expressions import sandbox
 from linkwright.xacro.expressions.bounded import RefusalError, checked_keys
 from linkwright.xacro.expressions.calls import Function, bind_parameters, call, charge_value, cost
 from linkwright.xacro.expressions.scope import Environment
-from linkwright.xacro.expressions.yaml_data import COPIED_TYPES, YamlDict, YamlMapping, wrapped
+from linkwright.xacro.expressions.yaml_data import COPIED_TYPES, YamlDict, YamlMapping, wrap
 from linkwright.xacro.faults import Fault
 
 Closure = Callable[[Any], Any]
@@ -31,7 +31,7 @@ _MUTATING_METHODS = frozenset(
     }
 )
 
-_NUMBER_WITH_UNIT = r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*"  # not compiled here because few files need it
+_NUMBER_WITH_UNIT = r"\s*([-+]?[0-9.]+)\s*[^\W\d]+\s*"  # compiled on first use, because few files need it
 _GENERATOR_COST = 10
 """The number of steps that a generator costs, because of its memory."""
 _LINE = r"[^\r\n]*(?:\r\n?|\n|\Z)"
@@ -71,7 +71,7 @@ _COMPARISONS: dict[str, Callable[[Any, Any], Any]] = {
 }
 
 
-def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
+def fault_from_error(error: Exception, segment: str, start: int, end: int) -> Fault:
     """Return the fault for a Python exception that a segment of an expression raised."""
     segment = " ".join(segment.split())
     if len(segment) > 60:
@@ -89,7 +89,7 @@ def failure(error: Exception, segment: str, start: int, end: int) -> Fault:
     elif isinstance(error, RecursionError):
         reason = phrase("it is nested too deeply")
     elif isinstance(error, ZeroDivisionError):
-        reason = "division by zero"  # before Python 3.14, the message depends on the kind of number
+        reason = "division by zero"  # Before Python 3.14, the message depends on the kind of number.
     return Fault(
         "XAC202",
         phrase("cannot evaluate '{segment}': {reason}", segment=segment, reason=foreign(reason)),
@@ -125,7 +125,7 @@ class Compiler:
         """
         method = _METHODS.get(node.__class__)
         if method is None:
-            raise self._refusal(node)
+            raise self._make_refusal(node)
         self._depth += 1
         if self._depth > _MAX_DEPTH:
             raise Fault("XAC102", phrase("the expression is nested too deeply"))
@@ -135,10 +135,10 @@ class Compiler:
 
     # locations and failures
 
-    def _offsets(self, node: Any) -> tuple[int, int]:
+    def _find_offsets(self, node: Any) -> tuple[int, int]:
         start, end = node.col_offset, node.end_col_offset
         if not self._is_plain:
-            lines = re.findall(_LINE, self._source)  # the columns of ast nodes count UTF-8 bytes
+            lines = re.findall(_LINE, self._source)  # The columns of ast nodes count UTF-8 bytes.
             start, end = (
                 sum(map(len, lines[: number - 1]))
                 + len(lines[number - 1].encode("utf-8", "replace")[:column].decode("utf-8", "replace"))
@@ -149,11 +149,11 @@ class Compiler:
     def _segment(self, start: int, end: int) -> str:
         return self._source[start - self._shift : end - self._shift]
 
-    def _failure(self, error: Exception, start: int, end: int) -> Fault:
-        return failure(error, self._segment(start, end), start, end)
+    def _make_failure(self, error: Exception, start: int, end: int) -> Fault:
+        return fault_from_error(error, self._segment(start, end), start, end)
 
-    def _refusal(self, node: ast.AST) -> Fault:
-        start, end = self._offsets(node)
+    def _make_refusal(self, node: ast.AST) -> Fault:
+        start, end = self._find_offsets(node)
         message = phrase("'{segment}' is not allowed in an expression", segment=self._segment(start, end))
         return Fault("XAC204", message, start, end)
 
@@ -163,7 +163,7 @@ class Compiler:
         Such an operand is a zero, a text, or a number with a unit. Constants get no hint.
         """
         for node, value in operands:
-            operand_text = self._segment(*self._offsets(node))
+            operand_text = self._segment(*self._find_offsets(node))
             if isinstance(node, ast.Constant) or len(operand_text) > 40:
                 continue
             if isinstance(error, ZeroDivisionError) and node is operands[-1][0]:
@@ -199,12 +199,12 @@ class Compiler:
             try:
                 return env.lookup(name)
             except KeyError:
-                raise env.session.undefined(name, env, *text_range) from None
+                raise env.session.undefined_name_fault(name, env, *text_range) from None
 
         return look_up
 
     def _name(self, node: ast.Name) -> Closure:
-        return self.name(node.id, self._offsets(node)[0] - self._shift)
+        return self.name(node.id, self._find_offsets(node)[0] - self._shift)
 
     def _constant(self, node: ast.Constant) -> Closure:
         value = node.value
@@ -219,19 +219,21 @@ class Compiler:
             if isinstance(descendant, ast.expr):
                 copy_location(descendant, node)
         compiled_parts = [self.compile(part) for part in node.values]
-        return lambda env: sandbox.joined([part(env) for part in compiled_parts])
+        return lambda env: sandbox.join_strings([part(env) for part in compiled_parts])
 
     def _formattedvalue(self, node: ast.FormattedValue) -> Closure:
         value, conversion = self.compile(node.value), node.conversion
         specification = self.compile(node.format_spec) if node.format_spec else lambda _env: ""
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
 
         def formatted(env: Environment) -> Any:
             try:
-                result = sandbox.formatted(charge_value(env.session.budget, value(env)), conversion, specification(env))
+                result = sandbox.format_field_value(
+                    charge_value(env.session.budget, value(env)), conversion, specification(env)
+                )
                 return charge_value(env.session.budget, result)
             except FAILURES as error:
-                raise self._failure(error, start, end) from None
+                raise self._make_failure(error, start, end) from None
 
         return formatted
 
@@ -252,14 +254,14 @@ class Compiler:
     def _binop(self, node: ast.BinOp) -> Closure:
         left, right = self.compile(node.left), self.compile(node.right)
         apply = sandbox.OPERATORS[node.op.__class__.__name__]
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
 
         def binary(env: Environment) -> Any:
             a, b = left(env), right(env)
             try:
                 result = apply(a, b)
             except FAILURES as error:
-                fault = self._failure(error, start, end)
+                fault = self._make_failure(error, start, end)
                 fault.hint = fault.hint or self._operand_hint(error, (node.left, a), (node.right, b))
                 raise fault from None
             if result.__class__ is not float and (steps := cost(result)):
@@ -271,14 +273,14 @@ class Compiler:
     def _unaryop(self, node: ast.UnaryOp) -> Closure:
         operand = self.compile(node.operand)
         apply = _UNARY[node.op.__class__.__name__]
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
 
         def unary(env: Environment) -> Any:
             value = operand(env)
             try:
                 return apply(value)
             except FAILURES as error:
-                raise self._failure(error, start, end) from None
+                raise self._make_failure(error, start, end) from None
 
         return unary
 
@@ -302,7 +304,7 @@ class Compiler:
             (_COMPARISONS[op.__class__.__name__], self.compile(value))
             for op, value in zip(node.ops, node.comparators, strict=True)
         ]
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
 
         def compare(env: Environment) -> Any:
             left = first(env)
@@ -314,7 +316,7 @@ class Compiler:
                 try:
                     result = test(left, right)
                 except FAILURES as error:
-                    raise self._failure(error, start, end) from None
+                    raise self._make_failure(error, start, end) from None
                 if not result:
                     break
                 left = right
@@ -330,7 +332,7 @@ class Compiler:
 
     def _attribute(self, node: ast.Attribute) -> Closure:
         value, name = self.compile(node.value), node.attr
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
         start_of_name = end - len(name)
         if name.startswith("__"):
             raise Fault("XAC204", phrase("'.{name}' is not allowed in an expression", name=name), start_of_name, end)
@@ -342,11 +344,11 @@ class Compiler:
             except AttributeError as error:
                 if owner.__class__ is YamlMapping and name in owner:
                     _warn_of_plain_mapping(env, name)
-                    return wrapped(owner[name])
-                hint = env.session.nearest_attribute(owner, name)
+                    return wrap(owner[name])
+                hint = env.session.attribute_hint(owner, name)
                 raise Fault("XAC205", foreign(error), start_of_name, end, hint) from None
             except FAILURES as error:
-                raise self._failure(error, start, end) from None
+                raise self._make_failure(error, start, end) from None
             if result.__class__ in COPIED_TYPES and (steps := cost(result)):
                 env.session.budget.charge_steps(steps)
             return result
@@ -355,7 +357,7 @@ class Compiler:
 
     def _subscript(self, node: ast.Subscript) -> Closure:
         value, key = self.compile(node.value), self.compile(node.slice)
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
 
         def subscript(env: Environment) -> Any:
             owner, index = value(env), key(env)
@@ -367,10 +369,10 @@ class Compiler:
                     if isinstance(error, KeyError)
                     else foreign(error)
                 )
-                hint = env.session.nearest_attribute(owner, str(index))
+                hint = env.session.attribute_hint(owner, str(index))
                 raise Fault("XAC205", message, start, end, hint) from None
             except FAILURES as error:
-                raise self._failure(error, start, end) from None
+                raise self._make_failure(error, start, end) from None
             if (index.__class__ is slice or result.__class__ in COPIED_TYPES) and (steps := cost(result)):
                 env.session.budget.charge_steps(steps)
             return result
@@ -389,7 +391,7 @@ class Compiler:
         keyword_closures = [(keyword.arg, self.compile(keyword.value)) for keyword in node.keywords]
         is_simple = not keyword_closures and not any(is_starred for is_starred, _ in positional)
         argument_closures = [closure for _, closure in positional]
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
         if isinstance(node.func, ast.Attribute) and node.func.attr in _MUTATING_METHODS:
             self.may_change_values = True
 
@@ -407,7 +409,7 @@ class Compiler:
                     fault.start, fault.end = start, end
                 raise
             except FAILURES as error:
-                raise self._failure(error, start, end) from None
+                raise self._make_failure(error, start, end) from None
 
         return call_function
 
@@ -434,13 +436,13 @@ class Compiler:
 
     def _collection(self, node: ast.List | ast.Tuple | ast.Set, build: Callable[[list[Any]], Any]) -> Closure:
         items = [self._compile_argument(item) for item in node.elts]
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
 
         def display(env: Environment) -> Any:
             try:
                 return charge_value(env.session.budget, build(_evaluate_arguments(env, items, [])[0]))
             except (RefusalError, TypeError) as error:
-                raise self._failure(error, start, end) from None
+                raise self._make_failure(error, start, end) from None
 
         return display
 
@@ -449,7 +451,7 @@ class Compiler:
             (self.compile(key) if key else None, self.compile(value))
             for key, value in zip(node.keys, node.values, strict=True)
         ]
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
 
         def display(env: Environment) -> Any:
             result: dict[Any, Any] = {}
@@ -458,7 +460,7 @@ class Compiler:
                     result.update(checked_keys(value(env)) if key is None else {key(env): value(env)})
                 return charge_value(env.session.budget, result)
             except (RefusalError, TypeError, ValueError) as error:
-                raise self._failure(error, start, end) from None
+                raise self._make_failure(error, start, end) from None
 
         return display
 
@@ -474,25 +476,25 @@ class Compiler:
         self, node: ast.ListComp | ast.SetComp, element: ast.expr, build: Callable[[Iterator[Any]], Any]
     ) -> Closure:
         element_value, iterations = self.compile(element), self._iterations(node.generators)
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
 
         def comprehension(env: Environment) -> Any:
             try:
                 return charge_value(env.session.budget, build(element_value(inner) for inner in iterations(env)))
             except (RefusalError, TypeError, ValueError) as error:
-                raise self._failure(error, start, end) from None
+                raise self._make_failure(error, start, end) from None
 
         return comprehension
 
     def _dictcomp(self, node: ast.DictComp) -> Closure:
         key, value, iterations = self.compile(node.key), self.compile(node.value), self._iterations(node.generators)
-        start, end = self._offsets(node)
+        start, end = self._find_offsets(node)
 
         def comprehension(env: Environment) -> Any:
             try:
                 return charge_value(env.session.budget, {key(inner): value(inner) for inner in iterations(env)})
             except (RefusalError, TypeError, ValueError) as error:
-                raise self._failure(error, start, end) from None
+                raise self._make_failure(error, start, end) from None
 
         return comprehension
 
@@ -549,7 +551,7 @@ class Compiler:
                     bind(env, item)
 
             return unpack
-        raise self._refusal(node)
+        raise self._make_refusal(node)
 
 
 def _warn_of_plain_mapping(env: Environment, name: str) -> None:

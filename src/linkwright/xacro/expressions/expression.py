@@ -14,14 +14,14 @@ from linkwright.diagnostics import foreign, phrase
 from linkwright.diagnostics.lookalikes import lookalike_hint
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.cache import TextCompiler
-from linkwright.xacro.expressions.compiler import FAILURES, Closure, Compiler, failure
+from linkwright.xacro.expressions.compiler import FAILURES, Closure, Compiler, fault_from_error
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault
 
 _MAX_LENGTH = 20_000
 _ITERATOR_TYPES = frozenset({GeneratorType, enumerate, filter, map, reversed, zip})
 """Types of iterators that are exhausted immediately: thousands of nested iterators would overflow the stack."""
-_WARNING_TRIGGERS = r"\\|\d\.?[^\W\d]"  # not compiled here because few files need it
+_WARNING_TRIGGERS = r"\\|\d\.?[^\W\d]"  # compiled on first use, because few files need it
 _CLOSING_BRACKETS = {"(": ")", "[": "]"}
 _SYNTAX_HINTS = (
     ("{", phrase("'}' ends the expression, so there is no way to write a dict or set in it; load one from YAML")),
@@ -40,10 +40,10 @@ class Expression:
         source: the text of the expression.
         evaluate: the function that returns the value of the expression in a scope. It raises a `Fault` whose offsets
             are relative to the source.
-        changes: whether the evaluation may change a value, as ``items.pop(0)`` does.
+        may_change_values: whether the evaluation may change a value, as ``items.pop(0)`` does.
     """
 
-    __slots__ = ("changes", "evaluate", "source")
+    __slots__ = ("evaluate", "may_change_values", "source")
 
     def __init__(self, source: str) -> None:
         self.source = source
@@ -53,7 +53,7 @@ class Expression:
             self.evaluate: Closure = compiler.name(stripped, 0)
         else:
             self.evaluate = _exhaust_iterator(compiler.compile(_parse(source, stripped).body), source)
-        self.changes = compiler.may_change_values
+        self.may_change_values = compiler.may_change_values
 
 
 _KEYWORDS = frozenset(
@@ -80,14 +80,14 @@ def compile_expression(source: str) -> Expression:
 
 
 def _exhaust_iterator(closure: Closure, source: str) -> Closure:
-    """Return a closure that evaluates all items of an iterator immediately instead of on demand."""
+    """Return a closure that evaluates all items of an iterator immediately."""
 
     def evaluate(scope: Scope) -> Any:
         try:
             value = closure(scope)
             return iter(list(value)) if value.__class__ in _ITERATOR_TYPES else value
         except FAILURES as error:  # an error during the iteration, such as in a generator
-            raise failure(error, source.strip(), 0, len(source)) from None
+            raise fault_from_error(error, source.strip(), 0, len(source)) from None
 
     return evaluate
 
@@ -118,10 +118,10 @@ def _parse(source: str, stripped: str) -> ast.Expression:
 
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
-                return _syntax_tree(stripped)
-        return _syntax_tree(stripped)
+                return _parse_syntax_tree(stripped)
+        return _parse_syntax_tree(stripped)
     except SyntaxError as error:
-        raise _syntax_fault(source, stripped, error) from None
+        raise _make_syntax_fault(source, stripped, error) from None
     except (ValueError, MemoryError, RecursionError) as error:
         raise Fault(
             "XAC102",
@@ -133,13 +133,13 @@ def _parse(source: str, stripped: str) -> ast.Expression:
         ) from None
 
 
-def _syntax_tree(source: str) -> ast.Expression:
+def _parse_syntax_tree(source: str) -> ast.Expression:
     tree = compile(source, "<expression>", "eval", ast.PyCF_ONLY_AST)
     assert isinstance(tree, ast.Expression), "the mode 'eval' returns an ast.Expression"
     return tree
 
 
-def _syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:
+def _make_syntax_fault(source: str, stripped: str, error: SyntaxError) -> Fault:
     reason = error.msg.removeprefix("f-string: ")
     message = phrase("'{shortened}' is not an expression: {error}", shortened=_shorten(stripped), error=foreign(reason))
     hint = next((hint for sign, hint in _SYNTAX_HINTS if sign in stripped), None)

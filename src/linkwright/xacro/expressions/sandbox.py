@@ -41,35 +41,35 @@ class Module:
         return f"<module {self.name}>"
 
 
-_SEQUENCE = {"count", "index"}
-_SET = {
+_SEQUENCE_METHODS = {"count", "index"}
+_SET_METHODS = {
     *("copy", "difference", "intersection", "isdisjoint", "issubset", "issuperset", "symmetric_difference", "union"),
 }
-_STRING = {
+_STRING_METHODS = {
     *("capitalize", "casefold", "count", "endswith", "find", "index", "isalnum", "isalpha", "isascii"),
     *("isdecimal", "isdigit", "isidentifier", "islower", "isnumeric", "isprintable", "isspace", "istitle", "isupper"),
     *("lower", "partition", "removeprefix", "removesuffix", "split", "splitlines", "startswith", "swapcase", "title"),
     "upper",
 }
-_LIST = {*_SEQUENCE, "append", "clear", "copy", "insert", "pop", "remove", "reverse", "sort"}
-_DICT = {"clear", "copy", "get", "items", "keys", "pop", "popitem", "setdefault", "update", "values"}
+_LIST_METHODS = {*_SEQUENCE_METHODS, "append", "clear", "copy", "insert", "pop", "remove", "reverse", "sort"}
+_DICT_METHODS = {"clear", "copy", "get", "items", "keys", "pop", "popitem", "setdefault", "update", "values"}
 
-_ATTRIBUTES: dict[type, set[str]] = {
-    str: _STRING,
-    bytes: {"hex", *_SEQUENCE},
+_ALLOWED_ATTRIBUTES: dict[type, set[str]] = {
+    str: _STRING_METHODS,
+    bytes: {"hex", *_SEQUENCE_METHODS},
     int: {"as_integer_ratio", "bit_length", "conjugate", "denominator", "imag", "numerator", "real"},
     bool: {"imag", "numerator", "denominator", "real"},
     float: {"as_integer_ratio", "conjugate", "hex", "imag", "is_integer", "real"},
     complex: {"conjugate", "imag", "real"},
-    list: _LIST,
-    YamlList: _LIST,
-    tuple: _SEQUENCE,
-    dict: _DICT,
-    YamlDict: _DICT,
-    YamlMapping: _DICT,
-    set: {*_SET, "add", "clear", "discard", "pop", "remove", "update"},
-    frozenset: _SET,
-    range: {*_SEQUENCE, "start", "step", "stop"},
+    list: _LIST_METHODS,
+    YamlList: _LIST_METHODS,
+    tuple: _SEQUENCE_METHODS,
+    dict: _DICT_METHODS,
+    YamlDict: _DICT_METHODS,
+    YamlMapping: _DICT_METHODS,
+    set: {*_SET_METHODS, "add", "clear", "discard", "pop", "remove", "update"},
+    frozenset: _SET_METHODS,
+    range: {*_SEQUENCE_METHODS, "start", "step", "stop"},
     slice: {"start", "step", "stop"},
 }
 
@@ -99,17 +99,17 @@ def attribute(value: Any, name: str) -> Any:
             return value.lookup(name)
         except KeyError:
             raise AttributeError(phrase("the namespace has no property '{name}'", name=name)) from None
-    if name in _ATTRIBUTES.get(kind, ()):
+    if name in _ALLOWED_ATTRIBUTES.get(kind, ()):
         return getattr(value, name)
-    guarded_method = _GROWING.get((kind, name))
+    guarded_method = _GROWING_METHODS.get((kind, name))
     if guarded_method is not None:
         return _BoundMethod(guarded_method, value)
     if kind is YamlDict:
         return value[name]
     if kind.__module__ == "datetime" and name in _DATE_ATTRIBUTES:
         return getattr(value, name)
-    if kind is type and value in _ATTRIBUTES:
-        if name in _ATTRIBUTES[value]:
+    if kind is type and value in _ALLOWED_ATTRIBUTES:
+        if name in _ALLOWED_ATTRIBUTES[value]:
             return getattr(value, name)
         if (value, name) in bounded.METHODS:
             return bounded.METHODS[value, name]
@@ -181,7 +181,7 @@ def weight(value: Any) -> int:
     return 0
 
 
-def joined(parts: list[str]) -> str:
+def join_strings(parts: list[str]) -> str:
     """Return the concatenation of some strings.
 
     Raises:
@@ -275,7 +275,7 @@ def shift_left(value: Any, bits: Any) -> Any:
     return value << bits
 
 
-_FORMAT_FIELD = r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?"  # not compiled here because few files need it
+_FORMAT_FIELD = r"%(?:\([^)]*\))?[-+ #0]*(\*|\d+)?(?:\.(\*|\d+))?"  # compiled on first use, because few files need it
 
 
 def modulo(left: Any, right: Any) -> Any:
@@ -299,7 +299,7 @@ _CONVERSIONS: dict[int, Callable[[Any], str]] = {ord("s"): str, ord("r"): repr, 
 _FORMATTABLE_TYPES: frozenset[type] = frozenset({bool, complex, float, int, str})
 
 
-def formatted(value: Any, conversion: int, specification: str) -> str:
+def format_field_value(value: Any, conversion: int, specification: str) -> str:
     """Return the text of a field of an f-string, such as ``{value!r:>8}``.
 
     Args:
@@ -363,7 +363,7 @@ def _format(text: str, *values: Any, **named_values: Any) -> str:
 
         def format_field(self, value: Any, format_spec: str) -> str:
             nonlocal length
-            field = formatted(value, -1, format_spec)
+            field = format_field_value(value, -1, format_spec)
             length += len(field)
             _check_length(length)
             return field
@@ -438,7 +438,7 @@ def _extend(items: list[Any], new_items: Any) -> None:
     items.extend(additions)
 
 
-_GROWING: dict[tuple[type, str], Callable[..., Any]] = {
+_GROWING_METHODS: dict[tuple[type, str], Callable[..., Any]] = {
     **{(str, name): _bounded_pad(name) for name in ("center", "ljust", "rjust", "zfill")},
     (str, "expandtabs"): _expandtabs,
     (str, "format"): _format,

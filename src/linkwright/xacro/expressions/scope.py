@@ -24,7 +24,7 @@ _NEVER_A_LITERAL = frozenset('ABCDEGHJKLMOPQRSUVWXYZabcdeghjklmopqrsuvwxyz$/<>([
 _BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
-def literal(value: Any) -> Any:
+def parse_literal(value: Any) -> Any:
     """Return the number or boolean that a string represents, or else the value itself.
 
     Single quotes around a string are removed, and prevent its conversion.
@@ -35,11 +35,11 @@ def literal(value: Any) -> Any:
         return value[1:-1]
     if "_" in value or value[0] in _NEVER_A_LITERAL:
         return value
-    return number_or_boolean(value)
+    return parse_number_or_boolean(value)
 
 
 @lru_cache(maxsize=4096)
-def number_or_boolean(text: str) -> Any:
+def parse_number_or_boolean(text: str) -> Any:
     """Return the number or boolean that a text represents, or else the text."""
     if "." not in text:
         try:
@@ -52,7 +52,7 @@ def number_or_boolean(text: str) -> Any:
         return _BOOLEANS.get(text, text)
 
 
-def truth(value: Any) -> bool:
+def evaluate_truth(value: Any) -> bool:
     """Return the truth value of a condition.
 
     A string must be ``true``, ``True``, ``false``, ``False`` or an integer. Other values have Python's truth value.
@@ -123,11 +123,11 @@ class Context(Protocol):
         """
         ...
 
-    def undefined(self, name: str, environment: Environment, start: int, end: int) -> Fault:
+    def undefined_name_fault(self, name: str, environment: Environment, start: int, end: int) -> Fault:
         """Return the fault for a name that no scope defines."""
         ...
 
-    def nearest_attribute(self, owner: Any, name: str) -> Phrase | None:
+    def attribute_hint(self, owner: Any, name: str) -> Phrase | None:
         """Return a hint with a similar name for an attribute that a value does not have, or None."""
         ...
 
@@ -183,21 +183,21 @@ class Scope:
     def define(
         self, name: str, value: Any, *, lazy: bool = False, element: Element | None = None, attribute: str = "value"
     ) -> None:
-        """Define a name in this scope, converting its value by the literal rule (see `literal`).
+        """Define a name in this scope, converting its value by the literal rule (see `parse_literal`).
 
         Args:
-            name: the name.
+            name: the name, without a prefix.
             value: the value; a string is converted by the literal rule.
             lazy: whether a string is evaluated only at the first lookup of the name.
             element: the element that contains the text, for messages.
             attribute: the attribute of the element that contains the text.
         """
-        literal_value = literal(value)
+        literal_value = parse_literal(value)
         if lazy and isinstance(literal_value, str):
             if "$" in literal_value:
                 literal_value = Lazy(literal_value, element, attribute)
             elif literal_value is not value:  # the string was quoted
-                literal_value = literal(literal_value)
+                literal_value = parse_literal(literal_value)
         self.values[name] = literal_value
 
     def assign(self, name: str, value: Any) -> None:
@@ -261,7 +261,7 @@ class Scope:
         lazy.resolving = True
         property_stack.append(name)
         try:
-            value = literal(self.session.evaluate(lazy.text, self))
+            value = parse_literal(self.session.evaluate(lazy.text, self))
         except Fault as fault:
             if lazy.element is not None:
                 fault.locate_in_attribute(lazy.element, lazy.attribute)

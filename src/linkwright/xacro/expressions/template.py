@@ -39,7 +39,7 @@ _COMMANDS = ("arg", "find", "env", "optenv", "dirname", "cwd", "eval")
 _COMMANDS_HINT = phrase("the commands are {commands}", commands=joined(_COMMANDS))
 _DIRNAME_WARNING = phrase("the command 'dirname' always fails in ros/xacro")
 _DIRNAME_HINT = phrase("write $(find PACKAGE)/FOLDER, or ${xacro.abs_filename('FILE')} for a file beside this one")
-_SUBSTITUTION = r"\$\(([^()$]+)\)"  # not compiled here because few files need it
+_SUBSTITUTION = r"\$\(([^()$]+)\)"  # compiled on first use, because few files need it
 
 
 def substitute(body: str, session: Context) -> str:
@@ -105,7 +105,7 @@ def _run_command(body: str, session: Context, *, only_find: bool) -> str:
         raise
 
 
-def _single_argument(command: str, argument_kind: str, words: list[str]) -> str:
+def _check_single_argument(command: str, argument_kind: str, words: list[str]) -> str:
     if len(words) != 1:
         raise Fault(
             "XAC213",
@@ -126,15 +126,15 @@ def _single_argument(command: str, argument_kind: str, words: list[str]) -> str:
 
 
 def _arg_value(words: list[str], session: Context) -> str:
-    return session.argument(_single_argument("arg", "name", words))
+    return session.argument(_check_single_argument("arg", "name", words))
 
 
 def _package_folder(words: list[str], session: Context) -> str:
-    return session.package(_single_argument("find", "package", words))
+    return session.package(_check_single_argument("find", "package", words))
 
 
 def _env_value(words: list[str], _session: Context) -> str:
-    name = _single_argument("env", "name", words)
+    name = _check_single_argument("env", "name", words)
     value = _environment_value(name)
     if value is None:
         hint = phrase("write $(optenv {name} DEFAULT) if it may be unset", name=name)
@@ -189,18 +189,18 @@ def _eval_text(source: str, session: Context) -> str:
 
 
 def _names_for_eval(session: Context) -> dict[str, Any]:
-    names: dict[str, Any] = {name: _typed_value(value) for name, value in session.arguments.items()}
+    names: dict[str, Any] = {name: _convert_value(value) for name, value in session.arguments.items()}
     names.update(MATHEMATICS)
     names.update({"list": list, "dict": dict, "map": map, "str": str, "float": float, "int": int})
     names.update({"true": True, "false": False})
-    names["arg"] = lambda name: _typed_value(session.argument(name))
+    names["arg"] = lambda name: _convert_value(session.argument(name))
     names["env"] = lambda name: _env_value([name], session)
     names["optenv"] = lambda name, default="": default if (value := _environment_value(name)) is None else value
     names["find"] = session.package
     return names
 
 
-def _typed_value(value: str) -> Any:
+def _convert_value(value: str) -> Any:
     try:
         return float(value) if "." in value else int(value)
     except ValueError:
@@ -208,7 +208,7 @@ def _typed_value(value: str) -> Any:
 
 
 def package_fault(error: LinkwrightError) -> Fault:
-    """Convert the package finder's error for a missing package to a fault with the same message."""
+    """Convert the package finder's error for a missing package to a fault."""
     diagnostic = error.diagnostics[0]
     fault = Fault(diagnostic.code, diagnostic.message, hint=diagnostic.hint)
     fault.notes.extend(diagnostic.notes)
@@ -239,12 +239,12 @@ class Token(NamedTuple):
     end: int
 
 
-_PATTERN = r"""(?x)
+_TOKENS = r"""(?x)
     \$(?P<escaped>\$+[{(])
   | \$\{(?P<expression>[^}]*)\}
   | \$\((?P<substitution>[^)]*)\)
   | (?P<text>[^$]+|\$[^{($]+|\$\Z)
-    """  # not compiled here because small files seldom need it
+    """  # compiled on first use, because small files seldom need it
 
 _KINDS = {
     "escaped": TokenKind.TEXT,
@@ -262,13 +262,13 @@ def tokenize(text: str) -> list[Token]:
     """
     if text.startswith("${") and text.find("}") == len(text) - 1:
         return [Token(TokenKind.EXPRESSION, text[2:-1], 0, len(text))]  # the usual form of a text with a dollar
-    pattern = re.compile(_PATTERN)
+    pattern = re.compile(_TOKENS)
     tokens: list[Token] = []
     offset = 0
     while offset < len(text):
         match = pattern.match(text, offset)
         if match is None:
-            raise _token_fault(text, offset)
+            raise _make_token_fault(text, offset)
         name = match.lastgroup
         assert name is not None, "every alternative of the pattern is named"
         tokens.append(Token(_KINDS[name], match[name], offset, match.end()))
@@ -276,7 +276,7 @@ def tokenize(text: str) -> list[Token]:
     return tokens
 
 
-def _token_fault(text: str, offset: int) -> Fault:
+def _make_token_fault(text: str, offset: int) -> Fault:
     for opening, closing in (("${", "}"), ("$(", ")")):
         if text.startswith(opening, offset):
             message = phrase(
@@ -317,7 +317,7 @@ class Template:
     def _compile_part(self, token: Token) -> _Part:
         kind, text, start, end = token
         if "$" in text:
-            return self._nested(token)
+            return self._compile_nested(token)
         if kind is TokenKind.SUBSTITUTION:
             return _with_offsets(lambda scope: substitute(text, scope.session), start, end)
         try:
@@ -325,10 +325,10 @@ class Template:
         except Fault as fault:
             fault.shift_to_enclosing_text(start, end, start + _BRACKET_LENGTH)
             raise
-        self.may_change_values = self.may_change_values or expression.changes
+        self.may_change_values = self.may_change_values or expression.may_change_values
         return _with_offsets(expression.evaluate, start, end)
 
-    def _nested(self, token: Token) -> _Part:
+    def _compile_nested(self, token: Token) -> _Part:
         """Return the evaluator for a token that contains other tokens.
 
         The inner tokens are evaluated first; their value is the source of the outer token.
@@ -338,7 +338,7 @@ class Template:
         self.may_change_values = True  # the source, and so its effects, are not known before the evaluation
 
         def part(scope: Scope) -> Any:
-            source = _checked_text(inner(scope))
+            source = _to_checked_text(inner(scope))
             try:
                 if kind is TokenKind.SUBSTITUTION:
                     return substitute(source, scope.session)
@@ -386,16 +386,16 @@ def _join_parts(texts: list[str], parts: list[_Part | None]) -> _Part:
         pieces = texts.copy()
         for position, part in indexed_parts:
             value = part(scope)
-            pieces[position] = value if value.__class__ is str else _checked_text(value)
+            pieces[position] = value if value.__class__ is str else _to_checked_text(value)
         try:
-            return sandbox.joined(pieces)
+            return sandbox.join_strings(pieces)
         except RefusalError as error:
             raise Fault("XAC202", phrase("cannot write the value: {error}", error=foreign(error))) from None
 
     return join
 
 
-def _checked_text(value: Any) -> str:
+def _to_checked_text(value: Any) -> str:
     if value.__class__ is str:
         return value
     try:

@@ -68,8 +68,8 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         number = super().construct_yaml_int(node)
         if abs(number) >= sys.hash_info.modulus:
-            self.large += 1
-            if self.large > _MAX_LARGE_NUMBERS:
+            self.large_number_count += 1
+            if self.large_number_count > _MAX_LARGE_NUMBERS:
                 message = f"more than {_MAX_LARGE_NUMBERS:,} numbers have more than 60 bits"
                 raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         return number
@@ -77,8 +77,8 @@ class NodeLoader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):  # type: ignore
     def flatten_mapping(self, node: Any) -> None:
         """Add the pairs of merged mappings to a mapping, unless there are too many."""
         super().flatten_mapping(node)
-        self.merged += len(node.value)
-        if self.merged > _MAX_MERGED_PAIRS:
+        self.merged_pair_count += len(node.value)
+        if self.merged_pair_count > _MAX_MERGED_PAIRS:
             message = f"the merged mappings have more than {_MAX_MERGED_PAIRS:,} keys"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
 

@@ -14,7 +14,7 @@ from linkwright.diagnostics import phrase
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.cache import BoundedCache
 
-UNITS = {
+UNIT_FACTORS = {
     "!radians": 1.0,
     "!degrees": math.pi / 180.0,
     "!meters": 1.0,
@@ -45,7 +45,7 @@ class YamlDict(dict[Any, Any]):
             value = dict.__getitem__(self, key)
         except KeyError:
             raise AttributeError(phrase("the YAML mapping has no key '{key}'", key=key)) from None
-        return value if value.__class__ in _SCALAR_TYPES else wrapped(value)
+        return value if value.__class__ in _SCALAR_TYPES else wrap(value)
 
 
 class YamlList(list[Any]):
@@ -54,10 +54,10 @@ class YamlList(list[Any]):
     __slots__ = ()
 
     def __getitem__(self, index: Any) -> Any:
-        return wrapped(list.__getitem__(self, index))
+        return wrap(list.__getitem__(self, index))
 
     def __iter__(self) -> Iterator[Any]:
-        return map(wrapped, super().__iter__())
+        return map(wrap, super().__iter__())
 
 
 _SCALAR_TYPES: frozenset[type] = frozenset({str, int, float, bool})
@@ -67,7 +67,7 @@ COPIED_TYPES: frozenset[type] = frozenset({YamlDict, YamlList})
 """The types whose values are copied at every access."""
 
 
-def wrapped(value: Any) -> Any:
+def wrap(value: Any) -> Any:
     """Return a value of YAML data in the form that expressions use."""
     if isinstance(value, dict):
         return YamlDict(value)
@@ -98,13 +98,13 @@ def load(text: str, evaluate: Callable[[str], Any]) -> Any:
         YamlError: if the text is not YAML, or has an unknown tag.
     """
     if "!" in text:
-        return dotted(_load(text, evaluate))
+        return copy_with_dot_access(_load(text, evaluate))
     try:
         value = cache.values[text]
     except KeyError:
         value = _load(text, None)
         cache.store(text, value)
-    return dotted(value)
+    return copy_with_dot_access(value)
 
 
 cache: BoundedCache[str, Any] = BoundedCache(200, lambda *_: 1)
@@ -131,9 +131,9 @@ def _load(text: str, evaluate: Callable[[str], Any] | None) -> Any:
         loader.dispose()
 
 
-def dotted(value: Any) -> Any:
+def copy_with_dot_access(value: Any) -> Any:
     """Return a deep copy of a value whose mappings are accessible with a dot."""
-    return wrapped(_deep_copy(value, {}))
+    return wrap(_deep_copy(value, {}))
 
 
 def _deep_copy(value: Any, copies: dict[int, Any]) -> Any:
@@ -165,7 +165,7 @@ def _unit_loader(base: type, evaluate: Callable[[str], Any]) -> Any:
         """The safe loader with support for unit tags."""
 
     def with_unit(loader: Any, tag: str, node: Any) -> float:
-        return float(evaluate(loader.construct_scalar(node))) * UNITS[f"!{tag}"]
+        return float(evaluate(loader.construct_scalar(node))) * UNIT_FACTORS[f"!{tag}"]
 
     UnitLoader.add_multi_constructor("!", _reject_other_tags(with_unit))
     return UnitLoader
@@ -173,10 +173,10 @@ def _unit_loader(base: type, evaluate: Callable[[str], Any]) -> Any:
 
 def _reject_other_tags(construct: Callable[[Any, str, Any], float]) -> Callable[[Any, str, Any], float]:
     def constructor(loader: Any, tag: str, node: Any) -> float:
-        if f"!{tag}" not in UNITS:
+        if f"!{tag}" not in UNIT_FACTORS:
             from yaml.constructor import ConstructorError
 
-            supported_tags = ", ".join(UNITS)
+            supported_tags = ", ".join(UNIT_FACTORS)
             raise ConstructorError(
                 None,
                 None,

@@ -1,4 +1,4 @@
-"""The xacro tags except macro calls: arguments, properties, conditions, includes and others."""
+"""The xacro tags except macro calls, such as properties, conditions and includes."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, did_you_
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Container, Directive, Expander, Site, check_attributes, warn_of_global
 from linkwright.xacro.expressions.expression import is_identifier
-from linkwright.xacro.expressions.scope import Namespace, Scope, truth
-from linkwright.xacro.faults import Frame, trail, xml_hint
+from linkwright.xacro.expressions.scope import Namespace, Scope, evaluate_truth
+from linkwright.xacro.faults import Frame, find_xml_hint, trail
 from linkwright.xacro.macros import MacroTable
 from linkwright.xacro.tags.macro_calls import call_dynamically, define_macro
 from linkwright.xmltree import Document, Element
@@ -24,27 +24,27 @@ def include(expander: Expander, site: Site) -> None:
     """Expand ``<xacro:include>``: insert the content of one file, or of all matching files."""
     node, session = site.node, expander.session
     check_attributes(expander, node, ("filename",), ("ns", "optional"))
-    scope, macros = _target_tables(expander, site)
+    scope, macros = _find_target_tables(expander, site)
     optional = _is_optional(expander, node)
     child = next(node.elements(), None)
     if child is not None:
         session.warn("XAC503", phrase("'{tag}' inside an include has no effect", tag=child.tag), child.span())
     contents: list[Element] = []
-    for path in _included_paths(expander, site):
+    for path in _find_included_paths(expander, site):
         session.add_dependency(path)
         container = _expand_file(expander, site, path, scope, macros, optional=optional)
         if container is not None:
             expander.lift_namespaces(container, site)
             contents.append(container)
     output = site.parent.children
-    needs_mark = expander.sweeper.sweep(output, followed=site.has_followers)
+    needs_mark = expander.sweeper.sweep(output, has_followers=site.has_followers)
     for container in contents:
         expander.splice(container, site)
     if needs_mark:
         expander.sweeper.move_marker(output)
 
 
-def _target_tables(expander: Expander, site: Site) -> tuple[Scope, MacroTable]:
+def _find_target_tables(expander: Expander, site: Site) -> tuple[Scope, MacroTable]:
     if not site.node.attributes.get("ns"):
         return site.scope, site.macros
     name = expander.text_value(site.node, "ns", site.scope)
@@ -61,16 +61,16 @@ def _is_optional(expander: Expander, node: Element) -> bool:
     if text is None:
         return False
     try:
-        return truth(text)
+        return evaluate_truth(text)
     except ValueError:
         message = phrase("'optional' is '{value}', which is neither true nor false", value=text)
         hint = phrase("write true or false; it is not evaluated")
         expander.fail_at("XAC305", message, node, node.attribute_span("optional"), hint)
 
 
-def _included_paths(expander: Expander, site: Site) -> list[str]:
+def _find_included_paths(expander: Expander, site: Site) -> list[str]:
     name = expander.text_value(site.node, "filename", site.scope)
-    path = expander.session.absolute(name)
+    path = expander.session.relative_to_current_file(name)
     if not any(character in path for character in _PATTERN_CHARACTERS):
         return [path]
     from glob import glob
@@ -114,7 +114,7 @@ def _read_document(expander: Expander, site: Site, path: str) -> Document:
         node, frame = site.node, expander.session.frame
         first = error.diagnostics[0]
         if first.span is None:
-            hint = first.hint or _nearest_file(expander.session.on_disk(path))
+            hint = first.hint or _suggest_file(expander.session.resolve_path(path))
             diagnostic = Diagnostic(
                 first.code,
                 first.message,
@@ -126,12 +126,12 @@ def _read_document(expander: Expander, site: Site, path: str) -> Document:
         else:
             notes = (*first.notes, Frame(None, node, frame).note(), *trail(frame))
             diagnostic = Diagnostic(
-                first.code, first.message, first.span, notes=notes, hint=xml_hint(first), source=first.source
+                first.code, first.message, first.span, notes=notes, hint=find_xml_hint(first), source=first.source
             )
         raise LinkwrightError(diagnostic) from None
 
 
-def _nearest_file(path: str) -> Phrase | None:
+def _suggest_file(path: str) -> Phrase | None:
     folder, name = os.path.split(path)
     try:
         return did_you_mean(name, os.listdir(folder or "."))  # noqa: PTH208 - names are needed, not paths
@@ -147,17 +147,17 @@ def define_property(expander: Expander, site: Site) -> None:
     node, scope = site.node, site.scope
     expander.sweep(site)
     check_attributes(expander, node, ("name",), _OPTIONAL_ATTRIBUTES)
-    name = _name(expander, node, scope)
+    name = _evaluate_name(expander, node, scope)
     attributes = node.attributes
     if len(attributes) == 2 and "value" in attributes:  # the usual case, without further attributes
         warn_of_global(expander, node, name, "name")
         scope.define(name, attributes["value"], lazy=True, element=node)
         return
-    is_removal = _boolean_attribute(expander, node, "remove", scope, default=False)
+    is_removal = _evaluate_boolean(expander, node, "remove", scope, default=False)
     if ("value" in attributes) + ("default" in attributes) + is_removal > 1:
         message = phrase("the property '{name}' has more than one of 'value', 'default' and 'remove'", name=name)
         expander.fail_at("XAC304", message, node, node.span(), phrase("keep one of them"))
-    if is_removal and _remove(expander, node, name, scope):
+    if is_removal and _remove_property(expander, node, name, scope):
         return
     if "default" in attributes:
         if "scope" in attributes:
@@ -167,11 +167,11 @@ def define_property(expander: Expander, site: Site) -> None:
             return
     attribute = next((key for key in ("value", "default") if key in attributes), None)
     if attribute is None:
-        target, _ = _target_scope(expander, node, name, scope)
+        target, _ = _find_target_scope(expander, node, name, scope)
         target.bind(f"**{name}", node)
         return
-    is_lazy = _boolean_attribute(expander, node, "lazy_eval", scope, default=True)
-    target, is_local = _target_scope(expander, node, name, scope)
+    is_lazy = _evaluate_boolean(expander, node, "lazy_eval", scope, default=True)
+    target, is_local = _find_target_scope(expander, node, name, scope)
     warn_of_global(expander, node, name, "name")
     if is_lazy and is_local:
         target.define(name, attributes[attribute], lazy=True, element=node, attribute=attribute)
@@ -179,7 +179,7 @@ def define_property(expander: Expander, site: Site) -> None:
         target.define(name, expander.value(node, attribute, scope))
 
 
-def _name(expander: Expander, node: Element, scope: Scope) -> str:
+def _evaluate_name(expander: Expander, node: Element, scope: Scope) -> str:
     name = node.attributes["name"]
     if "$" in name:
         name = expander.text_value(node, "name", scope)
@@ -193,18 +193,18 @@ def _name(expander: Expander, node: Element, scope: Scope) -> str:
     return name
 
 
-def _boolean_attribute(expander: Expander, node: Element, attribute: str, scope: Scope, *, default: bool) -> bool:
+def _evaluate_boolean(expander: Expander, node: Element, attribute: str, scope: Scope, *, default: bool) -> bool:
     if not node.attributes.get(attribute):
         return default
     value = expander.value(node, attribute, scope)
     try:
-        return truth(value)
+        return evaluate_truth(value)
     except ValueError:
         message = phrase("'{name}' is '{text}', which is neither true nor false", name=attribute, text=value)
         expander.fail_at("XAC305", message, node, node.attribute_span(attribute), phrase("write true or false"))
 
 
-def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
+def _remove_property(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
     """Remove a property from all scopes, and return whether it existed.
 
     If it did not exist, the caller must define a block with this name, as in ros/xacro.
@@ -221,7 +221,7 @@ def _remove(expander: Expander, node: Element, name: str, scope: Scope) -> bool:
     return True
 
 
-def _target_scope(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
+def _find_target_scope(expander: Expander, node: Element, name: str, scope: Scope) -> tuple[Scope, bool]:
     """Return the scope for a property, and whether it is the tag's scope."""
     scope_name = node.attributes.get("scope")
     if scope_name == "global":
@@ -239,7 +239,7 @@ def _target_scope(expander: Expander, node: Element, name: str, scope: Scope) ->
     return target, False
 
 
-_NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # not compiled here because few files need it
+_XML_NAME = r"[^\W\d][\w.\-]*(:[^\W\d][\w.\-]*)?"  # compiled on first use, because few files need it
 """An approximation of the pattern for names in XML."""
 
 
@@ -259,12 +259,12 @@ def expand_condition(expander: Expander, site: Site) -> None:
     node, scope, session = site.node, site.scope, expander.session
     output = site.parent.children
     marker_holder: list[Any] = []  # holds the marker until the end of the tag, unless a tag inside moves it
-    if expander.sweeper.sweep(output, followed=site.has_followers):
+    if expander.sweeper.sweep(output, has_followers=site.has_followers):
         expander.sweeper.move_marker(marker_holder)
     check_attributes(expander, node, ("value",), ())
     value = expander.value(node, "value", scope)
     try:
-        condition = truth(value)
+        condition = evaluate_truth(value)
     except ValueError:
         message = phrase(
             "the condition '{value}' evaluates to '{other_value}', not to true or false",
@@ -319,7 +319,7 @@ def expand_element(expander: Expander, site: Site) -> None:
     element = Element(tag, attributes, node.source, node.offset)
     element.children = node.children
     if tag.startswith("xacro:"):
-        expander.directive(site._replace(node=element))
+        expander.expand_tag(site._replace(node=element))
     else:
         expander.expand_element(element, site.parent.children, site.scope, site.macros)
 
@@ -378,7 +378,7 @@ def _warn_of_non_text(expander: Expander, site: Site, name: str, value: object) 
 
 
 def _check_name(expander: Expander, node: Element, attribute: str, kind: str, name: str) -> None:
-    if not re.fullmatch(_NAME, name):
+    if not re.fullmatch(_XML_NAME, name):
         message = (
             phrase("'{name}' cannot be the name of an {kind}", name=name, kind=term(kind))
             if name

@@ -60,15 +60,15 @@ def call_dynamically(expander: Expander, site: Site) -> None:
     attributes = {attribute: value for attribute, value in node.attributes.items() if attribute != "macro"}
     call = Element(PREFIX + name, attributes, node.source, node.offset)
     call.children = node.children
-    _Call(expander, site._replace(node=call), name, name_attribute="macro").run()
+    _MacroCall(expander, site._replace(node=call), name, name_attribute="macro").run()
 
 
 def call_macro(expander: Expander, site: Site) -> None:
     """Expand ``<xacro:NAME ...>``: call a macro."""
-    _Call(expander, site, site.node.tag[len(PREFIX) :], name_attribute=None).run()
+    _MacroCall(expander, site, site.node.tag[len(PREFIX) :], name_attribute=None).run()
 
 
-class _Call:
+class _MacroCall:
     """One call of a macro.
 
     The arguments and then the blocks are evaluated in the caller's scope. Missing arguments receive their defaults.
@@ -93,7 +93,7 @@ class _Call:
             self._report_missing_parameters(macro, missing)
         container = self._expand_body(macro, scope, MacroTable(macros))
         output = site.parent.children
-        mark = expander.sweeper.sweep(output, followed=site.has_followers)
+        mark = expander.sweeper.sweep(output, has_followers=site.has_followers)
         expander.lift_namespaces(container, site)
         expander.splice(container, site)
         if mark:
@@ -185,12 +185,12 @@ class _Call:
         remaining = []
         for parameter in unbound:
             if parameter.forward or parameter.default is not None:
-                scope.define(parameter.name, self._default(macro, parameter))
+                scope.define(parameter.name, self._evaluate_default(macro, parameter))
             else:
                 remaining.append(parameter)
         return remaining
 
-    def _default(self, macro: Macro, parameter: Parameter) -> Any:
+    def _evaluate_default(self, macro: Macro, parameter: Parameter) -> Any:
         caller, node = self._site.scope, self._node
         session = self._expander.session
         session.current_node, session.current_attribute = macro.body, "params"
@@ -205,7 +205,7 @@ class _Call:
                 )
                 hint = phrase('define it before the call, or write {name}="..."', name=parameter.name)
                 fault = Fault("XAC409", message, hint=hint)
-                fault.notes.append(self._definition_note(macro, parameter))
+                fault.notes.append(self._make_definition_note(macro, parameter))
                 fault.locate_at(node)
                 raise fault
             if "$" not in parameter.default:
@@ -258,7 +258,7 @@ class _Call:
             )
         message = phrase("the macro '{name}' has no parameter '{other_name}'", name=macro.name, other_name=name)
         span = attribute_name_span(node, name)
-        self._expander.fail_at("XAC402", message, node, span, hint, self._definition_note(macro))
+        self._expander.fail_at("XAC402", message, node, span, hint, self._make_definition_note(macro))
 
     def _report_missing_parameters(self, macro: Macro, missing: list[Parameter]) -> None:
         node = self._node
@@ -268,7 +268,7 @@ class _Call:
                 "the macro '{name}' declares its parameter '{twice}' twice", name=macro.name, twice=duplicate_names[0]
             )
             span = node.span()
-            self._expander.fail_at("XAC408", message, node, span, None, self._definition_note(macro, missing[0]))
+            self._expander.fail_at("XAC408", message, node, span, None, self._make_definition_note(macro, missing[0]))
         message = counted(
             "the call of the macro '{name}' lacks its parameter {parameters}",
             "the call of the macro '{name}' lacks its parameters {parameters}",
@@ -279,7 +279,7 @@ class _Call:
         hint = phrase("write {form}", form=" ".join(f'{parameter.name}="..."' for parameter in missing))
         if not all(parameter.name.lstrip("*").isidentifier() for parameter in missing):
             hint = phrase("a default that contains spaces ends at the first space; put it in quotes")
-        note = self._definition_note(macro, missing[0])
+        note = self._make_definition_note(macro, missing[0])
         self._expander.fail_at("XAC403", message, node, node.span(), hint, note)
 
     def _report_missing_block(self, macro: Macro, parameter: Parameter) -> NoReturn:
@@ -291,7 +291,7 @@ class _Call:
             other_name=name,
         )
         hint = phrase("write the element between the tags of the call")
-        note = self._definition_note(macro, parameter)
+        note = self._make_definition_note(macro, parameter)
         self._expander.fail_at("XAC404", message, node, node.span(), hint, note)
 
     def _report_unused_block(self, macro: Macro, block: Element) -> None:
@@ -300,10 +300,10 @@ class _Call:
             "the macro '{name}' has no block parameter for the element <{tag}>", tag=block.tag, name=macro.name
         )
         hint = counted("it takes one block", "it takes {count} blocks", count) if count else phrase("it takes no block")
-        note = self._definition_note(macro)
+        note = self._make_definition_note(macro)
         self._expander.fail_at("XAC405", message, block, block.span(), hint, note)
 
-    def _definition_note(self, macro: Macro, parameter: Parameter | None = None) -> Note:
+    def _make_definition_note(self, macro: Macro, parameter: Parameter | None = None) -> Note:
         body = macro.body
         if parameter is not None:
             fault = Fault("", phrase("a parameter"), parameter.start, parameter.start + len(parameter.name))

@@ -18,7 +18,7 @@ from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
 from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.faults import Fault, attribute_span, text_part_span
-from linkwright.xacro.session import Inputs, main_document
+from linkwright.xacro.session import Inputs, read_main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tracing.traced import TracedSession, expand_traced
 from linkwright.xmltree import Document, Element, Text
@@ -74,8 +74,8 @@ def examine_arguments(inputs: Inputs) -> Arguments:
     Raises:
         LinkwrightError: if the file cannot be read or is not XML.
     """
-    session = _Session(inputs)
-    main = main_document(session, inputs.text)
+    session = _ArgumentSession(inputs)
+    main = read_main_document(session, inputs.text)
     session.documents[inputs.name] = main
     session.record_defaults(main)
     problems: tuple[Diagnostic, ...] = ()
@@ -85,11 +85,11 @@ def examine_arguments(inputs: Inputs) -> Arguments:
     except LinkwrightError as error:
         problems = error.diagnostics
         _follow_includes(session)
-    findings = _Findings(inputs, session, complete=not problems)
+    findings = _Findings(inputs, session, is_complete=not problems)
     return Arguments(findings.arguments(), findings.unused_warnings(), problems)
 
 
-class _Session(TracedSession):
+class _ArgumentSession(TracedSession):
     """A session without missing arguments.
 
     Attributes:
@@ -141,29 +141,29 @@ class _Findings:
     """The uses and declarations of arguments in all files that were read.
 
     Attributes:
-        complete: whether the expansion finished, so that each required argument was used.
+        is_complete: whether the expansion finished, so that each required argument was used.
     """
 
     inputs: Inputs
-    session: _Session
-    complete: bool
+    session: _ArgumentSession
+    is_complete: bool
     uses: dict[str, Span | None] = field(default_factory=dict)
-    elsewhere: dict[str, Element] = field(default_factory=dict)
+    other_declarations: dict[str, Element] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         for document in self.session.documents.values():
             for element in document.root.walk():
                 if element.tag == "xacro:arg" and "name" in element.attributes:
-                    self.elsewhere.setdefault(element.attributes["name"], element)
-                for name, span in _used_arguments(element):
+                    self.other_declarations.setdefault(element.attributes["name"], element)
+                for name, span in _find_used_arguments(element):
                     self.uses.setdefault(name, span)
 
     def arguments(self) -> tuple[Argument, ...]:
         """Return all arguments, declared arguments first."""
         session = self.session
-        declarations = {**session.declared, **self.elsewhere, **session.declared}
+        declarations = {**session.declared, **self.other_declarations, **session.declared}
         missing_names = dict(session.missing)
-        if not self.complete:
+        if not self.is_complete:
             missing_names.update(dict.fromkeys(name for name in self.uses if name not in declarations))
         results = [self._declared_argument(name, element, missing_names) for name, element in declarations.items()]
         results += [self._undeclared_argument(name) for name in missing_names if name not in declarations]
@@ -177,7 +177,7 @@ class _Findings:
 
     def unused_warnings(self) -> tuple[Diagnostic, ...]:
         """Return a warning for each passed argument that no file declares or uses."""
-        known_names = {**self.uses, **self.elsewhere, **self.session.declared, **self.session.used_names}
+        known_names = {**self.uses, **self.other_declarations, **self.session.declared, **self.session.used_names}
         return tuple(
             Diagnostic(
                 "XAC215",
@@ -215,7 +215,7 @@ class _Findings:
         return Argument(name, None, self.uses.get(name), not is_passed, True, value, is_passed)
 
 
-def _follow_includes(session: _Session) -> None:
+def _follow_includes(session: _ArgumentSession) -> None:
     """Read the files of includes that an expansion did not reach, if their names are known."""
     scope = Scope(session.globals, session)
     pending = list(session.documents.items())
@@ -227,7 +227,9 @@ def _follow_includes(session: _Session) -> None:
             if element.tag != "xacro:include":
                 continue
             try:
-                path = session.absolute(session.evaluate_text(element.attributes.get("filename", ""), scope))
+                path = session.relative_to_current_file(
+                    session.evaluate_text(element.attributes.get("filename", ""), scope)
+                )
                 if path not in read_paths:
                     read_paths.add(path)
                     pending.append((path, session.read(path)))
@@ -235,7 +237,7 @@ def _follow_includes(session: _Session) -> None:
                 continue  # the name of the included file depends on properties of the files
 
 
-def _used_arguments(element: Element) -> Iterator[tuple[str, Span | None]]:
+def _find_used_arguments(element: Element) -> Iterator[tuple[str, Span | None]]:
     """Yield the arguments that an element's attributes and own texts use, with locations."""
     for attribute, value in element.attributes.items():
         for match in _find_uses(value):

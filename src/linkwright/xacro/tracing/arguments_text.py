@@ -10,23 +10,23 @@ from linkwright.xacro.tracing.arguments import Argument, Arguments
 from linkwright.xacro.tracing.provenance_text import format_location
 
 
-def arguments_text(arguments: tuple[Argument, ...]) -> str:
+def format_arguments(arguments: tuple[Argument, ...]) -> str:
     """Return a line for each argument: name, default, location, and remarks."""
     if not arguments:
         return "the file has no arguments\n"
     name_width = max(len(argument.name) for argument in arguments)
-    default_width = min(max(len(_default_text(argument)) for argument in arguments), 40)
+    default_width = min(max(len(_format_default(argument)) for argument in arguments), 40)
     lines = []
     for argument in arguments:
-        remarks = "".join(f"  {remark}" for remark in _remarks(argument))
+        remarks = "".join(f"  {remark}" for remark in _list_remarks(argument))
         lines.append(
-            f"{argument.name:{name_width}}  {_default_text(argument):{default_width}}  "
+            f"{argument.name:{name_width}}  {_format_default(argument):{default_width}}  "
             f"{format_location(argument.span)}{remarks}"
         )
     return "".join(f"{line.rstrip()}\n" for line in lines)
 
 
-def incompleteness_remarks(findings: Arguments) -> list[Diagnostic]:
+def find_incompleteness(findings: Arguments) -> list[Diagnostic]:
     """Return a warning that the list of arguments may be incomplete.
 
     The list is empty if the expansion finished.
@@ -37,7 +37,7 @@ def incompleteness_remarks(findings: Arguments) -> list[Diagnostic]:
     message = phrase(
         "the list of arguments may be incomplete because the file cannot be expanded with the arguments given"
     )
-    suspected_arguments = _arguments_causing(findings.arguments, first_problem.message)
+    suspected_arguments = _find_arguments_causing(findings.arguments, first_problem.message)
     required = [
         f"{argument.name}:=..."
         for argument in suspected_arguments or findings.arguments
@@ -48,7 +48,7 @@ def incompleteness_remarks(findings: Arguments) -> list[Diagnostic]:
     return [Diagnostic("XAC803", message, first_problem.span, Severity.WARNING, notes, hint, first_problem.source)]
 
 
-def _arguments_causing(arguments: Iterable[Argument], message: str) -> list[Argument]:
+def _find_arguments_causing(arguments: Iterable[Argument], message: str) -> list[Argument]:
     """Return the arguments whose defaults occur in an error message, as in a missing file."""
     return [
         argument
@@ -60,13 +60,13 @@ def _arguments_causing(arguments: Iterable[Argument], message: str) -> list[Argu
     ]
 
 
-def _default_text(argument: Argument) -> str:
+def _format_default(argument: Argument) -> str:
     if argument.required:
         return "required"
     return "no default" if argument.default is None else f'"{argument.default}"'
 
 
-def _remarks(argument: Argument) -> list[str]:
+def _list_remarks(argument: Argument) -> list[str]:
     remarks = []
     if argument.is_given:
         remarks.append(f'given "{argument.value}"')

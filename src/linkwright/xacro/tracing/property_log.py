@@ -42,7 +42,7 @@ class _Log:
     def probe(self, expander: Expander, site: Site) -> None:
         """Start logging the scope of a probe, unless it is logged already."""
         scope, target = site.scope, site.node.origin
-        depth = _depth(scope)
+        depth = _count_enclosing_scopes(scope)
         if scope.values.__class__ is dict and (depth == 1 or self._everywhere):
             session = expander.session
             existing_values, scope.values = scope.values, _Table(session, self._write_line, depth - 1)
@@ -100,7 +100,7 @@ class _Table(dict[str, Any]):
         self._write_line(f"{self._indent}{action} {name}: {text} ({span or self._session.file})")
 
 
-def _depth(scope: Scope) -> int:
+def _count_enclosing_scopes(scope: Scope) -> int:
     """Return the number of scopes that enclose a scope."""
     depth = 0
     while scope.parent is not None:

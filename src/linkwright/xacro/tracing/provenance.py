@@ -1,4 +1,4 @@
-"""The provenance of an element of an expansion: the location, calls and values of each part."""
+"""The provenance of an element of an expansion: locations, calls and values."""
 
 from __future__ import annotations
 
@@ -41,8 +41,7 @@ class AttributeProvenance:
         span: the location of this text.
         values: the names in the text, with their values.
         calls: the calls and includes that contain the text, innermost first. They differ from the calls of the element
-        if
-            ``<xacro:attribute>`` has set the attribute.
+            if ``<xacro:attribute>`` has set the attribute.
     """
 
     name: str
@@ -140,39 +139,39 @@ class Tracer:
             )
             hint = phrase("the file has changed; expand it again")
             raise LinkwrightError(Diagnostic("XAC802", message, element.span(), hint=hint, source=element.source))
-        moment = self._recorder.record_of(counterpart) or ElementRecord(element, None)
-        calls = self._calls(moment.frame)
+        record = self._recorder.record_of(counterpart) or ElementRecord(element, None)
+        calls = self._list_calls(record.frame)
         return Provenance(
             element=element,
             span=element.span(),
             calls=calls,
-            attributes=tuple(self._attribute(counterpart, name, moment, calls) for name in element.attributes),
-            texts=tuple(_text_provenances(element, moment)),
+            attributes=tuple(self._trace_attribute(counterpart, name, record, calls) for name in element.attributes),
+            texts=tuple(_trace_texts(element, record)),
             children=tuple(self._trace(child) for child in element.elements()),
         )
 
-    def _attribute(
-        self, element: Element, name: str, moment: ElementRecord, calls: tuple[Call, ...]
+    def _trace_attribute(
+        self, element: Element, name: str, record: ElementRecord, calls: tuple[Call, ...]
     ) -> AttributeProvenance:
         value = element.attributes[name]
-        setting = self._recorder.setting(element, name)
-        node, attribute = (setting.node, "value") if setting else (moment.node, name)
+        setting = self._recorder.attribute_use(element, name)
+        node, attribute = (setting.node, "value") if setting else (record.node, name)
         source_text = written_attribute(node, attribute)
         return AttributeProvenance(
             name=name,
             value=value,
             written=value if source_text is None else source_text,
             span=node.attribute_span(attribute),
-            values=setting.values if setting else moment.values.get(name, ()),
-            calls=self._calls(setting.frame) if setting else calls,
+            values=setting.values if setting else record.values.get(name, ()),
+            calls=self._list_calls(setting.frame) if setting else calls,
         )
 
-    def _calls(self, frame: Frame | None) -> tuple[Call, ...]:
+    def _list_calls(self, frame: Frame | None) -> tuple[Call, ...]:
         return tuple(Call(call.macro, call.site.span(), self._recorder.parameters(call)) for call in frames(frame))
 
 
-def _text_provenances(element: Element, moment: ElementRecord) -> Iterator[TextProvenance]:
-    texts_by_position = {_source_position(text): (text, values) for text, values in moment.texts}
+def _trace_texts(element: Element, record: ElementRecord) -> Iterator[TextProvenance]:
+    texts_by_position = {_source_position(text): (text, values) for text, values in record.texts}
     for child in element.children:
         if isinstance(child, Text) and not child.data.isspace() and child.data:
             text, values = texts_by_position.get(_source_position(child), (child, ()))

@@ -65,7 +65,7 @@ def _call_lines(call: Call) -> Iterator[str]:
         yield f"included at {format_location(call.span)}"
         return
     yield f"in macro '{call.macro}' called at {format_location(call.span)}"
-    yield from (f"    {line}" for line in _table([_value_row(value) for value in call.parameters]))
+    yield from (f"    {line}" for line in _align_rows([_value_row(value) for value in call.parameters]))
 
 
 def _element_lines(provenance: Provenance, root: Provenance) -> Iterator[str]:
@@ -82,10 +82,10 @@ def _element_lines(provenance: Provenance, root: Provenance) -> Iterator[str]:
         if attribute.calls != provenance.calls or not _is_written_on_element(attribute, provenance):
             line += f" set by <xacro:attribute> at {format_location(attribute.span)}"
         yield (line if attribute.written == attribute.value else f"{line} from {_quoted(attribute.written)}")
-        yield from (f"    {row}" for row in _table([_value_row(value) for value in attribute.values]))
+        yield from (f"    {row}" for row in _align_rows([_value_row(value) for value in attribute.values]))
     for text in texts:
         yield f"  text {_quoted(text.value)} from {_quoted(text.written)}"
-        yield from (f"    {line}" for line in _table([_value_row(value) for value in text.values]))
+        yield from (f"    {line}" for line in _align_rows([_value_row(value) for value in text.values]))
 
 
 def _value_row(value: Value) -> tuple[str, str, str]:
@@ -99,7 +99,7 @@ def _value_row(value: Value) -> tuple[str, str, str]:
     return value.name, value.value, source
 
 
-def _table(rows: list[tuple[str, str, str]]) -> Iterator[str]:
+def _align_rows(rows: list[tuple[str, str, str]]) -> Iterator[str]:
     name_width = max((len(name) for name, _, _ in rows), default=0)
     value_width = min(max((len(value) for _, value, _ in rows), default=0), 30)
     for name, value, source in rows:

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from linkwright.diagnostics import LinkwrightError, Span
 from linkwright.loading.lean_typing import Any
 from linkwright.xacro.expander import Directive, Expander, Site
-from linkwright.xacro.expressions.scope import Lazy, Scope, literal
+from linkwright.xacro.expressions.scope import Lazy, Scope, parse_literal
 from linkwright.xacro.faults import Fault, Frame, attribute_span
 from linkwright.xacro.macros import Parameter, parse_parameters
 from linkwright.xacro.tags.directives import DIRECTIVES
@@ -36,7 +36,7 @@ class ElementRecord:
 
 
 @dataclass(frozen=True)
-class Setting:
+class AttributeUse:
     """A use of ``<xacro:attribute>``: element, active call or include, and names in the value."""
 
     node: Element
@@ -65,26 +65,26 @@ class Recorder:
             PROBE: self._record_probe,
         }
         self._records: dict[int, tuple[Element, ElementRecord]] = {}
-        self._settings: list[Setting] = []
-        self._settings_by_attribute: dict[tuple[int, str], Setting] = {}
+        self._settings: list[AttributeUse] = []
+        self._settings_by_attribute: dict[tuple[int, str], AttributeUse] = {}
         self._properties: dict[tuple[int, str], Element] = {}
         self._parameters: dict[int, dict[str, Value]] = {}
         self._frame_parameters: dict[int, tuple[Value, ...]] = {}
         self._arguments: dict[str, Element] = {}
-        self._keepalive: list[Any] = []  # objects that must stay alive because their `id` is a key
+        self._keepalive: list[Any] = []  # These objects must stay alive because their `id` is a key.
 
     def call(self, expander: Expander, site: Site) -> None:
         """Expand a macro call, and record the attributes that it sets."""
         self._recording_directive(call_macro)(expander, site)
 
-    # the recorded moments
+    # access to the records
 
     def record_of(self, element: Element) -> ElementRecord | None:
         """Return the record of the production of an element, or None."""
-        moment = self._records.get(id(element))
-        return moment[1] if moment else None
+        record = self._records.get(id(element))
+        return record[1] if record else None
 
-    def setting(self, element: Element, name: str) -> Setting | None:
+    def attribute_use(self, element: Element, name: str) -> AttributeUse | None:
         """Return the ``<xacro:attribute>`` that set an attribute of an element, or None."""
         return self._settings_by_attribute.get((id(element), name))
 
@@ -118,7 +118,7 @@ class Recorder:
         if name is None or name not in site.parent.attributes:
             return
         values = self._evaluate_references(expander, node.attributes["value"], site.scope)
-        setting = Setting(node, name, site.parent.attributes[name], session.frame, values)
+        setting = AttributeUse(node, name, site.parent.attributes[name], session.frame, values)
         self._settings.append(setting)
         self._keepalive.append(site.parent)
         self._settings_by_attribute[id(site.parent), name] = setting
@@ -149,7 +149,7 @@ class Recorder:
     def _record_probe(self, expander: Expander, site: Site) -> None:
         element, target = site.parent, site.node.origin
         if isinstance(target, ElementRecord):  # the second expansion of a block, whose elements already have a record
-            self._remember(element, target)
+            self._add_record(element, target)
         elif isinstance(target, Text):
             record = self.record_of(element)
             if record is not None:
@@ -159,16 +159,16 @@ class Recorder:
             self._begin_macro(expander, target, site.scope)
             return
         elif isinstance(target, Element):
-            moment = ElementRecord(target, expander.session.frame)
+            record = ElementRecord(target, expander.session.frame)
             for name, text in target.attributes.items():
                 if "$" in text:
-                    moment.values[name] = self._evaluate_references(expander, text, site.scope)
-            target = moment
-            self._remember(element, moment)
+                    record.values[name] = self._evaluate_references(expander, text, site.scope)
+            target = record
+            self._add_record(element, record)
         element.children.append(recorded_probe(target))
 
-    def _remember(self, element: Element, moment: ElementRecord) -> None:
-        self._records[id(element)] = (element, moment)
+    def _add_record(self, element: Element, record: ElementRecord) -> None:
+        self._records[id(element)] = (element, record)
 
     def _begin_macro(self, expander: Expander, macro: Element, scope: Scope) -> None:
         frame = expander.session.frame
@@ -195,7 +195,7 @@ class Recorder:
     def _evaluate_reference(self, expander: Expander, reference: Reference, scope: Scope) -> Value | None:
         if reference.command is not None:
             return self._evaluate_substitution(expander, reference, scope)
-        owner = _defining_scope(scope, reference.name)
+        owner = _find_defining_scope(scope, reference.name)
         if owner is None or owner.parent is None:
             return None  # the language provides this name
         value = _try_evaluate(expander, f"${{{reference.path}}}", scope)
@@ -255,17 +255,17 @@ def _evaluate_again(expander: Expander, node: Element, attribute: str, scope: Sc
     return expander.text_value(node, attribute, scope)
 
 
-def _defining_scope(scope: Scope, name: str) -> Scope | None:
+def _find_defining_scope(scope: Scope, name: str) -> Scope | None:
     """Return the innermost enclosing scope that defines a name, or None."""
-    holder: Scope | None = scope
-    while holder is not None and name not in holder.values:
-        holder = holder.parent
-    return holder
+    enclosing_scope: Scope | None = scope
+    while enclosing_scope is not None and name not in enclosing_scope.values:
+        enclosing_scope = enclosing_scope.parent
+    return enclosing_scope
 
 
 def _make_parameter_value(parameter: Parameter, value: Any, call: Element, macro: Element) -> Value:
     """Return a parameter's value in a call, and the location of the argument or default."""
-    text = format_value(value.text if isinstance(value, Lazy) else literal(value))
+    text = format_value(value.text if isinstance(value, Lazy) else parse_literal(value))
     if parameter.name in call.attributes:
         span, source_text = call.attribute_span(parameter.name), written_attribute(call, parameter.name)
         return Value(parameter.name, "parameter", text, span, source_text)

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 from linkwright.xacro.expander import Directive, Expander
 from linkwright.xacro.limits import recursion_limit_for
-from linkwright.xacro.session import Inputs, Session, main_document
+from linkwright.xacro.session import Inputs, Session, read_main_document
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xmltree import Document, Element, Node, Text
 
@@ -62,7 +62,7 @@ def expand_traced(
     Raises:
         LinkwrightError: the errors of the description.
     """
-    document = main_document(session, inputs.text)
+    document = read_main_document(session, inputs.text)
     if inputs.text is not None and PROBE in directives:
         document = with_probes(document)
     with recursion_limit_for(inputs.limits):
@@ -79,7 +79,7 @@ def with_probes(document: Document) -> Document:
     while pending:
         original, copy = pending.pop()
         if _is_watched(original):
-            copy.children.append(_probe(original))
+            copy.children.append(_make_probe(original))
         for child in original.children:
             if isinstance(child, Element):
                 child_copy = Element(child.tag, child.attributes, child.source, child.offset)
@@ -87,9 +87,9 @@ def with_probes(document: Document) -> Document:
                 copy.children.append(child_copy)
                 continue
             if isinstance(child, Text) and "$" in child.data and not child.cdata:
-                copy.children.append(_probe(child))
+                copy.children.append(_make_probe(child))
             copy.children.append(child)
-    return _around(document, root)
+    return _make_document(document, root)
 
 
 def without_probes(document: Document) -> Document:
@@ -116,7 +116,7 @@ def recorded_probe(record: object) -> Element:
     return Element(PROBE, origin=record)
 
 
-def _probe(original: Element | Text) -> Element:
+def _make_probe(original: Element | Text) -> Element:
     return Element(PROBE, source=original.source, offset=original.offset, origin=original)
 
 
@@ -124,7 +124,7 @@ def _is_watched(element: Element) -> bool:
     return not element.tag.startswith(_PREFIX) or element.tag in ("xacro:element", "xacro:macro")
 
 
-def _around(document: Document, root: Element) -> Document:
+def _make_document(document: Document, root: Element) -> Document:
     result = Document(root, document.source)
     result.prolog, result.epilog = document.prolog, document.epilog
     result.doctype, result.doctype_index = document.doctype, document.doctype_index

@@ -14,7 +14,7 @@ from linkwright.xacro.expressions.scope import Scope
 from linkwright.xacro.expressions.template import TokenKind, tokenize
 from linkwright.xacro.faults import Fault, Frame
 from linkwright.xacro.limits import recursion_limit_for
-from linkwright.xacro.session import Inputs, Session, main_document
+from linkwright.xacro.session import Inputs, Session, read_main_document
 from linkwright.xacro.tags.directives import DIRECTIVES
 from linkwright.xacro.tags.macro_calls import call_macro
 from linkwright.xacro.tracing.references import Reference, format_value, references
@@ -61,7 +61,7 @@ class EvaluatedExpression:
         return tuple(dict.fromkeys(evaluation.value for evaluation in self.evaluations))
 
 
-def evaluated_expressions(inputs: Inputs) -> list[EvaluatedExpression]:
+def evaluate_expressions(inputs: Inputs) -> list[EvaluatedExpression]:
     """Expand a description, and return the expressions that were evaluated.
 
     If the expansion fails, the result contains the expressions evaluated before the error. Expressions that change a
@@ -72,7 +72,7 @@ def evaluated_expressions(inputs: Inputs) -> list[EvaluatedExpression]:
     """
     session = _RecordingSession(inputs)
     try:
-        document = main_document(session, inputs.text)
+        document = read_main_document(session, inputs.text)
         with recursion_limit_for(inputs.limits):
             Expander(session, DIRECTIVES, call_macro).walk(document)
     except LinkwrightError:
@@ -103,21 +103,21 @@ class _RecordingSession(Session):
             return
         if self.current_attribute == "params" and isinstance(node, Element) and text == node.attributes.get("params"):
             return  # a list of parameters; the value of each default is recorded when a call needs it
-        start = self._start(text)
+        start = self._find_start(text)
         if start is None:
             return
         name = node.source.name
-        for part_start, part_end in _ranges(text):
+        for part_start, part_end in _find_ranges(text):
             key = (name, start + part_start, start + part_end)
             expression = self.expressions.get(key)
             if expression is None:
                 expression = self.expressions[key] = EvaluatedExpression(*key, [])
             if len(expression.evaluations) < _MAX_EVALUATIONS:
                 part = text[part_start:part_end]
-                names = tuple(self._names(part, scope))
-                expression.evaluations.append(Evaluation(self._value_text(part, scope), self.frame, names))
+                names = tuple(self._list_names(part, scope))
+                expression.evaluations.append(Evaluation(self._format_value(part, scope), self.frame, names))
 
-    def _start(self, text: str) -> int | None:
+    def _find_start(self, text: str) -> int | None:
         """Return the offset in the file of a text under evaluation, or None if it is not found."""
         node = self.current_node
         assert node is not None
@@ -134,14 +134,14 @@ class _RecordingSession(Session):
         offset = source.find(text, begin, end)
         return offset if offset >= 0 and source.find(text, offset + 1, end) < 0 else None
 
-    def _names(self, part: str, scope: Scope) -> Iterator[tuple[str, str]]:
-        for reference in _references(part):
+    def _list_names(self, part: str, scope: Scope) -> Iterator[tuple[str, str]]:
+        for reference in _find_references(part):
             if reference.command is None and part[2:-1].strip() != reference.path:
-                value = self._value_text(f"${{{reference.path}}}", scope)
+                value = self._format_value(f"${{{reference.path}}}", scope)
                 if value:
                     yield reference.path, value
 
-    def _value_text(self, text: str, scope: Scope) -> str:
+    def _format_value(self, text: str, scope: Scope) -> str:
         try:
             value = super().evaluate(text, scope)
         except (Fault, LinkwrightError, KeyError):
@@ -150,12 +150,12 @@ class _RecordingSession(Session):
 
 
 @lru_cache(maxsize=4096)
-def _references(text: str) -> tuple[Reference, ...]:
+def _find_references(text: str) -> tuple[Reference, ...]:
     return tuple(references(text))
 
 
 @lru_cache(maxsize=4096)
-def _ranges(text: str) -> tuple[tuple[int, int], ...]:
+def _find_ranges(text: str) -> tuple[tuple[int, int], ...]:
     """Return the start and end of a text, and of each expression and substitution in it."""
     parts = ((token.start, token.end) for token in tokenize(text) if token.kind is not TokenKind.TEXT)
     return tuple(dict.fromkeys([(0, len(text)), *parts]))

@@ -89,7 +89,7 @@ def source_elements(text: str) -> Sequence[SourceElement]:
     return elements
 
 
-def innermost_element(elements: Sequence[SourceElement], offset: int) -> SourceElement | None:
+def find_innermost_element(elements: Sequence[SourceElement], offset: int) -> SourceElement | None:
     """Return the smallest element around an offset, or None.
 
     Args:

@@ -30,7 +30,7 @@ async def show_progress(server: LanguageServer, title: Phrase, work: asyncio.Fut
     Args:
         server: the language server, after its initialization.
         title: the title of the indicator.
-        work: the future of the work, which this function also waits for.
+        work: the future of the work. The function returns when the work is done.
     """
     await asyncio.wait([work], timeout=_PROGRESS_DELAY_S)
     window = server.client_capabilities.window

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from linkwright.lsp.python.answers import combine_responses, is_final_response, server_of_action
 from linkwright.lsp.python.open_texts import OpenText
+from linkwright.lsp.python.responses import combine_responses, find_server_of_action, is_final_response
 
 TEXT = OpenText("file:///a.py", 'Node(pac, "tur")\n', 1, "utf-16")
 OWN, TY, RUFF = "linkwright", "ty", "ruff"
@@ -64,9 +64,9 @@ def test_code_action_is_resolved_by_its_server_with_its_data() -> None:
     )
     assert [action["title"] for action in actions] == ["own", "a", "fix"]
     assert actions[0] == own_result
-    assert [server_of_action(action) for action in actions] == [None, (TY, {"title": "a"}), (RUFF, fix)]
+    assert [find_server_of_action(action) for action in actions] == [None, (TY, {"title": "a"}), (RUFF, fix)]
 
 
 def test_code_actions_are_marked_without_linkwright_answer() -> None:
     actions = combine_responses("textDocument/codeAction", [(RUFF, [{"title": "fix"}])], TEXT, {})
-    assert server_of_action(actions[0]) == (RUFF, {"title": "fix"})
+    assert find_server_of_action(actions[0]) == (RUFF, {"title": "fix"})

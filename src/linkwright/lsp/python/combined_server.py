@@ -1,4 +1,7 @@
-"""Serve an editor as one language server, which combines Linkwright's server with servers for Python files."""
+"""Serve an editor as one language server.
+
+The server combines Linkwright's own server with the servers for Python files.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,8 @@ from collections.abc import Sequence
 
 from pygls.lsp.server import LanguageServer
 
-from linkwright.lsp.python.answers import OWN_SERVER
 from linkwright.lsp.python.programs import Program
+from linkwright.lsp.python.responses import OWN_SERVER
 from linkwright.lsp.python.router import Router
 from linkwright.lsp.python.servers import Stream, read_messages
 

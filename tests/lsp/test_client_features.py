@@ -13,7 +13,7 @@ from lsprotocol import types
 from pygls.exceptions import JsonRpcException
 
 from linkwright.diagnostics import phrase
-from linkwright.lsp.folders import WATCHED_FILES, show_progress
+from linkwright.lsp.client_features import WATCHED_FILES, show_progress
 from tests.lsp.conftest import MAIN, MANIFEST, PARTS, connect_editor
 from tests.waiting import TIMEOUT_S
 

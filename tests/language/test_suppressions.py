@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.language.proof import apply_edits
-from linkwright.language.suppressing import code_at, suppression
+from linkwright.language.suppressions import find_code_at, make_suppression
 
 XML, TEXT = "<!-- linkwright: ignore LW104 (reason) -->", "# linkwright: ignore LW104 (reason)"
 
@@ -38,12 +38,12 @@ XML, TEXT = "<!-- linkwright: ignore LW104 (reason) -->", "# linkwright: ignore 
     ],
 )
 def test_suppression_comment_is_inserted_at_valid_place(name, text, place, expected):
-    edit = suppression(text, Path(name), "LW104", text.rindex(place))
+    edit = make_suppression(text, Path(name), "LW104", text.rindex(place))
     assert (None if edit is None else apply_edits(text, [edit])) == expected
 
 
 def test_code_at_finds_code_in_comment():
     text = "<r>\n  <!-- linkwright: ignore LW104 LW105 (b) -->\n  <a/>\n</r>"
-    assert code_at(text, text.index("LW105") + 5) == ("LW105", text.index("LW105"))
-    assert code_at(text, text.index("ignore")) is None
-    assert code_at(text, text.index("<a")) is None
+    assert find_code_at(text, text.index("LW105") + 5) == ("LW105", text.index("LW105"))
+    assert find_code_at(text, text.index("ignore")) is None
+    assert find_code_at(text, text.index("<a")) is None

@@ -29,12 +29,12 @@ CAPABILITIES: Mapping[str, str] = {
 }
 """The requests that are sent to several servers, each with the capability of the servers that respond to it."""
 
-_SERVER = "linkwrightServer"
-_DATA = "data"
+_SERVER_KEY = "linkwrightServer"
+_DATA_KEY = "data"
 
 
 def is_final_response(method: str, response: Any) -> bool:
-    """Return whether the response of Linkwright's own server makes the other responses unnecessary."""
+    """Return whether Linkwright's own response makes the other responses unnecessary."""
     return method not in (COMPLETION, CODE_ACTION) and not _is_empty(response)
 
 
@@ -49,42 +49,42 @@ def combine_responses(
     Args:
         method: the method of the request.
         responses: the name of each server and its response, Linkwright's own server first.
-        text: the text.
+        text: the file to which the request refers.
         parameters: the parameters of the request.
     """
     nonempty_responses = [(server, response) for server, response in responses if not _is_empty(response)]
     if method == COMPLETION:
-        return _completions([response for _, response in nonempty_responses], text, parameters)
+        return _combine_completions([response for _, response in nonempty_responses], text, parameters)
     if method == CODE_ACTION:
-        return [action for server, response in nonempty_responses for action in _actions(server, response)]
+        return [action for server, response in nonempty_responses for action in _mark_actions(server, response)]
     return nonempty_responses[0][1] if nonempty_responses else next((response for _, response in responses), None)
 
 
-def server_of_action(action: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
-    """Return the server of a code action and the original action, or None for Linkwright's own server."""
-    data = action.get(_DATA)
-    if not isinstance(data, dict) or _SERVER not in data:
+def find_server_of_action(action: Mapping[str, Any]) -> tuple[str, dict[str, Any]] | None:
+    """Return the server and the original form of a code action, or None for Linkwright's own."""
+    data = action.get(_DATA_KEY)
+    if not isinstance(data, dict) or _SERVER_KEY not in data:
         return None
-    own = {name: value for name, value in action.items() if name != _DATA}
-    return data[_SERVER], own if data[_DATA] is None else {**own, _DATA: data[_DATA]}
+    own = {name: value for name, value in action.items() if name != _DATA_KEY}
+    return data[_SERVER_KEY], own if data[_DATA_KEY] is None else {**own, _DATA_KEY: data[_DATA_KEY]}
 
 
-def marked_action(server: str, action: Mapping[str, Any]) -> dict[str, Any]:
+def mark_action(server: str, action: Mapping[str, Any]) -> dict[str, Any]:
     """Return a code action with the name of its server."""
-    return {**action, _DATA: {_SERVER: server, _DATA: action.get(_DATA)}}
+    return {**action, _DATA_KEY: {_SERVER_KEY: server, _DATA_KEY: action.get(_DATA_KEY)}}
 
 
-def _actions(server: str, actions: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
+def _mark_actions(server: str, actions: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
     """Return the code actions of a server in the form for the editor.
 
     The actions of other servers are marked with the server's name, and their commands are omitted.
     """
     if server == OWN_SERVER:
         return list(actions)
-    return [marked_action(server, action) for action in actions if action.get("command") is None]
+    return [mark_action(server, action) for action in actions if action.get("command") is None]
 
 
-def _completions(responses: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
+def _combine_completions(responses: Sequence[Any], text: OpenText, parameters: Mapping[str, Any]) -> Any:
     """Combine the completions of all servers, unless the first server specifies a range.
 
     Such a server replaces more or less than the word at the cursor, and its completions are returned alone.
@@ -97,7 +97,7 @@ def _completions(responses: Sequence[Any], text: OpenText, parameters: Mapping[s
         response if isinstance(response, dict) else {"isIncomplete": False, "items": response} for response in responses
     ]
     first, *others = lists
-    edited_range = _edited_range(first)
+    edited_range = _find_edited_range(first)
     if edited_range is not None and text.text_in(edited_range) != text.word_before(parameters["position"]):
         return first
     names = {_label_word(item["label"]) for item in first["items"]}
@@ -111,7 +111,7 @@ def _completions(responses: Sequence[Any], text: OpenText, parameters: Mapping[s
     return {"isIncomplete": any(other_list.get("isIncomplete") for other_list in lists), "items": items}
 
 
-def _edited_range(response: Mapping[str, Any]) -> Mapping[str, Any] | None:
+def _find_edited_range(response: Mapping[str, Any]) -> Mapping[str, Any] | None:
     """Return the range that the items of a list replace, or None for the word at the cursor."""
     edit_range = response.get("itemDefaults", {}).get("editRange") or response["items"][0].get("textEdit")
     if edit_range is None:

@@ -20,11 +20,11 @@ from linkwright.xmltree.reader import read_bytes
 
 _LOADED = re.compile(r"""\bload_yaml\(\s*(?:["'](?P<path>[^"']+)["']|(?P<name>\w+))\s*\)(?P<rest>[^{}]*)""")
 _KEY = re.compile(r"""\[\s*["']([^"'\]]*)["']\s*\]""")
-_PART = re.compile(r"\$\((find|arg|dirname)\s*([\w.-]*)\)|\$\{(\w+)\}")
+_SUBSTITUTION = re.compile(r"\$\((find|arg|dirname)\s*([\w.-]*)\)|\$\{(\w+)\}")
 _MAX_PASSES = 8
 
 
-def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -> Any:
+def find_yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -> Any:
     """Return the value of a property that is loaded from a YAML file, or None for others.
 
     Args:
@@ -32,7 +32,7 @@ def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -
         name: the property.
         names: the names that the files of the description define.
     """
-    value_text, file = _definition_of(name, NameKind.PROPERTY, names)
+    value_text, file = _find_definition(name, NameKind.PROPERTY, names)
     match = _LOADED.search(value_text)
     if match is None or file is None:
         return None
@@ -42,7 +42,7 @@ def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -
         return None
     target = file.parent / text
     try:
-        value: Any = _content(target, target.stat().st_mtime_ns)
+        value: Any = _read_content(target, target.stat().st_mtime_ns)
     except OSError:
         return None
     for key in _KEY.finditer(match["rest"]):
@@ -50,7 +50,7 @@ def yaml_value(document: Document, name: str, names: Sequence[NameDefinition]) -
     return value
 
 
-def _definition_of(name: str, kind: NameKind, names: Sequence[NameDefinition]) -> tuple[str, Path | None]:
+def _find_definition(name: str, kind: NameKind, names: Sequence[NameDefinition]) -> tuple[str, Path | None]:
     """Return the value of a property or argument as written, and the file that defines it."""
     definition = next((candidate for candidate in names if candidate.kind is kind and candidate.name == name), None)
     return ("", None) if definition is None else (definition.detail, definition.file)
@@ -66,11 +66,11 @@ def _replace_known(text: str, file: Path, document: Document, names: Sequence[Na
         if part[1] == "dirname":
             return str(file.parent)
         kind = NameKind.ARGUMENT if part[1] == "arg" else NameKind.PROPERTY
-        value_text, _ = _definition_of(part[2] or part[3], kind, names)
+        value_text, _ = _find_definition(part[2] or part[3], kind, names)
         return value_text or part[0]
 
     for _ in range(_MAX_PASSES):
-        replaced = _PART.sub(value, text)
+        replaced = _SUBSTITUTION.sub(value, text)
         if replaced == text or len(replaced) > len(text) + 10_000:
             break
         text = replaced
@@ -78,7 +78,7 @@ def _replace_known(text: str, file: Path, document: Document, names: Sequence[Na
 
 
 @lru_cache(maxsize=32)
-def _content(file: Path, _: int) -> Any:
+def _read_content(file: Path, _: int) -> Any:
     """Return the content of a YAML file, cached by its modification time, or None."""
     try:
         return yaml_data.load(decode(read_bytes(file), str(file)), lambda _: 0.0)
