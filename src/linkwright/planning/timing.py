@@ -108,7 +108,8 @@ class _Piece:
     def points(self) -> Array:
         """The distances from the start at which the speed is computed."""
         steps = self.length / (_LINE_SPACING if np.isinf(self.radius) else _ARC_SPACING * self.radius)
-        return np.linspace(0.0, self.length, max(_MIN_POINTS, int(np.ceil(steps)) + 1))
+        count = max(_MIN_POINTS, int(np.ceil(steps)) + 1)
+        return np.linspace(0.0, self.length, count, dtype=np.float64)
 
     def evaluate(self, distances: Array) -> tuple[Array, Array, Array]:
         """Return the positions and their first two derivatives by the length, each of shape (n, joints)."""

@@ -55,7 +55,7 @@ class RobotContext:
         for error in mesh_errors:
             node.get_logger().warning(error.diagnostics[0].message)
         self.frame = self.robot.root
-        self.positions = np.zeros(len(self.model.joint_names))
+        self.positions: Array = np.zeros(len(self.model.joint_names))
         self.has_state = False
         self._extra_frames = {
             joint.parent_frame for joint in self.semantics.virtual_joints if joint.child_link == self.robot.root
