@@ -68,8 +68,8 @@ describe("the frame loop", () => {
 
   it("does not draw the first frames more coarsely because of the time that shaders take to compile", () => {
     const details: number[] = [];
-    const loop = new FrameLoop(({ resolutionShare: share }) => {
-      details.push(share);
+    const loop = new FrameLoop(({ resolutionShare }) => {
+      details.push(resolutionShare);
       if (details.length <= 6) now += 300;
     });
     runScreen(6000, () => loop.invalidate());
@@ -99,25 +99,25 @@ describe("the frame loop", () => {
   });
 
   it("draws the first frame coarsely, for speed, and a fine one soon afterwards", () => {
-    const smoothFrames: boolean[] = [];
-    const loop = new FrameLoop(({ isAntialiased: smooth }) => smoothFrames.push(smooth));
+    const antialiasedFrames: boolean[] = [];
+    const loop = new FrameLoop(({ isAntialiased }) => antialiasedFrames.push(isAntialiased));
     loop.invalidate();
     runScreen(100);
     expect(loop.isSettled).toBe(false);
     runScreen(900);
-    expect(smoothFrames).toEqual([false, true]);
+    expect(antialiasedFrames).toEqual([false, true]);
     expect(loop.isSettled).toBe(true);
     loop.invalidate();
     expect(loop.isSettled).toBe(false);
   });
 
   it("draws coarsely during motion on a slow machine, and finely at rest", () => {
-    const smoothFrames: boolean[] = [];
-    const loop = new FrameLoop(({ isAntialiased: smooth }) => smoothFrames.push(smooth));
+    const antialiasedFrames: boolean[] = [];
+    const loop = new FrameLoop(({ isAntialiased }) => antialiasedFrames.push(isAntialiased));
     runScreen(3000, () => loop.invalidate(), 100);
-    expect(smoothFrames.at(-1)).toBe(false);
+    expect(antialiasedFrames.at(-1)).toBe(false);
     runScreen(1000);
-    expect(smoothFrames.at(-1)).toBe(true);
+    expect(antialiasedFrames.at(-1)).toBe(true);
   });
 
   it("draws motion coarsely from the start on a machine known to be slow", () => {
@@ -134,7 +134,7 @@ describe("the frame loop", () => {
 
   it("lowers the resolution during motion, and restores it once the machine has kept up for a while", () => {
     const shares: number[] = [];
-    const loop = new FrameLoop(({ resolutionShare: share }) => shares.push(share));
+    const loop = new FrameLoop(({ resolutionShare }) => shares.push(resolutionShare));
     runScreen(5000, () => loop.invalidate(), 30);
     expect(shares.at(-1)).toBe(0.5);
     runScreen(15_000, () => loop.invalidate());

@@ -71,9 +71,9 @@ describe("an LOD mesh", () => {
   });
 
   it("does not exist for a mesh without area", () => {
-    const { levels, boundingSphere: sphere } = createDefaultLodMesh({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
+    const { levels, boundingSphere } = createDefaultLodMesh({ positions: new Float32Array(9), normals: new Float32Array(9), index: null });
     expect(levels).toEqual([{ error: 0, index: new Uint32Array(0) }]);
-    expect(sphere[3]).toBe(0);
+    expect(boundingSphere[3]).toBe(0);
   });
 });
 

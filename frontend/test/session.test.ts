@@ -229,15 +229,15 @@ describe("terminals", () => {
     receiveTerminals("first");
     receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "here"), createTerminal(2, "elsewhere")], refusal_reason: "" });
     receiveTerminals("first", createTerminal(1, "elsewhere"), createTerminal(2, "elsewhere"));
-    expect(session.terminals.items.map(({ shown: place }) => place)).toEqual(["nowhere", "elsewhere"]);
+    expect(session.terminals.items.map(({ shown }) => shown)).toEqual(["nowhere", "elsewhere"]);
     receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "elsewhere")], refusal_reason: "" });
-    expect(session.terminals.items.map(({ shown: place }) => place)).toEqual(["elsewhere"]);
+    expect(session.terminals.items.map(({ shown }) => shown)).toEqual(["elsewhere"]);
   });
 
   it("of a program that was started again are others", () => {
     receiveTerminals("first");
     receive({ type: "terminals", folder: "/ws", terminals: [createTerminal(1, "here")], refusal_reason: "" });
     receiveTerminals("second", createTerminal(1, "elsewhere"));
-    expect(session.terminals.items.map(({ shown: place }) => place)).toEqual(["elsewhere"]);
+    expect(session.terminals.items.map(({ shown }) => shown)).toEqual(["elsewhere"]);
   });
 });

@@ -32,39 +32,39 @@ function createSlowness(pace = { isSlow: false }) {
     }
   };
   const receiveLateness = (isLate: boolean): void => listeners.get("program_is_late")?.({ type: "program_is_late", late: isLate });
-  return { slowness, reduce: reduceDisplays, pass: passTimers, tell: receiveLateness };
+  return { slowness, reduceDisplays, passTimers, receiveLateness };
 }
 
 it("is the connection if nothing is late", () => {
-  const { slowness, reduce: reduceDisplays, pass } = createSlowness();
+  const { slowness, reduceDisplays, passTimers } = createSlowness();
   reduceDisplays(["cloud"]);
-  pass(40, 2);
+  passTimers(40, 2);
   expect(slowness.cause).toBe("line");
 });
 
 it("is the page while its timers are late", () => {
-  const { slowness, reduce: reduceDisplays, pass } = createSlowness();
+  const { slowness, reduceDisplays, passTimers } = createSlowness();
   reduceDisplays(["cloud"]);
   const onChanged = vi.fn();
   slowness.changed.on(onChanged);
-  pass(10, 80);
+  passTimers(10, 80);
   expect(slowness.cause).toBe("page");
-  pass(60, 0);
+  passTimers(60, 0);
   expect(slowness.cause).toBe("line");
   expect(onChanged).toHaveBeenCalledTimes(2);
 });
 
 it("is the program if it says so and the page is not slow", () => {
-  const { slowness, reduce: reduceDisplays, pass, tell: receiveLateness } = createSlowness();
+  const { slowness, reduceDisplays, passTimers, receiveLateness } = createSlowness();
   reduceDisplays(["cloud"]);
   receiveLateness(true);
   expect(slowness.cause).toBe("program");
-  pass(10, 80);
+  passTimers(10, 80);
   expect(slowness.cause).toBe("page");
 });
 
 it("checks the page only while it receives reduced data", () => {
-  const { reduce: reduceDisplays } = createSlowness();
+  const { reduceDisplays } = createSlowness();
   expect(vi.getTimerCount()).toBe(0);
   reduceDisplays(["cloud"]);
   reduceDisplays(["cloud", "image"]);

@@ -6,7 +6,7 @@ import { decodeBase64, type Recording } from "./recording";
 
 const GRID_CLASS = "rviz_default_plugins/Grid";
 const TF_CLASS = "rviz_default_plugins/TF";
-/** Length of TF's axes at Marker Scale 1, m. */
+/** The length of TF's axes at Marker Scale 1. */
 const AXIS_LENGTH_M = 0.2;
 
 /** Replaces the server in an exported page: emits the recorded messages, and moves the robot's joints. */
@@ -71,12 +71,12 @@ export class RecordedConnection extends Connection {
   private createRobot(table: FrameTable): void {
     const { messages, frames, display } = this.recording;
     const robot = messages.find((message) => message.type === "robot_scene" && message.display === display);
-    const transforms = frames.map((frame) => unpackTransforms(decodeBase64(frame).buffer)).find((transforms) => transforms !== null);
+    const transforms = frames.map((frame) => unpackTransforms(decodeBase64(frame).buffer)).find((unpacked) => unpacked !== null);
     if (robot?.type !== "robot_scene" || !transforms) return;
     const comparison = messages.find((message) => message.type === "compared_descriptions");
     const oldRobot = comparison && messages.find((message) => message.type === "robot_scene" && message.display === comparison.old.display);
-    const following = oldRobot?.type === "robot_scene" && oldRobot !== robot ? [{ robot: oldRobot, joints: comparison?.joints ?? {} }] : [];
-    this.robot = new MovingRobot(table, transforms, robot, this.controls, following);
+    const followingRobots = oldRobot?.type === "robot_scene" && oldRobot !== robot ? [{ robot: oldRobot, joints: comparison?.joints ?? {} }] : [];
+    this.robot = new MovingRobot(table, transforms, robot, this.controls, followingRobots);
   }
 
   private move(positions: Readonly<Record<string, number>>): void {

@@ -18,6 +18,8 @@ interface OutlineLook {
   fill: number;
 }
 
+/** The width of the line, CSS pixels. */
+const LINE_WIDTH_PX = 1.5;
 const SELECTION_LOOK: OutlineLook = { color: 0x5db0ff, layer: SELECTED_LAYER, fill: 0.16 };
 const FRAGMENT_SHADER = /* glsl */ `
   uniform sampler2D mask;
@@ -85,7 +87,7 @@ export class Outline {
     const size = renderer.getDrawingBufferSize(new Vector2());
     const background = renderer.getClearColor(new Color());
     this.mask.setSize(size.x, size.y);
-    const width = renderer.getPixelRatio() * 1.5;
+    const width = renderer.getPixelRatio() * LINE_WIDTH_PX;
     this.uniforms.texel.value.set(width / size.x, width / size.y);
     renderer.setClearColor(0x000000);
     renderer.setRenderTarget(this.mask);

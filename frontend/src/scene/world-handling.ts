@@ -113,7 +113,7 @@ export class WorldHandling {
 
   /** Pulls the grabbed point towards the mouse from their current positions. */
   private repeatPull(): void {
-    const { currentGrab: grab } = this;
+    const grab = this.currentGrab;
     const matrix = grab?.drawing.poseOf(grab.link);
     if (!grab || !matrix) return;
     const start = grab.point.clone().applyMatrix4(matrix);

@@ -8,6 +8,6 @@ export function findLargestRoot({ names, parents }: Pick<FrameStore, "names" | "
     for (let steps = 0; steps < names.length && (parents[root] ?? -1) >= 0; steps++) root = parents[root] ?? root;
     sizes.set(root, (sizes.get(root) ?? 0) + 1);
   }
-  const [largest] = [...sizes].sort(([, a], [, b]) => b - a);
-  return largest === undefined ? null : (names[largest[0]] ?? null);
+  const [largestTree] = [...sizes].sort(([, a], [, b]) => b - a);
+  return largestTree === undefined ? null : (names[largestTree[0]] ?? null);
 }

@@ -8,6 +8,8 @@ export interface FramePose {
   orientation: [number, number, number, number];
 }
 
+/** The numbers of a pose: x y z qx qy qz qw. */
+const POSE_SIZE = 7;
 const NO_NUMBERS = new Float32Array(0);
 
 /** The newest pose of every frame. Rows are those of the frame table; a row of NaN has no transform. */
@@ -36,12 +38,12 @@ export class FrameStore {
     this.names = table.names;
     this.parents = table.parents;
     this.rows = new Map(table.names.map((name, row) => [name, row]));
-    this.poses = new Float32Array(table.names.length * 7).fill(NaN);
+    this.poses = new Float32Array(table.names.length * POSE_SIZE).fill(NaN);
     this.ages = new Float32Array(table.names.length);
     for (const [name, row] of this.rows) {
       const previousRow = previousRows.get(name);
       if (previousRow === undefined) continue;
-      this.poses.set(poses.subarray(previousRow * 7, previousRow * 7 + 7), row * 7);
+      this.poses.set(poses.subarray(previousRow * POSE_SIZE, (previousRow + 1) * POSE_SIZE), row * POSE_SIZE);
       this.ages[row] = ages[previousRow] ?? 0;
     }
     this.tableChanged.emit();
@@ -63,7 +65,7 @@ export class FrameStore {
   }
 
   hasPose(row: number): boolean {
-    return row >= 0 && !Number.isNaN(this.poses[row * 7] ?? NaN);
+    return row >= 0 && !Number.isNaN(this.poses[row * POSE_SIZE] ?? NaN);
   }
 
   /** Returns the distance of two frames: the largest difference of their coordinates in m or quaternion components. */
@@ -71,7 +73,10 @@ export class FrameStore {
     const [firstRow, secondRow] = [this.rowOf(first), this.rowOf(second)];
     if (!this.hasPose(firstRow) || !this.hasPose(secondRow)) return Infinity;
     let maximum = 0;
-    for (let i = 0; i < 7; i++) maximum = Math.max(maximum, Math.abs((this.poses[firstRow * 7 + i] ?? 0) - (this.poses[secondRow * 7 + i] ?? 0)));
+    for (let i = 0; i < POSE_SIZE; i++) {
+      const difference = (this.poses[firstRow * POSE_SIZE + i] ?? 0) - (this.poses[secondRow * POSE_SIZE + i] ?? 0);
+      maximum = Math.max(maximum, Math.abs(difference));
+    }
     return maximum;
   }
 
@@ -80,7 +85,7 @@ export class FrameStore {
     const framePoses: Record<string, FramePose> = {};
     this.names.forEach((name, row) => {
       if (!this.hasPose(row)) return;
-      const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = this.poses.subarray(row * 7, row * 7 + 7);
+      const [x = 0, y = 0, z = 0, qx = 0, qy = 0, qz = 0, qw = 1] = this.poses.subarray(row * POSE_SIZE, (row + 1) * POSE_SIZE);
       framePoses[name] = { position: [x, y, z], orientation: [qx, qy, qz, qw] };
     });
     return framePoses;
@@ -97,7 +102,7 @@ export class FrameStore {
   }
 }
 
-function hasSameNumbers(firstRow: Float32Array, secondRow: Float32Array): boolean {
-  for (let i = 0; i < firstRow.length; i++) if (!Object.is(firstRow[i], secondRow[i])) return false;
+function hasSameNumbers(a: Float32Array, b: Float32Array): boolean {
+  for (let i = 0; i < a.length; i++) if (!Object.is(a[i], b[i])) return false;
   return true;
 }

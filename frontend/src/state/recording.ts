@@ -11,12 +11,12 @@ export class RecordingControl {
   readonly refused = new Signal<string>();
   /** The user asked to view a finished recording. */
   readonly viewRequested = new Signal<RecordedFile>();
-  private latest: RecordingState | null = null;
+  private latestState: RecordingState | null = null;
   private hasRequested = false;
 
   constructor(private readonly connection: Connection) {
     connection.on("hello", () => {
-      this.latest = null;
+      this.latestState = null;
       this.hasRequested = false;
       this.changed.emit();
     });
@@ -25,40 +25,40 @@ export class RecordingControl {
 
   /** Whether topics can be recorded, which is not the case while a recording is shown. */
   get isPossible(): boolean {
-    return this.latest?.possible ?? false;
+    return this.latestState?.possible ?? false;
   }
 
   get isRecording(): boolean {
-    return (this.latest?.path ?? "") !== "";
+    return (this.latestState?.path ?? "") !== "";
   }
 
   /** The folder being written, on the server's machine. */
   get path(): string {
-    return this.latest?.path ?? "";
+    return this.latestState?.path ?? "";
   }
 
   /** The length of the recording, s. */
   get length(): number {
-    return this.latest?.length ?? 0;
+    return this.latestState?.length ?? 0;
   }
 
   /** The size written so far, bytes. */
   get size(): number {
-    return this.latest?.size ?? 0;
+    return this.latestState?.size ?? 0;
   }
 
   /** The saved share of the history, 0 to 1; null while nothing is being saved. */
   get savedShare(): number | null {
-    return this.latest?.saved ?? null;
+    return this.latestState?.saved ?? null;
   }
 
   get problem(): string {
-    return this.latest?.problem ?? "";
+    return this.latestState?.problem ?? "";
   }
 
   /** The recordings made since the program started, the newest first. */
   get files(): readonly RecordedFile[] {
-    return this.latest?.files ?? [];
+    return this.latestState?.files ?? [];
   }
 
   /** Records the given topics; an empty list means all current and future topics. */
@@ -79,8 +79,8 @@ export class RecordingControl {
   }
 
   private setState(state: RecordingState): void {
-    const previous = this.latest;
-    this.latest = state;
+    const previous = this.latestState;
+    this.latestState = state;
     this.changed.emit();
     if (!this.hasRequested || previous === null) return;
     const [newestFile] = state.files;

@@ -5,6 +5,9 @@ import { strings } from "../strings";
 import { TextEditor } from "./text-editor";
 import type { Editor, TreeItem } from "./tree-item";
 
+/** The minimum distance between the list and the lower edge of the window. */
+const BOTTOM_MARGIN_PX = 8;
+
 /** Passes the names to choose from to `show`, immediately or when they have arrived. */
 export type OfferNames = (item: TreeItem, show: (names: readonly string[]) => void) => void;
 
@@ -71,7 +74,7 @@ export class NameEditor implements Editor {
     this.list.style.minWidth = `${editorRect.width}px`;
     document.body.append(this.list);
     const spaceBelow = window.innerHeight - editorRect.bottom;
-    if (spaceBelow < this.list.offsetHeight + 8 && editorRect.top > spaceBelow) this.list.style.bottom = `${window.innerHeight - editorRect.top}px`;
+    if (spaceBelow < this.list.offsetHeight + BOTTOM_MARGIN_PX && editorRect.top > spaceBelow) this.list.style.bottom = `${window.innerHeight - editorRect.top}px`;
     else this.list.style.top = `${editorRect.bottom}px`;
     const currentEntry = entries.find((entry) => entry.dataset["name"] === this.item?.value);
     (currentEntry ?? (this.list.firstElementChild as HTMLElement | null))?.focus();

@@ -192,9 +192,9 @@ export class TreeView {
   private toggleSelection(key: string): void {
     if (key !== this.selectedKey && !this.otherSelectedKeys.delete(key)) this.select(key, true);
     else if (key === this.selectedKey && this.otherSelectedKeys.size > 0) {
-      const [nextChild = key] = this.otherSelectedKeys;
-      this.otherSelectedKeys.delete(nextChild);
-      this.selectedKey = nextChild;
+      const [nextKey = key] = this.otherSelectedKeys;
+      this.otherSelectedKeys.delete(nextKey);
+      this.selectedKey = nextKey;
     }
     this.showSelection();
   }

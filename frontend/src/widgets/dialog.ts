@@ -4,7 +4,7 @@ import { strings } from "../strings";
 
 export interface DialogChoice {
   label: string;
-  /** Called on a click, and then closes the dialog unless it returns false. */
+  /** Called on a click; the dialog closes afterwards unless this returns false. */
   run?: () => boolean | undefined;
   /** Whether Enter runs this choice. */
   isPrimary?: boolean;

@@ -1,6 +1,11 @@
 import { h } from "../dom";
 import { createIcon, type IconName } from "../icons";
 
+/** The distance between a menu and the element that opens it. */
+const ANCHOR_GAP_PX = 4;
+/** The minimum distances between a menu and the edges of the window. */
+const [LEFT_MARGIN_PX, END_MARGIN_PX] = [4, 8];
+
 export interface MenuEntry {
   label: string;
   isChecked?: boolean;
@@ -19,7 +24,7 @@ export interface MenuEntry {
 export function openMenu(anchor: HTMLElement, entries: readonly MenuEntry[]): void {
   const anchorRect = anchor.getBoundingClientRect();
   anchor.setAttribute("aria-expanded", "true");
-  showMenu(entries, { x: anchorRect.left, y: anchorRect.bottom + 4, bottom: anchorRect.top - 4 }, anchor, () => anchor.setAttribute("aria-expanded", "false"));
+  showMenu(entries, { x: anchorRect.left, y: anchorRect.bottom + ANCHOR_GAP_PX, bottom: anchorRect.top - ANCHOR_GAP_PX }, anchor, () => anchor.setAttribute("aria-expanded", "false"));
 }
 
 /** Opens a menu at a position; the focus returns to `origin` when it closes. */
@@ -61,9 +66,9 @@ function showMenu(entries: readonly MenuEntry[], position: MenuPosition, origin:
   // In a modal dialog, only its own elements are reachable.
   (origin?.closest("dialog") ?? document.body).append(menu);
   const spaceBelow = window.innerHeight - position.y;
-  if (spaceBelow < menu.offsetHeight + 8 && position.bottom > spaceBelow) menu.style.bottom = `${window.innerHeight - position.bottom}px`;
+  if (spaceBelow < menu.offsetHeight + END_MARGIN_PX && position.bottom > spaceBelow) menu.style.bottom = `${window.innerHeight - position.bottom}px`;
   else menu.style.top = `${position.y}px`;
-  menu.style.left = `${Math.max(4, Math.min(position.x, window.innerWidth - menu.offsetWidth - 8))}px`;
+  menu.style.left = `${Math.max(LEFT_MARGIN_PX, Math.min(position.x, window.innerWidth - menu.offsetWidth - END_MARGIN_PX))}px`;
   enabledItems[0]?.focus();
 }
 

@@ -3,9 +3,13 @@ import { iconNameOf, createIcon } from "../../icons";
 import type { DisplayClass, TopicChoice } from "../../protocol";
 import type { DisplayState } from "../../state/displays";
 import { findObviousDisplay } from "../../state/obvious-display";
+import { shortNameOf } from "../../state/views/catalog";
 import type { Session } from "../../state/session";
 import { strings } from "../../strings";
 import { Dialog } from "../../widgets/dialog";
+
+/** The number of rows by which Page Up and Page Down move. */
+const PAGE_ROWS = 8;
 
 interface Choice {
   cls: string;
@@ -127,16 +131,16 @@ export class AddDialog {
 
   private listTypes(query: string): HTMLElement[] {
     return this.offeredChoices.classes
-      .map(({ cls, messages }) => ({ cls, about: describeDisplay(cls), messages }))
-      .filter(({ cls, about: summary, messages }) => [cls, summary, ...messages].some((text) => text.toLowerCase().includes(query)))
-      .map(({ cls, about: summary }) => this.createChoice(cls, null, shortNameOf(cls), summary));
+      .map(({ cls, messages }) => ({ cls, summary: describeDisplay(cls), messages }))
+      .filter(({ cls, summary, messages }) => [cls, summary, ...messages].some((text) => text.toLowerCase().includes(query)))
+      .map(({ cls, summary }) => this.createChoice(cls, null, shortNameOf(cls), summary));
   }
 
   private listTopics(query: string): HTMLElement[] {
-    const matches = ({ topic, message, classes }: TopicChoice): boolean =>
+    const matchesQuery = ({ topic, message, classes }: TopicChoice): boolean =>
       [topic, message, ...classes].some((text) => text.toLowerCase().includes(query));
     const listedTopics = this.offeredChoices.topics.filter((topicChoice) => topicChoice.classes.length > 0 || this.showAllBox.checked);
-    return listedTopics.filter(matches).map((topicChoice) => {
+    return listedTopics.filter(matchesQuery).map((topicChoice) => {
       const { topic, message, classes } = topicChoice;
       const obviousClass = findObviousDisplay(topicChoice);
       const sortedClasses = [...classes].sort((a, b) => Number(b === obviousClass) - Number(a === obviousClass));
@@ -188,7 +192,7 @@ export class AddDialog {
   private onKeyDown(event: KeyboardEvent): void {
     const index = this.chosenChoice ? this.choices.indexOf(this.chosenChoice) : -1;
     const isInList = event.target !== this.search;
-    const step = { ArrowDown: 1, ArrowUp: -1, PageDown: 8, PageUp: -8 }[event.key];
+    const step = { ArrowDown: 1, ArrowUp: -1, PageDown: PAGE_ROWS, PageUp: -PAGE_ROWS }[event.key];
     if (step !== undefined) {
       const nextChoice = this.choices[Math.max(0, Math.min(this.choices.length - 1, index + step))];
       this.choose(nextChoice ?? null);
@@ -210,8 +214,4 @@ export class AddDialog {
 /** Returns the purpose of a display class, in one sentence. */
 function describeDisplay(cls: string): string {
   return (strings.displays.about as Readonly<Record<string, string | undefined>>)[shortNameOf(cls)] ?? cls;
-}
-
-function shortNameOf(cls: string): string {
-  return cls.split("/").pop() ?? cls;
 }

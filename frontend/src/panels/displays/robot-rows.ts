@@ -87,8 +87,8 @@ class RobotTree {
     this.options = display.rows.find("Links");
     const defaultStyle = { title: "Links", isTree: false, hasLinks: true, hasJoints: false };
     this.style = STYLES[display.rows.text("", "Links", STYLE_ROW)] ?? defaultStyle;
-    const mapNodes = (detailsRow: string): ReadonlyMap<string, PropertyNode> =>
-      new Map(display.rows.find(detailsRow)?.children.filter((row) => row.details).map((row) => [row.name, row]));
+    const mapNodes = (groupName: string): ReadonlyMap<string, PropertyNode> =>
+      new Map(display.rows.find(groupName)?.children.filter((row) => row.details).map((row) => [row.name, row]));
     this.links = mapNodes("Links");
     this.joints = mapNodes("Joints");
     for (const joint of robot.joints) {

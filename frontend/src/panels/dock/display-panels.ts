@@ -36,7 +36,7 @@ export class DisplayPanels implements PanelHost {
   /** The keys of the panels whose places no stored arrangement specifies. */
   private readonly defaultPlacedKeys = new Set<string>();
 
-  /** `api` is a function because the dock creates contents while it is itself being created. */
+  /** `getApi` is a function because the dock creates contents while it is itself being created. */
   constructor(private readonly getApi: () => DockviewApi) {}
 
   offer(panel: DisplayPanel): void {

@@ -19,11 +19,12 @@ export function createEntityItems(modeling: Modeling, angles: AngleUnits): TreeI
   const texts = strings.modeling;
   const edit = (change: (entity: WorldEntity) => Change): void => modeling.change(entities.map(change));
   const areModels = entities.every(({ kind }) => kind === "model");
+  const angleUnit = angles.current === "deg" ? "°" : "rad";
   const haveSameShape = areModels && firstEntity.shape !== null && entities.every(({ shape }) => shape === firstEntity.shape);
   return [
     entities.length === 1 ? createNameItem(firstEntity, modeling) : createNote("count", texts.selectedCount(entities.length)),
     createGroup("position", texts.position, createPoseItems(entities, 0, ["X", "Y", "Z"], 1, edit)),
-    createGroup("rotation", `${texts.rotation}, ${angles.current === "deg" ? "°" : "rad"}`, createPoseItems(entities, ROLL_INDEX, ["Roll", "Pitch", "Yaw"], angles.scaleOf("revolute"), edit)),
+    createGroup("rotation", `${texts.rotation}, ${angleUnit}`, createPoseItems(entities, ROLL_INDEX, ["Roll", "Pitch", "Yaw"], angles.scaleOf("revolute"), edit)),
     ...(haveSameShape ? [createGroup("size", texts.size, createSizeItems(entities, edit))] : []),
     ...(areModels ? [createStaticItem(entities, edit)] : []),
     ...(entities.every(({ color }) => color !== null) ? [createColorItem(firstEntity, edit)] : []),
@@ -97,6 +98,6 @@ function createNote(key: string, name: string, value = ""): TreeItem {
 
 /** Returns the value that all entities share; null if they differ. */
 function findCommonValue(values: readonly number[]): number | null {
-  const [firstEntity = null] = values;
-  return values.every((value) => value === firstEntity) ? firstEntity : null;
+  const [firstValue = null] = values;
+  return values.every((value) => value === firstValue) ? firstValue : null;
 }

@@ -3,7 +3,12 @@ import type { TeleopState } from "../../state/monitor/teleop";
 import { motionOfKey, NO_MOTION, sumMotions, type Motion } from "../../state/monitor/teleop-keys";
 import { strings } from "../../strings";
 
+/** The factor by which a key changes the speeds. */
 const SPEED_FACTOR = 1.1;
+/** The distance of the knob from the center at full deflection, as a share of the pad's side. */
+const KNOB_RANGE = 0.42;
+/** Smaller deflections count as none: pressing the middle must not move the robot yet. */
+const DEAD_ZONE = 0.06;
 
 /** The square for driving: up is forward, left turns to the left. Keys drive while it has the focus. */
 export class TeleopPad {
@@ -50,8 +55,8 @@ export class TeleopPad {
   private show(): void {
     const { x, turn, y } = this.state.motion;
     const sideways = turn !== 0 ? turn : y;
-    this.knob.style.left = `${50 - 42 * sideways}%`;
-    this.knob.style.top = `${50 - 42 * x}%`;
+    this.knob.style.left = `${50 - 100 * KNOB_RANGE * sideways}%`;
+    this.knob.style.top = `${50 - 100 * KNOB_RANGE * x}%`;
     this.element.classList.toggle("driving", x !== 0 || sideways !== 0);
   }
 
@@ -68,10 +73,9 @@ export class TeleopPad {
     if (event.pointerId !== this.pointer) return;
     const padRect = this.element.getBoundingClientRect();
     const deflectionAt = (value: number, start: number, length: number): number =>
-      Math.min(1, Math.max(-1, (1 - (2 * (value - start)) / length) / 0.84));
+      Math.min(1, Math.max(-1, (0.5 - (value - start) / length) / KNOB_RANGE));
     const forward = deflectionAt(event.clientY, padRect.top, padRect.height);
     const left = deflectionAt(event.clientX, padRect.left, padRect.width);
-    // Leave a dead zone in the middle: pressing there must not move the robot yet.
     const motion = { ...NO_MOTION, x: applyDeadZone(forward), [event.shiftKey ? "y" : "turn"]: applyDeadZone(left) };
     this.state.move("pad", motion);
   }
@@ -110,5 +114,5 @@ export class TeleopPad {
 }
 
 function applyDeadZone(value: number): number {
-  return Math.abs(value) < 0.06 ? 0 : value;
+  return Math.abs(value) < DEAD_ZONE ? 0 : value;
 }

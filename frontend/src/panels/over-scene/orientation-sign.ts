@@ -4,6 +4,8 @@ import type { ViewState } from "../../state/view";
 
 const SIZE_PX = 64;
 const ARM_LENGTH_PX = 22;
+/** The distance of the letters from the center. */
+const LABEL_DISTANCE_PX = ARM_LENGTH_PX + 6;
 const SVG_NAMESPACE = "http://www.w3.org/2000/svg";
 const AXES = ["x", "y", "z"] as const;
 
@@ -40,8 +42,8 @@ export class OrientationSign {
       const [x, y, depth] = [right[i] ?? 0, -(up[i] ?? 0), back[i] ?? 0];
       line.setAttribute("x2", String(x * ARM_LENGTH_PX));
       line.setAttribute("y2", String(y * ARM_LENGTH_PX));
-      label.setAttribute("x", String(x * (ARM_LENGTH_PX + 6)));
-      label.setAttribute("y", String(y * (ARM_LENGTH_PX + 6)));
+      label.setAttribute("x", String(x * LABEL_DISTANCE_PX));
+      label.setAttribute("y", String(y * LABEL_DISTANCE_PX));
       return { arm, depth };
     });
     // Draw arms that point towards the viewer last.

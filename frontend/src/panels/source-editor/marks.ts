@@ -28,7 +28,7 @@ export function createMarkEffect(document: SourceDocument, highlights: readonly 
   return setMarks.of(Decoration.set(ranges, true));
 }
 
-/** Returns the first and last marked line of each look, for tests. */
+/** Returns the marked lines, each with the kind of its mark, for tests. */
 export function inspectMarks(state: EditorState): { line: number; look: string }[] {
   const lines: { line: number; look: string }[] = [];
   state.field(marks, false)?.between(0, state.doc.length, (from, _, { spec }) => {

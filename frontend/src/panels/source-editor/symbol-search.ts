@@ -107,7 +107,7 @@ export class SymbolSearch {
   private async search(): Promise<void> {
     const query = this.field.value.trim();
     this.number += 1;
-    const { number: lastNumber } = this;
+    const requestNumber = this.number;
     if (!this.isWorkspaceWide) {
       const matchingSymbols = this.ofFile.filter(({ name, detail }) => matchesQuery(query, name) || matchesQuery(query, detail));
       this.showSymbols(query === "" ? matchingSymbols : matchingSymbols.map((symbol) => ({ ...symbol, depth: 0 })));
@@ -115,7 +115,7 @@ export class SymbolSearch {
     }
     try {
       const symbols = (await this.client.request<object, WorkspaceSymbol[] | null>("workspace/symbol", { query })) ?? [];
-      if (lastNumber === this.number) this.showSymbols(symbols.map((symbol) => toListedSymbol(symbol)));
+      if (requestNumber === this.number) this.showSymbols(symbols.map((symbol) => toListedSymbol(symbol)));
     } catch (error) {
       this.status.textContent = messageOf(error);
     }

@@ -106,13 +106,13 @@ export class MeasureTool implements SceneTool {
 
   /** Places the label at the middle of the line, with the same size on the screen at any distance. */
   private placeLabel(): void {
-    const { labelText: text, start, end } = this;
-    this.label.begin(text.length);
-    if (text !== "" && start && end) {
+    const { labelText, start, end } = this;
+    this.label.begin(labelText.length);
+    if (labelText !== "" && start && end) {
       const center = new Vector3(...start).add(new Vector3(...end)).multiplyScalar(0.5);
       const { session, stage } = this.context;
       const pixelSize = computePixelSize(session.view.camera, center.toArray(), stage.viewport.size);
-      this.label.add(text, center, LABEL_HEIGHT_PX * pixelSize, 0, 1);
+      this.label.add(labelText, center, LABEL_HEIGHT_PX * pixelSize, 0, 1);
     }
     this.label.end();
   }

@@ -265,8 +265,8 @@ export class EditingState {
     const { name, index } = part;
     const xyz = areNearlyEqual(currentDraft.xyz, part.xyz) ? null : [...currentDraft.xyz];
     const rpy = areNearlyEqual(currentDraft.rpy, part.rpy) ? null : [...currentDraft.rpy];
-    const { previewNumber: number, changesAll } = this;
-    this.connection.send({ type: "preview_edit", number, display: link.display, part: part.part, name, index, xyz, rpy, together: changesAll });
+    const { previewNumber, changesAll } = this;
+    this.connection.send({ type: "preview_edit", number: previewNumber, display: link.display, part: part.part, name, index, xyz, rpy, together: changesAll });
   }
 
   /**

@@ -25,12 +25,13 @@ export function findNearestRpy([x, y, z, w]: Quaternion, reference: readonly num
   }
   const roll = Math.atan2(2 * (y * z + x * w), 1 - 2 * (x * x + y * y));
   const yaw = Math.atan2(cosPitchSinYaw, cosPitchCosYaw);
-  const normalizeNearest = ([roll, pitch, yaw]: readonly [number, number, number]): [number, number, number] => {
-    return [findNearestAngle(roll, nearRoll), findNearestAngle(pitch, nearPitch), findNearestAngle(yaw, nearYaw)];
+  const findNearestAngles = (rpy: readonly [number, number, number]): [number, number, number] => {
+    return [findNearestAngle(rpy[0], nearRoll), findNearestAngle(rpy[1], nearPitch), findNearestAngle(rpy[2], nearYaw)];
   };
-  const [first, second] = [normalizeNearest([roll, pitch, yaw]), normalizeNearest([roll + Math.PI, Math.PI - pitch, yaw + Math.PI])];
+  const solution = findNearestAngles([roll, pitch, yaw]);
+  const flippedSolution = findNearestAngles([roll + Math.PI, Math.PI - pitch, yaw + Math.PI]);
   const computeDistance = (rpy: readonly number[]): number => rpy.reduce((sum, angle, i) => sum + Math.abs(angle - (reference[i] ?? 0)), 0);
-  return computeDistance(second) < computeDistance(first) - 1e-9 ? second : first;
+  return computeDistance(flippedSolution) < computeDistance(solution) - 1e-9 ? flippedSolution : solution;
 }
 
 /** Returns the equivalent angle within half a turn of another. */

@@ -18,8 +18,8 @@ const YAW_COST = 0.05;
 /** The number of positions around a robot whose visibility counts. */
 const RING_POINT_COUNT = 8;
 /** The directions to try, with the maximum score of each. */
-const DIRECTIONS = PITCH_OFFSETS_RAD.flatMap((pitch, pitchIndex) =>
-  YAW_OFFSETS_RAD.map((yawOffset, yawIndex) => ({ pitch, side: yawOffset, maxScore: 1 - pitchIndex * PITCH_COST - yawIndex * YAW_COST })),
+const DIRECTIONS = PITCH_OFFSETS_RAD.flatMap((pitchOffset, pitchIndex) =>
+  YAW_OFFSETS_RAD.map((yawOffset, yawIndex) => ({ pitchOffset, yawOffset, maxScore: 1 - pitchIndex * PITCH_COST - yawIndex * YAW_COST })),
 );
 const orbit = new OrbitController();
 
@@ -44,7 +44,7 @@ export function computeViewAround(values: ViewValues, { min, max }: Bounds, size
   const computeHiddenShare = (viewpoint: Vector): number => ring.filter((position) => !isVisible(viewpoint, position)).length / RING_POINT_COUNT;
   for (const distanceFactor of DISTANCE_FACTORS) {
     let bestView: { score: number; values: ViewValues } | null = null;
-    for (const { maxScore, pitch: pitchOffset, side: yawOffset } of DIRECTIONS) {
+    for (const { maxScore, pitchOffset, yawOffset } of DIRECTIONS) {
       if (bestView && maxScore <= bestView.score) continue;
       const Yaw = wrapYaw(readNumber(values, "Yaw", 0) + yawOffset);
       const Pitch = ROBOT_PITCH_RAD + pitchOffset;
