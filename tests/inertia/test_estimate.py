@@ -53,8 +53,8 @@ def test_given_mass_overrides_density_and_density_overrides_file(of):
 def test_collision_shapes_are_preferred_unless_visuals_are_requested(of):
     content = f"<visual>{BOX}</visual><collision>{BALL}</collision>"
     assert of(content).kind == "collision"
-    assert of(content, prefer="visual").kind == "visual"
-    assert of(f"<collision>{BALL}</collision>", prefer="visual").kind == "collision"
+    assert of(content, preferred_kind="visual").kind == "visual"
+    assert of(f"<collision>{BALL}</collision>", preferred_kind="visual").kind == "collision"
 
 
 def test_several_shapes_combine_to_one_body(of):
