@@ -304,7 +304,7 @@ def _infer_drive_without_wheels(survey: Survey, undercarriage: Undercarriage) ->
     if undercarriage.raised_wheels:
         wheel, height = undercarriage.raised_wheels[0]
         reason = phrase(
-            "the wheel on '{joint}' ends {height:.3g} m above the lowest point, which is on link '{link}'",
+            "the wheel on '{joint}' is {height:.3g} m above the robot's lowest point, which is on link '{link}'",
             joint=wheel.joint,
             height=height,
             link=undercarriage.lowest_link,
