@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from linkwright.sweep.execution import run_once
 from linkwright.sweep.plan import plan_runs
-from linkwright.sweep.running import run_once
 from linkwright.sweep.scenario import load_scenario
 from tests.docs.pages import read_blocks
 from tests.places import REPOSITORY

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from linkwright.geometry.exact_angles import circle, exact_quaternion, sine_and_cosine
+from linkwright.geometry.exact_angles import exact_quaternion, regular_polygon, sine_and_cosine
 from linkwright.geometry.single import quaternion_from_rpy
 
 
@@ -28,7 +28,7 @@ def test_exact_quaternion_matches_urdfdom_to_12_digits() -> None:
 
 
 def test_circle_is_closed_and_symmetrical() -> None:
-    points = circle(12)
+    points = regular_polygon(12)
     assert points[0] == points[-1] == (1.0, 0.0)
     assert points[3] == (0.0, 1.0)
     assert points[2][0] == points[1][1]

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.geometry.mesh_files import BadMeshError, file_resolver
+from linkwright.geometry.mesh_files import BadMeshError, create_file_resolver
 from linkwright.geometry.mesh_parts import read_parts
 from linkwright.geometry.meshes import read_mesh
 
@@ -167,7 +167,7 @@ def test_malformed_mesh_is_rejected_with_specific_error(name: str, tmp_path: Pat
     with pytest.raises(LinkwrightError) as raised:
         read_mesh(path)
     with pytest.raises(BadMeshError) as exported:
-        read_parts(path, resolver=file_resolver(str(path)))
+        read_parts(path, resolver=create_file_resolver(str(path)))
     assert expected in raised.value.diagnostics[0].message
     assert str(exported.value.reason) in raised.value.diagnostics[0].message
 
@@ -180,4 +180,4 @@ def test_unmodified_base_files_are_readable(name: str, data: bytes | str, tmp_pa
     path = tmp_path / name
     path.write_bytes(data if isinstance(data, bytes) else data.encode())
     assert len(read_mesh(path).faces) == 1
-    assert len(read_parts(path, resolver=file_resolver(str(path)))) == 1
+    assert len(read_parts(path, resolver=create_file_resolver(str(path)))) == 1

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from linkwright.geometry.mesh_files import declared_triangles, placed_meshes
+from linkwright.geometry.mesh_files import count_declared_triangles, read_placed_meshes
 from tests.geometry.test_mesh_faults import COLLADA
 
 FACET = b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
@@ -25,11 +25,11 @@ FACET = b"facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1
 def test_triangles_are_counted_without_parsing(tmp_path: Path, name: str, data: bytes, count: int | None) -> None:
     file = tmp_path / name
     file.write_bytes(data)
-    assert declared_triangles(file) == count
+    assert count_declared_triangles(file) == count
 
 
 def test_missing_file_declares_no_triangles(tmp_path: Path) -> None:
-    assert declared_triangles(tmp_path / "a.stl") is None
+    assert count_declared_triangles(tmp_path / "a.stl") is None
 
 
 @pytest.mark.extra("mesh")
@@ -46,7 +46,7 @@ def test_collada_keeps_mesh_with_unreadable_material(materials: str) -> None:
     node_text = '<node id="n"><instance_geometry url="#g"/></node>'
     worn = node_text.replace('"n"', '"worn"').replace('"#g"/>', '"#g">' + bound)
     text = COLLADA.replace(node_text, node_text + worn).replace("<library_visual", materials + "<library_visual", 1)
-    assert len(placed_meshes(text.encode(), "dae")) == 2
+    assert len(read_placed_meshes(text.encode(), "dae")) == 2
 
 
 @pytest.mark.extra("mesh")
@@ -62,7 +62,7 @@ def test_collada_keeps_mesh_with_unreadable_material(materials: str) -> None:
 @pytest.mark.parametrize("is_plain", [True, False])
 def test_collada_tolerates_same_xml_errors_as_gazebo(proper: str, malformed: str, is_plain: bool) -> None:
     assert proper in COLLADA
-    (expected,) = placed_meshes(COLLADA.encode(), "dae", is_plain=is_plain)
-    (placed_mesh,) = placed_meshes(COLLADA.replace(proper, malformed).encode(), "dae", is_plain=is_plain)
+    (expected,) = read_placed_meshes(COLLADA.encode(), "dae", is_plain=is_plain)
+    (placed_mesh,) = read_placed_meshes(COLLADA.replace(proper, malformed).encode(), "dae", is_plain=is_plain)
     assert placed_mesh.faces.tolist() == expected.faces.tolist()
     assert placed_mesh.mesh.vertices.tolist() == expected.mesh.vertices.tolist()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from linkwright.geometry.mesh_files import BadMeshError, file_resolver
+from linkwright.geometry.mesh_files import BadMeshError, create_file_resolver
 from linkwright.geometry.mesh_parts import read_parts
 
 pytestmark = pytest.mark.extra("image")
@@ -28,7 +28,7 @@ def read_mesh_image(folder: Path, name: str, data: bytes) -> bytes | None:
     (folder / "m.obj").write_text(OBJ)
     (folder / "m.mtl").write_text(f"newmtl m\nKd 1 1 1\nmap_Kd {name}\n")
     (folder / name).write_bytes(data)
-    (part,) = read_parts(folder / "m.obj", resolver=file_resolver(str(folder / "m.obj")))
+    (part,) = read_parts(folder / "m.obj", resolver=create_file_resolver(str(folder / "m.obj")))
     assert part.file_material is not None
     return part.file_material.image
 

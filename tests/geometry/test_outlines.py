@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linkwright.geometry.meshes import read_mesh
-from linkwright.geometry.outlines import FACET, read_small
+from linkwright.geometry.outlines import FACET_TOKENS, read_small_mesh
 
 CUBE = [(x, y, z) for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)]
 SQUARES = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
@@ -29,7 +29,7 @@ def write_text_stl(triangles):
     for triangle in triangles:
         corners = iter([repr(part) for point in triangle for part in point])
         shown = iter(["0", "0", "1"])
-        words = [word.decode() for word in FACET]
+        words = [word.decode() for word in FACET_TOKENS]
         lines.append(" ".join(next(shown, None) or next(corners) if word == "?" else word for word in words))
     return "\n".join([*lines, "endsolid part"]).encode()
 
@@ -42,7 +42,7 @@ def write_obj(points, polygons):
 def assert_same_outline(data, kind, folder):
     path = folder / f"mesh.{kind}"
     path.write_bytes(data)
-    outline, mesh = read_small(data, kind), read_mesh(path)
+    outline, mesh = read_small_mesh(data, kind), read_mesh(path)
     assert outline is not None
     for scale in SCALES:
         actual, expected = outline.scaled(scale), mesh.scaled(scale)
@@ -65,8 +65,8 @@ def test_outlines_of_partial_cube_match_read_mesh(tmp_path_factory, triangles, s
 
 
 def test_cube_is_watertight_only_with_all_faces(tmp_path):
-    assert read_small(write_obj(CUBE, SQUARES), "obj").is_watertight
-    assert not read_small(write_obj(CUBE, SQUARES[1:]), "obj").is_watertight
+    assert read_small_mesh(write_obj(CUBE, SQUARES), "obj").is_watertight
+    assert not read_small_mesh(write_obj(CUBE, SQUARES[1:]), "obj").is_watertight
     assert_same_outline(write_obj([*CUBE, (9.0, 9.0, 9.0)], SQUARES), "obj", tmp_path)
 
 
@@ -93,4 +93,4 @@ def test_cube_is_watertight_only_with_all_faces(tmp_path):
     ],
 )
 def test_unusual_files_are_not_read_as_small_mesh(data, kind):
-    assert read_small(data, kind) is None
+    assert read_small_mesh(data, kind) is None

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from linkwright.geometry.collada import read_collada
-from linkwright.geometry.mesh_files import placed_meshes
+from linkwright.geometry.mesh_files import read_placed_meshes
 from linkwright.geometry.meshes import read_mesh
-from linkwright.geometry.outlines import read_small
+from linkwright.geometry.outlines import read_small_mesh
 from linkwright.geometry.plain import PlainMesh
 from linkwright.geometry.wavefront import read_obj
 from tests.geometry.test_mesh_faults import COLLADA
@@ -44,7 +44,7 @@ def triangle_corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
     Each triangle begins with its lowest corner.
     """
     vertices_by_mesh = []
-    for mesh, matrix, unit, _ in (placed := placed_meshes(data, kind, is_plain=is_plain)):
+    for mesh, matrix, unit, _ in (placed := read_placed_meshes(data, kind, is_plain=is_plain)):
         assert isinstance(mesh, PlainMesh) is is_plain
         vertices = (np.asarray(mesh.vertices) @ matrix[:3, :3].T + matrix[:3, 3]) * unit
         vertices_by_mesh.append(vertices.round(5))
@@ -95,7 +95,7 @@ def test_collada_triangles_match_trimesh(text: str, tmp_path: Path) -> None:
         triangle_corners(data, "dae", is_plain=True), triangle_corners(data, "dae", is_plain=False), atol=2e-5
     )
     (tmp_path / "mesh.dae").write_bytes(data)
-    plain_mesh, mesh = read_small(data, "dae"), read_mesh(tmp_path / "mesh.dae")
+    plain_mesh, mesh = read_small_mesh(data, "dae"), read_mesh(tmp_path / "mesh.dae")
     assert plain_mesh is not None
     assert plain_mesh.count == mesh.count
     assert plain_mesh.is_watertight == mesh.is_watertight
@@ -147,25 +147,25 @@ def test_collada_triangles_match_trimesh(text: str, tmp_path: Path) -> None:
 )
 def test_unusual_collada_is_left_to_trimesh(text: str) -> None:
     assert read_collada(text.encode()) is None
-    assert read_small(text.encode(), "dae") is None
+    assert read_small_mesh(text.encode(), "dae") is None
 
 
 def test_mirrored_solid_is_watertight_without_arrays() -> None:
     solid = COLLADA.replace('count="9"', 'count="12"').replace("0 0 0 1 0 0 0 1 0", "0 0 0 1 0 0 0 1 0 0 0 1")
     solid = solid.replace('count="3" stride', 'count="4" stride').replace("<p>0 1 2", "<p>0 2 1 0 1 3 0 3 2 1 2 3")
     for text in (solid, solid.replace(NODE, f"<node><scale>1 -1 1</scale>{NODE}</node>")):
-        plain_mesh = read_small(text.encode(), "dae")
+        plain_mesh = read_small_mesh(text.encode(), "dae")
         assert plain_mesh is not None
         assert plain_mesh.is_watertight
-    cut = read_small(solid.replace("0 2 1 0 1 3", "0 1 3").encode(), "dae")
+    cut = read_small_mesh(solid.replace("0 2 1 0 1 3", "0 1 3").encode(), "dae")
     assert cut is not None
     assert not cut.is_watertight
 
 
 def test_collada_with_many_instances_is_not_read_as_small_mesh() -> None:
-    assert read_small(COLLADA.replace(NODE, NODE * 19_000).encode(), "dae") is not None
+    assert read_small_mesh(COLLADA.replace(NODE, NODE * 19_000).encode(), "dae") is not None
     often = collada_with_library(NODE * 200).replace(KEPT, KEPT * 70)
-    assert read_small(often.encode(), "dae") is None
+    assert read_small_mesh(often.encode(), "dae") is None
 
 
 OBJ = "mtllib a.mtl\no a\nv 0 0 0\nv 1 0 0\nv 1 1 0.1\nv 0 1 0\nvn 0 0 1\nvt 0 0\n"

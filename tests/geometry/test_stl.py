@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from linkwright.geometry.mesh_files import placed_meshes
+from linkwright.geometry.mesh_files import read_placed_meshes
 from linkwright.geometry.plain import PlainMesh
 from linkwright.geometry.stl import read_stl
 
@@ -25,7 +25,7 @@ TEXT = _stl_bytes("stl_ascii")
     ids=["binary", "text", "text of Windows", "text with a name"],
 )
 def test_stl_triangles_match_trimesh(data):
-    (actual,) = placed_meshes(data, "stl")
+    (actual,) = read_placed_meshes(data, "stl")
     assert isinstance(actual.mesh, PlainMesh)
     scene = trimesh.load_scene(trimesh.util.wrap_as_stream(data), file_type="stl", process=False)
     ((name, expected),) = scene.geometry.items()

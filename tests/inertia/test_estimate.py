@@ -55,8 +55,8 @@ def test_given_mass_overrides_density_and_density_overrides_file(estimate_link):
 def test_collision_shapes_are_preferred_unless_visuals_are_requested(estimate_link):
     content = f"<visual>{BOX}</visual><collision>{BALL}</collision>"
     assert estimate_link(content).kind == "collision"
-    assert estimate_link(content, prefer="visual").kind == "visual"
-    assert estimate_link(f"<collision>{BALL}</collision>", prefer="visual").kind == "collision"
+    assert estimate_link(content, preferred_kind="visual").kind == "visual"
+    assert estimate_link(f"<collision>{BALL}</collision>", preferred_kind="visual").kind == "collision"
 
 
 def test_several_shapes_combine_to_one_body(estimate_link):

@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.geometry.single import Transform
 from linkwright.inference import Drive
-from linkwright.inference.applying import complete_description
+from linkwright.inference.completion import complete_description
 from linkwright.sdf.from_urdf import model_from_robot
 from linkwright.simulation.actuators import Motor
 from linkwright.simulation.simulation import Simulation

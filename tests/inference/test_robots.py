@@ -9,7 +9,7 @@ import pytest
 from linkwright.descriptions import examine
 from linkwright.inertia import MeshLibrary
 from linkwright.inference import Inference, infer
-from linkwright.inference.applying import complete_description
+from linkwright.inference.completion import complete_description
 from linkwright.packages import PackageFinder
 from linkwright.xmltree import Document, write
 from tests.markdown import read_sections

@@ -10,7 +10,7 @@ import pytest
 from linkwright.descriptions import examine, load
 from linkwright.inertia import MeshLibrary
 from linkwright.inference import infer
-from linkwright.inference.applying import complete_description
+from linkwright.inference.completion import complete_description
 from linkwright.inference.writing import write_inference
 from linkwright.packages import PackageFinder
 from linkwright.urdf import read

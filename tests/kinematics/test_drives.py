@@ -81,11 +81,11 @@ def test_stationary_ackermann_drive_steers_straight():
 @given(SPEEDS, SPEEDS)
 def test_tricycle_drive_round_trip_keeps_motion(forward, turning):
     drive = TricycleDrive(1.3, 0.2)
-    speed, angle = drive.wheel(forward, turning)
+    speed, angle = drive.wheel_command(forward, turning)
     assert drive.motion(speed, angle) == pytest.approx((forward, turning), abs=1e-9)
     assert abs(speed) * 0.2 == pytest.approx(hypot(forward, turning * 1.3), abs=1e-9)
 
 
 def test_tricycle_turns_in_place_with_wheel_sideways():
-    assert TricycleDrive(1.3, 0.2).wheel(0.0, -1.0) == pytest.approx((1.3 / 0.2, -pi / 2.0))
-    assert TricycleDrive(1.3, 0.2).wheel(1.0, 1.0)[1] == pytest.approx(atan(1.3))
+    assert TricycleDrive(1.3, 0.2).wheel_command(0.0, -1.0) == pytest.approx((1.3 / 0.2, -pi / 2.0))
+    assert TricycleDrive(1.3, 0.2).wheel_command(1.0, 1.0)[1] == pytest.approx(atan(1.3))

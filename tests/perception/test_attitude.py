@@ -15,7 +15,13 @@ from linkwright.geometry.single import (
     rotate,
     rpy_from_quaternion,
 )
-from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, WorldFrame, attitude_at_rest
+from linkwright.perception.attitude import (
+    GRAVITY,
+    ComplementaryFilter,
+    MadgwickFilter,
+    WorldFrame,
+    compute_attitude_at_rest,
+)
 
 angles = st.floats(-1.4, 1.4)
 MAGNETIC_DIP_RAD = 1.0
@@ -47,18 +53,19 @@ def test_attitude_at_rest_matches_orientation(roll, pitch, yaw, world):
     orientation = quaternion_from_rpy((roll, pitch, yaw))
     assert (
         angle_between(
-            attitude_at_rest(acceleration_at_rest(orientation, world), field(orientation, world), world), orientation
+            compute_attitude_at_rest(acceleration_at_rest(orientation, world), field(orientation, world), world),
+            orientation,
         )
         < 1e-6
     )
-    rpy_without_field = rpy_from_quaternion(attitude_at_rest(acceleration_at_rest(orientation, world), None, world))
+    rpy_without_field = rpy_from_quaternion(compute_attitude_at_rest(acceleration_at_rest(orientation, world), None, world))
     assert rpy_without_field == pytest.approx((roll, pitch, 0.0), abs=1e-9)
 
 
 def test_attitude_at_rest_without_direction_is_none():
-    assert attitude_at_rest((0.0, 0.0, 0.0), None, WorldFrame.ENU) is None
-    assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 1.0), WorldFrame.ENU) is None
-    assert attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 0.0), WorldFrame.ENU) is None
+    assert compute_attitude_at_rest((0.0, 0.0, 0.0), None, WorldFrame.ENU) is None
+    assert compute_attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 1.0), WorldFrame.ENU) is None
+    assert compute_attitude_at_rest((0.0, 0.0, 9.8), (0.0, 0.0, 0.0), WorldFrame.ENU) is None
 
 
 @pytest.mark.parametrize("world", WorldFrame)

@@ -127,7 +127,7 @@ def test_mesh_with_two_paths_fills_the_cache_once(repository):
     library = MeshLibrary(PackageFinder(start=[repository.root]), repository.root)
     first, second = (library.read(repository.root / f"w/{name}.stl") for name in "ab")
     assert first is second
-    assert list(mesh_library._CACHE.values.values()).count(first) == 1
+    assert list(mesh_library._MESH_CACHE.values.values()).count(first) == 1
 
 
 @pytest.mark.parametrize("name", ["package.xml", "CMakeLists.txt", "src/main.cpp"])

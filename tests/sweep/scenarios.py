@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from linkwright.sweep.running import Outcome
+from linkwright.sweep.execution import Outcome
 from linkwright.sweep.scenario import Scenario, load_scenario
 
 HEAD = "from linkwright.sweep import Normal, Uniform, scenario\n"

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from linkwright.sweep.paths import as_path, recorded_paths
+from linkwright.sweep.paths import name_recorded_paths, parse_path
 from linkwright.testing.paths import MAX_POINTS
 
 
 def test_rows_of_time_and_position_are_a_path():
-    assert as_path([(0, 1, 2), (0.5, 3, 4)]) == [(0.0, 1.0, 2.0), (0.5, 3.0, 4.0)]
-    assert as_path(np.array([[0.0, 1.0, 2.0]])) == [(0.0, 1.0, 2.0)]
+    assert parse_path([(0, 1, 2), (0.5, 3, 4)]) == [(0.0, 1.0, 2.0), (0.5, 3.0, 4.0)]
+    assert parse_path(np.array([[0.0, 1.0, 2.0]])) == [(0.0, 1.0, 2.0)]
 
 
 @pytest.mark.parametrize(
@@ -30,12 +30,12 @@ def test_rows_of_time_and_position_are_a_path():
     ],
 )
 def test_other_values_are_not_a_path(value):
-    assert as_path(value) is None
+    assert parse_path(value) is None
 
 
 def test_long_path_keeps_both_ends():
     rows = [(0.1 * step, float(step), 0.0) for step in range(3 * MAX_POINTS + 2)]
-    path = as_path(rows)
+    path = parse_path(rows)
     assert path is not None
     assert len(path) <= MAX_POINTS + 1
     assert (path[0], path[-1]) == (rows[0], rows[-1])
@@ -43,4 +43,4 @@ def test_long_path_keeps_both_ends():
 
 def test_recorded_paths_have_numbers_from_the_second_one():
     point = (0.0, 0.0, 0.0)
-    assert recorded_paths([[point], [], [point]]) == {"robot": [point], "robot 2": [point]}
+    assert name_recorded_paths([[point], [], [point]]) == {"robot": [point], "robot 2": [point]}

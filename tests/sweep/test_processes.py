@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 from linkwright.cli import main
+from linkwright.sweep.execution import run_once
 from linkwright.sweep.plan import plan_runs
-from linkwright.sweep.running import run_once
 from linkwright.sweep.scenario import load_scenario
 from linkwright.sweep.workers import run_locally
 from tests.begun import command_that_reports

@@ -3,8 +3,8 @@
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.sweep.plan import fingerprint, plan_runs, with_values
-from linkwright.sweep.running import run_once
+from linkwright.sweep.execution import run_once
+from linkwright.sweep.plan import compute_fingerprint, plan_runs, replace_values
 from linkwright.sweep.scenario import load_scenario
 from tests.sweep.scenarios import HEAD, SQUARES, loaded, write
 
@@ -21,14 +21,16 @@ def test_drawn_values_depend_only_on_seed_and_name(tmp_path):
     drawn = {run.seed: run.parameters["drawn"] for run in plan_runs(scenario)}
     assert all(run.parameters["drawn"] == drawn[run.seed] for run in plan_runs(scenario))
     assert len(set(drawn.values())) == 2
-    longer_plan = plan_runs(with_values(scenario, {"n": "7"}, 50))
+    longer_plan = plan_runs(replace_values(scenario, {"n": "7"}, 50))
     assert {run.seed: run.parameters["drawn"] for run in longer_plan}.items() >= drawn.items()
     assert all(0.0 <= run.parameters["drawn"] < 1.0 for run in longer_plan)
 
 
 def test_command_line_values_are_parsed_as_yaml(tmp_path):
     text = f"{HEAD}\n@scenario(world=['empty'], laser=[True], mass=Normal(1.0, 0.1))\ndef f(world, laser, mass): ...\n"
-    scenario = with_values(loaded(tmp_path, text), {"world": "maze,house", "laser": "true,false", "mass": "1.5"}, None)
+    scenario = replace_values(
+        loaded(tmp_path, text), {"world": "maze,house", "laser": "true,false", "mass": "1.5"}, None
+    )
     assert {name: list(values) for name, values in scenario.parameters.items()} == {
         "world": ["maze", "house"],
         "laser": [True, False],
@@ -137,14 +139,14 @@ def test_scenario_must_be_a_python_file(tmp_path, name):
 )
 def test_invalid_command_line_values_are_rejected(tmp_path, words, code):
     with pytest.raises(LinkwrightError) as raised:
-        with_values(loaded(tmp_path), words, None)
+        replace_values(loaded(tmp_path), words, None)
     assert raised.value.diagnostics[0].code == code
 
 
 def test_fingerprint_depends_on_file_and_values(tmp_path):
     scenario = loaded(tmp_path)
-    fingerprint_of_plan = fingerprint(scenario, plan_runs(scenario))
-    assert fingerprint_of_plan == fingerprint(scenario, plan_runs(scenario))
-    assert fingerprint_of_plan != fingerprint(scenario, plan_runs(with_values(scenario, {}, 1)))
+    fingerprint_of_plan = compute_fingerprint(scenario, plan_runs(scenario))
+    assert fingerprint_of_plan == compute_fingerprint(scenario, plan_runs(scenario))
+    assert fingerprint_of_plan != compute_fingerprint(scenario, plan_runs(replace_values(scenario, {}, 1)))
     write(tmp_path, f"{SQUARES}\n# changed\n")
-    assert fingerprint_of_plan != fingerprint(scenario, plan_runs(scenario))
+    assert fingerprint_of_plan != compute_fingerprint(scenario, plan_runs(scenario))

@@ -9,10 +9,10 @@ import pyarrow.parquet as pq
 import pytest
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
+from linkwright.sweep.execution import Outcome, run_once
 from linkwright.sweep.plan import plan_runs
-from linkwright.sweep.running import Outcome, run_once
 from linkwright.sweep.sweep import Sweep
-from linkwright.sweep.table import Table, check_format, table_bytes
+from linkwright.sweep.table import Table, check_format, encode_table
 from tests.full_disk import full_disk, needs_limits
 from tests.sweep.scenarios import HEAD, SQUARES, loaded, write
 
@@ -76,7 +76,7 @@ def test_table_rows_are_sorted_regardless_of_completion_order(tmp_path):
 def test_failed_run_is_a_row_with_error(tmp_path):
     table, result = run_sweep(tmp_path, MIXED)
     assert result[-1] == (4, 4, 1)
-    assert table.failed == [1]
+    assert table.failed_rows == [1]
     rows = rows_of(tmp_path / "out.csv")
     assert rows[1]["error"] == "RuntimeError: <no> way (squares.py:6)"
     assert rows[1]["text"] == ""
@@ -206,7 +206,7 @@ def test_summary_lists_failures_with_rerun_command(tmp_path):
 
 def test_summary_exists_for_sweep_of_only_errors(tmp_path):
     table, _ = run_sweep(tmp_path, f"{HEAD}@scenario(n=[1])\ndef f(n): return {{'x': 1 / 0}}\n")
-    assert table.failed == [0]
+    assert table.failed_rows == [0]
     assert Page((tmp_path / "out.html").read_text()).count("svg") == 0
 
 
@@ -230,6 +230,6 @@ def test_table_format_must_be_csv_or_parquet(tmp_path):
 def test_missing_results_are_empty_cells(tmp_path):
     runs = plan_runs(loaded(tmp_path))[:2]
     table = Table.of(runs, {1: Outcome(1, {"a": 1}), 2: Outcome(2, {"b": "x"})})
-    lines = table_bytes(table, tmp_path / "out.csv").decode().splitlines()
+    lines = encode_table(table, tmp_path / "out.csv").decode().splitlines()
     assert [line.split(",")[4:] for line in lines] == [["a", "b", "error"], ["1", "", ""], ["", "x", ""]]
     assert write(tmp_path).exists()

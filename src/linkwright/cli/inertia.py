@@ -43,7 +43,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--from",
-        dest="prefer",
+        dest="preferred_kind",
         choices=("collision", "visual"),
         default="collision",
         help="the shapes to use; a link without them uses the other shapes (default: %(default)s)",
@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from linkwright.descriptions import examine
     from linkwright.inertia import MeshLibrary, estimate
-    from linkwright.inertia.reports import as_json, as_text
+    from linkwright.inertia.reports import format_json, format_text
     from linkwright.inertia.writing import WriteResult, write_inertials
     from linkwright.packages import PackageFinder
 
@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
             meshes,
             density=arguments.density,
             mass=masses.get(name),
-            prefer=arguments.prefer,
+            preferred_kind=arguments.preferred_kind,
         )
         for name in link_names
     ]
@@ -96,10 +96,10 @@ def run(arguments: argparse.Namespace) -> int:
         properties = {estimate.link: estimate.properties for estimate in estimates if estimate.properties is not None}
         result = write_inertials(robot, properties)
     if arguments.format == "json":
-        sys.stdout.write(as_json(robot, estimates, result))
+        sys.stdout.write(format_json(robot, estimates, result))
     else:
         detailed_links = link_names if arguments.link and result is None else () if result is None else result.refusals
-        sys.stdout.write(as_text(robot, estimates, result, detailed_links))
+        sys.stdout.write(format_text(robot, estimates, result, detailed_links))
         if not (arguments.link or arguments.write):
             print_message(
                 localized(

@@ -70,8 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
     Returns:
         0, 1 if a run failed, or 130 if the sweep was interrupted.
     """
-    from linkwright.sweep.plan import plan_runs, with_values
-    from linkwright.sweep.running import load_into_process
+    from linkwright.sweep.execution import load_into_process
+    from linkwright.sweep.plan import plan_runs, replace_values
     from linkwright.sweep.sweep import Sweep
     from linkwright.sweep.table import check_format
 
@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> int:
     table_path = Path(arguments.out or f"{path.stem}.csv").absolute()
     check_format(table_path)
     start_folder = Path.cwd()
-    scenario = with_values(load_into_process(path), parse_assignments(arguments.values), arguments.seeds)
+    scenario = replace_values(load_into_process(path), parse_assignments(arguments.values), arguments.seeds)
     if arguments.rerun is not None:
         return _rerun(scenario, arguments.rerun)
     os.chdir(start_folder)  # `prepare` changed to the folder of the scenario
@@ -100,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
         missing_runs = counted("{count} run is left", "{count} runs are left", missing)
         print_message(localized(phrase("{left}; `--resume` continues the sweep", left=missing_runs)))
         return INTERRUPTED
-    return FINDINGS if table.failed else FINE
+    return FINDINGS if table.failed_rows else FINE
 
 
 def _choose_runner(arguments: argparse.Namespace, path: Path) -> Runner:
@@ -116,8 +116,8 @@ def _choose_runner(arguments: argparse.Namespace, path: Path) -> Runner:
 
 def _rerun(scenario: Scenario, row: int) -> int:
     """Run one row of the sweep in this process, and print its parameters and its outcome."""
+    from linkwright.sweep.execution import run_scenario
     from linkwright.sweep.plan import plan_runs
-    from linkwright.sweep.running import run_scenario
 
     runs = plan_runs(scenario)
     if row > len(runs):
@@ -163,6 +163,6 @@ def _print_summary(table: Table, seconds: float, finished_runs: int) -> None:
         runs=counted("{count} run", "{count} runs", finished_runs),
         seconds=f"{seconds:.1f}",
         rate=f"{finished_runs / max(seconds, 1e-9):.1f}",
-        failed=len(table.failed),
+        failed=len(table.failed_rows),
     )
     print_message(localized(summary))

@@ -19,7 +19,7 @@ IDENTITY: Array = np.array((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
 IDENTITY.flags.writeable = False
 """The pose of a frame in itself, shape (7,)."""
 
-_PARALLEL = 0.9995
+_PARALLEL_DOT_PRODUCT = 0.9995
 """Quaternions with a larger dot product than this are interpolated linearly."""
 
 
@@ -139,7 +139,7 @@ def slerp(first: ArrayLike, last: ArrayLike, ratios: ArrayLike) -> Array:
     dot = float(np.dot(begin, end))
     if dot < 0.0:
         end, dot = -end, -dot
-    if dot > _PARALLEL:
+    if dot > _PARALLEL_DOT_PRODUCT:
         interpolated = begin + fractions * (end - begin)
     else:
         angle = np.arccos(dot)

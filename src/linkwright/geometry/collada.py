@@ -15,10 +15,10 @@ from linkwright.geometry.polyhedron import Faces
 
 def read_collada(data: bytes) -> ColladaFile[PlainMesh, Array] | None:
     """Return the meshes in the scene of a file, or None in the cases described at `read_scene`."""
-    return read_scene(data, Arrays())
+    return read_scene(data, ArrayBuilder())
 
 
-class Arrays:
+class ArrayBuilder:
     """The implementation of `MeshBuilder` with numpy: meshes, and matrices of shape (4, 4)."""
 
     def identity(self) -> Array:
@@ -27,7 +27,7 @@ class Arrays:
 
     def apply_transform(self, matrix: Array, tag: str, text: str | None) -> Array:
         """Return the product of a matrix and the matrix of a transform element."""
-        transform = _transform(tag, parse_numbers(text, np.float32).astype(np.float64))
+        transform = _parse_transform(tag, parse_numbers(text, np.float32).astype(np.float64))
         # Unlike a product of matrices, this adds in the same order on every machine.
         columns = [matrix[:, place : place + 1] * transform[place] for place in range(4)]
         product: Array = columns[0] + columns[1] + columns[2] + columns[3]
@@ -56,7 +56,7 @@ class Arrays:
         return PlainMesh(points, np.concatenate([np.zeros((0, 3), dtype=np.int64), *faces]))
 
 
-def _transform(tag: str, values: Array) -> Array:
+def _parse_transform(tag: str, values: Array) -> Array:
     """Return the matrix of a transform element, given its tag and numbers.
 
     As in pycollada, the axis of a rotation is not normalized.

@@ -10,8 +10,8 @@ from xml.etree import ElementTree as ET
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.collada import Arrays
-from linkwright.geometry.collada_scene import NO_FACES, UnsupportedContent, read_scene
+from linkwright.geometry.collada import ArrayBuilder
+from linkwright.geometry.collada_scene import TAGS_WITHOUT_FACES, UnsupportedContent, read_scene
 from linkwright.geometry.plain import PlainMesh, parse_numbers
 from linkwright.geometry.polyhedron import Faces
 from linkwright.loading.lean_dataclasses import NamedTuple
@@ -41,14 +41,14 @@ def read_colored_meshes(data: bytes) -> list[ColoredMesh] | None:
 
     Returns None for a file with textures, unusual content or mistakes; only trimesh can read such a file.
     """
-    file = read_scene(data, _ArraysByMaterial())
+    file = read_scene(data, _MaterialArrayBuilder())
     if file is None:
         return None
     materials = _Materials(file.root)
     meshes = []
     try:
         for (parts, matrix), instance in zip(file.placed_meshes, file.instances, strict=True):
-            colors = materials.colors(instance)
+            colors = materials.find_colors(instance)
             meshes += [
                 ColoredMesh(part, matrix, file.unit, color)
                 for part, color in zip(parts, colors, strict=True)
@@ -59,11 +59,11 @@ def read_colored_meshes(data: bytes) -> list[ColoredMesh] | None:
     return meshes
 
 
-class _ArraysByMaterial:
+class _MaterialArrayBuilder:
     """The implementation of `MeshBuilder` that keeps the triangles of each element apart."""
 
     def __init__(self) -> None:
-        self._arrays = Arrays()
+        self._arrays = ArrayBuilder()
         self.identity = self._arrays.identity
         self.apply_transform = self._arrays.apply_transform
         self.faces = self._arrays.faces
@@ -83,21 +83,26 @@ class _Materials:
 
     def __init__(self, root: ET.Element) -> None:
         self._namespace = root.tag.rpartition("}")[0] + "}"
-        self._geometries = self._by_id(root, "library_geometries", "geometry")
-        self._materials = self._by_id(root, "library_materials", "material")
-        self._effects = self._by_id(root, "library_effects", "effect")
+        self._geometries = self._index_by_id(root, "library_geometries", "geometry")
+        self._materials = self._index_by_id(root, "library_materials", "material")
+        self._effects = self._index_by_id(root, "library_effects", "effect")
 
-    def colors(self, instance: ET.Element) -> list[_Color | None]:
+    def find_colors(self, instance: ET.Element) -> list[_Color | None]:
         """Return the color of each element with triangles in an instance of a geometry."""
-        bound = {
+        material_by_symbol = {
             material.get("symbol", ""): material.get("target", "").removeprefix("#")
             for material in instance.iter(f"{self._namespace}instance_material")
         }
         mesh = self._single_child(self._geometries[instance.get("url", "").removeprefix("#")], "mesh")
-        symbols = [part.get("material") for part in mesh if part.tag.removeprefix(self._namespace) not in NO_FACES]
-        return [None if symbol is None or symbol not in bound else self._color(bound[symbol]) for symbol in symbols]
+        symbols = [
+            part.get("material") for part in mesh if part.tag.removeprefix(self._namespace) not in TAGS_WITHOUT_FACES
+        ]
+        return [
+            None if symbol is None or symbol not in material_by_symbol else self._read_color(material_by_symbol[symbol])
+            for symbol in symbols
+        ]
 
-    def _color(self, name: str) -> _Color:
+    def _read_color(self, name: str) -> _Color:
         effect = self._effects[
             self._single_child(self._materials[name], "instance_effect").get("url", "").removeprefix("#")
         ]
@@ -119,6 +124,6 @@ class _Materials:
             raise UnsupportedContent
         return children[0]
 
-    def _by_id(self, root: ET.Element, library: str, tag: str) -> dict[str, ET.Element]:
+    def _index_by_id(self, root: ET.Element, library: str, tag: str) -> dict[str, ET.Element]:
         libraries = root.findall(self._namespace + library)
         return {node.get("id", ""): node for element in libraries for node in element.findall(self._namespace + tag)}

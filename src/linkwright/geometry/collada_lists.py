@@ -22,7 +22,7 @@ def read_triangles(data: bytes, max_triangles: int) -> _Mesh | None:
 
     Returns None if there are more than `max_triangles` triangles, and in the cases described at `read_scene`.
     """
-    file: ColladaFile[_Mesh, _Rows] | None = read_scene(data, Lists())
+    file: ColladaFile[_Mesh, _Rows] | None = read_scene(data, ListBuilder())
     if file is None or sum(len(faces) for (_, faces), _ in file.placed_meshes) > max_triangles:
         return None
     corners: list[Vector3] = []
@@ -40,7 +40,7 @@ def read_triangles(data: bytes, max_triangles: int) -> _Mesh | None:
     return corners, triangles
 
 
-class Lists:
+class ListBuilder:
     """The implementation of `MeshBuilder` in plain Python.
 
     Meshes are lists of vertices and triangles, and matrices are lists of rows.
@@ -52,20 +52,20 @@ class Lists:
 
     def apply_transform(self, matrix: _Rows, tag: str, text: str | None) -> _Rows:
         """Return the product of a matrix and the matrix of a transform element."""
-        columns = list(zip(*_transform(tag, _numbers(text or ""), self.identity()), strict=True))
+        columns = list(zip(*_parse_transform(tag, _parse_numbers(text or ""), self.identity()), strict=True))
         return [[sum(a * b for a, b in zip(row, column, strict=True)) for column in columns] for row in matrix]
 
     def faces(
         self, tag: str, texts: list[str], corner_counts: str, width: int, column: int, limits: Limits
     ) -> list[_Triangle]:
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
-        rows = [_integers(text) for text in texts]
+        rows = [_parse_integers(text) for text in texts]
         indices = [value for row in rows for value in row]
         counts = [len(row) // width for row in rows]
         if tag == "triangles":
             counts = [3] * (counts[0] // 3)
         elif tag == "polylist":
-            counts = _integers(corner_counts)
+            counts = _parse_integers(corner_counts)
         if any(len(row) % width for row in rows) or sum(counts) * width != len(indices) or min(counts, default=3) < 3:
             raise UnsupportedContent
         for offset, limit in limits:
@@ -80,12 +80,12 @@ class Lists:
 
     def mesh(self, text: str, faces: list[list[_Triangle]]) -> _Mesh:
         """Return a mesh from the text of its vertices and the triangles of its elements."""
-        numbers = _numbers(text)
+        numbers = _parse_numbers(text)
         points = list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
         return points, [item for triangle_group in faces for item in triangle_group]
 
 
-def _numbers(text: str) -> list[float]:
+def _parse_numbers(text: str) -> list[float]:
     """Parse numbers separated by whitespace, rounded to 32 bits."""
     if "_" in text:
         raise UnsupportedContent
@@ -99,13 +99,13 @@ def _numbers(text: str) -> list[float]:
     return list(numbers)
 
 
-def _integers(text: str) -> list[int]:
+def _parse_integers(text: str) -> list[int]:
     if "_" in text:
         raise UnsupportedContent
     return list(map(int, text.split()))
 
 
-def _transform(tag: str, values: list[float], matrix: _Rows) -> _Rows:
+def _parse_transform(tag: str, values: list[float], matrix: _Rows) -> _Rows:
     """Return the matrix of a transform element, given its tag and numbers.
 
     `matrix` is an identity matrix, into which the result is written unless the element contains a matrix.

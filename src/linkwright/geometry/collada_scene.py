@@ -15,11 +15,11 @@ from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.loading.lean_typing import Any, Generic, Protocol, TypeVar
 
 _Node = ET.Element
-_TRANSFORMS = ("matrix", "translate", "rotate", "scale")
-NO_FACES = ("source", "vertices", "lines", "extra")
+_TRANSFORM_TAGS = ("matrix", "translate", "rotate", "scale")
+TAGS_WITHOUT_FACES = ("source", "vertices", "lines", "extra")
 """The children of a mesh that have no triangles."""
-_WITHOUT_TRIANGLES = ("instance_camera", "instance_light", "instance_controller", "extra", "asset")
-_DECLARATION = lazy_pattern(rb"<!(?!--)")
+_TAGS_WITHOUT_TRIANGLES = ("instance_camera", "instance_light", "instance_controller", "extra", "asset")
+_DECLARATION_PATTERN = lazy_pattern(rb"<!(?!--)")
 """The beginning of a document type, which may define entities, or of a CDATA section."""
 _MAX_INSTANCES = 20_000
 """The maximum number of node instances, because a few nodes that refer to each other can create any number."""
@@ -104,121 +104,128 @@ def read_scene(data: bytes, builder: MeshBuilder[MeshT, MatrixT, Any]) -> Collad
     Numbers are rounded to 32 bits, as in pycollada. Returns None for a file with unusual content or mistakes; only
     trimesh can read such a file.
     """
-    if _DECLARATION.search(data):
+    if _DECLARATION_PATTERN.search(data):
         return None
     try:
-        return _File(ET.fromstring(data), builder).read()  # noqa: S314 - the text contains no entities
+        return _SceneReader(ET.fromstring(data), builder).read()  # noqa: S314 - the text contains no entities
     except (UnsupportedContent, ET.ParseError, ValueError, LookupError, RecursionError):
         return None
 
 
-class _File(Generic[MeshT, MatrixT]):
+class _SceneReader(Generic[MeshT, MatrixT]):
     def __init__(self, root: _Node, builder: MeshBuilder[MeshT, MatrixT, Any]) -> None:
         name, brace, _ = root.tag.rpartition("}")
         if not brace:
             raise UnsupportedContent
         self._root = root
         self._builder = builder
-        self._space = name + brace
-        self._geometries = self._by_id("library_geometries", "geometry")
-        self._nodes = self._by_id("library_nodes", "node")
+        self._namespace = name + brace
+        self._geometries = self._index_by_id("library_geometries", "geometry")
+        self._nodes = self._index_by_id("library_nodes", "node")
         self._meshes: dict[str, tuple[MeshT, bool]] = {}
         self._instance_count = 0
 
     def read(self) -> ColladaFile[MeshT, MatrixT]:
-        instance = self._only_child(self._only_child(self._root, "scene"), "instance_visual_scene")
-        scene = self._by_id("library_visual_scenes", "visual_scene")[_reference(instance)]
+        instance = self._find_only_child(self._find_only_child(self._root, "scene"), "instance_visual_scene")
+        scene = self._index_by_id("library_visual_scenes", "visual_scene")[_read_reference(instance)]
         root = self._builder.identity()
-        placed_meshes = [item for node in self._children(scene, "node") for item in self._placed_meshes(node, root)]
+        placed_meshes = [
+            item for node in self._find_children(scene, "node") for item in self._find_placed_meshes(node, root)
+        ]
         if not placed_meshes:
             raise UnsupportedContent
         instances = [instance for _, _, instance in placed_meshes]
-        return ColladaFile(self._unit(), [(mesh, matrix) for mesh, matrix, _ in placed_meshes], instances, self._root)
+        return ColladaFile(
+            self._read_unit(), [(mesh, matrix) for mesh, matrix, _ in placed_meshes], instances, self._root
+        )
 
     # --- tree -------------------------------------------------------------------------------------------------
 
-    def _children(self, node: _Node, tag: str) -> list[_Node]:
-        return node.findall(self._space + tag)
+    def _find_children(self, node: _Node, tag: str) -> list[_Node]:
+        return node.findall(self._namespace + tag)
 
-    def _only_child(self, node: _Node, tag: str) -> _Node:
-        children = self._children(node, tag)
+    def _find_only_child(self, node: _Node, tag: str) -> _Node:
+        children = self._find_children(node, tag)
         if len(children) != 1:
             raise UnsupportedContent
         return children[0]
 
-    def _by_id(self, library: str, tag: str) -> dict[str, _Node]:
+    def _index_by_id(self, library: str, tag: str) -> dict[str, _Node]:
         nodes: dict[str, _Node] = {}
-        for element in self._children(self._root, library):
-            for node in self._children(element, tag):
+        for element in self._find_children(self._root, library):
+            for node in self._find_children(element, tag):
                 name = node.get("id", "")
                 if not name or name in nodes:
                     raise UnsupportedContent
                 nodes[name] = node
         return nodes
 
-    def _tag(self, node: _Node) -> str:
-        if not node.tag.startswith(self._space):
+    def _get_tag(self, node: _Node) -> str:
+        if not node.tag.startswith(self._namespace):
             raise UnsupportedContent
-        return node.tag[len(self._space) :]
+        return node.tag[len(self._namespace) :]
 
-    def _unit(self) -> float:
-        for asset in self._children(self._root, "asset")[:1]:
-            for unit in self._children(asset, "unit")[:1]:
+    def _read_unit(self) -> float:
+        for asset in self._find_children(self._root, "asset")[:1]:
+            for unit in self._find_children(asset, "unit")[:1]:
                 meters = float(unit.get("meter", "1"))
                 return 1.0 if math.isclose(meters, 1.0, rel_tol=1e-5) else meters
         return 1.0
 
     # --- scene ------------------------------------------------------------------------------------------------
 
-    def _placed_meshes(self, node: _Node, parent_matrix: MatrixT) -> Iterator[tuple[MeshT, MatrixT, _Node]]:
-        """Yield the meshes in a node, with their frames as matrices in the file's frame, and their instances."""
+    def _find_placed_meshes(self, node: _Node, parent_matrix: MatrixT) -> Iterator[tuple[MeshT, MatrixT, _Node]]:
+        """Yield the meshes in a node, with their poses as matrices in the file's frame, and their instances."""
         self._instance_count += 1
         if self._instance_count > _MAX_INSTANCES:
             raise UnsupportedContent
         matrix = parent_matrix
         for child in node:
-            if (tag := self._tag(child)) in _TRANSFORMS:
+            if (tag := self._get_tag(child)) in _TRANSFORM_TAGS:
                 matrix = self._builder.apply_transform(matrix, tag, child.text)
         for child in node:
-            tag = self._tag(child)
+            tag = self._get_tag(child)
             if tag == "node":
-                yield from self._placed_meshes(child, matrix)
+                yield from self._find_placed_meshes(child, matrix)
             elif tag == "instance_node":
-                yield from self._placed_meshes(self._nodes[_reference(child)], matrix)
+                yield from self._find_placed_meshes(self._nodes[_read_reference(child)], matrix)
             elif tag == "instance_geometry":
-                mesh, has_faces = self._mesh(_reference(child))
+                mesh, has_faces = self._get_mesh(_read_reference(child))
                 if has_faces:
                     yield mesh, matrix, child
-            elif tag not in _TRANSFORMS and tag not in _WITHOUT_TRIANGLES:
+            elif tag not in _TRANSFORM_TAGS and tag not in _TAGS_WITHOUT_TRIANGLES:
                 raise UnsupportedContent
 
     # --- meshes -----------------------------------------------------------------------------------------------
 
-    def _mesh(self, name: str) -> tuple[MeshT, bool]:
+    def _get_mesh(self, name: str) -> tuple[MeshT, bool]:
         if name not in self._meshes:
-            self._meshes[name] = self._read_mesh(self._only_child(self._geometries[name], "mesh"))
+            self._meshes[name] = self._read_mesh(self._find_only_child(self._geometries[name], "mesh"))
         return self._meshes[name]
 
     def _read_mesh(self, mesh: _Node) -> tuple[MeshT, bool]:
         """Return the mesh of a ``<mesh>`` element, and whether it has triangles."""
-        sources = {f"#{element.get('id', '')}": self._source(element) for element in self._children(mesh, "source")}
-        vertices = self._only_child(mesh, "vertices")
+        sources = {
+            f"#{element.get('id', '')}": self._read_source(element) for element in self._find_children(mesh, "source")
+        }
+        vertices = self._find_only_child(mesh, "vertices")
         inputs = {
-            element.get("semantic"): sources[element.get("source", "")] for element in self._children(vertices, "input")
+            element.get("semantic"): sources[element.get("source", "")]
+            for element in self._find_children(vertices, "input")
         }
         positions = inputs["POSITION"]
         if positions.width != 3:
             raise UnsupportedContent
         vertices_id = f"#{vertices.get('id', '')}"
         rows = {vertices_id: positions.rows, **{source: source_data.rows for source, source_data in sources.items()}}
-        primitives = [part for part in mesh if self._tag(part) not in NO_FACES]
-        faces = [self._faces(part, self._tag(part), rows, vertices_id) for part in primitives]
+        primitives = [part for part in mesh if self._get_tag(part) not in TAGS_WITHOUT_FACES]
+        faces = [self._read_faces(part, self._get_tag(part), rows, vertices_id) for part in primitives]
         return self._builder.mesh(positions.text, faces), any(len(face) for face in faces)
 
-    def _source(self, source: _Node) -> _Source:
-        float_array = self._only_child(source, "float_array")
-        accessor = self._only_child(self._only_child(source, "technique_common"), "accessor")
-        width = len(self._children(accessor, "param"))
+    def _read_source(self, source: _Node) -> _Source:
+        float_array = self._find_only_child(source, "float_array")
+        accessor = self._find_only_child(self._find_only_child(source, "technique_common"), "accessor")
+        width = len(self._find_children(accessor, "param"))
         text = float_array.text or ""
         count = len(text.split())
         stride, offset = int(accessor.get("stride", "1")), int(accessor.get("offset", "0"))
@@ -226,24 +233,24 @@ class _File(Generic[MeshT, MatrixT]):
             raise UnsupportedContent
         return _Source(count // width, width, text)
 
-    def _faces(self, primitive: _Node, tag: str, rows: dict[str, int], vertices_id: str) -> Any:
+    def _read_faces(self, primitive: _Node, tag: str, rows: dict[str, int], vertices_id: str) -> Any:
         """Return the triangles of a ``<triangles>``, ``<polylist>`` or ``<polygons>`` element."""
         inputs = [
             (element.get("semantic"), element.get("source", ""), int(element.get("offset", "")))
-            for element in self._children(primitive, "input")
+            for element in self._find_children(primitive, "input")
         ]
         width = max(offset for _, _, offset in inputs) + 1
-        texts = [element.text or "" for element in self._children(primitive, "p")]
-        is_polygons = tag == "polygons" and texts and not self._children(primitive, "ph")
+        texts = [element.text or "" for element in self._find_children(primitive, "p")]
+        is_polygons = tag == "polygons" and texts and not self._find_children(primitive, "ph")
         if not is_polygons and (tag not in ("triangles", "polylist") or len(texts) != 1):
             raise UnsupportedContent
-        corner_counts = (self._only_child(primitive, "vcount").text or "") if tag == "polylist" else ""
+        corner_counts = (self._find_only_child(primitive, "vcount").text or "") if tag == "polylist" else ""
         (column,) = [offset for semantic, source, offset in inputs if semantic == "VERTEX" and source == vertices_id]
         limits = [(offset, rows[source]) for _, source, offset in inputs]
         return self._builder.faces(tag, texts, corner_counts, width, column, limits)
 
 
-def _reference(node: _Node) -> str:
+def _read_reference(node: _Node) -> str:
     """Return the ID in a node's ``url`` that refers to an element of the same file."""
     mark, _, name = node.get("url", "").partition("#")
     if mark or not name:

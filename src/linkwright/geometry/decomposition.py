@@ -12,9 +12,9 @@ from linkwright.geometry.polyhedron import Faces, is_closed, merge_corners, poly
 THICKNESS = 0.02
 """The thickness, in m, of a face that becomes a separate piece."""
 
-_NEARLY_CONVEX = 0.95
+_NEARLY_CONVEX_RATIO = 0.95
 """A closed surface that fills at least this fraction of its hull counts as convex."""
-_ONE_PLANE = 1e-4
+_COPLANAR_TOLERANCE = 1e-4
 """Two triangles are coplanar if the cosine between their normals differs from 1 by at most this."""
 _MAX_CORNERS = 2000
 """A part with more corners is not tested for convexity, because it is neither a box nor a wall."""
@@ -39,7 +39,7 @@ def convex_pieces(vertices: Array, faces: Faces, max_pieces: int) -> list[Array]
     vertices, faces = merge_corners(vertices, faces)
     if not len(faces):
         return []
-    components = [faces[component] for component in _components(faces, len(vertices))]
+    components = [faces[component] for component in _find_components(faces, len(vertices))]
     pieces: list[Array] = []
     concave: list[tuple[Array, list[Array]]] = []
     for component_faces in components:
@@ -61,24 +61,24 @@ def convex_pieces(vertices: Array, faces: Faces, max_pieces: int) -> list[Array]
 
 def thicken(corners: Array) -> Array:
     """Return the corners of a convex piece, thickened on both sides if they are nearly coplanar."""
-    middle = corners.mean(axis=0)
-    _, sizes, axes = np.linalg.svd(corners - middle, full_matrices=False)
-    extent = np.ptp((corners - middle) @ axes[2]) if len(corners) > 2 and len(sizes) > 2 else 0.0
+    center = corners.mean(axis=0)
+    _, sizes, axes = np.linalg.svd(corners - center, full_matrices=False)
+    extent = np.ptp((corners - center) @ axes[2]) if len(corners) > 2 and len(sizes) > 2 else 0.0
     if len(sizes) > 2 and extent > 1e-3:
         return corners
     normal = axes[2] if len(axes) > 2 else np.array([0.0, 0.0, 1.0])
     return np.concatenate([corners + normal * THICKNESS / 2, corners - normal * THICKNESS / 2])
 
 
-def _components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
+def _find_components(faces: Faces, count: int) -> list[NDArray[np.int64]]:
     """Return the indices of the faces in each connected component."""
-    labels = _connected_labels(faces, count)[faces[:, 0]]
+    labels = _label_components(faces, count)[faces[:, 0]]
     order = np.argsort(labels, kind="stable")
     starts = np.flatnonzero(np.diff(labels[order], prepend=-1))
     return np.split(order, starts[1:])
 
 
-def _connected_labels(groups: NDArray[np.int64], count: int) -> NDArray[np.int64]:
+def _label_components(groups: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     """Return, for each index below a count, the smallest index connected to it.
 
     Each row of `groups` connects its indices with each other.
@@ -101,7 +101,7 @@ def _is_nearly_convex(vertices: Array, faces: Faces, corners: Array) -> bool:
     if hull is None:
         return False
     volume = abs(polyhedron_properties(vertices, faces).mass)
-    return volume >= _NEARLY_CONVEX * polyhedron_properties(corners, hull).mass
+    return volume >= _NEARLY_CONVEX_RATIO * polyhedron_properties(corners, hull).mass
 
 
 def _list_plates(vertices: Array, faces: Faces, max_plates: int) -> list[Array]:
@@ -111,15 +111,15 @@ def _list_plates(vertices: Array, faces: Faces, max_plates: int) -> list[Array]:
     lengths = np.linalg.norm(normals, axis=1)
     faces, normals = faces[lengths > 0], normals[lengths > 0] / lengths[lengths > 0, None]
     plates: list[Array] = []
-    for group in _flat_groups(faces, normals):
+    for group in _find_flat_groups(faces, normals):
         if len(plates) > max_plates:
             break
         ring = vertices[np.unique(faces[group])]
         triangles = vertices[faces[group]]
         area = np.linalg.norm(np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]), axis=1)
         normal = normals[group[0]]
-        hull_area = _area_of_hull(ring, normal)
-        if area.sum() / 2 >= _NEARLY_CONVEX * hull_area:
+        hull_area = _compute_hull_area(ring, normal)
+        if area.sum() / 2 >= _NEARLY_CONVEX_RATIO * hull_area:
             plates.append(_make_plate(ring, normal))
         else:
             plates += [_make_plate(triangle, normal) for triangle in triangles]
@@ -130,21 +130,21 @@ def _make_plate(corners: Array, normal: Array) -> Array:
     return np.concatenate([corners, corners - THICKNESS * normal])
 
 
-def _flat_groups(faces: Faces, normals: Array) -> list[NDArray[np.int64]]:
+def _find_flat_groups(faces: Faces, normals: Array) -> list[NDArray[np.int64]]:
     """Return the indices of the triangles in each flat, connected group."""
     edges = np.sort(np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    owner = np.repeat(np.arange(len(faces)), 3)
+    edge_faces = np.repeat(np.arange(len(faces)), 3)
     order = np.lexsort((edges[:, 1], edges[:, 0]))
-    edges, owner = edges[order], owner[order]
+    edges, edge_faces = edges[order], edge_faces[order]
     shared = np.flatnonzero((edges[1:] == edges[:-1]).all(axis=1))
-    pairs = np.stack([owner[shared], owner[shared + 1]], axis=1)
-    is_flat = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1) > 1.0 - _ONE_PLANE
-    labels = _connected_labels(pairs[is_flat], len(faces)) if is_flat.any() else np.arange(len(faces))
+    pairs = np.stack([edge_faces[shared], edge_faces[shared + 1]], axis=1)
+    is_flat = (normals[pairs[:, 0]] * normals[pairs[:, 1]]).sum(axis=1) > 1.0 - _COPLANAR_TOLERANCE
+    labels = _label_components(pairs[is_flat], len(faces)) if is_flat.any() else np.arange(len(faces))
     order = np.argsort(labels, kind="stable")
     return np.split(order, np.flatnonzero(np.diff(labels[order], prepend=-1))[1:])
 
 
-def _area_of_hull(points: Array, normal: Array) -> float:
+def _compute_hull_area(points: Array, normal: Array) -> float:
     """Return the area of the convex hull of coplanar points (Andrew's monotone chain)."""
     first_axis = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
     first_axis /= np.linalg.norm(first_axis)

@@ -31,8 +31,8 @@ def sine_and_cosine(angle: float) -> tuple[float, float]:
     quarters = round(angle / _QUARTER_TURN)
     remainder = angle - quarters * _QUARTER_TURN - quarters * _QUARTER_TURN_REST
     square = remainder * remainder
-    sine = _rounded(remainder + remainder * square * _series(_SINE_TERMS, square))
-    cosine = _rounded(1.0 + square * _series(_COSINE_TERMS, square))
+    sine = _round_to_grid(remainder + remainder * square * _sum_series(_SINE_TERMS, square))
+    cosine = _round_to_grid(1.0 + square * _sum_series(_COSINE_TERMS, square))
     return ((sine, cosine), (cosine, -sine), (-sine, -cosine), (-cosine, sine))[quarters % 4]
 
 
@@ -47,19 +47,19 @@ def exact_quaternion(rpy: Vector3) -> Quaternion:
     )
 
 
-def circle(sides: int) -> tuple[tuple[float, float], ...]:
-    """Return cosine and sine of the corners of a regular polygon, the first corner also at the end."""
+def regular_polygon(sides: int) -> tuple[tuple[float, float], ...]:
+    """Return cosine and sine of each corner of a regular polygon; the first corner is also the last."""
     turn = 4.0 * _QUARTER_TURN
     points = [sine_and_cosine(turn * side / sides) for side in range(sides)]
     return tuple((cosine, sine) for sine, cosine in (*points, points[0]))
 
 
-def _series(terms: tuple[float, ...], square: float) -> float:
+def _sum_series(terms: tuple[float, ...], square: float) -> float:
     total = 0.0
     for term in reversed(terms):
         total = total * square + term
     return total
 
 
-def _rounded(value: float) -> float:
+def _round_to_grid(value: float) -> float:
     return round(value * _GRID) / _GRID

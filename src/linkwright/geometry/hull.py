@@ -36,7 +36,7 @@ def convex_hull(points: Array) -> Faces | None:
     size = float(np.ptp(points, axis=0).max())
     if not (size > 0 and np.isfinite(size)):
         return None
-    start = _tetrahedron(points, _TOLERANCE * size)
+    start = _find_tetrahedron(points, _TOLERANCE * size)
     return None if start is None else _Hull(points, start, _TOLERANCE * size).grow()
 
 
@@ -58,7 +58,7 @@ class _Hull:
         self.outside_points: dict[int, Indices] = {}
         self._next_id = 0
         a, b, c, d = start
-        self._add([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
+        self._add_faces([(a, b, c), (a, d, b), (b, d, c), (c, d, a)], np.arange(len(points), dtype=np.int64))
 
     def grow(self) -> Faces:
         """Add points until none is outside the hull, and return the faces."""
@@ -71,12 +71,12 @@ class _Hull:
         return np.array(list(self.faces.values()), dtype=np.int64)
 
     def _add_point(self, face: int, apex: int) -> None:
-        visible, horizon = self._visible_from(face, self.points[apex])
-        freed_points = [self._remove(visible_face) for visible_face in visible]
+        visible, horizon = self._find_visible(face, self.points[apex])
+        freed_points = [self._remove_face(visible_face) for visible_face in visible]
         remaining = np.concatenate(freed_points)
-        self._add([(a, b, apex) for a, b in horizon], remaining[remaining != apex])
+        self._add_faces([(a, b, apex) for a, b in horizon], remaining[remaining != apex])
 
-    def _visible_from(self, face: int, point: Array) -> tuple[set[int], list[tuple[int, int]]]:
+    def _find_visible(self, face: int, point: Array) -> tuple[set[int], list[tuple[int, int]]]:
         """Return the faces that are visible from a point, and the edges around them.
 
         `face` is one of the visible faces, from which the search starts.
@@ -85,7 +85,7 @@ class _Hull:
         pending = [face]
         horizon = []
         while pending:
-            for edge in _edges(self.faces[pending.pop()]):
+            for edge in _get_edges(self.faces[pending.pop()]):
                 neighbor = self.edges[edge[1], edge[0]]
                 if neighbor in visible:
                     continue
@@ -99,14 +99,14 @@ class _Hull:
                 horizon.append(edge)
         return visible, horizon
 
-    def _remove(self, face: int) -> Indices:
-        for edge in _edges(self.faces.pop(face)):
+    def _remove_face(self, face: int) -> Indices:
+        for edge in _get_edges(self.faces.pop(face)):
             if self.edges.get(edge) == face:
                 del self.edges[edge]
         del self.planes[face]
         return self.outside_points.pop(face, _NO_INDICES)
 
-    def _add(self, triangles: list[Triangle], unassigned: Indices) -> None:
+    def _add_faces(self, triangles: list[Triangle], unassigned: Indices) -> None:
         """Add faces, and assign the points that have no face to them.
 
         A point is assigned to the face that it is farthest outside of, or dropped if it is inside all of them.
@@ -121,7 +121,7 @@ class _Hull:
         for face_id, triangle, normal, offset in zip(face_ids, triangles, normals, plane_offsets, strict=True):
             self.faces[face_id] = triangle
             self.planes[face_id] = (normal, float(offset))
-            for edge in _edges(triangle):
+            for edge in _get_edges(triangle):
                 self.edges[edge] = face_id
         if len(unassigned):
             heights = self.points[unassigned] @ normals.T - plane_offsets
@@ -135,12 +135,12 @@ class _Hull:
 _NO_INDICES: Indices = np.empty(0, dtype=np.int64)
 
 
-def _edges(triangle: Triangle) -> Iterable[tuple[int, int]]:
+def _get_edges(triangle: Triangle) -> Iterable[tuple[int, int]]:
     a, b, c = triangle
     return (a, b), (b, c), (c, a)
 
 
-def _tetrahedron(points: Array, tolerance: float) -> tuple[int, int, int, int] | None:
+def _find_tetrahedron(points: Array, tolerance: float) -> tuple[int, int, int, int] | None:
     """Return the indices of four points that are far apart, or None if all points are coplanar.
 
     The fourth point is below the plane of the others.

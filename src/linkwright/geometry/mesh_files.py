@@ -16,7 +16,7 @@ from linkwright.diagnostics import LinkwrightError, Phrase, foreign, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.collada import read_collada
 from linkwright.geometry.mesh_faults import find_fault
-from linkwright.geometry.outlines import STL_HEADER, STL_TRIANGLE
+from linkwright.geometry.outlines import STL_HEADER_BYTES, STL_TRIANGLE_BYTES
 from linkwright.geometry.stl import read_stl
 from linkwright.geometry.wavefront import read_obj
 from linkwright.loading.lean_dataclasses import NamedTuple
@@ -25,7 +25,7 @@ from linkwright.xmltree import Comment, write_element
 from linkwright.xmltree.decoding import decode
 from linkwright.xmltree.tinyxml import parse_as_tinyxml
 
-MESH_ENDINGS = (".stl", ".dae", ".obj", ".glb", ".gltf")
+MESH_SUFFIXES = (".stl", ".dae", ".obj", ".glb", ".gltf")
 """The extensions of the supported formats, which RViz and Gazebo also read."""
 _FACE_LINES = {".stl": b"facet normal", ".obj": b"\nf "}
 """The beginning of the line that occurs once for each triangle, or polygon, in text files."""
@@ -70,7 +70,7 @@ class BadMeshError(Exception):
         self.reason = reason
 
 
-def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: Any) -> list[PlacedMesh]:
+def read_placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: Any) -> list[PlacedMesh]:
     """Return the triangle meshes of an STL, COLLADA, OBJ or glTF file.
 
     Lines and points are ignored.
@@ -98,8 +98,8 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
     except Exception as error:  # noqa: BLE001 - a parser may raise anything for unknown bytes
         repaired = _repair_xml(data) if kind == "dae" else None
         if repaired is not None:
-            return placed_meshes(repaired, kind, is_plain=is_plain, **options)
-        raise BadMeshError(find_fault(data, kind) or parser_fault(error)) from None
+            return read_placed_meshes(repaired, kind, is_plain=is_plain, **options)
+        raise BadMeshError(find_fault(data, kind) or describe_parser_error(error)) from None
     if not meshes:
         raise BadMeshError(find_fault(data, kind) or phrase("it has no triangles"))
     for placed_mesh in meshes:
@@ -114,7 +114,7 @@ def placed_meshes(data: bytes, kind: str, *, is_plain: bool = False, **options: 
     return meshes
 
 
-def declared_triangles(path: Path) -> int | None:
+def count_declared_triangles(path: Path) -> int | None:
     """Return a lower bound of the number of triangles in a file, without parsing the file.
 
     Parsing a large file takes a minute. Returns None if the number can only be determined by parsing (COLLADA, glTF),
@@ -123,10 +123,10 @@ def declared_triangles(path: Path) -> int | None:
     kind = path.suffix.lower()
     try:
         with path.open("rb") as file:
-            head = file.read(STL_HEADER)
-            if kind == ".stl" and len(head) == STL_HEADER:
-                (declared_count,) = struct.unpack_from("<I", head, STL_HEADER - 4)
-                if path.stat().st_size == STL_HEADER + declared_count * STL_TRIANGLE:
+            head = file.read(STL_HEADER_BYTES)
+            if kind == ".stl" and len(head) == STL_HEADER_BYTES:
+                (declared_count,) = struct.unpack_from("<I", head, STL_HEADER_BYTES - 4)
+                if path.stat().st_size == STL_HEADER_BYTES + declared_count * STL_TRIANGLE_BYTES:
                     return int(declared_count)
             line_start = _FACE_LINES.get(kind)
             return None if line_start is None else (head + file.read()).count(line_start)
@@ -162,7 +162,7 @@ def _read_meshes(data: bytes, kind: str, **options: Any) -> Iterator[PlacedMesh]
         matrix, name = scene.graph[node]
         mesh = scene.geometry[name]
         if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces):
-            unit = _collada_unit(mesh) if kind == "dae" else 1.0
+            unit = _get_collada_unit(mesh) if kind == "dae" else 1.0
             yield PlacedMesh(mesh, np.asarray(matrix, dtype=np.float64), unit, frozenset((name, node)))
     scene.__dict__.clear()  # This breaks the reference cycle that keeps the file's bytes in memory.
 
@@ -184,7 +184,7 @@ def _load_collada_scene(data: bytes, **options: Any) -> Any:
     try:
         return _load_scene(data, "dae", ignore_broken=False, **options)
     except DaeError:
-        return _load_scene(_without_broken_materials(data), "dae", ignore_broken=True, **options)
+        return _load_scene(_remove_broken_materials(data), "dae", ignore_broken=True, **options)
 
 
 def _repair_xml(data: bytes) -> bytes | None:
@@ -204,7 +204,7 @@ def _repair_xml(data: bytes) -> bytes | None:
     return write_element(document.root).encode()
 
 
-def _without_broken_materials(data: bytes) -> bytes:
+def _remove_broken_materials(data: bytes) -> bytes:
     """Return a COLLADA file without its references to missing or unreadable materials."""
     from collada import Collada  # type: ignore[import-untyped]  # pycollada has no types
     from collada.common import DaeError
@@ -220,7 +220,7 @@ def _without_broken_materials(data: bytes) -> bytes:
     return output.getvalue()
 
 
-def parser_fault(error: Exception) -> Phrase:
+def describe_parser_error(error: Exception) -> Phrase:
     """Return a description of a parser's error, for faults without a better description."""
     if isinstance(error, FileNotFoundError):
         return phrase("it refers to the file '{name}', which does not exist", name=str(error.filename or error))
@@ -228,7 +228,7 @@ def parser_fault(error: Exception) -> Phrase:
     return phrase("the parser reports: {error}", error=foreign(lines[0] if lines else type(error).__name__))
 
 
-def file_resolver(path: str) -> Any:
+def create_file_resolver(path: str) -> Any:
     """Return an object with which trimesh reads the files next to a mesh file.
 
     Returns None for STL, which refers to no files.
@@ -240,7 +240,7 @@ def file_resolver(path: str) -> Any:
     return FilePathResolver(path)
 
 
-def _collada_unit(mesh: Any) -> float:
+def _get_collada_unit(mesh: Any) -> float:
     """Return the meters per unit of a COLLADA file, from a mesh.
 
     trimesh stores the unit with the meshes, and does not apply it to the numbers.

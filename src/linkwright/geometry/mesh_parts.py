@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import missing_extra
 from linkwright.geometry.arrays import Array, transform_points
 from linkwright.geometry.collada_colors import read_colored_meshes
-from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, parser_fault, placed_meshes
+from linkwright.geometry.mesh_files import BadMeshError, PlacedMesh, describe_parser_error, read_placed_meshes
 from linkwright.loading.lean_dataclasses import dataclass, replace
 from linkwright.loading.lean_typing import Any
 
@@ -79,7 +79,7 @@ class MeshPart:
 
 
 def read_simple_parts(path: Path) -> list[MeshPart] | None:
-    """Return the parts of a COLLADA file, without normals and names, or None for files that only `read_parts` reads.
+    """Return the parts of a COLLADA file without normals and names, or None if `read_parts` is needed.
 
     Such a file has textures, unusual content or mistakes. Unlike `read_parts`, this needs no library.
 
@@ -92,7 +92,7 @@ def read_simple_parts(path: Path) -> list[MeshPart] | None:
     parts = []
     for mesh, matrix, unit, color in meshes:
         placed_mesh = PlacedMesh(mesh, np.diag([unit, unit, unit, 1.0]) @ matrix, 1.0, frozenset())
-        triangles = _triangles(placed_mesh, placed_mesh.matrix, smooth=False)
+        triangles = _create_triangles(placed_mesh, placed_mesh.matrix, smooth=False)
         parts.append(MeshPart(triangles, None if color is None else FileMaterial(color)))
     return parts
 
@@ -117,12 +117,12 @@ def read_parts(path: Path, *, resolver: Any, with_normals: bool = True) -> list[
     except BadMeshError:
         raise
     except Exception as error:  # noqa: BLE001 - an unknown image or material may raise anything
-        raise BadMeshError(parser_fault(error)) from None
+        raise BadMeshError(describe_parser_error(error)) from None
 
 
 def _read_parts(data: bytes, kind: str, resolver: Any, with_normals: bool) -> list[MeshPart]:
     parts = []
-    for placed_mesh in placed_meshes(data, kind, resolver=resolver):
+    for placed_mesh in read_placed_meshes(data, kind, resolver=resolver):
         matrix = placed_mesh.matrix
         if kind == "dae":
             matrix = np.diag([*[placed_mesh.unit] * 3, 1.0]) @ matrix
@@ -130,26 +130,26 @@ def _read_parts(data: bytes, kind: str, resolver: Any, with_normals: bool) -> li
             matrix = _Y_UP_TO_Z_UP @ matrix
         parts.append(
             MeshPart(
-                _triangles(placed_mesh, matrix, smooth=with_normals and kind != "stl"),
-                _file_material(placed_mesh.mesh, kind),
+                _create_triangles(placed_mesh, matrix, smooth=with_normals and kind != "stl"),
+                _read_file_material(placed_mesh.mesh, kind),
                 placed_mesh.names,
             )
         )
     return parts
 
 
-def _triangles(placed_mesh: PlacedMesh, matrix: Array, *, smooth: bool) -> Triangles:
+def _create_triangles(placed_mesh: PlacedMesh, matrix: Array, *, smooth: bool) -> Triangles:
     mesh, faces = placed_mesh.mesh, placed_mesh.faces
     positions = transform_points(matrix, mesh.vertices)
-    normals = _normals(mesh, positions, faces, matrix) if smooth else None
+    normals = _compute_normals(mesh, positions, faces, matrix) if smooth else None
     uv = getattr(mesh.visual, "uv", None)
     coordinates = None
     if uv is not None and np.shape(uv) == (len(positions), 2):
         coordinates = np.asarray(uv, dtype=np.float64) * (1, -1) + (0, 1)  # trimesh counts from the bottom.
-    return Triangles(positions, faces.reshape(-1), normals, coordinates, _vertex_colors(mesh, len(positions)))
+    return Triangles(positions, faces.reshape(-1), normals, coordinates, _read_vertex_colors(mesh, len(positions)))
 
 
-def _normals(mesh: Any, positions: Array, faces: Any, matrix: Array) -> Array | None:
+def _compute_normals(mesh: Any, positions: Array, faces: Any, matrix: Array) -> Array | None:
     """Return the unit normals at the corners, or None if one of them is zero.
 
     If the file contains no normals, the normals of the triangles are averaged.
@@ -166,14 +166,14 @@ def _normals(mesh: Any, positions: Array, faces: Any, matrix: Array) -> Array | 
     return normals / lengths if np.isfinite(lengths).all() and (lengths > 0).all() else None
 
 
-def _vertex_colors(mesh: Any, count: int) -> Array | None:
+def _read_vertex_colors(mesh: Any, count: int) -> Array | None:
     if mesh.visual.kind != "vertex":
         return None
     colors = np.asarray(mesh.visual.vertex_colors, dtype=np.float64) / 255.0
     return colors if colors.shape == (count, 4) else None
 
 
-def _file_material(mesh: Any, kind: str) -> FileMaterial | None:
+def _read_file_material(mesh: Any, kind: str) -> FileMaterial | None:
     if kind == "stl":
         return None
     if mesh.visual.kind == "vertex":
@@ -183,13 +183,13 @@ def _file_material(mesh: Any, kind: str) -> FileMaterial | None:
         return FileMaterial((1.0, 1.0, 1.0)) if kind in ("glb", "gltf") else None  # glTF's default is white.
     if kind == "obj":
         color = material.kwargs.get("kd", np.asarray(material.diffuse[:3]) / 255.0)
-        return FileMaterial(_rgb(color), _image_to_png(getattr(material, "image", None)))
+        return FileMaterial(_to_rgb(color), _image_to_png(getattr(material, "image", None)))
     factor = material.baseColorFactor
     color = np.ones(3) if factor is None else np.asarray(factor, dtype=np.float64)[:3] / 255.0
-    return FileMaterial(_rgb(color), _image_to_png(material.baseColorTexture))
+    return FileMaterial(_to_rgb(color), _image_to_png(material.baseColorTexture))
 
 
-def _rgb(color: Any) -> tuple[float, float, float]:
+def _to_rgb(color: Any) -> tuple[float, float, float]:
     red, green, blue = (min(1.0, max(0.0, float(component))) for component in list(color)[:3])
     return red, green, blue
 

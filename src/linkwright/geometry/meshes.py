@@ -20,7 +20,7 @@ from linkwright.diagnostics import (
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.hull import convex_hull
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver, placed_meshes
+from linkwright.geometry.mesh_files import MESH_SUFFIXES, BadMeshError, create_file_resolver, read_placed_meshes
 from linkwright.geometry.outlines import COLLADA_PADDING
 from linkwright.geometry.polyhedron import Faces, is_closed, merge_corners, polyhedron_properties
 from linkwright.geometry.shapes import MAX_COORDINATE, Bounds
@@ -111,21 +111,21 @@ def read_mesh(path: Path) -> TriangleMesh:
             read; INR104, trimesh is not installed.
     """
     extension = path.suffix.lower()
-    if extension not in MESH_ENDINGS:
+    if extension not in MESH_SUFFIXES:
         message = phrase("the mesh '{path}' has an unsupported format", path=display_path(path))
         raise LinkwrightError(
             Diagnostic(
                 "INR102",
                 message,
-                hint=phrase("convert it to one of the formats {mesh_endings}", mesh_endings=joined(MESH_ENDINGS)),
+                hint=phrase("convert it to one of the formats {mesh_endings}", mesh_endings=joined(MESH_SUFFIXES)),
             )
         )
     try:
         file_status = path.stat()
         if not stat.S_ISREG(file_status.st_mode):
-            raise unreadable(path, phrase("it is not a regular file"))
+            raise unreadable_mesh_error(path, phrase("it is not a regular file"))
         if file_status.st_size > MAX_FILE_SIZE:
-            raise unreadable(
+            raise unreadable_mesh_error(
                 path, phrase("it is larger than the maximum of {largest_file} MiB", largest_file=MAX_FILE_SIZE >> 20)
             )
         data = path.read_bytes()
@@ -135,15 +135,15 @@ def read_mesh(path: Path) -> TriangleMesh:
         message = phrase("there is no mesh file '{path}'", path=display_path(path))
         raise LinkwrightError(Diagnostic("INR101", message, hint=missing_file_hint(path))) from None
     except OSError as error:
-        raise unreadable(path, error.strerror or str(error)) from None
+        raise unreadable_mesh_error(path, error.strerror or str(error)) from None
     try:
         mesh = _parse(data, extension[1:], path)
     except ModuleNotFoundError as error:
         raise missing_extra("INR104", error) from None
     except BadMeshError as error:
-        raise unreadable(path, error.reason) from None
+        raise unreadable_mesh_error(path, error.reason) from None
     if not np.abs(mesh.vertices).max() <= MAX_COORDINATE:
-        raise unreadable(path, phrase("a coordinate is out of range"))
+        raise unreadable_mesh_error(path, phrase("a coordinate is out of range"))
     return mesh
 
 
@@ -152,12 +152,12 @@ def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
     if kind in ("obj", "glb", "gltf"):
         options["skip_materials"] = True
     if kind in ("glb", "gltf"):
-        options["resolver"] = file_resolver(str(path))
+        options["resolver"] = create_file_resolver(str(path))
     vertices: list[Array] = [np.zeros((0, 3))]
     faces: list[Faces] = [np.zeros((0, 3), dtype=np.int64)]
     count = 0
     meshes = []
-    for placed_mesh in placed_meshes(data, kind, is_plain=True, **options):
+    for placed_mesh in read_placed_meshes(data, kind, is_plain=True, **options):
         corners = np.asarray(placed_mesh.mesh.vertices, dtype=np.float64)
         vertices.append((corners @ placed_mesh.matrix[:3, :3].T + placed_mesh.matrix[:3, 3]) * placed_mesh.unit)
         faces.append(placed_mesh.faces + count)
@@ -168,7 +168,7 @@ def _parse(data: bytes, kind: str, path: Path) -> TriangleMesh:
     return TriangleMesh(np.concatenate(vertices), np.concatenate(faces))
 
 
-def unreadable(path: Path, reason: str) -> LinkwrightError:
+def unreadable_mesh_error(path: Path, reason: str) -> LinkwrightError:
     """Return the error INR103 for a mesh file that cannot be used."""
     hint = phrase("export the mesh again, or leave out the link that uses it")
     return LinkwrightError(

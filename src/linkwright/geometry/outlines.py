@@ -18,15 +18,15 @@ from linkwright.geometry.shapes import MAX_COORDINATE, Bounds
 from linkwright.geometry.single import Vector3
 from linkwright.loading.lean_typing import Protocol
 
-STEPS = 1 << 20
+GRID_STEPS = 1 << 20
 """The number of grid cells along the longest side of a mesh. Corners in the same cell are merged."""
-POINT = 1e-30
+MAX_POINT_SIZE = 1e-30
 """A mesh smaller than this, in m, counts as a point."""
-STL_HEADER, STL_TRIANGLE = 84, 50
+STL_HEADER_BYTES, STL_TRIANGLE_BYTES = 84, 50
 """The bytes of a binary STL before its triangles, and the bytes of each triangle."""
-FACET = b"facet normal ? ? ? outer loop vertex ? ? ? vertex ? ? ? vertex ? ? ? endloop endfacet".split()
+FACET_TOKENS = b"facet normal ? ? ? outer loop vertex ? ? ? vertex ? ? ? vertex ? ? ? endloop endfacet".split()
 """The tokens of a triangle in a text STL."""
-CORNERS = (8, 9, 10, 12, 13, 14, 16, 17, 18)
+COORDINATE_INDICES = (8, 9, 10, 12, 13, 14, 16, 17, 18)
 """The indices of the corner coordinates among these tokens."""
 
 COLLADA_PADDING = b" \t\r\n\0"
@@ -77,7 +77,7 @@ class SmallMesh:
     @cached_property
     def bounds(self) -> Bounds:
         """The bounding box of the triangles, in m."""
-        return _around([self._corners[index] for index in set(chain.from_iterable(self._faces))])
+        return _compute_bounds([self._corners[index] for index in set(chain.from_iterable(self._faces))])
 
     @cached_property
     def is_watertight(self) -> bool:
@@ -85,11 +85,11 @@ class SmallMesh:
 
         Corners at the same position are merged first.
         """
-        box = _around(self._corners)
+        box = _compute_bounds(self._corners)
         size = max(box.size)
-        if not size > POINT:
+        if not size > MAX_POINT_SIZE:
             return False
-        (left, front, bottom), factor = box.low, STEPS / size
+        (left, front, bottom), factor = box.low, GRID_STEPS / size
         cells: dict[Vector3, int] = {}
         merged_indices = [
             cells.setdefault((round((x - left) * factor), round((y - front) * factor), round((z - bottom) * factor)), i)
@@ -114,7 +114,7 @@ class SmallMesh:
         return mesh
 
 
-def read_small(data: bytes, kind: str) -> SmallMesh | None:
+def read_small_mesh(data: bytes, kind: str) -> SmallMesh | None:
     """Return the triangles of a simple STL, OBJ or COLLADA file, or None for other files.
 
     Args:
@@ -123,41 +123,50 @@ def read_small(data: bytes, kind: str) -> SmallMesh | None:
     """
     try:
         if kind == "stl":
-            return _binary_stl(data) or _text_stl(data)
-        return _obj(data) if kind == "obj" else _collada(data) if kind == "dae" else None
+            return _read_binary_stl(data) or _read_text_stl(data)
+        return _read_obj(data) if kind == "obj" else _read_collada(data) if kind == "dae" else None
     except ValueError:  # A malformed number, or a name that is not UTF-8.
         return None
 
 
-def _binary_stl(data: bytes) -> SmallMesh | None:
-    count = int.from_bytes(data[STL_HEADER - 4 : STL_HEADER], "little")
-    if not count or len(data) != STL_HEADER + count * STL_TRIANGLE:
+def _read_binary_stl(data: bytes) -> SmallMesh | None:
+    count = int.from_bytes(data[STL_HEADER_BYTES - 4 : STL_HEADER_BYTES], "little")
+    if not count or len(data) != STL_HEADER_BYTES + count * STL_TRIANGLE_BYTES:
         return None
-    return _mesh_from_corners(list(chain.from_iterable(iter_unpack("<12x9f2x", data[STL_HEADER:]))))
+    return _mesh_from_corners(list(chain.from_iterable(iter_unpack("<12x9f2x", data[STL_HEADER_BYTES:]))))
 
 
-def _text_stl(data: bytes) -> SmallMesh | None:
+def _read_text_stl(data: bytes) -> SmallMesh | None:
     first_line, _, remainder = data.partition(b"\n")
     solid, _, name = first_line.strip().partition(b" ")
     body, end, trailing = remainder.partition(b"endsolid")
     tokens = body.split()
-    if solid != b"solid" or not end or not tokens or len(tokens) % len(FACET) or b"solid" in trailing or b"_" in body:
+    if (
+        solid != b"solid"
+        or not end
+        or not tokens
+        or len(tokens) % len(FACET_TOKENS)
+        or b"solid" in trailing
+        or b"_" in body
+    ):
         return None
     name.decode()
-    if any(token != b"?" and set(tokens[index :: len(FACET)]) != {token} for index, token in enumerate(FACET)):
+    if any(
+        token != b"?" and set(tokens[index :: len(FACET_TOKENS)]) != {token} for index, token in enumerate(FACET_TOKENS)
+    ):
         return None
-    columns = [tokens[corner :: len(FACET)] for corner in CORNERS]
+    columns = [tokens[corner :: len(FACET_TOKENS)] for corner in COORDINATE_INDICES]
     return _mesh_from_corners([float(number) for row in zip(*columns, strict=True) for number in row])
 
 
 def _mesh_from_corners(numbers: list[float]) -> SmallMesh | None:
-    """Return a mesh of separate triangles from their coordinates, or None as `_mesh` does."""
+    """Return a mesh of separate triangles from their coordinates, or None as `_create_mesh` does."""
     count = len(numbers) // 9
     indices = range(3 * count)
-    return _mesh(_points(numbers), list(zip(indices[::3], indices[1::3], indices[2::3], strict=True)))
+    return _create_mesh(_group_points(numbers), list(zip(indices[::3], indices[1::3], indices[2::3], strict=True)))
 
 
-def _obj(data: bytes) -> SmallMesh | None:
+def _read_obj(data: bytes) -> SmallMesh | None:
     if b"\\" in data:
         return None  # A backslash may continue a line on the next one.
     lines = data.splitlines()
@@ -166,7 +175,7 @@ def _obj(data: bytes) -> SmallMesh | None:
     tokens = [*chain.from_iterable(rows), *chain.from_iterable(polygons)]
     if not rows or not polygons or len(set(map(len, rows))) > 1 or len(rows[0]) < 3 or b"_" in b"".join(tokens):
         return None
-    corners = _points([float(number) for row in rows for number in row[:3]])
+    corners = _group_points([float(number) for row in rows for number in row[:3]])
     faces = []
     for polygon in polygons:
         first_corner, *other_corners = (int(token.partition(b"/")[0]) - 1 for token in polygon)
@@ -177,27 +186,27 @@ def _obj(data: bytes) -> SmallMesh | None:
         ):
             return None
         faces += [(first_corner, second, third) for second, third in pairwise(other_corners)]
-    return _mesh(corners, faces)
+    return _create_mesh(corners, faces)
 
 
-def _collada(data: bytes) -> SmallMesh | None:
+def _read_collada(data: bytes) -> SmallMesh | None:
     from linkwright.geometry.collada_lists import read_triangles  # Imports an XML parser.
 
     triangles = read_triangles(data.strip(COLLADA_PADDING), _MAX_TRIANGLES)
-    return None if triangles is None else _mesh(*triangles)
+    return None if triangles is None else _create_mesh(*triangles)
 
 
-def _points(numbers: list[float]) -> list[Vector3]:
+def _group_points(numbers: list[float]) -> list[Vector3]:
     return list(zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True))
 
 
-def _mesh(corners: list[Vector3], faces: list[_Triangle]) -> SmallMesh | None:
+def _create_mesh(corners: list[Vector3], faces: list[_Triangle]) -> SmallMesh | None:
     numbers = list(chain.from_iterable(corners))
     if not all(map(isfinite, numbers)) or max(map(abs, numbers)) > MAX_COORDINATE:
         return None
     return SmallMesh(corners, faces)
 
 
-def _around(points: Iterable[Vector3]) -> Bounds:
+def _compute_bounds(points: Iterable[Vector3]) -> Bounds:
     x, y, z = zip(*points, strict=True)
     return Bounds((min(x), min(y), min(z)), (max(x), max(y), max(z)))

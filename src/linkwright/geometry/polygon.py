@@ -32,7 +32,7 @@ def triangulate(points: Sequence[Point]) -> list[tuple[int, int, int]]:
     start = tried_count = 0
     while len(ring) >= 3 and tried_count < len(ring):
         a, b, c = (ring[(start + step) % len(ring)] for step in range(3))
-        orientation = turn(points[a], points[b], points[c])
+        orientation = signed_double_area(points[a], points[b], points[c])
         if orientation > 0 and not any(
             _is_inside(points[corner], points[a], points[b], points[c]) for corner in ring if corner not in (a, b, c)
         ):
@@ -74,10 +74,14 @@ def _twice_area(points: Sequence[Point], ring: Sequence[int]) -> float:
     )
 
 
-def turn(a: Point, b: Point, c: Point) -> float:
+def signed_double_area(a: Point, b: Point, c: Point) -> float:
     """Return twice the area of a triangle, positive if its corners are counterclockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
 def _is_inside(point: Point, a: Point, b: Point, c: Point) -> bool:
-    return turn(a, b, point) >= 0 and turn(b, c, point) >= 0 and turn(c, a, point) >= 0
+    return (
+        signed_double_area(a, b, point) >= 0
+        and signed_double_area(b, c, point) >= 0
+        and signed_double_area(c, a, point) >= 0
+    )

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.outlines import POINT, STEPS
+from linkwright.geometry.outlines import GRID_STEPS, MAX_POINT_SIZE
 
 Faces = NDArray[np.int64]
 
@@ -58,9 +58,9 @@ def merge_corners(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
         return vertices, faces
     low = vertices.min(axis=0)
     size = float((vertices.max(axis=0) - low).max(initial=0.0))
-    if not size > POINT:
+    if not size > MAX_POINT_SIZE:
         return vertices[:1], faces[:0]
-    cells = np.rint((vertices - low) * (STEPS / size)).astype(np.int64)
+    cells = np.rint((vertices - low) * (GRID_STEPS / size)).astype(np.int64)
     keys = (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
     _, first_indices, inverse = np.unique(keys, return_index=True, return_inverse=True)
     merged_faces = inverse.reshape(-1)[faces]

@@ -52,7 +52,7 @@ Transform = tuple[float, float, float, float, float, float, float]
 
 IDENTITY: Transform = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
-_GIMBAL_LOCK = 0.99999
+_GIMBAL_LOCK_SINE = 0.99999
 """The sine of the pitch beyond which roll and yaw turn about the same axis."""
 
 
@@ -104,9 +104,9 @@ def rpy_from_quaternion(quaternion: Quaternion) -> Vector3:
     """
     x, y, z, w = quaternion
     sin_pitch = -2 * (x * z - w * y)
-    if sin_pitch <= -_GIMBAL_LOCK:
+    if sin_pitch <= -_GIMBAL_LOCK_SINE:
         return 0.0, -pi / 2, 2 * atan2(x, -y)
-    if sin_pitch >= _GIMBAL_LOCK:
+    if sin_pitch >= _GIMBAL_LOCK_SINE:
         return 0.0, pi / 2, 2 * atan2(-x, y)
     xx, yy, zz, ww = x * x, y * y, z * z, w * w
     roll = atan2(2 * (y * z + w * x), ww - xx - yy + zz)

@@ -22,15 +22,15 @@ def shape_properties(shape: SimpleShape, density: float = 1.0) -> MassProperties
         density: the density in kg/m3; with 1, the mass is the volume in m3.
     """
     if isinstance(shape, Box):
-        return _box(shape, density)
+        return _box_properties(shape, density)
     if isinstance(shape, Sphere):
-        return _sphere(shape, density)
+        return _sphere_properties(shape, density)
     if isinstance(shape, Capsule):
-        return _capsule(shape, density)
-    return _cylinder(shape, density)
+        return _capsule_properties(shape, density)
+    return _cylinder_properties(shape, density)
 
 
-def _box(box: Box, density: float) -> MassProperties:
+def _box_properties(box: Box, density: float) -> MassProperties:
     """Return the mass properties of a box.
 
     The formulas are ``m = rho a b c``; ``Ixx = m (b2 + c2) / 12`` and so on.
@@ -39,10 +39,10 @@ def _box(box: Box, density: float) -> MassProperties:
         return MassProperties(0.0)
     a, b, c = box.size
     mass = density * shape_volume(box)
-    return _diagonal(mass, mass * (b * b + c * c) / 12, mass * (a * a + c * c) / 12, mass * (a * a + b * b) / 12)
+    return _create_diagonal(mass, mass * (b * b + c * c) / 12, mass * (a * a + c * c) / 12, mass * (a * a + b * b) / 12)
 
 
-def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
+def _cylinder_properties(cylinder: Cylinder, density: float) -> MassProperties:
     """Return the mass properties of a cylinder along z.
 
     The formulas are ``m = rho pi r2 l``; ``Ixx = Iyy = m (3 r2 + l2) / 12``; ``Izz = m r2 / 2``.
@@ -52,10 +52,10 @@ def _cylinder(cylinder: Cylinder, density: float) -> MassProperties:
         return MassProperties(0.0)
     mass = density * shape_volume(cylinder)
     transverse_moment = mass * (3 * r * r + length * length) / 12
-    return _diagonal(mass, transverse_moment, transverse_moment, mass * r * r / 2)
+    return _create_diagonal(mass, transverse_moment, transverse_moment, mass * r * r / 2)
 
 
-def _sphere(sphere: Sphere, density: float) -> MassProperties:
+def _sphere_properties(sphere: Sphere, density: float) -> MassProperties:
     """Return the mass properties of a sphere.
 
     The formulas are ``m = rho 4/3 pi r3``; ``I = 2/5 m r2`` about every axis.
@@ -65,10 +65,10 @@ def _sphere(sphere: Sphere, density: float) -> MassProperties:
         return MassProperties(0.0)
     mass = density * shape_volume(sphere)
     moment = 2 / 5 * mass * r * r
-    return _diagonal(mass, moment, moment, moment)
+    return _create_diagonal(mass, moment, moment, moment)
 
 
-def _capsule(capsule: Capsule, density: float) -> MassProperties:
+def _capsule_properties(capsule: Capsule, density: float) -> MassProperties:
     """Return the mass properties of a capsule: a cylinder with a half sphere on each end.
 
     A half sphere has its center of mass 3/8 r above its flat side and the moment ``83/320 m r2`` about this center,
@@ -82,8 +82,8 @@ def _capsule(capsule: Capsule, density: float) -> MassProperties:
     transverse_moment = cylinder_mass * (3 * r * r + length * length) / 12
     transverse_moment += ends_mass * (2 / 5 * r * r + length * length / 4 + 3 / 8 * length * r)
     axial_moment = cylinder_mass * r * r / 2 + ends_mass * 2 / 5 * r * r
-    return _diagonal(cylinder_mass + ends_mass, transverse_moment, transverse_moment, axial_moment)
+    return _create_diagonal(cylinder_mass + ends_mass, transverse_moment, transverse_moment, axial_moment)
 
 
-def _diagonal(mass: float, ixx: float, iyy: float, izz: float) -> MassProperties:
+def _create_diagonal(mass: float, ixx: float, iyy: float, izz: float) -> MassProperties:
     return MassProperties(mass, np.zeros(3), np.diag((ixx, iyy, izz)))

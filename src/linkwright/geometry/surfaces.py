@@ -10,10 +10,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.exact_angles import circle
+from linkwright.geometry.exact_angles import regular_polygon
 from linkwright.geometry.mesh_parts import Triangles
 
-SIDES = 32
+DEFAULT_SIDES = 32
 """The default number of sides of round shapes, a multiple of 4."""
 
 
@@ -33,7 +33,7 @@ def box(size: Sequence[float]) -> Triangles:
     return Triangles(np.array(positions) * scale, quads.reshape(-1), np.array(normals), np.array(coordinates))
 
 
-def cylinder(radius: float, length: float, sides: int = SIDES) -> Triangles:
+def cylinder(radius: float, length: float, sides: int = DEFAULT_SIDES) -> Triangles:
     """Return the triangles of a cylinder along z with caps, centered at the origin."""
     half_length = length / 2
     profile = [
@@ -46,7 +46,7 @@ def cylinder(radius: float, length: float, sides: int = SIDES) -> Triangles:
     return _surface_of_revolution(np.array(profile, dtype=np.float64), sides)
 
 
-def cone(radius: float, length: float, sides: int = SIDES) -> Triangles:
+def cone(radius: float, length: float, sides: int = DEFAULT_SIDES) -> Triangles:
     """Return the triangles of a cone along z with its tip at the top, centered at half its height."""
     half_length = length / 2
     profile = [(0.0, half_length, length, radius), (radius, -half_length, length, radius)]
@@ -54,13 +54,13 @@ def cone(radius: float, length: float, sides: int = SIDES) -> Triangles:
     return _surface_of_revolution(np.array(profile, dtype=np.float64), sides)
 
 
-def sphere(radius: float, sides: int = SIDES) -> Triangles:
+def sphere(radius: float, sides: int = DEFAULT_SIDES) -> Triangles:
     """Return the triangles of a sphere that is centered at the origin."""
     r, z = _half_circle(sides)
     return _surface_of_revolution(np.stack([radius * r, radius * z, r, z], axis=1), sides)
 
 
-def capsule(radius: float, length: float, sides: int = SIDES) -> Triangles:
+def capsule(radius: float, length: float, sides: int = DEFAULT_SIDES) -> Triangles:
     """Return the triangles of a cylinder along z with hemispherical ends, centered at the origin."""
     r, z = (np.insert(values, sides // 4, values[sides // 4]) for values in _half_circle(sides))
     shift = np.where(np.arange(len(z)) <= sides // 4, length / 2, -length / 2)
@@ -68,8 +68,8 @@ def capsule(radius: float, length: float, sides: int = SIDES) -> Triangles:
 
 
 def _half_circle(sides: int) -> tuple[Array, Array]:
-    """Return r and z of the corners of half a regular polygon with radius 1, from the top to the bottom."""
-    points = circle(sides)
+    """Return r and z of the corners of half a regular polygon with radius 1, from top to bottom."""
+    points = regular_polygon(sides)
     quarter = [(abs(z), r) for r, z in points[: sides // 4 + 1]]
     lower = [(abs(z), r) for r, z in points[sides // 4 + 1 : sides // 2 + 1]]
     half = np.array([*quarter, *lower])
@@ -81,7 +81,7 @@ def _surface_of_revolution(profile: Array, sides: int) -> Triangles:
 
     The profile runs from top to bottom. Its columns are r and z of the points, and r and z of the normals.
     """
-    cosines, sines = np.array(circle(sides)).T
+    cosines, sines = np.array(regular_polygon(sides)).T
     rows, columns = len(profile), sides + 1
     radius, height, normal_r, normal_z = (column[:, np.newaxis] for column in profile.T)
     unit_cosines = np.ones_like(cosines)

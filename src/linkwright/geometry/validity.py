@@ -34,7 +34,7 @@ ROUNDING = 1e-9
 """The error of numbers that were computed, not rounded for a file, as a fraction of the largest moment."""
 
 
-_CONVERGED = 1e-20
+_NEGLIGIBLE_PRODUCT = 1e-20
 """A product of inertia below this fraction of the tensor's largest entry changes no moment."""
 _MAX_SWEEPS = 30
 """The maximum number of sweeps. Five are usual."""
@@ -57,7 +57,7 @@ def relative_moments(tensor: Array | Matrix) -> Vector3:
         return 0.0, 0.0, 0.0
     rows = [[float(entry) / largest for entry in row] for row in tensor]
     for _ in range(_MAX_SWEEPS):
-        if max(abs(rows[0][1]), abs(rows[0][2]), abs(rows[1][2])) < _CONVERGED:
+        if max(abs(rows[0][1]), abs(rows[0][2]), abs(rows[1][2])) < _NEGLIGIBLE_PRODUCT:
             break
         for p, q, other_axis in ((0, 1, 2), (0, 2, 1), (1, 2, 0)):
             _rotate(rows, p, q, other_axis)
@@ -68,7 +68,7 @@ def relative_moments(tensor: Array | Matrix) -> Vector3:
 def _rotate(rows: list[list[float]], p: int, q: int, other_axis: int) -> None:
     """Rotate a symmetric matrix in place so that its entry (p, q) becomes zero."""
     product = rows[p][q]
-    if abs(product) < _CONVERGED:
+    if abs(product) < _NEGLIGIBLE_PRODUCT:
         return
     ratio = (rows[q][q] - rows[p][p]) / (2.0 * product)
     tangent = copysign(1.0, ratio) / (abs(ratio) + hypot(1.0, ratio))
@@ -110,7 +110,7 @@ def triangle_excess(tensor: Array | Matrix) -> float:
     return (large - small - middle) / large if large > 0 else 0.0
 
 
-def excessive_products(tensor: Array | Matrix) -> list[tuple[str, float]]:
+def find_excessive_products(tensor: Array | Matrix) -> list[tuple[str, float]]:
     """Return the products of inertia that are too large for the diagonal moments.
 
     The limits are ``|Ixy| <= Izz / 2`` and so on, from ``ab <= (a2 + b2) / 2`` under the integral, and
@@ -145,7 +145,7 @@ def largest_moment_within(center: Vector3, box: Bounds, mass: float) -> float:
     return mass * sum(max(abs(low - middle), abs(high - middle)) ** 2 for middle, low, high in coordinates)
 
 
-def problems(properties: MassProperties) -> list[Phrase]:
+def find_problems(properties: MassProperties) -> list[Phrase]:
     """Return the reasons why mass properties cannot belong to a body, if there are any."""
     reasons = []
     if not properties.mass > 0:

@@ -40,7 +40,7 @@ def _to_text(description: Description) -> str:
 
 
 def _complete_description(description: Description, inference: Inference) -> str:
-    from linkwright.inference.applying import complete_description  # Only some robots need it.
+    from linkwright.inference.completion import complete_description  # Only some robots need it.
 
     return write(complete_description(description.document, inference))
 

@@ -1,4 +1,4 @@
-"""Mass properties of links: computed from shapes, compared with the file, and written to it."""
+"""Mass properties of links: computation from shapes, comparison with the file, and writing."""
 
 from linkwright.loading.deferred import deferred
 from linkwright.loading.lean_typing import TYPE_CHECKING

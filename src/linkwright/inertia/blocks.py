@@ -21,15 +21,15 @@ def inertial_parts(properties: MassProperties) -> tuple[tuple[str, Attributes], 
     inertial = Inertial.of(properties)
     xyz = inertial.origin.xyz
     x, y, z = (
-        _number_text(coordinate, 1.0) for coordinate in xyz
+        _format_number(coordinate, 1.0) for coordinate in xyz
     )  # Round to nanometres; smaller differences are negligible.
     names = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
     moments = [getattr(inertial, name) for name in names]
     largest = max(abs(moment) for moment in moments)
     return (
         ("origin", (("xyz", f"{x} {y} {z}"), ("rpy", "0 0 0"))),
-        ("mass", (("value", _number_text(inertial.mass, inertial.mass)),)),
-        ("inertia", tuple((name, _number_text(value, largest)) for name, value in zip(names, moments, strict=True))),
+        ("mass", (("value", _format_number(inertial.mass, inertial.mass)),)),
+        ("inertia", tuple((name, _format_number(value, largest)) for name, value in zip(names, moments, strict=True))),
     )
 
 
@@ -57,7 +57,7 @@ def empty_tag(tag: str, attributes: Attributes) -> str:
     return f"<{tag} " + " ".join(f'{name}="{value}"' for name, value in attributes) + "/>"
 
 
-def _number_text(value: float, largest: float) -> str:
+def _format_number(value: float, largest: float) -> str:
     if abs(value) <= _ROUNDING * abs(largest):
         return "0"
     return f"{value:.{_DIGITS}g}"

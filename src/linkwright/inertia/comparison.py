@@ -7,7 +7,7 @@ from math import isfinite
 import numpy as np
 
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.validity import problems
+from linkwright.geometry.validity import find_problems
 from linkwright.loading.lean_dataclasses import dataclass
 
 
@@ -21,29 +21,29 @@ class Comparison:
         center_distance: the distance between the centers of mass in m.
         moment_ratios: the principal moments per kg in the file divided by the computed ones, in the order of the
             moments, smallest first; None if they cannot be divided.
-        problems: the reasons why no body can have the file's values.
+        find_problems: the reasons why no body can have the file's values.
     """
 
     mass: float
     mass_ratio: float | None
     center_distance: float
     moment_ratios: tuple[float, float, float] | None
-    problems: tuple[str, ...]
+    find_problems: tuple[str, ...]
 
 
-def compare(present: MassProperties, computed: MassProperties) -> Comparison:
+def compare(file_properties: MassProperties, computed: MassProperties) -> Comparison:
     """Compare the mass properties of a file with computed ones, both in the link frame.
 
     The moments are compared per kg, so that a difference in mass is not reported twice.
     """
-    mass_ratio = present.mass / computed.mass if present.mass > 0 and computed.mass > 0 else None
+    mass_ratio = file_properties.mass / computed.mass if file_properties.mass > 0 and computed.mass > 0 else None
     ratios = None
     if mass_ratio is not None:
         computed_moments = computed.principal().moments
-        present_moments = present.principal().moments
+        present_moments = file_properties.principal().moments
         if computed_moments[0] > 0:
             with np.errstate(all="ignore"):  # Values beyond the range of doubles cannot be compared.
                 first, second, third = (float(ratio) for ratio in present_moments / computed_moments / mass_ratio)
             ratios = (first, second, third) if all(map(isfinite, (first, second, third))) else None
-    distance = float(np.linalg.norm(present.center - computed.center))
-    return Comparison(float(present.mass), mass_ratio, distance, ratios, tuple(problems(present)))
+    distance = float(np.linalg.norm(file_properties.center - computed.center))
+    return Comparison(float(file_properties.mass), mass_ratio, distance, ratios, tuple(find_problems(file_properties)))

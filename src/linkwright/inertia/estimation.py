@@ -51,7 +51,7 @@ def estimate(
     *,
     density: float | None = None,
     mass: float | None = None,
-    prefer: ShapeKind = "collision",
+    preferred_kind: ShapeKind = "collision",
 ) -> Estimate:
     """Estimate the mass properties of a link from its shapes, filled with a uniform density.
 
@@ -63,13 +63,13 @@ def estimate(
         meshes: the library that reads the link's meshes.
         density: the requested density in kg/m3.
         mass: the requested mass in kg.
-        prefer: the kind of shapes to use; the other kind is used if the link has none of these (or none with a volume).
+        preferred_kind: the kind of shapes to use. If the link has none of these with a volume, the other kind is used.
     """
     notes: list[Phrase] = []
     kind: ShapeKind | None = None
     solids: list[MassProperties] = []
-    other_kind: ShapeKind = "visual" if prefer == "collision" else "collision"
-    for candidate_kind in (prefer, other_kind):
+    other_kind: ShapeKind = "visual" if preferred_kind == "collision" else "collision"
+    for candidate_kind in (preferred_kind, other_kind):
         shapes = link.collisions if candidate_kind == "collision" else link.visuals
         solids = [
             shape_solid
@@ -86,7 +86,7 @@ def estimate(
         basis, mass = "present", link.inertial.mass
     if kind is None:
         return Estimate(link.name, None, None, 0, basis, 0.0, tuple(notes))
-    if kind != prefer and (link.collisions if prefer == "collision" else link.visuals):
+    if kind != preferred_kind and (link.collisions if preferred_kind == "collision" else link.visuals):
         notes.append(phrase("the {kind} shapes are used instead", kind=term(kind)))
     solid = combine(solids)
     if mass is not None:

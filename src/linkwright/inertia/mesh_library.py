@@ -9,7 +9,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError, phrase
 from linkwright.geometry.mesh_content import ContentKey, shape_key
-from linkwright.geometry.outlines import Outline, SmallMesh, read_small
+from linkwright.geometry.outlines import Outline, SmallMesh, read_small_mesh
 from linkwright.geometry.shapes import MAX_COORDINATE
 from linkwright.loading.lean_typing import TYPE_CHECKING
 from linkwright.packages import PackageFinder
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from linkwright.geometry.meshes import TriangleMesh
 
 _FileKey = tuple[str, int, int]
-_CACHE_SIZE = 256 << 20
+_CACHE_BYTES = 256 << 20
 """The maximum size in bytes of the meshes that are cached across descriptions."""
 _MAX_SMALL_FILE, _MAX_SMALL_FILES = 100_000, 500_000
 """The maximum bytes of a file, and of all files in a process, to read without numpy. Beyond, numpy is faster."""
@@ -55,7 +55,7 @@ class MeshLibrary:
         Raises:
             LinkwrightError: PKG101 if the package is not found, or PKG102 if the URI is invalid.
         """
-        key = uri, self._base(element)
+        key = uri, self._get_base_folder(element)
         path_or_error = self._paths.get(key)
         if path_or_error is None:
             try:
@@ -93,7 +93,7 @@ class MeshLibrary:
         """
         return self.read(self._find_file(mesh, element)).scaled(mesh.scale)
 
-    def outline(self, mesh: Mesh, element: Element | None = None) -> Outline:
+    def load_outline(self, mesh: Mesh, element: Element | None = None) -> Outline:
         """Return the properties of a scaled URDF mesh that checks use.
 
         The result is in the frame of the visual or collision.
@@ -115,29 +115,29 @@ class MeshLibrary:
         """
         path = self.locate(mesh.filename, element)
         if max(map(abs, mesh.scale)) > MAX_COORDINATE:
-            from linkwright.geometry.meshes import unreadable
+            from linkwright.geometry.meshes import unreadable_mesh_error
 
-            raise unreadable(path, phrase("its scale is out of range"))
+            raise unreadable_mesh_error(path, phrase("its scale is out of range"))
         return path
 
-    def _base(self, element: Element | None) -> Path:
+    def _get_base_folder(self, element: Element | None) -> Path:
         if element is None or element.source is None or element.source.name.startswith("<"):
             return self._folder
         return Path(element.source.name).parent
 
 
-def _mesh_bytes(_: object, mesh: TriangleMesh) -> int:
+def _count_mesh_bytes(_: object, mesh: TriangleMesh) -> int:
     """Return the size of a mesh in bytes, doubled to account for data computed from the mesh."""
     return 2 * (mesh.vertices.nbytes + mesh.faces.nbytes)
 
 
-_CACHE: BoundedCache[_FileKey | ContentKey, TriangleMesh] = BoundedCache(_CACHE_SIZE, _mesh_bytes)
+_MESH_CACHE: BoundedCache[_FileKey | ContentKey, TriangleMesh] = BoundedCache(_CACHE_BYTES, _count_mesh_bytes)
 """The meshes of files by their content, which both versions of a repository have under other paths.
 
 Files without a key of their content, such as very large ones, have the key of the file.
 """
 _CONTENT_KEYS: dict[_FileKey, _FileKey | ContentKey] = {}
-"""The keys in `_CACHE` of files, by the path, the time of the last change in ns, and the size in bytes."""
+"""The keys in `_MESH_CACHE` of files, by the path, the time of the last change in ns, and the size in bytes."""
 
 
 def _read_cached(path: Path, real_path: str) -> TriangleMesh:
@@ -157,15 +157,15 @@ def _read_cached(path: Path, real_path: str) -> TriangleMesh:
     key = _CONTENT_KEYS.get(file_key)
     if key is None:
         key = _CONTENT_KEYS[file_key] = shape_key(path) or file_key
-    mesh = _CACHE.values.get(key)
+    mesh = _MESH_CACHE.values.get(key)
     if mesh is None:
         mesh = read_mesh(path)
-        _CACHE.store(key, mesh)
+        _MESH_CACHE.store(key, mesh)
     return mesh
 
 
 _SMALL_MESHES: dict[tuple[str, int, int], SmallMesh] = {}
-"""The meshes of files that were read without arrays, with the keys of `_CACHE`."""
+"""The meshes of files that were read without arrays, with the keys of `_MESH_CACHE`."""
 
 
 def _read_small_cached(real_path: str, kind: str) -> SmallMesh | None:
@@ -184,7 +184,7 @@ def _read_small_cached(real_path: str, kind: str) -> SmallMesh | None:
             or file_status.st_size + sum(size for _, _, size in _SMALL_MESHES) > _MAX_SMALL_FILES
         ):
             return None
-        mesh = read_small(Path(real_path).read_bytes(), kind[1:])
+        mesh = read_small_mesh(Path(real_path).read_bytes(), kind[1:])
     except OSError:
         return None
     if mesh is not None:

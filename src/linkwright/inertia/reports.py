@@ -41,7 +41,7 @@ _BASIS_PHRASES = {
 }
 
 
-def as_text(
+def format_text(
     robot: Robot,
     estimates: Sequence[Estimate],
     write_result: WriteResult | None = None,
@@ -57,10 +57,15 @@ def as_text(
         write_result: the result of writing, if any; the verdicts apply to the values in the file before writing.
         detailed_links: the links whose computed ``<inertial>`` is shown after the table.
     """
-    verdicts = _verdicts(robot, estimates)
+    verdicts = _assess_links(robot, estimates)
     sorted_estimates = sorted(estimates, key=lambda estimate: verdicts[estimate.link].sort_key)
-    sections = ["\n".join(_table([_row(estimate, verdicts[estimate.link]) for estimate in sorted_estimates])) + "\n"]
-    sections += ["\n".join(_detail_lines(estimate)) + "\n" for estimate in estimates if estimate.link in detailed_links]
+    sections = [
+        "\n".join(_format_table([_format_row(estimate, verdicts[estimate.link]) for estimate in sorted_estimates]))
+        + "\n"
+    ]
+    sections += [
+        "\n".join(_format_details(estimate)) + "\n" for estimate in estimates if estimate.link in detailed_links
+    ]
     if write_result is not None:
         files = quoted_names(map(display_path, write_result.files)) if write_result.files else phrase("no file")
         line = phrase("wrote {count} <inertial> to {files}", count=len(write_result.links), files=files)
@@ -68,7 +73,7 @@ def as_text(
     return "\n".join(sections)
 
 
-def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
+def _format_table(rows: list[tuple[str, ...]]) -> Iterator[str]:
     """Yield the lines of a table with its header and left-aligned cells."""
     lines = [tuple(map(localized, _COLUMN_TITLES)), *rows]
     widths = [max(map(compute_width, column)) for column in zip(*lines, strict=True)]
@@ -77,7 +82,7 @@ def _table(rows: list[tuple[str, ...]]) -> Iterator[str]:
         yield _STEP.join(cells).rstrip()
 
 
-def _row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
+def _format_row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
     file_properties = verdict.file_properties
     mass = "-" if file_properties is None else f"{file_properties.mass:.4g}"
     if estimate.properties is not None and estimate.basis != "present":
@@ -91,30 +96,30 @@ def _row(estimate: Estimate, verdict: Verdict) -> tuple[str, ...]:
     return estimate.link, mass, density, moments, localized(text)
 
 
-def _detail_lines(estimate: Estimate) -> Iterator[str]:
-    yield f"{estimate.link}: {localized(_summary(estimate))}"
+def _format_details(estimate: Estimate) -> Iterator[str]:
+    yield f"{estimate.link}: {localized(_describe_estimate(estimate))}"
     yield from (f"{_STEP}{localized(note)}" for note in estimate.notes)
     if estimate.properties is not None:
         yield f"{_STEP}{inertial_block(estimate.properties, _STEP)}"
 
 
-def _verdicts(robot: Robot, estimates: Sequence[Estimate]) -> Mapping[str, Verdict]:
+def _assess_links(robot: Robot, estimates: Sequence[Estimate]) -> Mapping[str, Verdict]:
     bodies = Bodies(robot)
     return {estimate.link: assess(robot.links[estimate.link], estimate, bodies) for estimate in estimates}
 
 
-def as_json(robot: Robot, estimates: Sequence[Estimate], write_result: WriteResult | None = None) -> str:
-    """Return the data of `as_text` as JSON, with the links in the order of the estimates.
+def format_json(robot: Robot, estimates: Sequence[Estimate], write_result: WriteResult | None = None) -> str:
+    """Return the data of `format_text` as JSON, with the links in the order of the estimates.
 
     Units are SI, and floats are written in full.
     """
-    verdicts = _verdicts(robot, estimates)
-    links = [_link_data(estimate, verdicts[estimate.link], write_result) for estimate in estimates]
+    verdicts = _assess_links(robot, estimates)
+    links = [_link_to_json(estimate, verdicts[estimate.link], write_result) for estimate in estimates]
     files = [] if write_result is None else [str(file) for file in write_result.files]
     return json.dumps({"links": links, "files": files}, indent=2, ensure_ascii=False) + "\n"
 
 
-def _summary(estimate: Estimate) -> Phrase:
+def _describe_estimate(estimate: Estimate) -> Phrase:
     if estimate.properties is None:
         return phrase("no shape has a volume, so nothing is computed")
     shapes = (
@@ -131,7 +136,7 @@ def _summary(estimate: Estimate) -> Phrase:
     )
 
 
-def _link_data(estimate: Estimate, verdict: Verdict, write_result: WriteResult | None) -> dict[str, Any]:
+def _link_to_json(estimate: Estimate, verdict: Verdict, write_result: WriteResult | None) -> dict[str, Any]:
     data: dict[str, Any] = {
         "link": estimate.link,
         "from": estimate.kind,
@@ -140,7 +145,7 @@ def _link_data(estimate: Estimate, verdict: Verdict, write_result: WriteResult |
     }
     data |= {"density": estimate.density, "notes": list(estimate.notes), "inertial": None, "present": None}
     if estimate.properties is not None:
-        data |= _properties_data(estimate.properties)
+        data |= _properties_to_json(estimate.properties)
     data["present"] = None if verdict.comparison is None else asdict(verdict.comparison)
     data |= {"verdict": verdict.grade.value, "why": str.__str__(verdict.reason), "present_density": verdict.density}
     if write_result is not None:
@@ -149,7 +154,7 @@ def _link_data(estimate: Estimate, verdict: Verdict, write_result: WriteResult |
     return data
 
 
-def _properties_data(properties: MassProperties) -> dict[str, Any]:
+def _properties_to_json(properties: MassProperties) -> dict[str, Any]:
     inertial = Inertial.of(properties)
     principal = properties.principal()
     box = properties.equivalent_box()

@@ -30,7 +30,7 @@ class NotWritableError(Exception):
     """
 
 
-def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[Replacement]]:
+def create_edits(link: Link, properties: MassProperties) -> tuple[SourceText, list[Replacement]]:
     """Return a source text and the edits that give a link these mass properties.
 
     An existing ``<inertial>`` keeps its formatting and comments; only values are replaced and missing parts added. A
@@ -43,7 +43,7 @@ def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[
     Raises:
         NotWritableError: if a macro generates the link, or if the link is written with expressions.
     """
-    link_element = written_link(link)
+    link_element = find_written_link(link)
     source = link_element.source
     assert source is not None
     inertial = link_element.first("inertial")
@@ -54,7 +54,7 @@ def edits_for(link: Link, properties: MassProperties) -> tuple[SourceText, list[
     return source, list(_update_block(source.text, inertial, properties))
 
 
-def written_element(element: Element | None, tag: str) -> Element:
+def find_written_element(element: Element | None, tag: str) -> Element:
     """Return an element as written in its file, before any expansion.
 
     Args:
@@ -77,13 +77,13 @@ def written_element(element: Element | None, tag: str) -> Element:
     return element_in_file
 
 
-def written_link(link: Link) -> Element:
+def find_written_link(link: Link) -> Element:
     """Return a ``<link>`` as written in its file, if its shapes do not depend on xacro.
 
     Raises:
-        NotWritableError: see `written_element`; or expressions define the shapes, and numbers would not follow them.
+        NotWritableError: see `find_written_element`; also if expressions define the shapes.
     """
-    link_element = written_element(link.element, "link")
+    link_element = find_written_element(link.element, "link")
     xacro_tag = next((child.tag for child in link_element.elements() if child.tag.startswith("xacro:")), None)
     if xacro_tag is not None:
         raise NotWritableError(phrase("<{tag}> generates a part of it", tag=xacro_tag))

@@ -9,7 +9,7 @@ import numpy as np
 
 from linkwright.diagnostics import Phrase, joined, phrase
 from linkwright.geometry.mass import MassProperties
-from linkwright.geometry.validity import MAX_DENSITY, MIN_DENSITY, problems
+from linkwright.geometry.validity import MAX_DENSITY, MIN_DENSITY, find_problems
 from linkwright.inertia.comparison import Comparison, compare
 from linkwright.inertia.estimation import Estimate
 from linkwright.loading.lean_dataclasses import dataclass
@@ -36,7 +36,7 @@ class Grade(Enum):
     UNJUDGED = "unjudged"
 
 
-_ORDER = tuple(Grade)
+_GRADE_ORDER = tuple(Grade)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class Verdict:
     @property
     def sort_key(self) -> tuple[int, float]:
         """The sort key that puts the worst verdict first."""
-        return _ORDER.index(self.grade), -self.error_size
+        return _GRADE_ORDER.index(self.grade), -self.error_size
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class _Reason:
     """A problem of an ``<inertial>``, with its grade."""
 
     grade: Grade
-    words: Phrase
+    text: Phrase
     error_size: float = 0.0
 
 
@@ -83,7 +83,7 @@ def assess(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
         bodies: the robot's links grouped by fixed joints; a link's mass may represent links without a mass.
     """
     if link.inertial is None:
-        return _verdict_without_inertial(link, bodies)
+        return _assess_without_inertial(link, bodies)
     if not link.inertial.is_computable:
         return Verdict(Grade.IMPOSSIBLE, phrase("its numbers are out of range"))
     file_properties = link.inertial.properties
@@ -93,18 +93,20 @@ def assess(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
         estimate.properties if estimate.shapes == len(shapes) else None
     )  # A part of the shapes is not conclusive.
     is_alone = not bodies.includes_massless_links(link)
-    reasons = [_Reason(Grade.IMPOSSIBLE, words) for words in problems(file_properties)]
+    reasons = [_Reason(Grade.IMPOSSIBLE, words) for words in find_problems(file_properties)]
     density = None
     if is_alone and computed is not None and comparison is not None:
         if file_properties.mass > 0:
             density = file_properties.mass / computed.mass * estimate.density
-            reasons += _density_reasons(density, has_mesh=any(isinstance(shape.geometry, Mesh) for shape in shapes))
-        reasons += _comparison_reasons(comparison, computed)
+            reasons += _find_density_reasons(
+                density, has_mesh=any(isinstance(shape.geometry, Mesh) for shape in shapes)
+            )
+        reasons += _find_comparison_reasons(comparison, computed)
     if reasons:
-        worst_grade = min(reasons, key=lambda reason: _ORDER.index(reason.grade)).grade
+        worst_grade = min(reasons, key=lambda reason: _GRADE_ORDER.index(reason.grade)).grade
         worst_reasons = [reason for reason in reasons if reason.grade is worst_grade]
         words, error_size = (
-            joined([reason.words for reason in worst_reasons], "; "),
+            joined([reason.text for reason in worst_reasons], "; "),
             max(reason.error_size for reason in worst_reasons),
         )
         return Verdict(worst_grade, words, error_size, file_properties, density, comparison)
@@ -116,7 +118,7 @@ def assess(link: Link, estimate: Estimate, bodies: Bodies) -> Verdict:
     return Verdict(Grade.FITS, phrase("it matches its shapes"), 0.0, file_properties, density, comparison)
 
 
-def _verdict_without_inertial(link: Link, bodies: Bodies) -> Verdict:
+def _assess_without_inertial(link: Link, bodies: Bodies) -> Verdict:
     """Return the verdict on a link without an ``<inertial>``."""
     body = bodies.of(link.name)
     members = [] if body is None else bodies.members(body)
@@ -130,7 +132,7 @@ def _verdict_without_inertial(link: Link, bodies: Bodies) -> Verdict:
     return Verdict(Grade.UNJUDGED, phrase("it is only a frame"))
 
 
-def _density_reasons(density: float, *, has_mesh: bool) -> list[_Reason]:
+def _find_density_reasons(density: float, *, has_mesh: bool) -> list[_Reason]:
     if density > MAX_DENSITY:
         # A mesh may be a thin skin around a heavy interior.
         grade = Grade.DOUBTFUL if has_mesh else Grade.IMPOSSIBLE
@@ -142,12 +144,14 @@ def _density_reasons(density: float, *, has_mesh: bool) -> list[_Reason]:
     return []
 
 
-def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> list[_Reason]:
+def _find_comparison_reasons(comparison: Comparison, computed: MassProperties) -> list[_Reason]:
     reasons = []
     box = computed.equivalent_box()
     relative_distance = 0.0 if box is None else comparison.center_distance / float(np.linalg.norm(box))
     if relative_distance > _ROUGH_DISTANCE_RATIO:
-        words = phrase("its center of mass is {length} from the center of its shapes", length=_length_text(comparison))
+        words = phrase(
+            "its center of mass is {length} from the center of its shapes", length=_format_distance(comparison)
+        )
         reasons.append(
             _Reason(
                 Grade.DOUBTFUL if relative_distance > _DOUBTFUL_DISTANCE_RATIO else Grade.ROUGH,
@@ -170,7 +174,7 @@ def _comparison_reasons(comparison: Comparison, computed: MassProperties) -> lis
     return reasons
 
 
-def _length_text(comparison: Comparison) -> str:
+def _format_distance(comparison: Comparison) -> str:
     distance = comparison.center_distance
     return f"{distance:.3g} m" if distance >= 1 else f"{distance * 1000:.3g} mm"
 

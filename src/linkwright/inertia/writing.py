@@ -9,7 +9,7 @@ from pathlib import Path
 from linkwright.diagnostics import Diagnostic, LinkwrightError, SourceText, display_path, foreign, phrase
 from linkwright.files.whole_files import write_whole_file
 from linkwright.geometry.mass import MassProperties
-from linkwright.inertia.source_edits import NotWritableError, edits_for
+from linkwright.inertia.source_edits import NotWritableError, create_edits
 from linkwright.loading.lean_dataclasses import dataclass
 from linkwright.urdf import Link, Robot
 from linkwright.xmltree.patches import Replacement, apply
@@ -43,10 +43,10 @@ def write_inertials(robot: Robot, properties: Mapping[str, MassProperties]) -> W
     Raises:
         LinkwrightError: INR201, a file cannot be written.
     """
-    return write_edits({name: partial(edits_of_link, robot, name, properties[name]) for name in properties})
+    return write_edits({name: partial(create_link_edits, robot, name, properties[name]) for name in properties})
 
 
-def edits_of_link(robot: Robot, name: str, properties: MassProperties) -> tuple[SourceText, list[Replacement]]:
+def create_link_edits(robot: Robot, name: str, properties: MassProperties) -> tuple[SourceText, list[Replacement]]:
     """Return a source text and the edits that give a link of a robot these mass properties.
 
     Args:
@@ -55,12 +55,12 @@ def edits_of_link(robot: Robot, name: str, properties: MassProperties) -> tuple[
         properties: the mass properties in the link frame.
 
     Raises:
-        NotWritableError: as for `edits_for`, or the text of the link also defines other links.
+        NotWritableError: as for `create_edits`, or the text of the link also defines other links.
     """
-    position = _source_position(robot.links[name])
-    if any(_source_position(other) == position for other in robot.links.values() if other.name != name):
+    position = _get_source_position(robot.links[name])
+    if any(_get_source_position(other) == position for other in robot.links.values() if other.name != name):
         raise NotWritableError(phrase("its text in the file defines several links"))
-    return edits_for(robot.links[name], properties)
+    return create_edits(robot.links[name], properties)
 
 
 def write_edits(edit_functions: Mapping[str, Callable[[], tuple[SourceText, list[Replacement]]]]) -> WriteResult:
@@ -97,7 +97,7 @@ def write_edits(edit_functions: Mapping[str, Callable[[], tuple[SourceText, list
     )
 
 
-def _source_position(link: Link) -> tuple[str, int]:
+def _get_source_position(link: Link) -> tuple[str, int]:
     element = link.element
     return ("", id(link)) if element is None or element.source is None else (element.source.name, element.offset)
 

@@ -76,17 +76,17 @@ def infer_drive(
         unpaired_joints = [wheel.joint for wheel in unpaired if wheel.link not in casters]
         if unpaired_joints and (chosen_wheels or requested_kind is None):
             return DriveVerdict(None, phrase("no wheel is opposite {names}", names=quoted_names(unpaired_joints)))
-    verdict = _drive_from_pairs(survey, fixed_pairs, steered_pairs, requested_kind)
+    verdict = _create_drive_from_pairs(survey, fixed_pairs, steered_pairs, requested_kind)
     return DriveVerdict(verdict.drive, verdict.reason, tuple(casters))
 
 
-def _drive_from_pairs(
+def _create_drive_from_pairs(
     survey: Survey, fixed_pairs: list[Pair], steered_pairs: list[Pair], requested_kind: DriveKind | None
 ) -> DriveVerdict:
-    kind = requested_kind or _suggested_kind(survey, fixed_pairs, steered_pairs)
+    kind = requested_kind or _suggest_kind(survey, fixed_pairs, steered_pairs)
     if kind is None:
-        return DriveVerdict(None, _unknown_kind_reason(fixed_pairs, steered_pairs))
-    problem = _missing_wheels(kind, fixed_pairs, steered_pairs)
+        return DriveVerdict(None, _explain_unknown_kind(fixed_pairs, steered_pairs))
+    problem = _find_missing_wheels(kind, fixed_pairs, steered_pairs)
     if problem is not None:
         return DriveVerdict(None, problem)
     if kind == "differential":
@@ -99,10 +99,10 @@ def _drive_from_pairs(
         abs(left_wheel.center[1] - right_wheel.center[1]) for left_wheel, right_wheel in fixed_pairs
     ) / len(fixed_pairs)
     drive = Drive(kind, left, right, steered_pairs[0] if kind == "ackermann" else (), separation)
-    return DriveVerdict(drive, _drive_reason(drive))
+    return DriveVerdict(drive, _explain_drive(drive))
 
 
-def _suggested_kind(survey: Survey, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> DriveKind | None:
+def _suggest_kind(survey: Survey, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> DriveKind | None:
     """Return the kind of drive that the wheel pairs suggest, or None if it is unknown."""
     if steered_pairs:
         return "ackermann" if len(steered_pairs) == 1 and fixed_pairs else None
@@ -118,7 +118,7 @@ def _suggested_kind(survey: Survey, fixed_pairs: list[Pair], steered_pairs: list
     return "skid"
 
 
-def _unknown_kind_reason(fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase:
+def _explain_unknown_kind(fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase:
     if len(steered_pairs) > 1:
         return phrase("there are {count} pairs of steered wheels", count=len(steered_pairs))
     if steered_pairs:
@@ -128,7 +128,7 @@ def _unknown_kind_reason(fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> 
     return phrase("there is no pair of wheels, one on the left and one on the right")
 
 
-def _missing_wheels(kind: DriveKind, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase | None:
+def _find_missing_wheels(kind: DriveKind, fixed_pairs: list[Pair], steered_pairs: list[Pair]) -> Phrase | None:
     """Return the requirement of a kind of drive that the wheels do not meet, or None."""
     if kind == "ackermann" and len(steered_pairs) != 1:
         return phrase(
@@ -147,7 +147,7 @@ def _missing_wheels(kind: DriveKind, fixed_pairs: list[Pair], steered_pairs: lis
     return None
 
 
-def _drive_reason(drive: Drive) -> Phrase:
+def _explain_drive(drive: Drive) -> Phrase:
     names = quoted_names([wheel.joint for pair in zip(drive.left, drive.right, strict=True) for wheel in pair])
     size = phrase(
         "{separation:.4g} m apart and {diameter:.4g} m in diameter",
@@ -171,7 +171,7 @@ def _pair_wheels(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
     pairs: list[Pair] = []
     unpaired: list[Wheel] = []
     for wheel in left_wheels:
-        opposite = min(right_wheels, key=lambda other: _mirror_distance(wheel, other), default=None)
+        opposite = min(right_wheels, key=lambda other: _compute_mirror_distance(wheel, other), default=None)
         if opposite is None or not _are_pair(wheel, opposite):
             unpaired.append(wheel)
             continue
@@ -180,7 +180,7 @@ def _pair_wheels(wheels: Sequence[Wheel]) -> tuple[list[Pair], list[Wheel]]:
     return pairs, unpaired + right_wheels
 
 
-def _mirror_distance(left: Wheel, right: Wheel) -> float:
+def _compute_mirror_distance(left: Wheel, right: Wheel) -> float:
     """Return how far a wheel is from the mirror image of another wheel, in m."""
     return abs(left.center[0] - right.center[0]) + abs(left.center[1] + right.center[1])
 

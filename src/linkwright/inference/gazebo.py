@@ -50,7 +50,7 @@ _UPDATE_RATE = "50"
 
 def find_working_drive(robot: Robot) -> Element | None:
     """Return the description's plugin that drives the robot, or None if none works here."""
-    return next((plugin for plugin in _drive_plugins(robot) if _is_working(plugin)), None)
+    return next((plugin for plugin in _find_drive_plugins(robot) if _is_working(plugin)), None)
 
 
 def find_idle_drive(robot: Robot) -> Element | None:
@@ -60,10 +60,12 @@ def find_idle_drive(robot: Robot) -> Element | None:
     parameter file, and a ``<ros2_control>`` for a simulator without the plugin that runs it. Such a plugin is often in
     a separate file for launches.
     """
-    idle_plugin = next((plugin for plugin in _drive_plugins(robot) if not _is_working(plugin)), None)
+    idle_plugin = next((plugin for plugin in _find_drive_plugins(robot) if not _is_working(plugin)), None)
     if idle_plugin is not None:
         return idle_plugin
-    if any(_ROS2_CONTROL_PATTERN.search(plugin.attributes.get("filename", "")) for plugin in _drive_plugins(robot)):
+    if any(
+        _ROS2_CONTROL_PATTERN.search(plugin.attributes.get("filename", "")) for plugin in _find_drive_plugins(robot)
+    ):
         return None
     return next(
         (
@@ -77,7 +79,7 @@ def find_idle_drive(robot: Robot) -> Element | None:
     )
 
 
-def commanded_joints(robot: Robot) -> frozenset[str]:
+def find_commanded_joints(robot: Robot) -> frozenset[str]:
     """Return the joints that controllers can command.
 
     The description lists them in ``<ros2_control>`` or, as in ROS 1, in ``<transmission>``.
@@ -91,7 +93,7 @@ def commanded_joints(robot: Robot) -> frozenset[str]:
     )
 
 
-def _drive_plugins(robot: Robot) -> Iterator[Element]:
+def _find_drive_plugins(robot: Robot) -> Iterator[Element]:
     for extension in robot.extensions:
         for plugin in extension.elements("plugin") if extension.tag == "gazebo" else ():
             if _DRIVE_PATTERN.search(f"{plugin.attributes.get('filename', '')} {plugin.attributes.get('name', '')}"):
@@ -108,11 +110,11 @@ def _is_working(plugin: Element) -> bool:
     return any(name in supported for name in names) and all(file.exists() for file in files if file.is_absolute())
 
 
-def plugins_without_controllers(robot: Robot) -> tuple[Element, ...]:
-    """Return the plugins that would hold the joints of a drive, because they have no controllers."""
+def find_plugins_without_controllers(robot: Robot) -> tuple[Element, ...]:
+    """Return the plugins without controllers, which would hold the joints of a drive."""
     return tuple(
         plugin
-        for plugin in _drive_plugins(robot)
+        for plugin in _find_drive_plugins(robot)
         if library_name(plugin.attributes.get("filename", "")) == _ROS1_CONTROL and not _is_working(plugin)
     )
 
@@ -127,7 +129,7 @@ def publishes_joint_states(robot: Robot) -> bool:
     )
 
 
-def controlled_joints(robot: Robot) -> frozenset[str]:
+def find_controlled_joints(robot: Robot) -> frozenset[str]:
     """Return the joints that plugins of the description hold and move.
 
     A plugin that names no joints controls all joints.
@@ -153,14 +155,14 @@ def has_friction(robot: Robot, link: str) -> bool:
     )
 
 
-def frictionless_element(link: str) -> Element:
+def create_frictionless_element(link: str) -> Element:
     """Return the ``<gazebo>`` element that lets a caster slide without friction."""
     element = Element("gazebo", {"reference": link})
-    element.children += [_text_element("mu1", _CASTER_FRICTION), _text_element("mu2", _CASTER_FRICTION)]
+    element.children += [_create_text_element("mu1", _CASTER_FRICTION), _create_text_element("mu2", _CASTER_FRICTION)]
     return element
 
 
-def drive_element(robot: Robot, drive: Drive, base_frame: str, mass: float) -> Element:
+def create_drive_element(robot: Robot, drive: Drive, base_frame: str, mass: float) -> Element:
     """Return the ``<gazebo>`` element with the plugin that drives the wheels.
 
     Args:
@@ -169,31 +171,36 @@ def drive_element(robot: Robot, drive: Drive, base_frame: str, mass: float) -> E
         base_frame: the child frame of the odometry.
         mass: the mass of the robot in kg.
     """
-    makers = {"differential": _diff_drive, "skid": _diff_drive, "mecanum": _planar_move, "ackermann": _ackermann}
-    name, filename, parameters = makers[drive.kind](drive, _torque(robot, drive, mass))
+    makers = {
+        "differential": _describe_diff_drive,
+        "skid": _describe_diff_drive,
+        "mecanum": _describe_planar_move,
+        "ackermann": _describe_ackermann,
+    }
+    name, filename, parameters = makers[drive.kind](drive, _compute_torque(robot, drive, mass))
     odometry = [
         ("odometry_frame", "odom"),
         ("robot_base_frame", base_frame),
         ("publish_odom", "true"),
         ("publish_odom_tf", "true"),
     ]
-    return _gazebo_element(_plugin_element(name, filename, [*parameters, *odometry]))
+    return _create_gazebo_element(_create_plugin_element(name, filename, [*parameters, *odometry]))
 
 
-def joint_states_element(joints: Sequence[str]) -> Element:
+def create_joint_states_element(joints: Sequence[str]) -> Element:
     """Return the ``<gazebo>`` element with the plugin that publishes the positions of joints."""
     names = [("joint_name", name) for name in joints]
-    plugin = _plugin_element(
+    plugin = _create_plugin_element(
         "joint_states", "libgazebo_ros_joint_state_publisher.so", [("update_rate", _UPDATE_RATE), *names]
     )
-    return _gazebo_element(plugin)
+    return _create_gazebo_element(plugin)
 
 
-def joint_controllers_element(joints: Iterable[str]) -> Element:
+def create_joint_controllers_element(joints: Iterable[str]) -> Element:
     """Return the ``<gazebo>`` element with plugins that hold joints, and move them on command."""
-    return _gazebo_element(
+    return _create_gazebo_element(
         *(
-            _plugin_element(
+            _create_plugin_element(
                 "gz::sim::systems::JointPositionController",
                 "gz-sim-joint-position-controller-system",
                 [("joint_name", name), ("use_velocity_commands", "true")],
@@ -203,7 +210,7 @@ def joint_controllers_element(joints: Iterable[str]) -> Element:
     )
 
 
-def _diff_drive(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, str]]]:
+def _describe_diff_drive(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, str]]]:
     count = len(drive.left)
     pairs = [("num_wheel_pairs", str(count))] if count > 1 else []
     separations = [abs(left.center[1] - right.center[1]) for left, right in zip(drive.left, drive.right, strict=True)]
@@ -223,7 +230,7 @@ def _diff_drive(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, 
     return "diff_drive", "libgazebo_ros_diff_drive.so", parameters
 
 
-def _planar_move(_drive: Drive, _torque: float) -> tuple[str, str, list[tuple[str, str]]]:
+def _describe_planar_move(_drive: Drive, _compute_torque: float) -> tuple[str, str, list[tuple[str, str]]]:
     return (
         "planar_move",
         "libgazebo_ros_planar_move.so",
@@ -231,7 +238,7 @@ def _planar_move(_drive: Drive, _torque: float) -> tuple[str, str, list[tuple[st
     )
 
 
-def _ackermann(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, str]]]:
+def _describe_ackermann(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, str]]]:
     left, right = drive.steered
     gains = f"{10.0 * torque:.3g} 0 {0.1 * torque:.3g}"
     parameters = [
@@ -253,7 +260,7 @@ def _ackermann(drive: Drive, torque: float) -> tuple[str, str, list[tuple[str, s
     return "ackermann_drive", "libgazebo_ros_ackermann_drive.so", parameters
 
 
-def _torque(robot: Robot, drive: Drive, mass: float) -> float:
+def _compute_torque(robot: Robot, drive: Drive, mass: float) -> float:
     """Return the maximum torque of a wheel in N m: slip torque, joint friction and damping."""
     wheels = (*drive.left, *drive.right)
     slip_torque = _GRAVITY * mass * drive.radius / len(wheels)
@@ -271,19 +278,19 @@ def format_number(value: float) -> str:
     return f"{value:.6g}"
 
 
-def _gazebo_element(*plugins: Element) -> Element:
+def _create_gazebo_element(*plugins: Element) -> Element:
     element = Element("gazebo")
     element.children += plugins
     return element
 
 
-def _plugin_element(name: str, filename: str, parameters: Iterable[tuple[str, str]]) -> Element:
+def _create_plugin_element(name: str, filename: str, parameters: Iterable[tuple[str, str]]) -> Element:
     element = Element("plugin", {"name": name, "filename": filename})
-    element.children += [_text_element(tag, text) for tag, text in parameters]
+    element.children += [_create_text_element(tag, text) for tag, text in parameters]
     return element
 
 
-def _text_element(tag: str, text: str) -> Element:
+def _create_text_element(tag: str, text: str) -> Element:
     element = Element(tag)
     element.children.append(Text(text))
     return element

@@ -8,7 +8,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, Severity
 from linkwright.inertia import MeshLibrary
 from linkwright.inference import gazebo
 from linkwright.inference.drives import DriveVerdict, infer_drive
-from linkwright.inference.missing import missing_collisions, missing_masses
+from linkwright.inference.missing_elements import infer_collisions, infer_masses
 from linkwright.inference.results import Drive, DriveKind, Inference, InferredFact, Wheel
 from linkwright.inference.undercarriage import Survey, Undercarriage
 from linkwright.urdf import Joint, Robot
@@ -39,7 +39,7 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
         LinkwrightError: DRIVE210, there is no such wheel; DRIVE211, the wheels do not suit that kind of drive.
     """
     survey = Survey(robot, meshes)
-    undercarriage = survey.undercarriage()
+    undercarriage = survey.find_undercarriage()
     chosen_wheels = [_find_wheel(survey, name) for name in wheels]
     is_requested = kind is not None or bool(chosen_wheels)
     working_drive, idle_drive = (
@@ -55,7 +55,7 @@ def infer(robot: Robot, meshes: MeshLibrary, *, kind: DriveKind | None = None, w
     if is_requested and verdict.drive is None:
         message = phrase("'{robot}' cannot be driven as requested: {reason}", robot=robot.name, reason=verdict.reason)
         raise LinkwrightError(Diagnostic("DRIVE211", message, hint=_DRIVE_HINT))
-    return _InferenceBuilder(survey, undercarriage, verdict, working_drive, idle_drive).result()
+    return _InferenceBuilder(survey, undercarriage, verdict, working_drive, idle_drive).build()
 
 
 class _InferenceBuilder:
@@ -93,14 +93,14 @@ class _InferenceBuilder:
         base_names = ("base_footprint", "base_link")
         self._base_frame = next((name for name in base_names if name in self._robot.links), self._robot.root)
 
-    def result(self) -> Inference:
+    def build(self) -> Inference:
         """Return the inference with all findings."""
-        findings = [*missing_collisions(self._survey, self._wheels, self._casters)]
+        findings = [*infer_collisions(self._survey, self._wheels, self._casters)]
         solid_links = (*self._wheels, *self._casters)
-        findings += missing_masses(self._survey, solid_links, fixed_base=self._fixed_base)
-        masses = self._link_masses(findings)
+        findings += infer_masses(self._survey, solid_links, fixed_base=self._fixed_base)
+        masses = self._collect_link_masses(findings)
         held_joints = self._find_held_joints()
-        findings += self._drive_findings(held_joints, sum(masses.values()))
+        findings += self._infer_drive(held_joints, sum(masses.values()))
         ground = self._survey.base_in_root.point((0.0, 0.0, self._under.ground or 0.0))[2]
         is_fixed = self._fixed_base
         return Inference(
@@ -112,10 +112,10 @@ class _InferenceBuilder:
             is_fixed,
             0.0 if is_fixed else ground,
             masses,
-            gazebo.plugins_without_controllers(self._robot),
+            gazebo.find_plugins_without_controllers(self._robot),
         )
 
-    def _link_masses(self, findings: list[InferredFact]) -> dict[str, float]:
+    def _collect_link_masses(self, findings: list[InferredFact]) -> dict[str, float]:
         links = self._robot.links
         masses = {name: link.inertial.mass for name, link in links.items() if link.inertial is not None}
         name_by_element = {id(link.element): name for name, link in links.items()}
@@ -131,10 +131,10 @@ class _InferenceBuilder:
         if self._working_drive is not None and self._idle_drive is None:
             return ()
         excluded = {wheel.joint for wheel in self._wheels.values()} | self._under.caster_joints
-        excluded |= gazebo.controlled_joints(self._robot)
+        excluded |= gazebo.find_controlled_joints(self._robot)
         for wheel in self._wheels.values():
-            excluded |= {joint.name for joint in self._survey.chain(self._robot.joints[wheel.joint].parent)}
-        commanded = gazebo.commanded_joints(self._robot)
+            excluded |= {joint.name for joint in self._survey.find_joints_above(self._robot.joints[wheel.joint].parent)}
+        commanded = gazebo.find_commanded_joints(self._robot)
         return tuple(
             joint.name
             for joint in self._robot.joints.values()
@@ -142,26 +142,28 @@ class _InferenceBuilder:
             if self._working_drive is None or joint.name in commanded
         )
 
-    def _drive_findings(self, held_joints: tuple[str, ...], mass: float) -> Iterator[InferredFact]:
+    def _infer_drive(self, held_joints: tuple[str, ...], mass: float) -> Iterator[InferredFact]:
         """Yield the findings about the drive, the casters and the joints."""
         root = self._robot.element
         if self._idle_drive is not None:
             message = phrase(
                 "'{drive}', the drive that '{robot}' declares, has no effect here",
-                **self._message_values(self._idle_drive),
+                **self._get_message_values(self._idle_drive),
             )
-            yield InferredFact(_diagnostic_at(self._idle_drive, "DRIVE205", message))
+            yield InferredFact(_create_diagnostic(self._idle_drive, "DRIVE205", message))
         if self._working_drive is not None:
-            message = phrase("'{robot}' declares its own drive, '{drive}'", **self._message_values(self._working_drive))
-            yield InferredFact(_diagnostic_at(self._working_drive, "DRIVE202", message))
-            yield from self._holding_findings(held_joints)
+            message = phrase(
+                "'{robot}' declares its own drive, '{drive}'", **self._get_message_values(self._working_drive)
+            )
+            yield InferredFact(_create_diagnostic(self._working_drive, "DRIVE202", message))
+            yield from self._infer_held_joints(held_joints)
             return
         drive = self._drive
         if drive is None:
-            yield self._no_drive_finding()
+            yield self._create_no_drive_finding()
             return
         if drive.kind != "joints":
-            yield from self._reversed_axes(drive)
+            yield from self._infer_reversed_axes(drive)
             message = phrase(
                 "the inferred drive of '{robot}' is '{kind}': {reason}",
                 robot=self._robot.name,
@@ -169,51 +171,53 @@ class _InferenceBuilder:
                 reason=self._verdict.reason,
             )
             yield InferredFact(
-                self._diagnostic_at_root("DRIVE111", message),
+                self._create_root_diagnostic("DRIVE111", message),
                 root,
-                (gazebo.drive_element(self._robot, drive, self._base_frame, mass),),
+                (gazebo.create_drive_element(self._robot, drive, self._base_frame, mass),),
             )
-            yield from self._caster_findings()
-            yield from self._tipping_findings(drive)
+            yield from self._infer_casters()
+            yield from self._infer_tipping(drive)
         if self._fixed_base and self._robot.root != _WORLD_LINK:
             message = phrase(
                 "'{robot}' is fixed to the world: {reason}", robot=self._robot.name, reason=self._verdict.reason
             )
-            yield InferredFact(self._diagnostic_at_root("DRIVE113", message), root, tuple(_world_anchor(self._robot)))
-        yield from self._holding_findings(held_joints)
+            yield InferredFact(
+                self._create_root_diagnostic("DRIVE113", message), root, tuple(_create_world_anchor(self._robot))
+            )
+        yield from self._infer_held_joints(held_joints)
         moving = [joint.name for joint in self._robot.joints.values() if joint.type in _MOVING_TYPES]
         if moving and not gazebo.publishes_joint_states(self._robot):
             message = phrase("the positions of the joints are published as joint_states")
             yield InferredFact(
-                self._diagnostic_at_root("DRIVE115", message), root, (gazebo.joint_states_element(moving),)
+                self._create_root_diagnostic("DRIVE115", message), root, (gazebo.create_joint_states_element(moving),)
             )
 
-    def _holding_findings(self, held_joints: tuple[str, ...]) -> Iterator[InferredFact]:
+    def _infer_held_joints(self, held_joints: tuple[str, ...]) -> Iterator[InferredFact]:
         if held_joints:
             message = phrase(
                 "nothing drives {joints}: each holds its position until it receives a command",
                 joints=quoted_names(held_joints),
             )
             yield InferredFact(
-                self._diagnostic_at_root("DRIVE114", message),
+                self._create_root_diagnostic("DRIVE114", message),
                 self._robot.element,
-                (gazebo.joint_controllers_element(held_joints),),
+                (gazebo.create_joint_controllers_element(held_joints),),
             )
 
-    def _message_values(self, element: Element) -> dict[str, str]:
+    def _get_message_values(self, element: Element) -> dict[str, str]:
         element_name = element.attributes.get("filename") or element.attributes.get("name") or element.tag
         return {"robot": self._robot.name, "drive": element_name}
 
-    def _no_drive_finding(self) -> InferredFact:
+    def _create_no_drive_finding(self) -> InferredFact:
         if not any(joint.type in _MOVING_TYPES for joint in self._robot.joints.values()):
             message = phrase("no joint of '{robot}' moves: there is nothing to drive", robot=self._robot.name)
-            return InferredFact(self._diagnostic_at_root("DRIVE203", message))
+            return InferredFact(self._create_root_diagnostic("DRIVE203", message))
         message = phrase(
             "the drive of '{robot}' is unknown: {reason}", robot=self._robot.name, reason=self._verdict.reason
         )
-        return InferredFact(self._diagnostic_at_root("DRIVE201", message, Severity.WARNING, _DRIVE_HINT))
+        return InferredFact(self._create_root_diagnostic("DRIVE201", message, Severity.WARNING, _DRIVE_HINT))
 
-    def _reversed_axes(self, drive: Drive) -> Iterator[InferredFact]:
+    def _infer_reversed_axes(self, drive: Drive) -> Iterator[InferredFact]:
         """Yield findings that reverse the axes of driven wheels if they point to the right.
 
         Gazebo's plugins drive forward if the velocity about an axis that points to the left is positive.
@@ -232,9 +236,9 @@ class _InferenceBuilder:
                 "velocity must drive forward",
                 joint=joint.name,
             )
-            yield InferredFact(_diagnostic_at(joint.element, "DRIVE110", message), joint.element, (axis,))
+            yield InferredFact(_create_diagnostic(joint.element, "DRIVE110", message), joint.element, (axis,))
 
-    def _caster_findings(self) -> Iterator[InferredFact]:
+    def _infer_casters(self) -> Iterator[InferredFact]:
         for name in self._casters:
             element = self._robot.links[name].element
             if element is None or gazebo.has_friction(self._robot, name) or self._rolls_freely(name):
@@ -243,7 +247,9 @@ class _InferenceBuilder:
                 "link '{link}' touches the ground and is not driven, so its friction is set to zero", link=name
             )
             yield InferredFact(
-                _diagnostic_at(element, "DRIVE112", message), self._robot.element, (gazebo.frictionless_element(name),)
+                _create_diagnostic(element, "DRIVE112", message),
+                self._robot.element,
+                (gazebo.create_frictionless_element(name),),
             )
 
     def _rolls_freely(self, link: str) -> bool:
@@ -251,7 +257,7 @@ class _InferenceBuilder:
         wheel = self._wheels.get(link)
         return wheel is not None and wheel.width is not None and wheel.steering is not None
 
-    def _tipping_findings(self, drive: Drive) -> Iterator[InferredFact]:
+    def _infer_tipping(self, drive: Drive) -> Iterator[InferredFact]:
         if drive.kind == "differential" and not self._casters and len(self._under.wheels) == 2:
             message = phrase(
                 "only the two driven wheels of '{robot}' touch the ground: the robot tips over until "
@@ -259,15 +265,15 @@ class _InferenceBuilder:
                 robot=self._robot.name,
             )
             hint = phrase("add a caster, such as a ball that touches the ground in front of or behind the wheels")
-            yield InferredFact(self._diagnostic_at_root("DRIVE204", message, Severity.WARNING, hint))
+            yield InferredFact(self._create_root_diagnostic("DRIVE204", message, Severity.WARNING, hint))
 
-    def _diagnostic_at_root(
+    def _create_root_diagnostic(
         self, code: str, message: Phrase, severity: Severity = Severity.INFO, hint: Phrase | None = None
     ) -> Diagnostic:
-        return _diagnostic_at(self._robot.element, code, message, severity, hint)
+        return _create_diagnostic(self._robot.element, code, message, severity, hint)
 
 
-def _diagnostic_at(
+def _create_diagnostic(
     element: Element | None,
     code: str,
     message: Phrase,
@@ -290,15 +296,15 @@ def _choose_drive(
         return DriveVerdict(Drive("joints"), phrase("its root is 'world', which does not move"))
     if kind is not None or chosen_wheels or undercarriage.wheels or undercarriage.misaligned:
         return infer_drive(survey, undercarriage, kind, chosen_wheels)
-    return _drive_without_wheels(survey, undercarriage)
+    return _infer_drive_without_wheels(survey, undercarriage)
 
 
-def _drive_without_wheels(survey: Survey, undercarriage: Undercarriage) -> DriveVerdict:
+def _infer_drive_without_wheels(survey: Survey, undercarriage: Undercarriage) -> DriveVerdict:
     """Return the drive of a robot without wheels: by joints if it is an arm, else none."""
     if undercarriage.raised_wheels:
         wheel, height = undercarriage.raised_wheels[0]
         reason = phrase(
-            "the wheel on '{joint}' ends {height:.3g} m above the lowest point, which is on link '{link}'",
+            "the wheel on '{joint}' is {height:.3g} m above the robot's lowest point, which is on link '{link}'",
             joint=wheel.joint,
             height=height,
             link=undercarriage.lowest_link,
@@ -333,27 +339,27 @@ def _find_wheel(survey: Survey, name: str) -> Wheel:
     Raises:
         LinkwrightError: DRIVE210, there is no such wheel.
     """
-    joint = survey.robot.joints.get(name) or _joint_above(survey.robot, name)
+    joint = survey.robot.joints.get(name) or _find_parent_joint(survey.robot, name)
     if joint is None:
         joint_names = [*survey.robot.joints]
         message = phrase("the robot has no joint '{name}'", name=name)
         raise LinkwrightError(Diagnostic("DRIVE210", message, hint=did_you_mean(name, joint_names)))
-    wheel = survey.wheel_on(joint)
+    wheel = survey.find_wheel(joint)
     if wheel is None:
         message = phrase(
             "joint '{joint}' does not turn a wheel: a wheel must be round about a horizontal axis and "
             "turn without limits",
             joint=joint.name,
         )
-        raise LinkwrightError(_diagnostic_at(joint.element, "DRIVE210", message, Severity.ERROR))
+        raise LinkwrightError(_create_diagnostic(joint.element, "DRIVE210", message, Severity.ERROR))
     return wheel
 
 
-def _joint_above(robot: Robot, link: str) -> Joint | None:
+def _find_parent_joint(robot: Robot, link: str) -> Joint | None:
     return next((joint for joint in robot.joints.values() if joint.child == link), None)
 
 
-def _world_anchor(robot: Robot) -> Iterator[Element]:
+def _create_world_anchor(robot: Robot) -> Iterator[Element]:
     """Yield the link and the joint that fix a robot to the world.
 
     Simulators do not move a root link with the name ``world``.

@@ -50,12 +50,12 @@ class RoundShape(NamedTuple):
     shape: Shape
 
 
-def shapes_of(link: Link) -> tuple[Shape, ...]:
+def get_shapes(link: Link) -> tuple[Shape, ...]:
     """Return a link's collisions, or its visuals if it has none."""
     return link.collisions or link.visuals
 
 
-def vertices(shape: Shape, meshes: MeshLibrary) -> Array | None:
+def load_vertices(shape: Shape, meshes: MeshLibrary) -> Array | None:
     """Return the vertices of a mesh in its link's frame, in m, shape (vertices, 3).
 
     Return None if the mesh is empty, too far away, or cannot be read.
@@ -72,14 +72,14 @@ def vertices(shape: Shape, meshes: MeshLibrary) -> Array | None:
     return corners
 
 
-def lowest_z(shape: Shape, link_frame: Placement, meshes: MeshLibrary) -> float | None:
+def find_lowest_z(shape: Shape, link_frame: Placement, meshes: MeshLibrary) -> float | None:
     """Return the z in m of a shape's lowest point, in the reference frame of `link_frame`.
 
     Return None for a mesh that cannot be read.
     """
     geometry = shape.geometry
     if isinstance(geometry, Mesh):
-        corners = vertices(shape, meshes)
+        corners = load_vertices(shape, meshes)
         if corners is None:
             return None
         return float((corners @ np.array(link_frame.rotation[2])).min()) + link_frame.position[2]
@@ -97,7 +97,7 @@ def lowest_z(shape: Shape, link_frame: Placement, meshes: MeshLibrary) -> float 
     return z - vertical * geometry.length / 2.0 - sqrt(max(0.0, 1.0 - vertical * vertical)) * geometry.radius
 
 
-def round_shape(
+def find_round_shape(
     members: Iterable[tuple[Link, Placement]], point: Vector3, axis: Vector3, meshes: MeshLibrary
 ) -> tuple[RoundShape | None, list[str]]:
     """Return the shape with which a body rolls about an axis, and unreadable meshes.
@@ -113,13 +113,13 @@ def round_shape(
     """
     links = list(members)
     unreadable: list[str] = []
-    for list_shapes in (_collisions, _visuals):
+    for list_shapes in (_list_collisions, _list_visuals):
         round_shapes: list[RoundShape] = []
         max_reach = 0.0
         for shape, frame in list_shapes(links):
-            farthest = _distance_bound(shape, frame, point, axis, meshes)
+            farthest = _compute_distance_bound(shape, frame, point, axis, meshes)
             if farthest is None:
-                unreadable.append(_name(shape))
+                unreadable.append(_get_mesh_name(shape))
                 continue
             max_reach = max(max_reach, farthest)
             candidate = _measure_round(shape, frame, point, axis, meshes)
@@ -131,11 +131,11 @@ def round_shape(
     return None, unreadable
 
 
-def _collisions(links: list[tuple[Link, Placement]]) -> Iterator[tuple[Shape, Placement]]:
+def _list_collisions(links: list[tuple[Link, Placement]]) -> Iterator[tuple[Shape, Placement]]:
     return ((shape, frame) for link, frame in links for shape in link.collisions)
 
 
-def _visuals(links: list[tuple[Link, Placement]]) -> Iterator[tuple[Shape, Placement]]:
+def _list_visuals(links: list[tuple[Link, Placement]]) -> Iterator[tuple[Shape, Placement]]:
     return ((shape, frame) for link, frame in links for shape in link.visuals)
 
 
@@ -163,10 +163,10 @@ def _measure_round(
 def _measure_round_mesh(
     shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary
 ) -> RoundShape | None:
-    points = _points_from(shape, frame, point, meshes)
+    points = _load_points(shape, frame, point, meshes)
     if points is None:
         return None
-    first = _perpendicular(axis)
+    first = _find_perpendicular(axis)
     second = cross(axis, first)
     projected = points @ np.array((first, second)).T
     angles = np.arange(_DIRECTION_COUNT) * (2.0 * pi / _DIRECTION_COUNT)
@@ -181,14 +181,16 @@ def _measure_round_mesh(
     return RoundShape(radius, end - start, (start + end) / 2.0, shape)
 
 
-def _distance_bound(shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary) -> float | None:
+def _compute_distance_bound(
+    shape: Shape, frame: Placement, point: Vector3, axis: Vector3, meshes: MeshLibrary
+) -> float | None:
     """Return an upper bound of a shape's distance from an axis, in m.
 
     Return None for a mesh that cannot be read.
     """
     geometry = shape.geometry
     if isinstance(geometry, Mesh):
-        points = _points_from(shape, frame, point, meshes)
+        points = _load_points(shape, frame, point, meshes)
         if points is None:
             return None
         perpendicular = points - np.outer(points @ np.array(axis), np.array(axis))
@@ -211,8 +213,8 @@ def _distance_bound(shape: Shape, frame: Placement, point: Vector3, axis: Vector
     return max(_split_along(subtract_vectors(shape_frame.point(corner), point), axis)[1] for corner in corners)
 
 
-def _points_from(shape: Shape, frame: Placement, point: Vector3, meshes: MeshLibrary) -> Array | None:
-    corners = vertices(shape, meshes)
+def _load_points(shape: Shape, frame: Placement, point: Vector3, meshes: MeshLibrary) -> Array | None:
+    corners = load_vertices(shape, meshes)
     return (
         None
         if corners is None
@@ -226,7 +228,7 @@ def _split_along(vector: Vector3, axis: Vector3) -> tuple[float, float]:
     return along, length(subtract_vectors(vector, scaled(axis, along)))
 
 
-def _perpendicular(axis: Vector3) -> Vector3:
+def _find_perpendicular(axis: Vector3) -> Vector3:
     """Return a unit vector that is perpendicular to a unit vector."""
     x, y, z = axis
     if abs(z) < 0.9:
@@ -236,6 +238,6 @@ def _perpendicular(axis: Vector3) -> Vector3:
     return (0.0, -z / size, y / size)
 
 
-def _name(shape: Shape) -> str:
+def _get_mesh_name(shape: Shape) -> str:
     assert isinstance(shape.geometry, Mesh), "all other shapes can be measured"
     return shape.geometry.filename.rpartition("/")[2]

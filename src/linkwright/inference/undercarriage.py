@@ -16,7 +16,7 @@ from linkwright.geometry.shapes import Placement, rotated
 from linkwright.geometry.single import length, scaled
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inference.results import Wheel
-from linkwright.inference.shapes import Shape, lowest_z, round_shape, shapes_of
+from linkwright.inference.shapes import Shape, find_lowest_z, find_round_shape, get_shapes
 from linkwright.lint.frames import compute_placements
 from linkwright.urdf import Joint, Link, Mesh, Robot, parent_joints
 from linkwright.urdf.bodies import Bodies
@@ -85,7 +85,7 @@ class Survey:
         """The z of the lowest point of each link with readable shapes, in the base frame, in m."""
         heights = {}
         for name, frame in self._frames.items():
-            lowest_points = [lowest_z(shape, frame, self.meshes) for shape in shapes_of(self.robot.links[name])]
+            lowest_points = [find_lowest_z(shape, frame, self.meshes) for shape in get_shapes(self.robot.links[name])]
             values = [value for value in lowest_points if value is not None]
             if values:
                 heights[name] = min(values)
@@ -94,9 +94,9 @@ class Survey:
     @cached_property
     def rolling_wheels(self) -> tuple[Wheel, ...]:
         """The links that are round about an unlimited joint's horizontal axis, in file order."""
-        return tuple(filter(None, map(self.wheel_on, self.robot.joints.values())))
+        return tuple(filter(None, map(self.find_wheel, self.robot.joints.values())))
 
-    def wheel_on(self, joint: Joint) -> Wheel | None:
+    def find_wheel(self, joint: Joint) -> Wheel | None:
         """Return the wheel that rotates about a joint.
 
         Return None if the joint has limits or no horizontal axis, if the link is not rotationally symmetric about the
@@ -112,7 +112,7 @@ class Survey:
         if abs(axis[2]) > sqrt(1.0 - _VERTICAL_COSINE * _VERTICAL_COSINE):
             return None
         members = list(zip(self.bodies.members(body), body.frames.values(), strict=True))
-        shape, unreadable = round_shape(members, (0.0, 0.0, 0.0), joint_axis, self.meshes)
+        shape, unreadable = find_round_shape(members, (0.0, 0.0, 0.0), joint_axis, self.meshes)
         if unreadable:
             self._unreadable[joint.child] = unreadable[0]
         if shape is None:
@@ -120,11 +120,11 @@ class Survey:
         center = frame.point(scaled(joint_axis, shape.along))
         return Wheel(joint.name, joint.child, center, axis, shape.radius, shape.width, self._find_steering(joint))
 
-    def frame(self, link: str) -> Placement:
+    def get_frame(self, link: str) -> Placement:
         """Return the pose of a link in the base frame."""
         return self._frames[link]
 
-    def undercarriage(self) -> Undercarriage:
+    def find_undercarriage(self) -> Undercarriage:
         """Return the wheels, the casters and the ground of the robot."""
         rolling = self.rolling_wheels
         if not self.heights:
@@ -132,9 +132,11 @@ class Survey:
         lowest_link = min(self.heights, key=lambda name: self.heights[name])
         bottom = self.heights[lowest_link]
         ground_wheels = [
-            wheel for wheel in rolling if wheel_bottom(wheel) - bottom <= max(_MAX_GROUND_GAP, 0.25 * wheel.radius)
+            wheel
+            for wheel in rolling
+            if compute_wheel_bottom(wheel) - bottom <= max(_MAX_GROUND_GAP, 0.25 * wheel.radius)
         ]
-        raised = tuple((wheel, wheel_bottom(wheel) - bottom) for wheel in rolling if wheel not in ground_wheels)
+        raised = tuple((wheel, compute_wheel_bottom(wheel) - bottom) for wheel in rolling if wheel not in ground_wheels)
         caster_wheels = [wheel for wheel in ground_wheels if self._is_caster(wheel)]
         other_wheels = [wheel for wheel in ground_wheels if wheel not in caster_wheels]
         if any(wheel.width is not None for wheel in other_wheels):
@@ -144,8 +146,8 @@ class Survey:
             wheel for wheel in other_wheels if wheel.steering is None and abs(wheel.axis[1]) < _VERTICAL_COSINE
         )
         wheels = tuple(wheel for wheel in other_wheels if wheel not in misaligned)
-        ground = min(map(wheel_bottom, wheels)) if wheels else bottom
-        sliding_links = self._sliding_links(ground) if wheels else ()
+        ground = min(map(compute_wheel_bottom, wheels)) if wheels else bottom
+        sliding_links = self._find_sliding_links(ground) if wheels else ()
         caster_joints = {name for wheel in caster_wheels for name in (wheel.joint, wheel.steering) if name is not None}
         casters = tuple(dict.fromkeys((*(wheel.link for wheel in caster_wheels), *sliding_links)))
         return Undercarriage(
@@ -157,18 +159,18 @@ class Survey:
 
         The names are those of the wheels, of their meshes, macros and files, and of the robot.
         """
-        return all(_MECANUM_PATTERN.search(" ".join(self._related_names(wheel))) for wheel in wheels) or bool(
+        return all(_MECANUM_PATTERN.search(" ".join(self._list_related_names(wheel))) for wheel in wheels) or bool(
             _MECANUM_PATTERN.search(self.robot.name)
         )
 
-    def chain(self, link: str) -> Iterator[Joint]:
+    def find_joints_above(self, link: str) -> Iterator[Joint]:
         """Yield the joints between a link and the root, the nearest to the link first."""
         joint = self._parent_joints.get(link)
         while joint is not None:
             yield joint
             joint = self._parent_joints.get(joint.parent)
 
-    def _related_names(self, wheel: Wheel) -> Iterator[str]:
+    def _list_related_names(self, wheel: Wheel) -> Iterator[str]:
         link = self.robot.links[wheel.link]
         yield wheel.joint
         yield wheel.link
@@ -187,7 +189,7 @@ class Survey:
 
         Returns None if there is none.
         """
-        for joint_above in self.chain(joint.parent):
+        for joint_above in self.find_joints_above(joint.parent):
             size = length(joint_above.axis)
             if joint_above.type in ("revolute", "continuous") and size:
                 z = rotated(self._frames[joint_above.child].rotation, joint_above.axis)[2] / size
@@ -206,7 +208,7 @@ class Survey:
         names = f"{steering.name} {steering.child}"
         return bool(_CASTER_PATTERN.search(names)) or (is_endless(steering) and not _STEERING_PATTERN.search(names))
 
-    def _sliding_links(self, ground: float) -> Iterator[str]:
+    def _find_sliding_links(self, ground: float) -> Iterator[str]:
         """Yield the links that slide on the ground.
 
         They are fixed to the base, touch the ground, and are not the chassis.
@@ -220,10 +222,10 @@ class Survey:
     def chassis(self) -> str:
         """The link of the root's body with the largest shapes, or an empty string without shapes."""
         root = self.bodies.of(self.robot.root)
-        names = [] if root is None else [name for name in root.links if shapes_of(self.robot.links[name])]
-        return max(names, key=lambda name: self._volume(self.robot.links[name]), default="")
+        names = [] if root is None else [name for name in root.links if get_shapes(self.robot.links[name])]
+        return max(names, key=lambda name: self._estimate_volume(self.robot.links[name]), default="")
 
-    def _volume(self, link: Link) -> float:
+    def _estimate_volume(self, link: Link) -> float:
         """Return the volume of a link's shapes in m3, without meshes that cannot be read."""
         properties = estimate(link, self.meshes, density=1.0).properties
         return 0.0 if properties is None else properties.mass
@@ -237,7 +239,7 @@ def is_endless(joint: Joint) -> bool:
     return joint.type == "revolute" and limit is not None and limit.upper - limit.lower > _UNLIMITED_RANGE
 
 
-def wheel_bottom(wheel: Wheel) -> float:
+def compute_wheel_bottom(wheel: Wheel) -> float:
     """Return the z of a wheel's lowest point in the base frame, in m."""
     radial_share = sqrt(max(0.0, 1.0 - wheel.axis[2] ** 2)) if wheel.width is not None else 1.0
     return wheel.center[2] - wheel.radius * radial_share - abs(wheel.axis[2]) * (wheel.width or 0.0) / 2.0

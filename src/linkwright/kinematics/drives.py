@@ -80,7 +80,7 @@ class MecanumDrive:
 
 @dataclass(frozen=True, slots=True)
 class OmniDrive:
-    """A drive of three or more omni wheels at equal angles on a circle, with rollers across the wheels.
+    """A drive of three or more omni wheels at equal angles on a circle.
 
     Attributes:
         count: the number of wheels, at least 3.
@@ -100,7 +100,7 @@ class OmniDrive:
         """Return the angular velocities of the wheels in rad/s."""
         return [
             (sin(angle) * forward - cos(angle) * sideways - self.robot_radius * angular) / self.wheel_radius
-            for angle in self._angles()
+            for angle in self._list_angles()
         ]
 
     def motion(self, speeds: Sequence[float]) -> tuple[float, float, float]:
@@ -110,7 +110,7 @@ class OmniDrive:
         angles between the wheels, the columns of the equations are orthogonal, so that each velocity is a sum.
         """
         rims = [speed * self.wheel_radius for speed in speeds]
-        pairs = list(zip(self._angles(), rims, strict=True))
+        pairs = list(zip(self._list_angles(), rims, strict=True))
         half = self.count / 2.0
         return (
             sum(sin(angle) * rim for angle, rim in pairs) / half,
@@ -118,7 +118,7 @@ class OmniDrive:
             -sum(rims) / self.count / self.robot_radius,
         )
 
-    def _angles(self) -> list[float]:
+    def _list_angles(self) -> list[float]:
         return [self.offset + 2.0 * pi * index / self.count for index in range(self.count)]
 
 
@@ -216,7 +216,7 @@ class TricycleDrive:
     wheelbase: float
     radius: float
 
-    def wheel(self, forward: float, angular: float) -> tuple[float, float]:
+    def wheel_command(self, forward: float, angular: float) -> tuple[float, float]:
         """Return the angular velocity of the wheel in rad/s, and its steering angle in rad.
 
         To rotate in place, the angle is a right angle.

@@ -28,7 +28,7 @@ from linkwright.urdf import Joint, Robot, children_of, parent_joints
 Indices = NDArray[np.intp]
 
 _ROTATING_TYPES = ("revolute", "continuous")
-MOVING = (*_ROTATING_TYPES, "prismatic")
+MOVING_TYPES = (*_ROTATING_TYPES, "prismatic")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ def compute_layout(robot: Robot) -> Layout:
                 continue  # Like urdfdom, ignore a second parent.
             body = link_bodies[index]
             to_joint = offsets[index] @ matrix_from_pose(row_from_pose(joint.origin))
-            align = _align_z(joint.axis) if joint.type in MOVING else None
+            align = _align_z(joint.axis) if joint.type in MOVING_TYPES else None
             if align is None:
                 link_bodies.append(body)
                 offsets.append(to_joint)
@@ -179,11 +179,11 @@ class OneConfiguration:
         terms[is_sliding, 0] = mounts[is_sliding]
         terms[is_sliding, 3, :, 3] = mounts[is_sliding, :, 2]
         self._terms = terms.reshape(count - 1, 4, 16)
-        self._jumps = _doubling_jumps(layout.parents, layout.depths)
+        self._jumps = _compute_doubling_jumps(layout.parents, layout.depths)
         self._link_bodies = layout.link_bodies
         self._offsets = layout.offsets
 
-    def frames(self, positions: Array) -> Array:
+    def compute_frames(self, positions: Array) -> Array:
         """Return the links' frames in the root, shape (links, 4, 4).
 
         `positions` has shape (bodies - 1,).
@@ -213,7 +213,7 @@ class ManyConfigurations:
         self._link_bodies = layout.link_bodies
         self._offsets_transposed = np.ascontiguousarray(layout.offsets.transpose(0, 2, 1))
 
-    def frames(self, positions: Array) -> Array:
+    def compute_frames(self, positions: Array) -> Array:
         """Return the links' frames in the root, shape (n, links, 4, 4).
 
         `positions` has shape (n, bodies - 1).
@@ -241,16 +241,16 @@ class _Level:
     """The bodies with the same number of moving joints above them, rotating bodies first."""
 
     def __init__(self, layout: Layout, depth: int) -> None:
-        members = np.flatnonzero(layout.depths == depth)
-        self._rotating_bodies = members[~layout.slides[members]]
-        self._translating_bodies = members[layout.slides[members]]
-        members = np.concatenate((self._rotating_bodies, self._translating_bodies))
-        self._members = members
-        self._parents = layout.parents[members]
-        self._mounts_transposed = np.ascontiguousarray(layout.mounts[members].transpose(0, 2, 1))
+        body_indices = np.flatnonzero(layout.depths == depth)
+        self._rotating_bodies = body_indices[~layout.slides[body_indices]]
+        self._translating_bodies = body_indices[layout.slides[body_indices]]
+        body_indices = np.concatenate((self._rotating_bodies, self._translating_bodies))
+        self._body_indices = body_indices
+        self._parents = layout.parents[body_indices]
+        self._mounts_transposed = np.ascontiguousarray(layout.mounts[body_indices].transpose(0, 2, 1))
 
     def compute(self, bodies: Array, positions: Array, cosines: Array, sines: Array) -> None:
-        count, size = len(self._members), bodies.shape[-1]
+        count, size = len(self._body_indices), bodies.shape[-1]
         parents = bodies.take(self._parents, 0).reshape(count, 4, 3 * size)
         mounted_frames = (self._mounts_transposed @ parents).reshape(count, 4, 3, size)
         rotating_count = len(self._rotating_bodies)
@@ -265,10 +265,10 @@ class _Level:
         if rotating_count < count:
             joints = self._translating_bodies - 1
             mounted_frames[rotating_count:, 3] += mounted_frames[rotating_count:, 2] * positions[joints, None]
-        bodies[self._members] = mounted_frames
+        bodies[self._body_indices] = mounted_frames
 
 
-def _doubling_jumps(parents: Indices, depths: Indices) -> list[tuple[int, Indices]]:
+def _compute_doubling_jumps(parents: Indices, depths: Indices) -> list[tuple[int, Indices]]:
     """Return the steps that compose frames along doubling paths.
 
     Each step consists of the first body that is deep enough, and the ancestors of this and all later bodies. The
@@ -361,10 +361,10 @@ class KinematicTree:
                 f"positions must have the shape ({count},) or (configurations, {count}), not {array.shape}"
             )
         if array.ndim == 1:
-            return self._one_configuration.frames(self._body_positions(array))
+            return self._one_configuration.compute_frames(self._to_body_positions(array))
         shape = array.shape[:-1]
-        flat = self._body_positions(array.reshape(prod(shape), count))
-        return self._many_configurations.frames(flat).reshape(*shape, len(self.link_names), 4, 4)
+        flat = self._to_body_positions(array.reshape(prod(shape), count))
+        return self._many_configurations.compute_frames(flat).reshape(*shape, len(self.link_names), 4, 4)
 
     def positions(self, positions_by_name: Mapping[str, float], default: float = 0.0) -> Array:
         """Convert positions by joint name to an array in the order of `joint_names`.
@@ -378,7 +378,7 @@ class KinematicTree:
         for name, position in positions_by_name.items():
             index = self._joint_indexes.get(name)
             if index is None:
-                raise self._unknown_joint(name)
+                raise self._unknown_joint_error(name)
             positions[index] = position
         return positions
 
@@ -393,7 +393,7 @@ class KinematicTree:
         except KeyError:
             raise UnknownNameError("KIN103", "link", name, self.link_names) from None
 
-    def _body_positions(self, positions: Array) -> Array:
+    def _to_body_positions(self, positions: Array) -> Array:
         """Return the positions of all moving joints, including mimics, of shape (..., bodies - 1)."""
         if self._copies_positions:
             return positions.take(self._sources, axis=-1)
@@ -405,12 +405,12 @@ class KinematicTree:
         body_positions += self._offsets
         return body_positions
 
-    def _unknown_joint(self, name: str) -> UnknownNameError:
+    def _unknown_joint_error(self, name: str) -> UnknownNameError:
         follower = self._relations.get(name)
         if follower is not None:
             hint = phrase("it mimics '{leader}': give the position of that joint", leader=follower.leader)
             return UnknownNameError("KIN102", "independent joint", name, (), hint)
-        if name in self._types and self._types[name] not in MOVING:
+        if name in self._types and self._types[name] not in MOVING_TYPES:
             hint = phrase("it is {types} and does not move", types=self._types[name])
             return UnknownNameError("KIN102", "independent joint", name, (), hint)
         return UnknownNameError("KIN101", "joint", name, self.joint_names)

@@ -124,7 +124,7 @@ def describe_mesh(file: Path) -> str | None:
     if file.suffix.lower() not in _MESH_SUFFIXES:
         return None
     try:
-        outline = MeshLibrary(PackageFinder(), file.parent).outline(Mesh(str(file)))
+        outline = MeshLibrary(PackageFinder(), file.parent).load_outline(Mesh(str(file)))
         length = file.stat().st_size
     except (LinkwrightError, OSError):
         return None

@@ -8,7 +8,7 @@ from pathlib import Path
 from linkwright.diagnostics import phrase
 from linkwright.inertia import MeshLibrary, estimate
 from linkwright.inertia.source_edits import EXPRESSION, NotWritableError
-from linkwright.inertia.writing import edits_of_link
+from linkwright.inertia.writing import create_link_edits
 from linkwright.language.expanded import expand_to_robots, is_source_of
 from linkwright.language.grammar import PREFIX
 from linkwright.language.proof import Edit, ExpansionProof, UnprovedError
@@ -58,7 +58,7 @@ def fill_in_inertia(
     if properties is None:
         raise UnprovedError(phrase("no shape of the link '{name}' has a volume", name=expanded_link.name))
     try:
-        source, replacements = edits_of_link(robot, expanded_link.name, properties)
+        source, replacements = create_link_edits(robot, expanded_link.name, properties)
     except NotWritableError as error:
         raise UnprovedError(error.args[0]) from None
     if source.text != text:

@@ -181,7 +181,7 @@ class Extents:
         if max(map(abs, shape.origin.xyz)) > MAX_COORDINATE:
             return None
         if isinstance(geometry, Mesh):
-            mesh = self._meshes.outline(shape)
+            mesh = self._meshes.load_outline(shape)
             if mesh is None:
                 return None
             box = mesh.bounds

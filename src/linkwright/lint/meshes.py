@@ -85,7 +85,7 @@ class MeshFacts:
             return error
         return None
 
-    def outline(self, shape: Visual | Collision) -> Outline | None:
+    def load_outline(self, shape: Visual | Collision) -> Outline | None:
         """Return the scaled outline of a shape's mesh in the shape frame, or None if unreadable."""
         if not isinstance(shape.geometry, Mesh):
             return None
@@ -96,7 +96,7 @@ class MeshFacts:
 
     def _load(self, mesh: Mesh, element: Element | None) -> Outline:
         try:
-            return self._mesh_library.outline(mesh, element)
+            return self._mesh_library.load_outline(mesh, element)
         except LinkwrightError as error:
             if error.diagnostics[0].code == "INR104":
                 self.unread = error

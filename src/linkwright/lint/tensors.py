@@ -73,7 +73,7 @@ def find_first_flaw(inertial: Inertial) -> Flaw | None:
             return Flaw("diagonal", name, moment)
     matrix = read_tensor(inertial)
     if any(products):
-        for name, limit in validity.excessive_products(matrix):
+        for name, limit in validity.find_excessive_products(matrix):
             return Flaw("product", name, limit)
         if validity.is_indefinite(matrix, _max_rounding_error(inertial)):
             return Flaw("indefinite")

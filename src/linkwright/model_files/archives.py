@@ -9,7 +9,7 @@ from contextlib import closing
 from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, foreign, phrase
-from linkwright.model_files.fetching import write_error
+from linkwright.model_files.downloads import write_error
 from linkwright.model_files.installed import manual_download_hint
 from linkwright.model_files.table import ModelEntry
 
@@ -39,7 +39,7 @@ def unpack(entry: ModelEntry, archive: Path, target: Path, origin: str | None = 
         with zipfile.ZipFile(archive) as zip_file:
             remaining_bytes = _MAX_BYTES
             for name in entry.files:
-                with closing(_file_blocks(zip_file, f"{entry.folder}/{name}")) as blocks:
+                with closing(_read_blocks(zip_file, f"{entry.folder}/{name}")) as blocks:
                     remaining_bytes -= _write_file(target / name, blocks, remaining_bytes, entry, shown_path)
     except KeyError as error:
         raise _unusable_archive_error(
@@ -49,7 +49,7 @@ def unpack(entry: ModelEntry, archive: Path, target: Path, origin: str | None = 
         raise _unusable_archive_error(entry, shown_path, foreign(error)) from None
 
 
-def _file_blocks(zip_file: zipfile.ZipFile, name: str) -> Generator[bytes, None, None]:
+def _read_blocks(zip_file: zipfile.ZipFile, name: str) -> Generator[bytes, None, None]:
     try:
         info = zip_file.getinfo(name)
     except KeyError:

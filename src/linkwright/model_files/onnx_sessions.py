@@ -13,13 +13,13 @@ from linkwright.diagnostics import Phrase, foreign, phrase
 
 CPU, CUDA = "CPUExecutionProvider", "CUDAExecutionProvider"
 
-_ERRORS_ONLY = 3
-_SOURCE_LOCATION = re.compile(r"^.* failed:\s*|/onnxruntime_src/\S+ (?:.*?\) (?=[A-Z]))?")
+_LOG_ERRORS_ONLY = 3
+_SOURCE_LOCATION_PATTERN = re.compile(r"^.* failed:\s*|/onnxruntime_src/\S+ (?:.*?\) (?=[A-Z]))?")
 """The location in onnxruntime's code that precedes the reason in its messages."""
-_MISSING_WEIGHTS = re.compile(r"\bexternal\b|cannot get file size", re.IGNORECASE)
+_MISSING_WEIGHTS_PATTERN = re.compile(r"\bexternal\b|cannot get file size", re.IGNORECASE)
 """onnxruntime's messages about a missing weights file. The second is of 1.23 or older, as on Python 3.10."""
 
-_TOO_NEW = re.compile(r"IR version|[Oo]pset \d+")
+_TOO_NEW_PATTERN = re.compile(r"IR version|[Oo]pset \d+")
 _HEADER_BYTES = 512
 _TEXT_BYTES = frozenset(range(0x20, 0x7F)) | set(b"\t\r\n")
 
@@ -45,7 +45,7 @@ def load_onnxruntime() -> Any:
     """
     import onnxruntime  # type: ignore[import-untyped, import-not-found, unused-ignore]
 
-    onnxruntime.set_default_logger_severity(_ERRORS_ONLY)  # It warns about all hardware that it does not use.
+    onnxruntime.set_default_logger_severity(_LOG_ERRORS_ONLY)  # It warns about all hardware that it does not use.
     return onnxruntime
 
 
@@ -65,7 +65,7 @@ def load_session(file: Path, gpu: str | None = None, threads: int = 0) -> Any:
     providers: list[Any] = [CPU] if gpu is None else [(CUDA, {"device_id": gpu}), CPU]
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = threads
-    options.log_severity_level = _ERRORS_ONLY
+    options.log_severity_level = _LOG_ERRORS_ONLY
     options.add_session_config_entry("session.intra_op.allow_spinning", "0")  # spinning would slow down other processes
     try:
         return onnxruntime.InferenceSession(str(file), options, providers=providers)
@@ -84,10 +84,10 @@ def has_cuda() -> bool:
     return CUDA in load_onnxruntime().get_available_providers()
 
 
-def error_reason(error: Exception) -> Phrase:
+def describe_error(error: Exception) -> Phrase:
     """Return the reason contained in an error message of onnxruntime."""
     lines = str(error).strip().splitlines() or [type(error).__name__]
-    reason = _SOURCE_LOCATION.sub("", lines[0].rpartition(" : ")[2]).strip()
+    reason = _SOURCE_LOCATION_PATTERN.sub("", lines[0].rpartition(" : ")[2]).strip()
     return foreign(reason or type(error).__name__)
 
 
@@ -108,13 +108,13 @@ def _load_error(file: Path, error: Exception) -> UnloadableNetworkError:
         return UnloadableNetworkError(phrase("it is a web page"), address_hint)
     if set(header) <= _TEXT_BYTES:
         return UnloadableNetworkError(phrase("it is a text file, not an ONNX file"), export_hint)
-    reason = error_reason(error)
+    reason = describe_error(error)
     if "Protobuf parsing failed" in str(reason):
         return UnloadableNetworkError(phrase("it is not an ONNX file, or it is incomplete"), export_hint)
-    if _TOO_NEW.search(str(reason)):
+    if _TOO_NEW_PATTERN.search(str(reason)):
         update_hint = phrase("it requires a newer onnxruntime: update onnxruntime, or export it with a lower opset")
         return UnloadableNetworkError(reason, update_hint)
-    if _MISSING_WEIGHTS.search(str(reason)):
+    if _MISSING_WEIGHTS_PATTERN.search(str(reason)):
         weights_hint = phrase("its weights are in a second file, which must be in the same folder")
         return UnloadableNetworkError(reason, weights_hint)
     return UnloadableNetworkError(reason, export_hint)

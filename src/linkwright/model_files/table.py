@@ -14,7 +14,7 @@ from linkwright.diagnostics import Diagnostic, LinkwrightError, did_you_mean, jo
 
 tomllib: Any = import_module("tomllib" if sys.version_info >= (3, 11) else "tomli")
 
-_TABLE = Path(__file__).with_name("models.toml")
+_TABLE_PATH = Path(__file__).with_name("models.toml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class ModelEntry:
 @cache
 def model_table() -> Mapping[str, ModelEntry]:
     """Return the models by name, in the table's order."""
-    tables = tomllib.loads(_TABLE.read_text(encoding="utf-8"))
+    tables = tomllib.loads(_TABLE_PATH.read_text(encoding="utf-8"))
     return {name: ModelEntry(name=name, **table) for name, table in tables.items()}
 
 

@@ -47,7 +47,7 @@ class WorldFrame(Enum):
         return -1.0 if self is WorldFrame.NED else 1.0
 
 
-def attitude_at_rest(acceleration: Vector3, magnetic: Vector3 | None, world: WorldFrame) -> Quaternion | None:
+def compute_attitude_at_rest(acceleration: Vector3, magnetic: Vector3 | None, world: WorldFrame) -> Quaternion | None:
     """Return the orientation of a body at rest.
 
     Args:
@@ -105,7 +105,7 @@ class MadgwickFilter:
             magnetic: the magnetic field, in any unit; None if it is not measured.
             seconds: the seconds since the previous measurement.
         """
-        gradient = self._gradient(acceleration, magnetic)
+        gradient = self._compute_gradient(acceleration, magnetic)
         if self.zeta and gradient is not None:
             x, y, z, _ = quaternion_multiply(quaternion_inverse(self.orientation), gradient)
             self.drift = _add_scaled(self.drift, (x, y, z), 2.0 * self.zeta * seconds)
@@ -115,24 +115,24 @@ class MadgwickFilter:
             change = _add_scaled_quaternion(change, gradient, -self.gain)
         self.orientation = normalized(*_add_scaled_quaternion(self.orientation, change, seconds))
 
-    def _gradient(self, acceleration: Vector3, magnetic: Vector3 | None) -> Quaternion | None:
+    def _compute_gradient(self, acceleration: Vector3, magnetic: Vector3 | None) -> Quaternion | None:
         """Return the normalized gradient of the error of the orientation.
 
         Return None if the error is zero or the acceleration has no usable direction.
         """
         if hypot(*acceleration) < _MIN_LENGTH:
             return None
-        gradient = self._gradient_of((0.0, 0.0, self.world.up), _normalize(acceleration))
+        gradient = self._compute_direction_gradient((0.0, 0.0, self.world.up), _normalize(acceleration))
         if magnetic is not None and hypot(*magnetic) > 0.0:
             reading = _normalize(magnetic)
             x, y, z = rotate(self.orientation, reading)
             horizontal = hypot(x, y)
             north = (0.0, horizontal, z) if self.world is WorldFrame.ENU else (horizontal, 0.0, z)
-            gradient = _add_scaled_quaternion(gradient, self._gradient_of(north, reading), 1.0)
+            gradient = _add_scaled_quaternion(gradient, self._compute_direction_gradient(north, reading), 1.0)
         norm = sqrt(sum(value * value for value in gradient))
         return _scale_quaternion(gradient, 1.0 / norm) if norm > 1e-12 else None
 
-    def _gradient_of(self, direction: Vector3, reading: Vector3) -> Quaternion:
+    def _compute_direction_gradient(self, direction: Vector3, reading: Vector3) -> Quaternion:
         """Return the gradient of half the squared error of a predicted reading.
 
         The prediction is a world direction d, rotated to the body frame. A small change of the orientation q by dq
@@ -181,10 +181,10 @@ class ComplementaryFilter:
         length = hypot(*acceleration)
         if length >= _MIN_LENGTH:
             up = rotate(self.orientation, _normalize(acceleration))
-            gain = self.gain_acc * (_acceleration_weight(length) if self.do_adaptive_gain else 1.0)
+            gain = self.gain_acc * (_compute_acceleration_weight(length) if self.do_adaptive_gain else 1.0)
             # Rotate the measured up direction to the true one.
             correction = quaternion_inverse(rotation_from_z(up))
-            self.orientation = quaternion_multiply(_fraction_of_rotation(correction, gain), self.orientation)
+            self.orientation = quaternion_multiply(_scale_rotation(correction, gain), self.orientation)
         if magnetic is not None and hypot(*magnetic) > 0.0:
             x, y, _ = rotate(self.orientation, magnetic)
             if hypot(x, y) > 0.0:
@@ -201,7 +201,7 @@ class ComplementaryFilter:
         )
 
 
-def _acceleration_weight(length: float) -> float:
+def _compute_acceleration_weight(length: float) -> float:
     """Return an acceleration's weight: 1 within 10 % of gravity, falling to 0 at 20 %."""
     error = abs(length - GRAVITY) / GRAVITY
     return min(1.0, max(0.0, 2.0 - error / 0.1))
@@ -214,7 +214,7 @@ def _rotation_from_vector(rotation_vector: Vector3) -> Quaternion:
     return rotation_vector[0] * scale, rotation_vector[1] * scale, rotation_vector[2] * scale, cos(angle / 2.0)
 
 
-def _fraction_of_rotation(rotation: Quaternion, fraction: float) -> Quaternion:
+def _scale_rotation(rotation: Quaternion, fraction: float) -> Quaternion:
     """Return a rotation about the same axis by a fraction of the angle."""
     x, y, z, w = rotation if rotation[3] >= 0.0 else _scale_quaternion(rotation, -1.0)
     sine = hypot(x, y, z)

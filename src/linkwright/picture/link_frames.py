@@ -11,7 +11,7 @@ from linkwright.geometry.exact_angles import exact_quaternion, sine_and_cosine
 from linkwright.geometry.shapes import IDENTITY, Placement
 from linkwright.geometry.single import Pose, length, normalized, rotation_matrix, scaled
 from linkwright.kinematics import KinematicTree
-from linkwright.kinematics.tree import MOVING, resolve_mimics
+from linkwright.kinematics.tree import MOVING_TYPES, resolve_mimics
 from linkwright.urdf import Joint, Robot, children_of, parent_joints
 
 _ORIGIN = Placement(IDENTITY, (0.0, 0.0, 0.0))
@@ -35,7 +35,7 @@ def compute_link_frames(robot: Robot, positions: Mapping[str, float]) -> dict[st
         UnknownNameError: KIN101 or KIN102, a name is not that of a joint that has a position.
     """
     KinematicTree(robot).positions(positions)  # raises an error for unknown names
-    moving_joints = [joint.name for joint in robot.joints.values() if joint.type in MOVING]
+    moving_joints = [joint.name for joint in robot.joints.values() if joint.type in MOVING_TYPES]
     independent_joints, relations = resolve_mimics(robot, moving_joints)
     leaders = {name: positions.get(name, choose_start_position(robot.joints[name])) for name in independent_joints}
     values = {
@@ -66,7 +66,7 @@ def choose_start_position(joint: Joint) -> float:
 def _compute_motion(joint: Joint, position: float) -> Placement:
     """Return the frame of a joint's child link in the frame of the joint at position 0."""
     norm = length(joint.axis)
-    if joint.type not in MOVING or not norm > 0.0:
+    if joint.type not in MOVING_TYPES or not norm > 0.0:
         return _ORIGIN
     axis = scaled(joint.axis, 1.0 / norm)
     if joint.type == "prismatic":

@@ -11,9 +11,9 @@ import numpy as np
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.mesh_content import ContentKey, surface_key
-from linkwright.geometry.mesh_files import MESH_ENDINGS, BadMeshError, file_resolver
+from linkwright.geometry.mesh_files import MESH_SUFFIXES, BadMeshError, create_file_resolver
 from linkwright.geometry.mesh_parts import UNCOLORED, FileMaterial, MeshPart, Triangles, read_parts, read_simple_parts
-from linkwright.geometry.meshes import MAX_FILE_SIZE, read_mesh, unreadable
+from linkwright.geometry.meshes import MAX_FILE_SIZE, read_mesh, unreadable_mesh_error
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape
 from linkwright.geometry.surfaces import box, capsule, cylinder, sphere
 from linkwright.picture.bodies import Color, Surface, Texture
@@ -69,7 +69,7 @@ class SurfaceLibrary:
             status = path.stat()
         except OSError as error:
             read_mesh(path)  # raises an error with the reason
-            raise unreadable(path, error.strerror or str(error)) from None
+            raise unreadable_mesh_error(path, error.strerror or str(error)) from None
         key = os.path.realpath(path), status.st_mtime_ns, status.st_size, with_names
         if key not in self._surfaces:
             content = surface_key(path)
@@ -88,7 +88,7 @@ class SurfaceLibrary:
 
     def _read_parts(self, path: Path, size: int, *, with_names: bool) -> list[MeshPart]:
         kind = path.suffix.lower()
-        if size > MAX_FILE_SIZE or kind == ".stl" or kind not in MESH_ENDINGS or not path.is_file():
+        if size > MAX_FILE_SIZE or kind == ".stl" or kind not in MESH_SUFFIXES or not path.is_file():
             return [_read_plain_part(path)]
         simple_parts = None if with_names else read_simple_parts(path)
         if simple_parts is not None:
@@ -96,7 +96,7 @@ class SurfaceLibrary:
         try:
             return read_parts(path, resolver=_make_resolver(path), with_normals=False)
         except BadMeshError as error:
-            raise unreadable(path, error.reason) from None
+            raise unreadable_mesh_error(path, error.reason) from None
         except LinkwrightError as error:
             if error.diagnostics[0].code != _MISSING_EXTRA_CODE:
                 raise
@@ -107,7 +107,7 @@ class SurfaceLibrary:
 
 def _make_resolver(path: Path) -> object:
     try:
-        return file_resolver(str(path))
+        return create_file_resolver(str(path))
     except ModuleNotFoundError:
         return None  # the reader reports the missing library
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.geometry.exact_angles import circle
+from linkwright.geometry.exact_angles import regular_polygon
 from linkwright.picture.camera import Camera
 from linkwright.picture.edges import sum_over_boxes
 from linkwright.picture.vectors import Floats
@@ -51,7 +51,7 @@ def compute_ambient_light(depth: Floats, normals: Floats, is_seen: NDArray[np.bo
     blocked = np.zeros(depth.shape, np.float32)
     for ring, part in enumerate(_RINGS):
         for direction in range(_DIRECTION_COUNT):
-            cosine, sine = circle(_DIRECTION_COUNT * len(_RINGS))[direction * len(_RINGS) + ring]
+            cosine, sine = regular_polygon(_DIRECTION_COUNT * len(_RINGS))[direction * len(_RINGS) + ring]
             shift = round(cosine * part * reach), round(sine * part * reach)
             if shift != (0, 0):
                 _add_blocked(blocked, depth, normals, is_seen, meters, shift, reach)

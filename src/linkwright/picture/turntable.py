@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from linkwright.geometry.arrays import Array
-from linkwright.geometry.exact_angles import circle
+from linkwright.geometry.exact_angles import regular_polygon
 from linkwright.geometry.single import Vector3, add_vectors, dot
 from linkwright.picture.camera import Camera, View, compute_camera_axes, fit_camera
 from linkwright.picture.rendering import Image, Style, render
@@ -74,6 +74,9 @@ def _sweep(points: Array, pivot: Vector3) -> Array:
     rings = []
     for number in np.flatnonzero(largest >= 0).tolist():
         for edge in (low + height * number / _SLICES, low + height * (number + 1) / _SLICES):
-            ring = [(pivot[0] + largest[number] * c, pivot[1] + largest[number] * s, edge) for c, s in circle(_SIDES)]
+            ring = [
+                (pivot[0] + largest[number] * c, pivot[1] + largest[number] * s, edge)
+                for c, s in regular_polygon(_SIDES)
+            ]
             rings.append(np.array(ring))
     return np.concatenate(rings)

@@ -14,12 +14,12 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, display_path, foreign, phrase
-from linkwright.sweep.running import Outcome
+from linkwright.sweep.execution import Outcome
 
 if TYPE_CHECKING:
     from typing_extensions import Self
 
-_SUFFIX = ".unfinished"
+_JOURNAL_SUFFIX = ".unfinished"
 
 
 class Journal:
@@ -40,7 +40,7 @@ class Journal:
     """
 
     def __init__(self, table: Path, fingerprint: str, *, resume: bool) -> None:
-        self.path = table.with_name(f"{table.name}{_SUFFIX}")
+        self.path = table.with_name(f"{table.name}{_JOURNAL_SUFFIX}")
         self.outcomes: dict[int, Outcome] = {}
         self._plan_entry = {"plan": fingerprint}
         self._file: FileIO | None = None

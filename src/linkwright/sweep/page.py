@@ -9,8 +9,8 @@ from statistics import fmean, median, pstdev
 
 from linkwright.diagnostics import Phrase, counted, phrase
 from linkwright.diagnostics.translation import language, localized
-from linkwright.sweep.plots import histogram, scatter
-from linkwright.sweep.running import Result
+from linkwright.sweep.execution import Result
+from linkwright.sweep.plots import draw_histogram, draw_scatter
 from linkwright.sweep.table import Table
 
 _MAX_ROWS = 1000
@@ -42,7 +42,7 @@ code { font: 12px ui-monospace, monospace; }
 """
 
 
-def summary(table: Table, name: str, command: str, planned: int) -> str:
+def format_summary(table: Table, name: str, command: str, planned: int) -> str:
     """Return the HTML of the summary page.
 
     Args:
@@ -51,29 +51,30 @@ def summary(table: Table, name: str, command: str, planned: int) -> str:
         command: the command line that runs a row again, without the row's number.
         planned: the number of planned runs, finished or not.
     """
-    failed_rows = table.failed
+    failed_rows = table.failed_rows
     counts: list[Phrase] = [counted("{count} run", "{count} runs", len(table))]
     if len(table) < planned:
         counts.append(phrase("{count} runs remain", count=planned - len(table)))
     lead = ", ".join(map(localized, counts))
     if failed_rows:
         lead += f', <span class="bad">{localized(phrase("{count} failed", count=len(failed_rows)))}</span>'
-    sections = [f"<h1>{escape(name)}</h1>", f'<p class="lead">{lead}</p>', _failures_section(table, command)]
-    numeric_results = [result for result in table.results if _finite_rows(table, result)]
+    sections = [f"<h1>{escape(name)}</h1>", f'<p class="lead">{lead}</p>', _format_failures(table, command)]
+    numeric_results = [result for result in table.results if _find_finite_rows(table, result)]
     if numeric_results:
-        sections += [f"<h2>{_escape(phrase('Results'))}</h2>", _statistics_table(table, numeric_results)]
+        sections += [f"<h2>{_escape(phrase('Results'))}</h2>", _format_statistics(table, numeric_results)]
         cards = "".join(
-            _format_card(result, histogram(_finite_values(table, result), result)) for result in numeric_results
+            _format_card(result, draw_histogram(_find_finite_values(table, result), result))
+            for result in numeric_results
         )
         sections.append(f'<div class="cards">{cards}</div>')
-    for parameter in _varied_parameters(table):
+    for parameter in _find_varied_parameters(table):
         cards = "".join(_format_scatter_card(table, parameter, result) for result in numeric_results)
         if cards:
             sections += [
                 f"<h2>{_escape(phrase('Results by {name}', name=parameter))}</h2>",
                 f'<div class="cards">{cards}</div>',
             ]
-    sections += [f"<h2>{_escape(phrase('Rows'))}</h2>", _rows_table(table)]
+    sections += [f"<h2>{_escape(phrase('Rows'))}</h2>", _format_rows(table)]
     return (
         f'<!doctype html>\n<html lang="{language()}"><head><meta charset="utf-8"><meta name="viewport" '
         f'content="width=device-width"><title>{escape(name)}</title><style>{_STYLE}</style></head>'
@@ -85,7 +86,7 @@ def _escape(text: Phrase) -> str:
     return escape(localized(text))
 
 
-def _finite_rows(table: Table, name: str) -> list[int]:
+def _find_finite_rows(table: Table, name: str) -> list[int]:
     """Return the indices of the rows with a finite number for a result.
 
     True and False are numbers: 1 and 0.
@@ -94,12 +95,12 @@ def _finite_rows(table: Table, name: str) -> list[int]:
     return [index for index, value in enumerate(values) if isinstance(value, int | float) and isfinite(value)]
 
 
-def _finite_values(table: Table, name: str) -> list[float]:
+def _find_finite_values(table: Table, name: str) -> list[float]:
     values = table.columns[name]
-    return [float(values[index]) for index in _finite_rows(table, name)]  # type: ignore[arg-type]  # the values are numbers
+    return [float(values[index]) for index in _find_finite_rows(table, name)]  # type: ignore[arg-type]  # the values are numbers
 
 
-def _varied_parameters(table: Table) -> list[str]:
+def _find_varied_parameters(table: Table) -> list[str]:
     """Return the parameters with several values.
 
     If there are none, but several seeds, return the seed.
@@ -109,11 +110,12 @@ def _varied_parameters(table: Table) -> list[str]:
 
 
 def _format_scatter_card(table: Table, parameter: str, result: str) -> str:
-    indices = _finite_rows(table, result)
+    indices = _find_finite_rows(table, result)
     parameter_values = [table.columns[parameter][index] for index in indices]
     rows = [table.columns["row"][index] for index in indices]
     return _format_card(
-        f"{result} – {parameter}", scatter(parameter_values, _finite_values(table, result), rows, parameter, result)
+        f"{result} – {parameter}",
+        draw_scatter(parameter_values, _find_finite_values(table, result), rows, parameter, result),
     )
 
 
@@ -121,7 +123,7 @@ def _format_card(title: str, drawing: str) -> str:
     return f'<div class="card"><h3>{escape(title)}</h3>{drawing}</div>'
 
 
-def _statistics_table(table: Table, names: Sequence[str]) -> str:
+def _format_statistics(table: Table, names: Sequence[str]) -> str:
     headings = [
         phrase("result"),
         phrase("runs"),
@@ -132,14 +134,14 @@ def _statistics_table(table: Table, names: Sequence[str]) -> str:
     ]
     lines = []
     for name in names:
-        values = _finite_values(table, name)
+        values = _find_finite_values(table, name)
         statistics = (min(values), fmean(values), median(values), max(values), pstdev(values))
         lines.append([name, str(len(values)), *(f"{statistic:.6g}" for statistic in statistics)])
-    return _html_table([localized(heading) for heading in (*headings, phrase("standard deviation"))], lines)
+    return _format_html_table([localized(heading) for heading in (*headings, phrase("standard deviation"))], lines)
 
 
-def _failures_section(table: Table, command: str) -> str:
-    failed = table.failed[:_MAX_ROWS]
+def _format_failures(table: Table, command: str) -> str:
+    failed = table.failed_rows[:_MAX_ROWS]
     if not failed:
         return ""
     lines = []
@@ -148,17 +150,17 @@ def _failures_section(table: Table, command: str) -> str:
         lines.append([row, str(table.columns["error"][index]), f"{command} --rerun {row}"])
     headings = [phrase("row"), phrase("error"), phrase("run it again with")]
     title = f"<h2>{_escape(phrase('Failed runs'))}</h2>"
-    return title + _html_table([localized(heading) for heading in headings], lines, text=(1, 2))
+    return title + _format_html_table([localized(heading) for heading in headings], lines, text=(1, 2))
 
 
-def _rows_table(table: Table) -> str:
+def _format_rows(table: Table) -> str:
     names = list(table.columns)
     row_count = min(len(table), _MAX_ROWS)
     lines = [[_format_cell(table.columns[name][index]) for name in names] for index in range(row_count)]
     remaining_note = ""
     if row_count < len(table):
         remaining_note = f"<p>{_escape(phrase('{count} more are in the table', count=len(table) - row_count))}</p>"
-    return _html_table(names, lines, text=(len(names) - 1,), has_targets=True) + remaining_note
+    return _format_html_table(names, lines, text=(len(names) - 1,), has_targets=True) + remaining_note
 
 
 def _format_cell(value: Result) -> str:
@@ -167,7 +169,7 @@ def _format_cell(value: Result) -> str:
     return f"{value:.6g}" if isinstance(value, float) else str(value)
 
 
-def _html_table(
+def _format_html_table(
     headings: Sequence[str], lines: Sequence[Sequence[str]], *, text: Sequence[int] = (), has_targets: bool = False
 ) -> str:
     rows = []

@@ -1,4 +1,4 @@
-"""The paths of robots in the runs of a sweep: recorded paths, and paths that a scenario returns."""
+"""The paths of robots in the runs of a sweep: recorded, or returned by a scenario."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ import numpy as np
 
 from linkwright.testing.paths import MAX_POINTS, Point
 
-ROBOT = "robot"
+ROBOT_NAME = "robot"
 """The name of a recorded path. The second path of a run is called ``robot 2``."""
 
 TimedPath = Sequence[Point]
 """The points of a path in the order of their times."""
 
 
-def as_path(value: object) -> TimedPath | None:
+def parse_path(value: object) -> TimedPath | None:
     """Return a result that is a path, or None if it is another value.
 
     Args:
@@ -34,10 +34,12 @@ def as_path(value: object) -> TimedPath | None:
     return _thin_out(rows.tolist())
 
 
-def recorded_paths(points: Sequence[TimedPath]) -> dict[str, TimedPath]:
+def name_recorded_paths(points: Sequence[TimedPath]) -> dict[str, TimedPath]:
     """Return the paths that were recorded during a run, by name."""
     moving = [path for path in points if path]
-    return {ROBOT if number == 1 else f"{ROBOT} {number}": path for number, path in enumerate(moving, start=1)}
+    return {
+        ROBOT_NAME if number == 1 else f"{ROBOT_NAME} {number}": path for number, path in enumerate(moving, start=1)
+    }
 
 
 def _thin_out(rows: list[Any]) -> TimedPath:

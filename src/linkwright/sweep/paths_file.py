@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 
+from linkwright.sweep.execution import Outcome
 from linkwright.sweep.paths import TimedPath
 from linkwright.sweep.plan import Run
-from linkwright.sweep.running import Outcome
 
 _DIGITS = 6
 """The number of decimal places of times in s and positions in m."""
 
 
-def paths_text(runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> str:
+def format_paths(runs: Sequence[Run], outcomes: Mapping[int, Outcome]) -> str:
     """Return the paths of the finished runs as JSON."""
     data = [
         {

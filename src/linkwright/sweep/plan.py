@@ -51,7 +51,7 @@ def plan_runs(scenario: Scenario, *, records_paths: bool = False) -> list[Run]:
     return runs
 
 
-def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None) -> Scenario:
+def replace_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None) -> Scenario:
     """Return a copy of a scenario with other parameter values or seeds.
 
     Args:
@@ -67,17 +67,17 @@ def with_values(scenario: Scenario, texts: Mapping[str, str], seeds: int | None)
         if name not in parameters:
             message = phrase("the scenario has no parameter '{name}'", name=name)
             raise LinkwrightError(Diagnostic("SWEEP106", message, hint=did_you_mean(name, parameters)))
-        parameters[name] = _values(name, text)
+        parameters[name] = _parse_values(name, text)
     return replace(scenario, parameters=parameters, seeds=scenario.seeds if seeds is None else range(seeds))
 
 
-def fingerprint(scenario: Scenario, runs: Sequence[Run]) -> str:
-    """Return a hash of the scenario's file, and of the parameters, seeds and recordings of the runs."""
+def compute_fingerprint(scenario: Scenario, runs: Sequence[Run]) -> str:
+    """Return a hash of the scenario's file and of the runs' parameters, seeds and recordings."""
     plan = json.dumps([(run.parameters, run.seed, run.records_paths) for run in runs])
     return hashlib.sha256(scenario.path.read_bytes() + plan.encode()).hexdigest()
 
 
-def _values(name: str, text: str) -> list[Value]:
+def _parse_values(name: str, text: str) -> list[Value]:
     try:
         values = yaml.safe_load(f"[{text}]")
     except yaml.YAMLError:

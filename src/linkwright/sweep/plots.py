@@ -44,7 +44,7 @@ class Axis:
         if low == high:
             margin = abs(low) * 0.05 or 0.5
             low, high = low - margin, high + margin
-        step = _round_step((high - low) / 4)
+        step = _choose_step((high - low) / 4)
         if not from_zero:
             low = floor(low / step) * step
         high = ceil(high / step) * step
@@ -70,7 +70,7 @@ class Axis:
         return self.begin + (value - self.low) / (self.high - self.low) * (self.end - self.begin)
 
 
-def histogram(values: Sequence[float], label: str) -> str:
+def draw_histogram(values: Sequence[float], label: str) -> str:
     """Return a histogram of the values of a result, in SVG."""
     counts, edges = np.histogram(np.asarray(values, dtype=float), bins=min(_MAX_BARS, max(len(set(values)), 5)))
     x_axis = Axis.for_numbers([float(edges[0]), float(edges[-1])], _LEFT, _WIDTH - _RIGHT)
@@ -86,7 +86,7 @@ def histogram(values: Sequence[float], label: str) -> str:
     return _draw_plot(x_axis, y_axis, label, "".join(bars))
 
 
-def scatter(
+def draw_scatter(
     parameter_values: Sequence[object],
     values: Sequence[float],
     rows: Sequence[object],
@@ -117,10 +117,12 @@ def scatter(
         f"{escape(str(parameter_values[index]))}, {values[index]:.6g}</title></circle></a>"
         for index in drawn_indices
     )
-    return _draw_plot(x_axis, y_axis, label, _mean_line(positions, values, x_axis, y_axis) + points, parameter_label)
+    return _draw_plot(
+        x_axis, y_axis, label, _draw_mean_line(positions, values, x_axis, y_axis) + points, parameter_label
+    )
 
 
-def _mean_line(positions: Sequence[float], values: Sequence[float], x_axis: Axis, y_axis: Axis) -> str:
+def _draw_mean_line(positions: Sequence[float], values: Sequence[float], x_axis: Axis, y_axis: Axis) -> str:
     """Return a line through the mean of the values at each position, in SVG.
 
     The line is empty if there is only one position, or if there are few values for each position.
@@ -160,7 +162,7 @@ def _draw_plot(x_axis: Axis, y_axis: Axis, label: str, content: str, x_label: st
     )
 
 
-def _round_step(minimum: float) -> float:
+def _choose_step(minimum: float) -> float:
     """Return the smallest number 1, 2 or 5 times a power of ten that is not less than a minimum."""
     power = 10.0 ** floor(log10(minimum))
     return next(factor * power for factor in (1.0, 2.0, 5.0, 10.0) if factor * power >= minimum * (1 - 1e-9))

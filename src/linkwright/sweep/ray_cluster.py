@@ -1,4 +1,4 @@
-"""Tasks on a Ray cluster: the connection, and the repetition of tasks whose process was lost."""
+"""Tasks on a Ray cluster: the connection, and the repetition of lost tasks."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from linkwright.sweep.workers import MAX_ATTEMPTS
 _TASKS_PER_PROCESSOR = 2
 """The number of tasks that are submitted ahead for each processor of the cluster."""
 
-_LOCAL = "local"
+_LOCAL_ADDRESS = "local"
 """The address for which Ray starts a cluster on this computer."""
 
 _TIMEOUT_S = 10.0
@@ -50,13 +50,13 @@ class RayCluster:
         self._ray = ray
 
     def share(self, value: object) -> Any:
-        """Copy a value to the cluster, and return a reference, which Ray replaces with the value in tasks."""
+        """Copy a value to the cluster, and return a reference; tasks that get it receive the value."""
         return self._ray.put(value)
 
     def run_tasks(
         self, function: Callable[..., Result], tasks: Iterable[tuple[Any, ...]]
     ) -> Iterator[tuple[int, Result | LostTask]]:
-        """Call a function in processes of the cluster, and yield each result with the index of its task.
+        """Call a function in the cluster's processes, and yield each result with its task's index.
 
         If a process or a machine fails, its task is repeated once.
 
@@ -68,11 +68,13 @@ class RayCluster:
         call_remotely = ray.remote(max_retries=0)(function)
         max_running = max(int(ray.cluster_resources().get("CPU", 1)), 1) * _TASKS_PER_PROCESSOR
         waiting = enumerate(tasks)
-        repeated: deque[tuple[int, tuple[Any, ...]]] = deque()
+        repeated_tasks: deque[tuple[int, tuple[Any, ...]]] = deque()
         failures: Counter[int] = Counter()
         running: dict[Any, tuple[int, tuple[Any, ...]]] = {}
         while True:
-            while len(running) < max_running and (task := repeated.popleft() if repeated else next(waiting, None)):
+            while len(running) < max_running and (
+                task := repeated_tasks.popleft() if repeated_tasks else next(waiting, None)
+            ):
                 running[call_remotely.remote(*task[1])] = task
             if not running:
                 return
@@ -83,7 +85,7 @@ class RayCluster:
                 except ray.exceptions.RayError as error:
                     failures[index] += 1
                     if failures[index] < MAX_ATTEMPTS:
-                        repeated.append((index, arguments))
+                        repeated_tasks.append((index, arguments))
                     else:
                         yield index, LostTask(type(error).__name__)
                 else:
@@ -117,7 +119,7 @@ def connect_to_ray(address: str, folder: Path | None = None) -> Iterator[RayClus
         )
     except Exception as error:  # noqa: BLE001 - Ray raises plain exceptions if its processes do not start
         reason = foreign(" ".join(str(error).split()))
-        if address == _LOCAL:
+        if address == _LOCAL_ADDRESS:
             message = phrase("Ray does not start on this computer: {reason}", reason=reason)
             hint = phrase("try again when the computer is less busy, or omit `--ray`")
         else:

@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.sweep.execution import Outcome, load_into_process, run_once
 from linkwright.sweep.plan import Run
 from linkwright.sweep.ray_cluster import LostTask, connect_to_ray
-from linkwright.sweep.running import Outcome, load_into_process, run_once
 from linkwright.sweep.scenario import Scenario, describe_error
 from linkwright.sweep.workers import Report
 

@@ -129,7 +129,7 @@ def load_scenario(path: Path) -> Scenario:
         if callable(candidate) and hasattr(candidate, _DECLARATION_ATTRIBUTE)
     ]
     if len(functions) != 1:
-        spans = [_span(path, candidate.__code__.co_firstlineno) for candidate in functions]
+        spans = [_create_span(path, candidate.__code__.co_firstlineno) for candidate in functions]
         message = (
             phrase(
                 "'{path}' contains {count} scenarios, but must contain one",
@@ -143,7 +143,7 @@ def load_scenario(path: Path) -> Scenario:
         raise LinkwrightError(Diagnostic("SWEEP103", message, spans[1] if spans else None, hint=hint))
     function = functions[0]
     seeds, parameters = getattr(function, _DECLARATION_ATTRIBUTE)
-    span = _span(path, function.__code__.co_firstlineno)
+    span = _create_span(path, function.__code__.co_firstlineno)
     _check_names(function, parameters, span)
     for name, values in parameters.items():
         check_values(name, values, span)
@@ -261,12 +261,12 @@ def _load_module(path: Path) -> ModuleType:
 
 
 def _load_error(path: Path, error: BaseException) -> LinkwrightError:
-    line = line_in_traceback(path, error)
+    line = find_line_in_traceback(path, error)
     message = phrase("the scenario cannot be loaded: {reason}", reason=foreign(describe_error(error)))
-    return LinkwrightError(Diagnostic("SWEEP102", message, _span(path, line) if line else None))
+    return LinkwrightError(Diagnostic("SWEEP102", message, _create_span(path, line) if line else None))
 
 
-def line_in_traceback(path: Path, error: BaseException) -> int | None:
+def find_line_in_traceback(path: Path, error: BaseException) -> int | None:
     """Return the last line of a file in the traceback of an error, or None if there is none."""
     lines = [
         frame_summary.lineno
@@ -289,5 +289,5 @@ def describe_error(error: BaseException) -> str:
     return f"{type(error).__name__}: {message}" if message else type(error).__name__
 
 
-def _span(path: Path, line: int) -> Span:
+def _create_span(path: Path, line: int) -> Span:
     return Span(display_path(path), line, 1, line, 1)

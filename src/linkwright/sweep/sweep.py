@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from linkwright.files.whole_files import write_whole_file
+from linkwright.sweep.execution import Outcome
 from linkwright.sweep.journal import Journal, reporting_write_errors
-from linkwright.sweep.page import summary
-from linkwright.sweep.paths_file import paths_text
-from linkwright.sweep.plan import Run, fingerprint, plan_runs
-from linkwright.sweep.running import Outcome
+from linkwright.sweep.page import format_summary
+from linkwright.sweep.paths_file import format_paths
+from linkwright.sweep.plan import Run, compute_fingerprint, plan_runs
 from linkwright.sweep.scenario import Scenario
-from linkwright.sweep.table import Table, table_bytes
+from linkwright.sweep.table import Table, encode_table
 
 Runner = Callable[[Sequence[Run], Callable[[Outcome], None]], None]
 """Executes runs, and calls a function with the outcome of each run when it has finished."""
@@ -59,7 +59,7 @@ class Sweep:
             LinkwrightError: an error of `Journal`; or SWEEP110, a file cannot be written.
         """
         runs = plan_runs(self.scenario, records_paths=self.paths is not None)
-        with Journal(self.table, fingerprint(self.scenario, runs), resume=resume) as journal:
+        with Journal(self.table, compute_fingerprint(self.scenario, runs), resume=resume) as journal:
             failed = sum(bool(outcome.error) for outcome in journal.outcomes.values())
 
             def on_outcome(outcome: Outcome) -> None:
@@ -71,10 +71,10 @@ class Sweep:
             with suppress(KeyboardInterrupt):
                 runner([run for run in runs if run.row not in journal.outcomes], on_outcome)
         table = Table.of(runs, journal.outcomes)
-        page = summary(table, self.scenario.path.name, shlex.join(self.command), len(runs))
-        contents: list[tuple[Path, str | bytes]] = [(self.table, table_bytes(table, self.table)), (self.page, page)]
+        page = format_summary(table, self.scenario.path.name, shlex.join(self.command), len(runs))
+        contents: list[tuple[Path, str | bytes]] = [(self.table, encode_table(table, self.table)), (self.page, page)]
         if self.paths is not None:
-            contents.append((self.paths, paths_text(runs, journal.outcomes)))
+            contents.append((self.paths, format_paths(runs, journal.outcomes)))
         for path, content in contents:
             with reporting_write_errors(path):
                 path.parent.mkdir(parents=True, exist_ok=True)

@@ -11,11 +11,11 @@ from typing import Any
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.diagnostics.extras import missing_extra
+from linkwright.sweep.execution import Outcome, Result
 from linkwright.sweep.plan import Run
-from linkwright.sweep.running import Outcome, Result
 from linkwright.sweep.scenario import SEED
 
-FORMATS = (".csv", ".parquet")
+FORMAT_SUFFIXES = (".csv", ".parquet")
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Table:
         return len(self.columns["row"])
 
     @property
-    def failed(self) -> list[int]:
+    def failed_rows(self) -> list[int]:
         """The indices of the rows with an error."""
         return [index for index, error in enumerate(self.columns["error"]) if error]
 
@@ -63,14 +63,14 @@ def check_format(path: Path) -> None:
     Raises:
         LinkwrightError: SWEEP110, the extension is not supported; SWEEP111, pyarrow is not installed.
     """
-    if path.suffix not in FORMATS or path.is_dir():
+    if path.suffix not in FORMAT_SUFFIXES or path.is_dir():
         message = phrase("a table cannot be written to '{path}'", path=str(path))
         raise LinkwrightError(Diagnostic("SWEEP110", message, hint=phrase("use a name that ends in .csv or .parquet")))
     if path.suffix == ".parquet":
         _load_pyarrow()
 
 
-def table_bytes(table: Table, path: Path) -> bytes:
+def encode_table(table: Table, path: Path) -> bytes:
     """Return the table in the format that the extension of a path selects."""
     return _to_parquet(table) if path.suffix == ".parquet" else _to_csv(table)
 

@@ -14,8 +14,8 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 
 from linkwright.diagnostics import LinkwrightError
+from linkwright.sweep.execution import Outcome, load_into_process, run_once
 from linkwright.sweep.plan import Run
-from linkwright.sweep.running import Outcome, load_into_process, run_once
 from linkwright.sweep.scenario import describe_error
 
 MAX_ATTEMPTS = 2

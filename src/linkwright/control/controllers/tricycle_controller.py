@@ -167,7 +167,7 @@ class TricycleController(Controller[Parameters]):
         if isnan(measured_speed) or isnan(measured_angle):
             raise ControllerError(phrase("Could not read feedback value"))
         forward, _, angular = self._input.velocity(time_ns) or (0.0, 0.0, 0.0)
-        speed, angle = self._drive.wheel(forward, angular)
+        speed, angle = self._drive.wheel_command(forward, angular)
         speed = self._traction_limiter.approach(speed * _compute_speed_fraction(abs(angle - measured_angle)), period_s)
         angle = self._steering_limiter.approach(angle, period_s)
         self.commands[0].value, self.commands[1].value = speed, angle

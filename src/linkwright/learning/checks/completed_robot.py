@@ -33,7 +33,7 @@ def simulate_completed(path: Path, finder: PackageFinder) -> Iterator[SteppedSim
     """
     from linkwright.inertia import MeshLibrary
     from linkwright.inference import infer
-    from linkwright.inference.applying import complete_description
+    from linkwright.inference.completion import complete_description
     from linkwright.testing import SteppedSimulation
     from linkwright.xmltree import write
 

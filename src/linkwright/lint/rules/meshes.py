@@ -25,7 +25,7 @@ def iterate_readable_meshes(subject: Subject, kind: str | None = None) -> Iterat
     """
     for use in subject.meshes.uses:
         if kind is None or use.kind == kind:
-            mesh = subject.meshes.outline(use.shape)
+            mesh = subject.meshes.load_outline(use.shape)
             if mesh is not None:
                 yield use, mesh
 

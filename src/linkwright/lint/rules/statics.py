@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import hypot, sqrt
 
 from linkwright.diagnostics import Diagnostic, Note, Span, phrase
-from linkwright.geometry.polygon import turn
+from linkwright.geometry.polygon import signed_double_area
 from linkwright.geometry.shapes import Placement, placement, rotated
 from linkwright.lint.option import Option
 from linkwright.lint.rule import Rule
@@ -232,7 +232,7 @@ def _compute_convex_hull(points: Sequence[Point]) -> list[Point]:
     def half_hull(sequence: Iterable[Point]) -> list[Point]:
         chain: list[Point] = []
         for point in sequence:
-            while len(chain) > 1 and turn(chain[-2], chain[-1], point) <= 1e-9:
+            while len(chain) > 1 and signed_double_area(chain[-2], chain[-1], point) <= 1e-9:
                 chain.pop()
             chain.append(point)
         return chain[:-1]
@@ -250,7 +250,7 @@ def _compute_distance_outside(point: Point, corners: Sequence[Point]) -> float:
     for start, end in zip(corners, [*corners[1:], corners[0]], strict=True):
         edge_length = hypot(end[0] - start[0], end[1] - start[1])
         if edge_length > 0:
-            max_distance = max(max_distance, -turn(start, end, point) / edge_length)
+            max_distance = max(max_distance, -signed_double_area(start, end, point) / edge_length)
     return max_distance
 
 

@@ -14,10 +14,10 @@ from linkwright.graph import SENSOR_DATA_QOS, Graph
 from linkwright.messages import get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import check_positive, log_unknown_parameters
-from linkwright.perception.nodes.lazy import LazySubscriptions
+from linkwright.perception.nodes.lazy_subscriptions import LazySubscriptions
 from linkwright.perception.scans.projection import Pinhole, scan_from_depths
 
-_METERS_OF_16UC1 = 0.001
+_METERS_PER_16UC1_UNIT = 0.001
 """The unit of depths in images with the encoding 16UC1, in m."""
 _ERROR_PERIOD_S = 5.0
 
@@ -114,5 +114,5 @@ def read_depths(image: Any) -> NDArray[np.float64]:
     rows = data[: image.step * image.height].reshape(image.height, image.step)[:, :row_bytes]
     values = np.ascontiguousarray(rows).view(order + dtype).reshape(image.height, image.width)
     if dtype == "u2":
-        return np.where(values > 0, values * _METERS_OF_16UC1, np.nan)
+        return np.where(values > 0, values * _METERS_PER_16UC1_UNIT, np.nan)
     return values.astype(np.float64)

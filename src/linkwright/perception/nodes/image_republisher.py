@@ -26,24 +26,24 @@ from linkwright.perception.nodes.image_transports import (
     decompress_depth,
     decompress_image,
 )
-from linkwright.perception.nodes.lazy import LazySubscriptions
+from linkwright.perception.nodes.lazy_subscriptions import LazySubscriptions
 
-_IMAGE, _COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
+_IMAGE_TYPE, _COMPRESSED_TYPE = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 _TRANSPORTS = ("raw", "compressed", "compressedDepth")
 _ERROR_PERIOD_S = 5.0
 
 
-def _unchanged(image: Any) -> Any:
+def _pass_through(image: Any) -> Any:
     return image
 
 
 _DECODERS: dict[str, Callable[[Any], Any]] = {
-    "raw": _unchanged,
+    "raw": _pass_through,
     "compressed": decompress_image,
     "compressedDepth": decompress_depth,
 }
 _ENCODERS: dict[str, Callable[[Any], Any]] = {
-    "raw": _unchanged,
+    "raw": _pass_through,
     "compressed": compress_image,
     "compressedDepth": compress_depth,
 }
@@ -64,13 +64,13 @@ class ImageRepublisher(SingleNode):
         options = options_from_arguments(options, get_arguments(options), self.WORDS, self.USAGE)
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         with handle_start_errors(self._node):
-            self._in_transport = self._transport("in_transport", "raw")
-            out_transport = self._transport("out_transport", "")
+            self._in_transport = self._declare_transport("in_transport", "raw")
+            out_transport = self._declare_transport("out_transport", "")
             log_unknown_parameters(self._node)
         self._publishers: dict[str, Publisher[Any]] = {}
         for transport in [out_transport] if out_transport else _TRANSPORTS:
-            topic = transport_topic(self._node, "out", transport)
-            self._publishers[transport] = self._node.create_publisher(_message_class(transport), topic, DEFAULT_QOS)
+            topic = resolve_transport_topic(self._node, "out", transport)
+            self._publishers[transport] = self._node.create_publisher(_get_message_class(transport), topic, DEFAULT_QOS)
         self._subscriptions = LazySubscriptions(graph, self._node, list(self._publishers.values()), self._subscribe)
 
     def close(self) -> None:
@@ -78,15 +78,17 @@ class ImageRepublisher(SingleNode):
         self._subscriptions.close()
         super().close()
 
-    def _transport(self, parameter: str, default: str) -> str:
+    def _declare_transport(self, parameter: str, default: str) -> str:
         name: str = self._node.declare_parameter(parameter, default).value
         if name not in (*_TRANSPORTS, default):
             raise invalid_value_error(parameter, name, self._node.get_name(), _TRANSPORTS)
         return name
 
     def _subscribe(self) -> list[Subscription[Any]]:
-        topic = transport_topic(self._node, "in", self._in_transport)
-        return [self._node.create_subscription(_message_class(self._in_transport), topic, self._receive, DEFAULT_QOS)]
+        topic = resolve_transport_topic(self._node, "in", self._in_transport)
+        return [
+            self._node.create_subscription(_get_message_class(self._in_transport), topic, self._receive, DEFAULT_QOS)
+        ]
 
     def _receive(self, message: Any) -> None:
         requested_transports = [
@@ -117,7 +119,7 @@ class ImageRepublisher(SingleNode):
         )
 
 
-def transport_topic(node: Node, base: str, transport: str) -> str:
+def resolve_transport_topic(node: Node, base: str, transport: str) -> str:
     """Return a transport's topic: the remapped base name with the transport appended."""
     if transport == "raw":
         return base
@@ -127,5 +129,5 @@ def transport_topic(node: Node, base: str, transport: str) -> str:
     return f"{base}/{transport}"
 
 
-def _message_class(transport: str) -> Any:
-    return get_message(_IMAGE if transport == "raw" else _COMPRESSED)
+def _get_message_class(transport: str) -> Any:
+    return get_message(_IMAGE_TYPE if transport == "raw" else _COMPRESSED_TYPE)

@@ -20,8 +20,8 @@ from linkwright.messages import get_message
 from linkwright.perception.nodes.compressed import compress_image
 from linkwright.perception.nodes.depthimage_to_laserscan import read_depths
 
-_HEADER = struct.Struct("<iff")
-_DEPTH_MAX, _QUANTIZATION = 10.0, 100.0
+_DEPTH_HEADER = struct.Struct("<iff")
+_DEPTH_MAX_M, _QUANTIZATION = 10.0, 100.0
 _INTEGER_ENCODINGS = ("16UC1", "mono16")
 
 __all__ = ["BadImageError", "compress_depth", "compress_image", "decompress_depth", "decompress_image"]
@@ -59,16 +59,16 @@ def compress_depth(image: Any) -> Any | None:
     scale = offset = 0.0
     if image.encoding == "32FC1":
         scale = _QUANTIZATION * (_QUANTIZATION + 1.0)
-        offset = 1.0 - scale / _DEPTH_MAX
+        offset = 1.0 - scale / _DEPTH_MAX_M
         with np.errstate(invalid="ignore", divide="ignore"):
-            values = np.where((depths > 0.0) & (depths < _DEPTH_MAX), scale / depths + offset, 0.0)
+            values = np.where((depths > 0.0) & (depths < _DEPTH_MAX_M), scale / depths + offset, 0.0)
     else:
         values = np.nan_to_num(depths) * 1000.0
     file = BytesIO()
     Image.fromarray(values.round().clip(0, 65535).astype(np.uint16)).save(file, "PNG")
     message = get_message("sensor_msgs/msg/CompressedImage")(header=image.header)
     message.format = f"{image.encoding}; compressedDepth png"
-    message.data = _HEADER.pack(0, scale, offset) + file.getvalue()
+    message.data = _DEPTH_HEADER.pack(0, scale, offset) + file.getvalue()
     return message
 
 

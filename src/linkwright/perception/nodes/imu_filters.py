@@ -25,7 +25,13 @@ from linkwright.graph import SENSOR_DATA_QOS, TF_QOS, Graph
 from linkwright.messages import TFMessage, TransformBatch, get_message
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import invalid_value_error, log_unknown_parameters
-from linkwright.perception.attitude import GRAVITY, ComplementaryFilter, MadgwickFilter, WorldFrame, attitude_at_rest
+from linkwright.perception.attitude import (
+    GRAVITY,
+    ComplementaryFilter,
+    MadgwickFilter,
+    WorldFrame,
+    compute_attitude_at_rest,
+)
 
 _QUEUE_DEPTH = 5
 
@@ -131,13 +137,13 @@ class _ImuFilter(SingleNode, ABC):
         result.orientation_covariance = self._covariance
         self._publisher.publish(result)
         if self._tf_publisher is not None:
-            self._tf_publisher.publish(TFMessage(batch=self._transform(message.header)))
+            self._tf_publisher.publish(TFMessage(batch=self._create_transform(message.header)))
         if self._rpy_publisher is not None:
             angles = get_message("geometry_msgs/msg/Vector3Stamped")(header=message.header)
             angles.vector.x, angles.vector.y, angles.vector.z = rpy_from_quaternion(orientation)
             self._rpy_publisher.publish(angles)
 
-    def _transform(self, header: Any) -> TransformBatch:
+    def _create_transform(self, header: Any) -> TransformBatch:
         parent, child, rotation = self._fixed_frame, header.frame_id, self._filter.orientation
         if self._reverse_tf:
             parent, child, rotation = child, parent, quaternion_inverse(rotation)
@@ -170,7 +176,7 @@ class MadgwickNode(_ImuFilter):
         return MadgwickFilter(declare("gain", 0.1).value, declare("zeta", 0.0).value, self._world)
 
     def _initialize_orientation(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        orientation = attitude_at_rest(acceleration, magnetic, self._world)
+        orientation = compute_attitude_at_rest(acceleration, magnetic, self._world)
         if orientation is None:
             return False
         self._filter.orientation = orientation
@@ -210,22 +216,22 @@ class ComplementaryNode(_ImuFilter):
     def _create_filter(self) -> ComplementaryFilter:
         declare = self._node.declare_parameter
 
-        def declare_share(name: str) -> float:
+        def declare_fraction(name: str) -> float:
             value: float = declare(name, 0.01).value
             if not 0.0 <= value <= 1.0:
                 raise invalid_value_error(name, value, self._node.get_name())
             return value
 
         return ComplementaryFilter(
-            gain_acc=declare_share("gain_acc"),
-            gain_mag=declare_share("gain_mag"),
-            bias_alpha=declare_share("bias_alpha"),
+            gain_acc=declare_fraction("gain_acc"),
+            gain_mag=declare_fraction("gain_mag"),
+            bias_alpha=declare_fraction("bias_alpha"),
             do_bias_estimation=declare("do_bias_estimation", True).value,
             do_adaptive_gain=declare("do_adaptive_gain", True).value,
         )
 
     def _initialize_orientation(self, acceleration: Vector3, magnetic: Vector3 | None) -> bool:
-        orientation = attitude_at_rest(acceleration, magnetic, WorldFrame.NWU)
+        orientation = compute_attitude_at_rest(acceleration, magnetic, WorldFrame.NWU)
         if orientation is not None:
             self._filter.orientation = orientation
         return orientation is not None

@@ -22,7 +22,7 @@ from linkwright.messages import Time, get_message
 from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import log_unknown_parameters
-from linkwright.perception.nodes.lazy import LazySubscriptions
+from linkwright.perception.nodes.lazy_subscriptions import LazySubscriptions
 from linkwright.perception.scans.scan import Scan, ScanFilter
 
 GROUP = "linkwright.laser_filters"

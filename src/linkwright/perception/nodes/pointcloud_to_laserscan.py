@@ -20,7 +20,7 @@ from linkwright.nodes.frame_poses import FramePoses
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import check_positive, log_unknown_parameters
 from linkwright.perception.nodes.laser_filters import to_scan
-from linkwright.perception.nodes.lazy import LazySubscriptions
+from linkwright.perception.nodes.lazy_subscriptions import LazySubscriptions
 from linkwright.perception.scans.projection import Rays, points_from_scan, scan_from_points
 
 _QUEUE_SIZE = 10

@@ -101,7 +101,7 @@ class BoxFilter(ScanFilter):
             np.array((self.max_x, self.max_y, self.max_z)),
         )
         is_inside = ((points > minimum) & (points < maximum)).all(axis=-1)
-        return replace_ranges(scan, (is_inside != self.invert) & scan.is_measured)
+        return replace_ranges(scan, (is_inside != self.invert) & scan.measured_mask)
 
 
 @dataclass(slots=True)
@@ -117,7 +117,7 @@ class FootprintFilter(ScanFilter):
         points = scan.points("base_link", lookup)
         if points is None:
             return None
-        return replace_ranges(scan, (np.abs(points[:, :2]) <= self.inscribed_radius).all(axis=-1) & scan.is_measured)
+        return replace_ranges(scan, (np.abs(points[:, :2]) <= self.inscribed_radius).all(axis=-1) & scan.measured_mask)
 
 
 @dataclass(slots=True)
@@ -149,7 +149,7 @@ class PolygonFilter(ScanFilter):
         points = scan.points(self.polygon_frame, lookup)
         if points is None:
             return None
-        return replace_ranges(scan, (within_polygon(points, self._corners) != self.invert) & scan.is_measured)
+        return replace_ranges(scan, (within_polygon(points, self._corners) != self.invert) & scan.measured_mask)
 
 
 def _set_beyond_range(scan: Scan, mask: Mask) -> Scan:

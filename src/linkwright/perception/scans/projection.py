@@ -117,7 +117,7 @@ def points_from_scan(scan: Scan) -> tuple[NDArray[np.float32], NDArray[np.int32]
 
     Source: laser_geometry.
     """
-    indices = np.flatnonzero(scan.is_measured).astype(np.int32)
+    indices = np.flatnonzero(scan.measured_mask).astype(np.int32)
     ranges, angles = scan.ranges[indices], scan.angles[indices]
     points = np.stack([ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(indices))], axis=-1)
     return points.astype(np.float32), indices

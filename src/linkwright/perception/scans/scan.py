@@ -57,7 +57,7 @@ class Scan:
         return np.asarray(self.angle_min + np.arange(len(self.ranges)) * self.angle_increment, dtype=np.float64)
 
     @property
-    def is_measured(self) -> Mask:
+    def measured_mask(self) -> Mask:
         """Whether each range is within the limits, shape ``(n,)``."""
         return (self.ranges >= self.range_min) & (self.ranges <= self.range_max)
 
@@ -67,7 +67,7 @@ class Scan:
         The result is None if there is no transform to the frame. The points of ranges that were not measured are
         meaningless.
         """
-        ranges = np.where(self.is_measured, self.ranges, 0.0)
+        ranges = np.where(self.measured_mask, self.ranges, 0.0)
         angles = self.angles
         rays = [ranges * np.cos(angles), ranges * np.sin(angles), np.zeros(len(ranges))]
         points: NDArray[np.float64] = np.stack(rays, axis=-1).astype(np.float64)

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Severity, display_path, phrase
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.decomposition import convex_pieces, thicken
-from linkwright.geometry.mesh_files import BadMeshError, declared_triangles, file_resolver
+from linkwright.geometry.mesh_files import BadMeshError, count_declared_triangles, create_file_resolver
 from linkwright.geometry.mesh_parts import MeshPart, Triangles, read_parts, read_png
-from linkwright.geometry.meshes import read_mesh, unreadable
+from linkwright.geometry.meshes import read_mesh, unreadable_mesh_error
 from linkwright.geometry.polygon import triangulate
 from linkwright.geometry.single import Transform, compose, rotation_from_z
 from linkwright.images.heights import read_heights
@@ -127,7 +127,7 @@ class MeshLibrary:
         if not isinstance(shape, Mesh) or path is None:
             return []
         try:
-            _check_triangle_count(path, declared_triangles(path) or 0)
+            _check_triangle_count(path, count_declared_triangles(path) or 0)
             if shape.submesh is not None:
                 parts = [part.triangles for part in self._read_parts(shape, path)]
                 vertices, faces = _join_triangles(parts)
@@ -250,11 +250,11 @@ class MeshLibrary:
         return image_file
 
     def _read_parts(self, shape: Mesh, path: Path) -> list[MeshPart]:
-        _check_triangle_count(path, declared_triangles(path) or 0)
+        _check_triangle_count(path, count_declared_triangles(path) or 0)
         try:
-            parts = read_parts(path, resolver=file_resolver(str(path)))
+            parts = read_parts(path, resolver=create_file_resolver(str(path)))
         except BadMeshError as error:
-            raise unreadable(path, error.reason) from None
+            raise unreadable_mesh_error(path, error.reason) from None
         _check_triangle_count(path, sum(len(part.triangles.indices) // 3 for part in parts))
         if shape.submesh is None:
             return parts

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, Phrase, phrase
-from linkwright.model_files.onnx_sessions import error_reason
+from linkwright.model_files.onnx_sessions import describe_error
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.class_names import read_labels
@@ -119,7 +119,7 @@ class NetworkDetector(Detector):
             outputs: Sequence[NDArray[Any]] = self._session.run(None, {self._input: tensor})
         except Exception as error:  # noqa: BLE001 - onnxruntime raises many undocumented classes
             shape = list(tensor.shape)
-            reason = error_reason(error)
+            reason = describe_error(error)
             message = phrase(
                 "the network in '{file}' fails on an input of {shape}: {reason}",
                 file=self._file.name,

@@ -55,7 +55,7 @@ from linkwright.images import BadImageError, ImageSource, RangeFinder, Unpacker,
 from linkwright.messages import get_message, get_service
 from linkwright.nodes.options import NodeOptions, SingleNode, create_node, handle_start_errors
 from linkwright.nodes.settings import invalid_value_error, log_unknown_parameters
-from linkwright.perception.nodes.lazy import LazySubscriptions
+from linkwright.perception.nodes.lazy_subscriptions import LazySubscriptions
 from linkwright.vision.detections import Detections
 from linkwright.vision.detector import Detector, Limits
 from linkwright.vision.detectors.drawing import draw_detections

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from linkwright.diagnostics import Diagnostic, LinkwrightError, phrase
 from linkwright.model_files.archives import unpack
-from linkwright.model_files.fetching import Progress, fetch, write_error
+from linkwright.model_files.downloads import Progress, fetch, write_error
 from linkwright.model_files.installed import models_folder, verify, verify_checksum
 from linkwright.model_files.table import ModelEntry
 
@@ -44,7 +44,7 @@ def install(entry: ModelEntry, source: str | None, folder: Path | None, progress
         return _install_local(entry, Path(source).expanduser(), target)
     part_file = target / f".{entry.file_name}.part"
     is_resumed = part_file.exists()
-    address = _file_address(entry, source or entry.address)
+    address = _resolve_file_address(entry, source or entry.address)
     fetch(entry, address, part_file, progress)
     try:
         path = _install_file(entry, part_file, target, address)
@@ -67,7 +67,7 @@ def _is_address(source: str) -> bool:
     return urllib.parse.urlsplit(source).scheme in ("http", "https")
 
 
-def _file_address(entry: ModelEntry, address: str) -> str:
+def _resolve_file_address(entry: ModelEntry, address: str) -> str:
     """Return the address of the model's file, given this address or the address of its folder."""
     if urllib.parse.urlsplit(address).path.endswith(entry.file_name):
         return address
@@ -94,7 +94,7 @@ def _install_local(entry: ModelEntry, source: Path, target: Path) -> Path:
 def _install_file(entry: ModelEntry, file: Path, target: Path, origin: str | None = None) -> Path:
     """Verify and install a downloaded file."""
     verify_checksum(entry, file, entry.sha256, origin)
-    with _draft(entry, target) as draft:
+    with _create_draft(entry, target) as draft:
         if entry.folder:
             unpack(entry, file, draft, origin)
             verify(entry, draft)
@@ -106,7 +106,7 @@ def _install_file(entry: ModelEntry, file: Path, target: Path, origin: str | Non
 def _install_folder(entry: ModelEntry, folder: Path, target: Path) -> Path:
     """Verify and install an unpacked model."""
     verify(entry, folder)
-    with _draft(entry, target) as draft:
+    with _create_draft(entry, target) as draft:
         for name in entry.files:
             with suppress(FileExistsError):
                 (draft / name).parent.mkdir(parents=True)
@@ -115,7 +115,7 @@ def _install_folder(entry: ModelEntry, folder: Path, target: Path) -> Path:
 
 
 @contextmanager
-def _draft(entry: ModelEntry, target: Path) -> Iterator[Path]:
+def _create_draft(entry: ModelEntry, target: Path) -> Iterator[Path]:
     """Provide a temporary path for the model, to be renamed on success and deleted on error."""
     installed_path = target / entry.installed_name
     draft = target / f".{entry.installed_name}.draft-{os.urandom(4).hex()}"

@@ -23,7 +23,7 @@ _TIMEOUT_S = 60.0
 _MAX_FAILED_TRIES = 3
 """The maximum number of consecutive broken connections without a new byte."""
 
-_PARTIAL, _NOT_SATISFIABLE = 206, 416
+_HTTP_PARTIAL_CONTENT, _HTTP_RANGE_NOT_SATISFIABLE = 206, 416
 
 
 def fetch(entry: ModelEntry, address: str, part_file: Path, progress: Progress) -> None:
@@ -42,14 +42,14 @@ def fetch(entry: ModelEntry, address: str, part_file: Path, progress: Progress) 
     """
     failed_tries = 0
     while True:
-        size_before = _file_size(part_file)
+        size_before = _get_file_size(part_file)
         try:
             if _fetch_rest(entry, address, part_file, progress):
                 return
             problem = phrase("the connection was lost")
         except urllib.error.HTTPError as error:
             with error:
-                if error.code != _NOT_SATISFIABLE or not size_before:
+                if error.code != _HTTP_RANGE_NOT_SATISFIABLE or not size_before:
                     response_text = phrase(
                         "the server responds with {status} {reason}", status=error.code, reason=error.reason
                     )
@@ -59,10 +59,10 @@ def fetch(entry: ModelEntry, address: str, part_file: Path, progress: Progress) 
             part_file.unlink()
             problem = phrase("the partial download belongs to another file")
         except (urllib.error.URLError, OSError, http.client.HTTPException, ValueError) as error:
-            if not isinstance(error, _ConnectionLostError) and _file_size(part_file) == size_before:
-                raise _download_error(entry, address, foreign(_reason(error))) from None
-            problem = foreign(_reason(error))
-        failed_tries = 0 if _file_size(part_file) > size_before else failed_tries + 1
+            if not isinstance(error, _ConnectionLostError) and _get_file_size(part_file) == size_before:
+                raise _download_error(entry, address, foreign(_get_reason(error))) from None
+            problem = foreign(_get_reason(error))
+        failed_tries = 0 if _get_file_size(part_file) > size_before else failed_tries + 1
         if failed_tries == _MAX_FAILED_TRIES:
             raise _download_error(entry, address, problem)
 
@@ -72,13 +72,13 @@ class _ConnectionLostError(OSError):
 
 
 def _fetch_rest(entry: ModelEntry, address: str, part_file: Path, progress: Progress) -> bool:
-    """Request the rest of a file once, append it to the part, and return whether the file is complete."""
-    received = _file_size(part_file)
-    request = urllib.request.Request(address, headers={"User-Agent": f"linkwright/{__version__}"})  # noqa: S310 - http and https only, see `installing`
+    """Request the rest of a file once, append it, and return whether the file is complete."""
+    received = _get_file_size(part_file)
+    request = urllib.request.Request(address, headers={"User-Agent": f"linkwright/{__version__}"})  # noqa: S310 - http and https only, see `installation`
     if received:
         request.add_header("Range", f"bytes={received}-")
     with urllib.request.urlopen(request, timeout=_TIMEOUT_S) as response:  # noqa: S310 - as above
-        if response.status != _PARTIAL:
+        if response.status != _HTTP_PARTIAL_CONTENT:
             received = 0
         length = response.headers.get("Content-Length")
         total = received + int(length) if length is not None else None
@@ -88,7 +88,7 @@ def _fetch_rest(entry: ModelEntry, address: str, part_file: Path, progress: Prog
         except OSError as error:
             raise write_error(part_file, error) from None
         with file:
-            while block := _read(response):
+            while block := _read_block(response):
                 _check_size(entry, address, received + len(block))
                 try:
                     file.write(block)
@@ -102,11 +102,11 @@ def _fetch_rest(entry: ModelEntry, address: str, part_file: Path, progress: Prog
     return total is None or received >= total
 
 
-def _read(response: http.client.HTTPResponse) -> bytes:
+def _read_block(response: http.client.HTTPResponse) -> bytes:
     try:
         return response.read1(_BLOCK_BYTES)
     except (OSError, http.client.HTTPException) as error:
-        raise _ConnectionLostError(_reason(error)) from error
+        raise _ConnectionLostError(_get_reason(error)) from error
 
 
 def _check_size(entry: ModelEntry, address: str, size: int) -> None:
@@ -115,18 +115,18 @@ def _check_size(entry: ModelEntry, address: str, size: int) -> None:
         raise _download_error(entry, address, message)
 
 
-def _file_size(part_file: Path) -> int:
+def _get_file_size(part_file: Path) -> int:
     try:
         return part_file.stat().st_size
     except OSError:
         return 0
 
 
-def _reason(error: BaseException) -> str:
+def _get_reason(error: BaseException) -> str:
     """Return the system's error message."""
     cause = getattr(error, "reason", None)
     if isinstance(cause, BaseException):
-        return _reason(cause)
+        return _get_reason(cause)
     return cast("str | None", getattr(error, "strerror", None)) or str(error) or type(error).__name__
 
 

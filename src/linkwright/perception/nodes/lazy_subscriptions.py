@@ -36,7 +36,7 @@ class LazySubscriptions:
 
     @property
     def are_open(self) -> bool:
-        """Whether the subscriptions exist at the moment."""
+        """Whether the subscriptions currently exist."""
         return bool(self._subscriptions)
 
     def close(self) -> None:

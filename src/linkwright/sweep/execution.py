@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from linkwright.standins import activate
-from linkwright.sweep.paths import TimedPath, as_path, recorded_paths
+from linkwright.sweep.paths import TimedPath, name_recorded_paths, parse_path
 from linkwright.sweep.plan import Run
-from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, describe_error, line_in_traceback, load_scenario
+from linkwright.sweep.scenario import COLUMNS, SEED, Scenario, describe_error, find_line_in_traceback, load_scenario
 from linkwright.testing.paths import record_paths
 
 Result = bool | int | float | str | None
@@ -66,7 +66,7 @@ def run_once(scenario: Scenario, run: Run) -> Outcome:
     try:
         return run_scenario(scenario, run)
     except (Exception, SystemExit) as error:  # noqa: BLE001 - a scenario may raise any exception
-        line = line_in_traceback(scenario.path, error)
+        line = find_line_in_traceback(scenario.path, error)
         location = f" ({scenario.path.name}:{line})" if line else ""
         return Outcome(run.row, error=f"{describe_error(error)}{location}")
 
@@ -94,11 +94,11 @@ def run_scenario(scenario: Scenario, run: Run) -> Outcome:
         raise BadResultError(f"the scenario must return a dict, not {type(returned).__name__}")
     used_names = {*COLUMNS, *run.parameters}
     results: dict[str, Result] = {}
-    paths = recorded_paths(recorded_points)
+    paths = name_recorded_paths(recorded_points)
     for name, value in returned.items():
         if not isinstance(name, str) or name in used_names:
             raise BadResultError(f"a result cannot be named {name!r}: use text that is not a column's name")
-        path = as_path(value)
+        path = parse_path(value)
         if path is None:
             results[name] = _to_result(name, value)
         else:

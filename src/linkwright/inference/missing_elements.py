@@ -19,7 +19,7 @@ from linkwright.inertia.blocks import inertial_parts
 from linkwright.inertia.verdict import format_digits
 from linkwright.inference.gazebo import format_number
 from linkwright.inference.results import InferredFact, Wheel
-from linkwright.inference.shapes import Shape, vertices
+from linkwright.inference.shapes import Shape, load_vertices
 from linkwright.inference.undercarriage import Survey
 from linkwright.urdf import Box, Capsule, Cylinder, Inertial, Link, Mesh, Sphere
 from linkwright.xmltree import Element
@@ -31,7 +31,7 @@ The robots that tutorials use have 200 to 700 kg/m3.
 """
 
 _MIN_MASS_KG = 0.01
-_MAX_MASS = 1000.0
+_MAX_MASS_KG = 1000.0
 """The minimum and maximum of an inferred mass, in kg."""
 
 _SHAPELESS_BODY = MassProperties(0.01, np.zeros(3), np.eye(3) * 1e-5)
@@ -41,7 +41,7 @@ _MAX_MESH_VERTICES = 20_000
 """The maximum number of vertices of a mesh for a collision. A larger mesh is replaced by the box around it."""
 
 
-def missing_collisions(survey: Survey, wheels: Mapping[str, Wheel], casters: Iterable[str]) -> Iterator[InferredFact]:
+def infer_collisions(survey: Survey, wheels: Mapping[str, Wheel], casters: Iterable[str]) -> Iterator[InferredFact]:
     """Yield findings with the collisions that links get from their visuals.
 
     Args:
@@ -62,10 +62,10 @@ def missing_collisions(survey: Survey, wheels: Mapping[str, Wheel], casters: Ite
         wheel = wheels.get(body.links[0])
         for link in members:
             if link.visuals:
-                yield from _link_collisions(survey, link, wheel)
+                yield from _infer_link_collisions(survey, link, wheel)
 
 
-def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterator[InferredFact]:
+def _infer_link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterator[InferredFact]:
     element = link.element
     if element is None:
         return
@@ -79,7 +79,7 @@ def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterato
             message = phrase(
                 "link '{link}' gets no <collision>: its mesh '{name}' cannot be read", link=link.name, name=name
             )
-            yield InferredFact(_diagnostic_at("DRIVE105", message, element, Severity.WARNING))
+            yield InferredFact(_create_diagnostic("DRIVE105", message, element, Severity.WARNING))
             continue
         collisions.append(collision[0])
         descriptions.append(collision[1])
@@ -87,7 +87,7 @@ def _link_collisions(survey: Survey, link: Link, wheel: Wheel | None) -> Iterato
         message = phrase(
             "link '{link}' has no <collision>: it gets {shape}", link=link.name, shape=joined(descriptions)
         )
-        yield InferredFact(_diagnostic_at("DRIVE101", message, element), element, tuple(collisions))
+        yield InferredFact(_create_diagnostic("DRIVE101", message, element), element, tuple(collisions))
 
 
 def _visual_to_collision(
@@ -97,15 +97,15 @@ def _visual_to_collision(
     geometry = visual.geometry
     if not isinstance(geometry, Mesh):
         shape_name = term(type(geometry).__name__.lower())
-        return _collision_element(visual.origin.xyz, visual.origin.rpy, _shape_element(geometry)), phrase(
+        return _create_collision_element(visual.origin.xyz, visual.origin.rpy, _create_shape_element(geometry)), phrase(
             "the {shape} of its visual", shape=shape_name
         )
-    corners = vertices(visual, survey.meshes)
+    corners = load_vertices(visual, survey.meshes)
     if corners is None:
         return None
     name = geometry.filename.rpartition("/")[2]
     if wheel is not None and wheel.link == link.name and wheel.width is not None:
-        axis, center = _wheel_in_link(survey, wheel)
+        axis, center = _to_link_frame(survey, wheel)
         rpy = rpy_from_quaternion(rotation_from_z(axis))
         cylinder = Cylinder(wheel.radius, wheel.width)
         description = phrase(
@@ -114,24 +114,24 @@ def _visual_to_collision(
             width=wheel.width,
             name=name,
         )
-        return _collision_element(center, rpy, _shape_element(cylinder)), description
+        return _create_collision_element(center, rpy, _create_shape_element(cylinder)), description
     if len(corners) > _MAX_MESH_VERTICES:
         minimum, maximum = corners.min(axis=0), corners.max(axis=0)
         x, y, z = (float(size) for size in maximum - minimum)
         middle = tuple(float(coordinate) for coordinate in (minimum + maximum) / 2.0)
-        box = _shape_element(Box((x, y, z)))
-        return _collision_element((middle[0], middle[1], middle[2]), (0.0, 0.0, 0.0), box), phrase(
+        box = _create_shape_element(Box((x, y, z)))
+        return _create_collision_element((middle[0], middle[1], middle[2]), (0.0, 0.0, 0.0), box), phrase(
             "the box around its mesh '{name}'", name=name
         )
     shape = Element("mesh", {"filename": geometry.filename})
     if geometry.scale != (1.0, 1.0, 1.0):
         shape.attributes["scale"] = _format_numbers(geometry.scale)
-    return _collision_element(visual.origin.xyz, visual.origin.rpy, shape), phrase(
+    return _create_collision_element(visual.origin.xyz, visual.origin.rpy, shape), phrase(
         "the mesh '{name}' of its visual", name=name
     )
 
 
-def missing_masses(survey: Survey, wheels: Iterable[str], *, fixed_base: bool) -> Iterator[InferredFact]:
+def infer_masses(survey: Survey, wheels: Iterable[str], *, fixed_base: bool) -> Iterator[InferredFact]:
     """Yield findings with the ``<inertial>`` of links that lack a mass or moments of inertia.
 
     Args:
@@ -148,16 +148,16 @@ def missing_masses(survey: Survey, wheels: Iterable[str], *, fixed_base: bool) -
         members = survey.bodies.members(body)
         if survey.bodies.mass(body) > 0:
             for link in members:
-                yield from _missing_tensor(link, survey.meshes)
+                yield from _infer_tensor(link, survey.meshes)
             continue
         is_solid = fixed_base or body.links[0] in solid_links
         densities = {
             link.name: DEFAULT_DENSITY if is_solid or link.name in solid_links else HOLLOW_DENSITY for link in members
         }
-        yield from _missing_body_mass(members, densities, survey.meshes)
+        yield from _infer_body_mass(members, densities, survey.meshes)
 
 
-def _missing_body_mass(
+def _infer_body_mass(
     members: list[Link], densities: Mapping[str, float], meshes: MeshLibrary
 ) -> Iterator[InferredFact]:
     has_mass_source = False
@@ -167,7 +167,7 @@ def _missing_body_mass(
         if properties is None or link.element is None:
             continue
         has_mass_source = True
-        limited_mass = min(max(properties.mass, _MIN_MASS_KG), _MAX_MASS)
+        limited_mass = min(max(properties.mass, _MIN_MASS_KG), _MAX_MASS_KG)
         limited = properties.with_mass(limited_mass)
         message = phrase(
             "link '{link}' has no mass: it gets {mass:.3g} kg, the mass of its shapes at {density} kg/m3",
@@ -175,20 +175,20 @@ def _missing_body_mass(
             mass=limited.mass,
             density=format_digits(density * limited_mass / properties.mass),
         )
-        yield _inertial_finding("DRIVE102", message, link, limited)
+        yield _create_inertial_finding("DRIVE102", message, link, limited)
     if not has_mass_source and members[0].element is not None:
         name = members[0].name
         message = phrase(
             "no link rigidly attached to link '{link}' has a shape or a mass: the link is given a mass of 10 g",
             link=name,
         )
-        yield _inertial_finding("DRIVE103", message, members[0], _SHAPELESS_BODY)
+        yield _create_inertial_finding("DRIVE103", message, members[0], _SHAPELESS_BODY)
 
 
-def _missing_tensor(link: Link, meshes: MeshLibrary) -> Iterator[InferredFact]:
+def _infer_tensor(link: Link, meshes: MeshLibrary) -> Iterator[InferredFact]:
     """Yield a finding with the ``<inertial>`` of a link with mass and zero moments of inertia."""
     inertial = link.inertial
-    if inertial is None or not inertial.has_mass or any(_moments(inertial)) or link.element is None:
+    if inertial is None or not inertial.has_mass or any(_list_moments(inertial)) or link.element is None:
         return
     properties = estimate(link, meshes, mass=inertial.mass).properties
     if properties is not None:
@@ -198,29 +198,29 @@ def _missing_tensor(link: Link, meshes: MeshLibrary) -> Iterator[InferredFact]:
             link=link.name,
             mass=inertial.mass,
         )
-        yield _inertial_finding("DRIVE104", message, link, properties)
+        yield _create_inertial_finding("DRIVE104", message, link, properties)
 
 
-def _moments(inertial: Inertial) -> tuple[float, ...]:
+def _list_moments(inertial: Inertial) -> tuple[float, ...]:
     return (inertial.ixx, inertial.ixy, inertial.ixz, inertial.iyy, inertial.iyz, inertial.izz)
 
 
-def _inertial_finding(code: str, message: Phrase, link: Link, properties: MassProperties) -> InferredFact:
+def _create_inertial_finding(code: str, message: Phrase, link: Link, properties: MassProperties) -> InferredFact:
     element = Element("inertial")
     element.children += [Element(tag, dict(attributes)) for tag, attributes in inertial_parts(properties)]
     assert link.element is not None, "it was looked for"
-    return InferredFact(_diagnostic_at(code, message, link.element), link.element, (element,), properties)
+    return InferredFact(_create_diagnostic(code, message, link.element), link.element, (element,), properties)
 
 
-def _wheel_in_link(survey: Survey, wheel: Wheel) -> tuple[Vector3, Vector3]:
+def _to_link_frame(survey: Survey, wheel: Wheel) -> tuple[Vector3, Vector3]:
     """Return the axis and the center of a wheel in its link's frame."""
-    frame = survey.frame(wheel.link)
+    frame = survey.get_frame(wheel.link)
     inverse_rotation = transposed(frame.rotation)
     offset = add_vectors(wheel.center, scaled(frame.position, -1.0))
     return rotated(inverse_rotation, wheel.axis), rotated(inverse_rotation, offset)
 
 
-def _shape_element(geometry: Box | Cylinder | Capsule | Sphere) -> Element:
+def _create_shape_element(geometry: Box | Cylinder | Capsule | Sphere) -> Element:
     tag = type(geometry).__name__.lower()
     if isinstance(geometry, Box):
         return Element(tag, {"size": _format_numbers(geometry.size)})
@@ -230,7 +230,7 @@ def _shape_element(geometry: Box | Cylinder | Capsule | Sphere) -> Element:
     return Element(tag, attributes)
 
 
-def _collision_element(xyz: Vector3, rpy: Vector3, shape: Element) -> Element:
+def _create_collision_element(xyz: Vector3, rpy: Vector3, shape: Element) -> Element:
     element = Element("collision")
     if length(xyz) or length(rpy):
         element.children.append(Element("origin", {"xyz": _format_numbers(xyz), "rpy": _format_numbers(rpy)}))
@@ -244,5 +244,5 @@ def _format_numbers(values: Iterable[float]) -> str:
     return " ".join(format_number(round(value, 9) + 0.0) for value in values)
 
 
-def _diagnostic_at(code: str, message: Phrase, element: Element, severity: Severity = Severity.INFO) -> Diagnostic:
+def _create_diagnostic(code: str, message: Phrase, element: Element, severity: Severity = Severity.INFO) -> Diagnostic:
     return Diagnostic(code, message, element.span(), severity, source=element.source)
