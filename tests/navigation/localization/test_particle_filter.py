@@ -102,7 +102,7 @@ def test_pose_error_of_half_a_meter_is_corrected_while_driving() -> None:
         new_pose = (float(true[0]), float(true[1]), float(true[2]))
         move_differentially(particles.particles, old_pose, new_pose, Noise(), particles.random)
         particles.update_weights(
-            likelihoods.likelihoods("likelihood_field", particles.particles, beams_in_room(*new_pose))
+            likelihoods.compute_likelihoods("likelihood_field", particles.particles, beams_in_room(*new_pose))
         )
         particles.resample(_no_random_poses)
     x, y, yaw = particles.estimate().pose
@@ -115,7 +115,7 @@ def test_same_seed_gives_same_particles() -> None:
         particles = ParticleFilter(FilterSettings(), seed=7)
         particles.draw_around((2.0, 1.5, 0.0), np.eye(3) * 0.1)
         particles.update_weights(
-            room().likelihoods("likelihood_field", particles.particles, beams_in_room(2.0, 1.5, 0.0))
+            room().compute_likelihoods("likelihood_field", particles.particles, beams_in_room(2.0, 1.5, 0.0))
         )
         particles.resample(_no_random_poses)
         drawn: list[list[float]] = particles.particles.tolist()
