@@ -377,7 +377,9 @@ def test_interrupted_grading_continues(folder, monkeypatch):
     assert main(["learn", "grade", "--course", "course", "--json", "out.json", "students/good0", "students/good1",
                  "students/good2"]) == 130  # fmt: skip
     counted = []
-    monkeypatch.setattr(class_grading, "_run_all", lambda jobs, run_jobs: run_all(counted.extend(jobs) or jobs, run_jobs))
+    monkeypatch.setattr(
+        class_grading, "_run_all", lambda jobs, run_jobs: run_all(counted.extend(jobs) or jobs, run_jobs)
+    )
     status, students, _ = grade(folder)
     assert status == 0
     assert len(counted) == 2
