@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from benchmarks.measure import Row, show
 from linkwright.navigation.costmaps.costmap import Costmap
-from linkwright.navigation.costmaps.footprints import circle
+from linkwright.navigation.costmaps.footprints import make_circle
 from linkwright.navigation.costmaps.inflation_layer import Inflation, InflationLayer
 from linkwright.navigation.costmaps.layered import LayeredCostmap
 from linkwright.navigation.costmaps.observations import ObservationBuffer, Source
@@ -81,7 +81,7 @@ def _measure_rooms(size: int, promised: str) -> list[Row]:
     buffer = ObservationBuffer(Source(clearing=True, max_obstacle_height=2.0))
     static = StaticLayer(Interpretation())
     layers = [static, ObstacleLayer([buffer], HeightRange()), InflationLayer(_INFLATION)]
-    layered = LayeredCostmap(_make_blank_grid(size), layers, circle(_ROBOT_RADIUS_M))
+    layered = LayeredCostmap(_make_blank_grid(size), layers, make_circle(_ROBOT_RADIUS_M))
     static.set_map(Grid(cells=make_rooms(size), resolution=_RESOLUTION_M))
     table = [Row(f"costmap of {what}, all of it", measure_milliseconds(_update_completely, layered), "ms")]
     costmap = layered.costmap.copy()
@@ -102,7 +102,7 @@ def _measure_local_costmap() -> Row:
     """Measure a costmap that moves with the robot."""
     buffer = ObservationBuffer(Source(clearing=True, max_obstacle_height=2.0))
     layers = [VoxelLayer([buffer], HeightRange(), Voxels(z_voxels=16, z_resolution=0.05)), InflationLayer(_INFLATION)]
-    local = LayeredCostmap(_make_blank_grid(60), layers, circle(_ROBOT_RADIUS_M), is_rolling=True)
+    local = LayeredCostmap(_make_blank_grid(60), layers, make_circle(_ROBOT_RADIUS_M), is_rolling=True)
     return Row(
         "local costmap of 60 x 60 cells with voxels, a scan",
         measure_milliseconds(_update_with_scan, local, buffer),

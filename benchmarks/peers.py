@@ -59,8 +59,7 @@ def get_version(module: str) -> str | None:
 def load_module(module: str, part: str | None = None) -> types.ModuleType | None:
     """Import and return a peer or one of its modules.
 
-    Returns None if it is not installed or cannot be imported.
-    What both need, such as numpy, is ours.
+    Returns None if it is not installed or cannot be imported. What both need, such as numpy, is ours.
     """
     if get_version(module) is None:
         return None

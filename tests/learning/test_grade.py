@@ -18,7 +18,7 @@ from linkwright.cli import main
 from linkwright.diagnostics import Diagnostic, LinkwrightError
 from linkwright.learning.checks import check_process
 from linkwright.learning.course import find_course
-from linkwright.learning.grading import grading, workers
+from linkwright.learning.grading import class_grading, workers
 from linkwright.learning.grading import jobs as grading_jobs
 from linkwright.sweep.ray_cluster import LostTask
 from tests.learning.sandbox.conftest import class_folder, processes_with  # noqa: F401
@@ -289,7 +289,7 @@ def test_extras_of_lessons_are_required(folder, monkeypatch, capsys):
     write_student(folder, "good", "print(42)")
     lesson = folder / "course/01-program/lesson.toml"
     lesson.write_text('needs = ["sim"]\n' + lesson.read_text())
-    monkeypatch.setattr(grading, "find_spec", lambda name: None)
+    monkeypatch.setattr(class_grading, "find_spec", lambda name: None)
     assert main(["learn", "grade", "--course", "course", "students/good"]) == 1
     assert "LEARN116" in capsys.readouterr().err
 
@@ -365,7 +365,7 @@ def test_unusual_folders_have_notes(folder, capsys):
 def test_interrupted_grading_continues(folder, monkeypatch):
     for number in range(3):
         write_student(folder, f"good{number}", f"print(42)  # {number}")
-    run_all = grading._run_all
+    run_all = class_grading._run_all
 
     def interrupt(jobs, run_jobs):
         for count, item in enumerate(run_all(jobs, run_jobs)):
@@ -373,11 +373,13 @@ def test_interrupted_grading_continues(folder, monkeypatch):
                 raise KeyboardInterrupt
             yield item
 
-    monkeypatch.setattr(grading, "_run_all", interrupt)
+    monkeypatch.setattr(class_grading, "_run_all", interrupt)
     assert main(["learn", "grade", "--course", "course", "--json", "out.json", "students/good0", "students/good1",
                  "students/good2"]) == 130  # fmt: skip
     counted = []
-    monkeypatch.setattr(grading, "_run_all", lambda jobs, run_jobs: run_all(counted.extend(jobs) or jobs, run_jobs))
+    monkeypatch.setattr(
+        class_grading, "_run_all", lambda jobs, run_jobs: run_all(counted.extend(jobs) or jobs, run_jobs)
+    )
     status, students, _ = grade_folder(folder)
     assert status == 0
     assert len(counted) == 2

@@ -222,8 +222,8 @@ class Classroom:
     def catch_up(self, step: Step) -> list[Path]:
         """Bring the workspace into the course's state before a step.
 
-        The earlier steps are marked as taken over.
-        Passed steps stay passed. Files with other content are backed up as in `take_solution`.
+        The earlier steps are marked as taken over. Passed steps stay passed. Files with other content are backed up as
+        in `take_solution`.
 
         Returns:
             The files that were written.

@@ -207,8 +207,8 @@ class Course:
         message = phrase("the course '{course}' has no step '{name}'", course=self.id, name=name)
         hint = did_you_mean(name, names) or phrase("list the steps with `linkwright learn list`")
         if lessons:
-            places = quoted_names([lesson.id for lesson in lessons], " or ")
-            message = phrase("there is no step '{name}' in {lessons}", name=name, lessons=places)
+            lesson_names = quoted_names([lesson.id for lesson in lessons], " or ")
+            message = phrase("there is no step '{name}' in {lessons}", name=name, lessons=lesson_names)
             hint = did_you_mean(name, names) or phrase("write {names}", names=quoted_names(names[len(steps) :], " or "))
         raise LinkwrightError(Diagnostic("LEARN106", message, hint=hint))
 

@@ -43,13 +43,13 @@ def encode_animation(images: Sequence[Image], frame_seconds: float, ending: str)
     require_webp()
     from PIL import Image as PillowImage
 
-    first, *others = map(PillowImage.fromarray, images)
+    first, *other_frames = map(PillowImage.fromarray, images)
     file = BytesIO()
     first.save(
         file,
         "WEBP",
         save_all=True,
-        append_images=others,
+        append_images=other_frames,
         duration=round(frame_seconds * 1000),
         loop=0,
         quality=_WEBP_QUALITY,

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from linkwright.geometry.arrays import Array
 from linkwright.geometry.single import Vector3, cross
-from linkwright.picture.layers import Mesh
 from linkwright.picture.rasterizer import DepthBuffer, ScreenTriangles
+from linkwright.picture.scene_mesh import Mesh
 from linkwright.picture.vectors import Floats, along, unit_vector
 
 _CELLS_PER_SIDE = 720

@@ -28,30 +28,30 @@ def compute_edge_strength(distances: Floats, normals: Floats, bodies: NDArray[np
         per_pixel: the samples per pixel along a row; `rows` and `width` are multiples of it.
     """
     is_seen = bodies >= 0
-    outer = np.zeros(bodies.shape, dtype=bool)
-    inner = np.zeros(bodies.shape, dtype=bool)
+    is_outer = np.zeros(bodies.shape, dtype=bool)
+    is_inner = np.zeros(bodies.shape, dtype=bool)
     for axis in (0, 1):
         first, second = _pair_slices(axis)
         is_other_body = bodies[first] != bodies[second]
-        outer[first] |= is_other_body
-        outer[second] |= is_other_body
+        is_outer[first] |= is_other_body
+        is_outer[second] |= is_other_body
         normal_cosines = normals[0][first] * normals[0][second]
         normal_cosines += normals[1][first] * normals[1][second]
         normal_cosines += normals[2][first] * normals[2][second]
         is_crease = normal_cosines < CREASE_COSINE
-        inner[first] |= is_crease
-        inner[second] |= is_crease
+        is_inner[first] |= is_crease
+        is_inner[second] |= is_crease
         steps = distances[second] - distances[first]
         previous, following = _pair_slices(axis)
         middle = (slice(1, -1), slice(None)) if axis == 0 else (slice(None), slice(1, -1))
-        outer[middle] |= np.abs(steps[following] - steps[previous]) > _MIN_SLOPE_JUMP
-    outer |= _find_neighbors(outer)
-    outer &= is_seen
-    inner &= is_seen & ~outer
+        is_outer[middle] |= np.abs(steps[following] - steps[previous]) > _MIN_SLOPE_JUMP
+    is_outer |= _find_neighbors(is_outer)
+    is_outer &= is_seen
+    is_inner &= is_seen & ~is_outer
     strength = np.where(
-        outer, np.float32(_OUTER_DARKNESS), np.where(inner, np.float32(_INNER_DARKNESS), np.float32(0.0))
+        is_outer, np.float32(_OUTER_DARKNESS), np.where(is_inner, np.float32(_INNER_DARKNESS), np.float32(0.0))
     )
-    fading = _compute_fading(outer | inner, is_seen, per_pixel)
+    fading = _compute_fading(is_outer | is_inner, is_seen, per_pixel)
     strength *= np.repeat(np.repeat(fading, per_pixel, axis=0), per_pixel, axis=1)
     return strength
 
@@ -99,10 +99,10 @@ def sum_over_boxes(values: NDArray[np.int64], reach: int) -> NDArray[np.int64]:
     for axis in (0, 1):
         totals = np.cumsum(values, axis=axis)
         count = values.shape[axis]
-        places = np.arange(count)
-        upper = totals.take(np.minimum(places + reach, count - 1), axis=axis)
-        lower_places = places - reach - 1
-        lower = totals.take(np.maximum(lower_places, 0), axis=axis)
-        has_lower = (lower_places >= 0)[:, None] if axis == 0 else (lower_places >= 0)[None, :]
+        positions = np.arange(count)
+        upper = totals.take(np.minimum(positions + reach, count - 1), axis=axis)
+        lower_positions = positions - reach - 1
+        lower = totals.take(np.maximum(lower_positions, 0), axis=axis)
+        has_lower = (lower_positions >= 0)[:, None] if axis == 0 else (lower_positions >= 0)[None, :]
         values = upper - np.where(has_lower, lower, 0)
     return values

@@ -12,8 +12,8 @@ from linkwright.geometry.single import Vector3
 from linkwright.picture.bodies import Color
 from linkwright.picture.camera import Camera
 from linkwright.picture.edges import sum_over_boxes
-from linkwright.picture.layers import Mesh
 from linkwright.picture.rasterizer import ScreenTriangles, rasterize
+from linkwright.picture.scene_mesh import Mesh
 from linkwright.picture.vectors import Floats
 
 _CELLS_PER_SIDE = 320
@@ -179,8 +179,7 @@ def compute_ground_points(
 ) -> Array:
     """Return the point of the ground at each pixel of some rows, shape (pixels, 3).
 
-    Above the horizon, the point is not a number.
-    `offset` moves all pixels to the right and downward.
+    Above the horizon, the point is not a number. `offset` moves all pixels to the right and downward.
     """
     width = camera.size[0]
     x = np.tile(np.arange(width) + (0.5 + offset[0]), last_row - first_row)

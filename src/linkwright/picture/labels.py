@@ -77,7 +77,7 @@ def draw_labels(colors: Floats, alpha: Floats, anchors: Sequence[Anchor], camera
 
 
 def _place_label(
-    text: str, anchor: tuple[float, float], others: Sequence[_PlacedLabel], size: tuple[int, int], scale: float
+    text: str, anchor: tuple[float, float], placed_labels: Sequence[_PlacedLabel], size: tuple[int, int], scale: float
 ) -> _PlacedLabel:
     """Return a label next to its anchor, at the first position without an overlap."""
     unit = _TEXT_HEIGHT_PX * scale / LINE_HEIGHT
@@ -91,7 +91,7 @@ def _place_label(
         shift = (attempt + 1) // 2 * (step if attempt % 2 else -step)
         label = _PlacedLabel(text, anchor, (x, top + shift), extent)
         is_inside = _BORDER_PX <= label.corner[1] <= size[1] - extent[1] - _BORDER_PX
-        if is_inside and not any(label.overlaps(other) for other in others):
+        if is_inside and not any(label.overlaps(other) for other in placed_labels):
             return label
     return _PlacedLabel(text, anchor, (x, top), extent)
 

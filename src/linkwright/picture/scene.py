@@ -11,7 +11,7 @@ from linkwright.diagnostics import Diagnostic
 from linkwright.geometry.arrays import Array
 from linkwright.picture.bodies import Body, Labels
 from linkwright.picture.camera import Camera, View, fit_camera
-from linkwright.picture.layers import Mesh
+from linkwright.picture.scene_mesh import Mesh
 
 
 class Scene:

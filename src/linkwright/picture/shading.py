@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from linkwright.geometry.single import Vector3, add_vectors, scaled
 from linkwright.picture.camera import Camera
-from linkwright.picture.layers import Mesh
 from linkwright.picture.rasterizer import ScreenTriangles, VisibleTriangles
+from linkwright.picture.scene_mesh import Mesh
 from linkwright.picture.vectors import Floats, Indices, along, unit_vector, unit_vectors
 
 _KEY_STRENGTH, _FILL_STRENGTH, _SKY_STRENGTH, _GROUND_STRENGTH, _SPECULAR_STRENGTH, _RIM_STRENGTH = (

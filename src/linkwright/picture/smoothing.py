@@ -51,19 +51,21 @@ def smooth_mesh(points: Array, faces: Indices, *, merged: bool = True) -> Smooth
             colors.
     """
     corners = faces.reshape(-1)
-    places = _weld_points(points)
-    welded = places[corners]
+    position_ids = _weld_points(points)
+    corner_position_ids = position_ids[corners]
     face_normals, weights = _compute_corner_weights(points, faces)
-    count = int(welded.max()) + 1
-    of_corners = np.repeat(np.arange(len(faces)), 3)
-    means = unit_vectors(sum_by_index(welded, face_normals[of_corners] * weights[:, None], count))
-    is_smooth_corner = dot_products(face_normals[of_corners], means[welded]) >= CREASE_COSINE
+    count = int(corner_position_ids.max()) + 1
+    face_of_corner = np.repeat(np.arange(len(faces)), 3)
+    mean_normals = unit_vectors(
+        sum_by_index(corner_position_ids, face_normals[face_of_corner] * weights[:, None], count)
+    )
+    is_smooth_corner = dot_products(face_normals[face_of_corner], mean_normals[corner_position_ids]) >= CREASE_COSINE
     is_rough = np.zeros(count, dtype=bool)
-    is_rough[welded[~is_smooth_corner]] = True
-    rough_corners = np.flatnonzero(is_rough[welded])
-    rough_normals = _compute_creased_normals(rough_corners, welded, face_normals, weights)
+    is_rough[corner_position_ids[~is_smooth_corner]] = True
+    rough_corners = np.flatnonzero(is_rough[corner_position_ids])
+    rough_normals = _compute_creased_normals(rough_corners, corner_position_ids, face_normals, weights)
     # Smooth vertices come first, then a vertex for each rough corner.
-    groups = welded if merged else corners
+    groups = corner_position_ids if merged else corners
     sources_of_groups = np.full(count if merged else len(points), -1)
     sources_of_groups[groups[::-1]] = corners[::-1]
     sources_of_groups[groups[rough_corners]] = -1
@@ -73,7 +75,7 @@ def smooth_mesh(points: Array, faces: Indices, *, merged: bool = True) -> Smooth
     new_faces = new_index[groups]
     new_faces[rough_corners] = len(smooth_groups) + np.arange(len(rough_corners))
     sources = np.concatenate((sources_of_groups[smooth_groups], corners[rough_corners]))
-    normals = np.concatenate((means[places[sources_of_groups[smooth_groups]]], rough_normals))
+    normals = np.concatenate((mean_normals[position_ids[sources_of_groups[smooth_groups]]], rough_normals))
     return SmoothMesh(sources, np.rint(normals * _NORMAL_GRID) / _NORMAL_GRID, new_faces.reshape(-1, 3))
 
 
@@ -89,43 +91,44 @@ def _weld_points(points: Array) -> Indices:
 def _compute_corner_weights(points: Array, faces: Indices) -> tuple[Array, Array]:
     """Return the unit normals of triangles, and the weight of each triangle at its corners.
 
-    The weights are those in the normals of the corners, as a flat array.
-    The weights are those of N. Max, "Weights for computing vertex normals from facet normals" (1999): for points on a
-    sphere the normals are exact, and how a rectangle is split into triangles does not matter.
+    The weights are a flat array. They are those of N. Max, "Weights for computing vertex normals from facet normals"
+    (1999): for points on a sphere the normals are exact, and how a rectangle is split into triangles does not matter.
     """
     sides = [points[faces[:, (corner + 1) % 3]] - points[faces[:, corner]] for corner in range(3)]
-    squares = [dot_products(side, side) for side in sides]
+    squared_lengths = [dot_products(side, side) for side in sides]
     areas = cross_products(sides[0], sides[1])
     normals = unit_vectors(areas)
-    doubled = dot_products(areas, normals)
+    doubled_areas = dot_products(areas, normals)
     weights = np.empty(faces.shape)
     for corner in range(3):
-        divisor = squares[corner] * squares[(corner + 2) % 3]
-        weights[:, corner] = np.where(divisor > 0, doubled / np.where(divisor > 0, divisor, 1.0), 0.0)
+        divisor = squared_lengths[corner] * squared_lengths[(corner + 2) % 3]
+        weights[:, corner] = np.where(divisor > 0, doubled_areas / np.where(divisor > 0, divisor, 1.0), 0.0)
     return normals, weights.reshape(-1)
 
 
-def _compute_creased_normals(rough_corners: Indices, welded: Indices, face_normals: Array, weights: Array) -> Array:
+def _compute_creased_normals(
+    rough_corners: Indices, corner_position_ids: Indices, face_normals: Array, weights: Array
+) -> Array:
     """Return a normal for each corner at a crease.
 
     The normal is the mean over the adjacent triangles that meet smoothly.
     """
     faces = rough_corners // 3
-    places = welded[rough_corners]
-    order = np.argsort(places, kind="stable")
-    sorted_places = places[order]
-    starts = np.searchsorted(sorted_places, sorted_places, side="left")
-    neighbor_counts = np.searchsorted(sorted_places, sorted_places, side="right") - starts
+    position_ids = corner_position_ids[rough_corners]
+    order = np.argsort(position_ids, kind="stable")
+    sorted_ids = position_ids[order]
+    starts = np.searchsorted(sorted_ids, sorted_ids, side="left")
+    neighbor_counts = np.searchsorted(sorted_ids, sorted_ids, side="right") - starts
     neighbor_counts[neighbor_counts > _MAX_NEIGHBORS] = 0
     weighted = face_normals[faces[order]] * weights[rough_corners[order], None]
     sums = weighted.copy()
     corner_indices, neighbor_steps = repeat_indices(neighbor_counts)
     neighbors = starts[corner_indices] + neighbor_steps
     own_faces, other_faces = faces[order][corner_indices], faces[order][neighbors]
-    meets = (own_faces != other_faces) & (
+    is_smooth_pair = (own_faces != other_faces) & (
         dot_products(face_normals[own_faces], face_normals[other_faces]) >= CREASE_COSINE
     )
-    sums += sum_by_index(corner_indices[meets], weighted[neighbors[meets]], len(order))
+    sums += sum_by_index(corner_indices[is_smooth_pair], weighted[neighbors[is_smooth_pair]], len(order))
     normals = np.empty_like(sums)
     normals[order] = unit_vectors(sums)
     return normals

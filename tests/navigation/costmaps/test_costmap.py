@@ -13,12 +13,12 @@ from linkwright.geometry.polygon import within_polygon
 from linkwright.navigation.costmaps.costmap import LETHAL, UNKNOWN, Costmap
 from linkwright.navigation.costmaps.footprints import (
     BadFootprintError,
-    circle,
-    outline,
+    compute_radii,
+    make_circle,
+    make_outline,
     pad_footprint,
     parse_footprint,
     place_footprint,
-    radii,
 )
 from linkwright.navigation.grids.grid import Grid
 
@@ -46,15 +46,15 @@ def test_cost_at_point_inside_and_outside_grid():
 def test_footprint_cost_uses_only_outline():
     costmap = empty_costmap()
     costmap.grid.cells[20, 30] = 200
-    assert costmap.footprint_cost((0.05, 0.05, 0.0), SQUARE) == 0
-    assert costmap.footprint_cost((0.25, 0.05, 0.0), SQUARE) == 200
+    assert costmap.compute_footprint_cost((0.05, 0.05, 0.0), SQUARE) == 0
+    assert costmap.compute_footprint_cost((0.25, 0.05, 0.0), SQUARE) == 200
 
 
 def test_footprint_cost_accepts_arrays_of_poses():
     costmap = empty_costmap()
     costmap.grid.cells[20, 32] = LETHAL
     poses = np.array([[[0.0, 0.05, 0.0], [-0.03, 0.05, pi / 4]], [[1.0, 1.0, 0.0], [2.95, 0.0, 0.0]]])
-    costs = costmap.footprint_cost(poses, SQUARE)
+    costs = costmap.compute_footprint_cost(poses, SQUARE)
     assert costs.tolist() == [[LETHAL, LETHAL], [0, LETHAL]]  # the last footprint leaves the grid
 
 
@@ -64,16 +64,16 @@ def test_footprint_padding_moves_corners_outward():
 
 
 def test_inscribed_and_circumscribed_radius_of_footprint():
-    assert radii(SQUARE) == pytest.approx((0.2, 0.2 * sqrt(2)))
-    inscribed, circumscribed = radii(circle(0.3))
+    assert compute_radii(SQUARE) == pytest.approx((0.2, 0.2 * sqrt(2)))
+    inscribed, circumscribed = compute_radii(make_circle(0.3))
     assert circumscribed == pytest.approx(0.3)
     assert 0.29 < inscribed < 0.3
 
 
 @given(x=st.floats(-0.5, 0.5), y=st.floats(-0.5, 0.5))
 def test_within_polygon_finds_points_in_footprint(x, y):
-    is_inside = bool(within_polygon(np.array([x, y]), circle(0.3)))
-    if hypot(x, y) < radii(circle(0.3))[0]:
+    is_inside = bool(within_polygon(np.array([x, y]), make_circle(0.3)))
+    if hypot(x, y) < compute_radii(make_circle(0.3))[0]:
         assert is_inside
     elif hypot(x, y) > 0.3:
         assert not is_inside
@@ -84,7 +84,7 @@ def test_place_footprint_applies_pose():
 
 
 def test_outline_has_no_gaps():
-    rim = outline(SQUARE, 0.03)
+    rim = make_outline(SQUARE, 0.03)
     gaps = np.hypot(*(np.roll(rim, -1, axis=0) - rim).T)
     assert gaps.max() <= 0.03 + 1e-12
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL, UNKNOWN
 from linkwright.navigation.costmaps.denoise_layer import DenoiseLayer
-from linkwright.navigation.costmaps.footprints import circle
+from linkwright.navigation.costmaps.footprints import make_circle
 from linkwright.navigation.costmaps.inflation_layer import Inflation, InflationLayer
 from linkwright.navigation.costmaps.layered import LayeredCostmap
 from linkwright.navigation.costmaps.observations import ObservationBuffer, Source
@@ -35,7 +35,7 @@ def empty_grid(size: float = 4.0, resolution: float = 0.1) -> Grid:
 
 
 def make_costmap(*layers, size: float = 4.0, **options) -> LayeredCostmap:
-    return LayeredCostmap(empty_grid(size), layers, circle(ROBOT_RADIUS_M), **options)
+    return LayeredCostmap(empty_grid(size), layers, make_circle(ROBOT_RADIUS_M), **options)
 
 
 def make_occupancy(rows: int = 40, columns: int = 40) -> Grid:
@@ -236,14 +236,14 @@ def test_voxel_columns_with_few_observations_are_unknown():
 
 
 def test_map_values_become_costs():
-    def costs(**parameters):
+    def compute_costs(**parameters):
         return (
             Interpretation(**parameters).cost_table()[np.array([0, 50, 99, 100, -1], np.int8).astype(np.uint8)].tolist()
         )
 
-    assert costs() == [FREE, FREE, FREE, LETHAL, FREE]
-    assert costs(track_unknown_space=True, lethal_threshold=50) == [FREE, LETHAL, LETHAL, LETHAL, UNKNOWN]
-    assert costs(trinary=False) == [0, 127, 251, LETHAL, FREE]
+    assert compute_costs() == [FREE, FREE, FREE, LETHAL, FREE]
+    assert compute_costs(track_unknown_space=True, lethal_threshold=50) == [FREE, LETHAL, LETHAL, LETHAL, UNKNOWN]
+    assert compute_costs(trinary=False) == [0, 127, 251, LETHAL, FREE]
 
 
 def test_rotated_map_is_placed_in_costmap_frame():
@@ -405,7 +405,7 @@ def test_clear_around_clears_inside_or_outside_of_window():
 def test_clearing_removes_observations_and_keeps_map():
     layer = StaticLayer(Interpretation())
     sensor = OverheadSensor(layers=[])
-    robot = LayeredCostmap(empty_grid(), [layer, sensor.layer], circle(ROBOT_RADIUS_M))
+    robot = LayeredCostmap(empty_grid(), [layer, sensor.layer], make_circle(ROBOT_RADIUS_M))
     grid = make_occupancy()
     grid.cells[3, 3] = 100
     layer.set_map(grid)

@@ -10,7 +10,7 @@ import itertools
 import numpy as np
 
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
-from linkwright.navigation.costmaps.footprints import circle
+from linkwright.navigation.costmaps.footprints import make_circle
 from linkwright.navigation.following.follower import ZERO_VELOCITY, ControlInput, predict_poses
 from linkwright.navigation.following.path import FollowedPath
 from linkwright.navigation.grids.grid import Grid
@@ -51,7 +51,7 @@ def control_input(path, pose=(0.0, 0.0, 0.0), velocity=ZERO_VELOCITY, costmap=No
         velocity=velocity,
         path=path,
         costmap=costmap or make_empty_floor(),
-        footprint=circle(0.2) if footprint is None else footprint,
+        footprint=make_circle(0.2) if footprint is None else footprint,
         period=PERIOD_S,
         xy_tolerance=xy_tolerance,
     )
@@ -70,7 +70,7 @@ def drive_along(follower, path, checker, *, pose=(0.0, 0.0, 0.0), costmap=None, 
             break
         followed_path.update_progress(pose[0], pose[1])
         cycle_input = control_input(
-            followed_path.poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance
+            followed_path.get_poses_ahead(3.0), pose, velocity, costmap, footprint, checker.xy_tolerance
         )
         velocity = follower.compute_velocity(cycle_input)
         pose = tuple(predict_poses(pose, np.array([velocity]), np.array([PERIOD_S]))[0, 0])

@@ -200,13 +200,13 @@ class TestPath:
         eight = path_through((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (1.0, -2.0))
         path = FollowedPath(eight, 1.0)
         path.update_progress(1.0, 0.0)
-        assert path.remaining_distance(1.0, 0.0) == pytest.approx(8.0, abs=0.06)
-        assert path.poses_ahead(0.5)[-1, :2] == pytest.approx([1.5, 0.0], abs=0.06)
+        assert path.compute_remaining_distance(1.0, 0.0) == pytest.approx(8.0, abs=0.06)
+        assert path.get_poses_ahead(0.5)[-1, :2] == pytest.approx([1.5, 0.0], abs=0.06)
 
     def test_poses_ahead_at_path_end_are_two(self):
         path = FollowedPath(path_through((0.0, 0.0), (1.0, 0.0)), 5.0)
         path.update_progress(1.0, 0.0)
-        assert len(path.poses_ahead(1.0)) == 2
+        assert len(path.get_poses_ahead(1.0)) == 2
 
 
 class TestCheckers:

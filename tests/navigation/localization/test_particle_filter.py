@@ -102,7 +102,7 @@ def test_pose_error_of_half_a_meter_is_corrected_while_driving() -> None:
         new_pose = (float(true_pose[0]), float(true_pose[1]), float(true_pose[2]))
         move_differentially(particle_filter.particles, old_pose, new_pose, Noise(), particle_filter.random)
         particle_filter.update_weights(
-            likelihoods.likelihoods("likelihood_field", particle_filter.particles, beams_in_room(*new_pose))
+            likelihoods.compute_likelihoods("likelihood_field", particle_filter.particles, beams_in_room(*new_pose))
         )
         particle_filter.resample(_no_random_poses)
     x, y, yaw = particle_filter.estimate().pose
@@ -115,7 +115,7 @@ def test_same_seed_gives_same_particles() -> None:
         particle_filter = ParticleFilter(FilterSettings(), seed=7)
         particle_filter.draw_around((2.0, 1.5, 0.0), np.eye(3) * 0.1)
         particle_filter.update_weights(
-            make_room().likelihoods("likelihood_field", particle_filter.particles, beams_in_room(2.0, 1.5, 0.0))
+            make_room().compute_likelihoods("likelihood_field", particle_filter.particles, beams_in_room(2.0, 1.5, 0.0))
         )
         particle_filter.resample(_no_random_poses)
         drawn: list[list[float]] = particle_filter.particles.tolist()

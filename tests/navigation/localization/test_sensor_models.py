@@ -44,7 +44,7 @@ def beams_in_room(x: float, y: float, yaw: float, count: int = 36) -> Beams:
 def test_true_pose_is_likeliest(model: str) -> None:
     offsets = np.array([(x, y, yaw) for x in (-0.4, 0, 0.4) for y in (-0.4, 0, 0.4) for yaw in (-0.3, 0, 0.3)])
     poses = np.array((2.0, 1.5, 0.4)) + offsets
-    likelihoods = make_room().likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4))
+    likelihoods = make_room().compute_likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4))
     assert likelihoods.argmax() == 13
     assert (likelihoods > 0.0).all()
 
@@ -53,7 +53,7 @@ def test_true_pose_is_likeliest(model: str) -> None:
 def test_true_pose_is_likeliest_on_rotated_map(model: str) -> None:
     rotated_room = make_room(yaw=pi / 2)
     poses = np.array([(-1.5, 2.0, 0.4 + pi / 2), (-1.5, 2.0, 0.4), (-2.5, 2.0, 0.4 + pi / 2)])
-    assert rotated_room.likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4)).argmax() == 0
+    assert rotated_room.compute_likelihoods(model, poses, beams_in_room(2.0, 1.5, 0.4)).argmax() == 0
 
 
 def test_likelihood_matches_likelihood_field_formula() -> None:
@@ -62,19 +62,23 @@ def test_likelihood_matches_likelihood_field_formula() -> None:
     cells[:, 30] = OCCUPIED
     likelihoods = MapLikelihoods(Grid(cells=cells, resolution=0.1), settings)
     beams = Beams((0.0, 0.0), np.array([[1.0, 0.0]]), np.array([1.0]), 8.0)
-    likelihood = likelihoods.likelihoods("likelihood_field", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
+    likelihood = likelihoods.compute_likelihoods(
+        "likelihood_field", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams
+    )
     probabilities = 0.6 * np.exp(-0.5 * (np.array([0.0, 0.2]) / 0.1) ** 2) + 0.4 / 8.0
     assert likelihood == pytest.approx(1.0 + probabilities**3, abs=1e-6)
-    product = likelihoods.likelihoods("likelihood_field_prob", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams)
+    product = likelihoods.compute_likelihoods(
+        "likelihood_field_prob", np.array([[2.05, 1.05, 0.0], [1.85, 1.05, 0.0]]), beams
+    )
     assert product[1] / product[0] == pytest.approx(probabilities[1] / probabilities[0], rel=1e-5)
 
 
 def test_beams_without_hit_are_neutral_and_beams_off_map_do_not_match() -> None:
     beams = Beams((0.0, 0.0), np.array([[12.0, 0.0]]), np.array([12.0]), 12.0)
-    assert make_room().likelihoods("likelihood_field", np.array([[2.0, 2.0, 0.0]]), beams).tolist() == [1.0]
-    assert make_room().matching_share((2.0, 2.0, 0.0), beams) is None
-    assert make_room().matching_share((500.0, -300.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 0.0
-    assert make_room().matching_share((2.0, 2.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 1.0
+    assert make_room().compute_likelihoods("likelihood_field", np.array([[2.0, 2.0, 0.0]]), beams).tolist() == [1.0]
+    assert make_room().compute_matching_share((2.0, 2.0, 0.0), beams) is None
+    assert make_room().compute_matching_share((500.0, -300.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 0.0
+    assert make_room().compute_matching_share((2.0, 2.0, 0.0), beams_in_room(2.0, 2.0, 0.0)) == 1.0
 
 
 def test_beams_that_few_particles_explain_are_skipped() -> None:
@@ -82,17 +86,19 @@ def test_beams_that_few_particles_explain_are_skipped() -> None:
     beams.end_points[:6] *= 0.4  # a person stands in these beams
     poses = np.array([(2.0, 1.5, 0.0), (2.1, 1.5, 0.0), (1.4, 1.5, 0.0)])
     likelihoods = make_room()
-    without_skipping = likelihoods.likelihoods("likelihood_field_prob", poses, beams)
-    skipped = likelihoods.likelihoods("likelihood_field_prob", poses, beams, BeamSkipping())
+    without_skipping = likelihoods.compute_likelihoods("likelihood_field_prob", poses, beams)
+    skipped = likelihoods.compute_likelihoods("likelihood_field_prob", poses, beams, BeamSkipping())
     remaining_beams = Beams((0.0, 0.0), beams.end_points[6:], beams.ranges[6:], 12.0)
-    assert skipped == pytest.approx(likelihoods.likelihoods("likelihood_field_prob", poses, remaining_beams), rel=1e-5)
+    assert skipped == pytest.approx(
+        likelihoods.compute_likelihoods("likelihood_field_prob", poses, remaining_beams), rel=1e-5
+    )
     assert without_skipping[2] > 1.5 * skipped[2]
 
 
 def test_random_poses_are_in_free_cells() -> None:
     cells = np.full((10, 10), UNKNOWN, np.int8)
     cells[3, 7] = FREE
-    poses = MapLikelihoods(Grid(cells=cells, resolution=1.0), LaserSettings()).random_poses(
+    poses = MapLikelihoods(Grid(cells=cells, resolution=1.0), LaserSettings()).draw_random_poses(
         50, np.random.default_rng(1)
     )
     assert (np.floor(poses[:, :2]) == (7, 3)).all()

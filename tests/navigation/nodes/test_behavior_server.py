@@ -12,7 +12,7 @@ from linkwright.graph.actions.goal import GoalStatus
 from linkwright.graph.time.values import Duration
 from linkwright.messages import get_message
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
-from linkwright.navigation.costmaps.footprints import circle, place_footprint
+from linkwright.navigation.costmaps.footprints import make_circle, place_footprint
 from linkwright.navigation.following.follower import ZERO_VELOCITY
 from linkwright.navigation.grids.grid import Grid
 from linkwright.navigation.nodes.behavior_server import BehaviorServer
@@ -39,7 +39,7 @@ class CostmapRobot(DrivingRobot):
         message = self._footprint.msg_type()
         message.header.frame_id, message.header.stamp = "odom", self.stamp()
         point = get_message("geometry_msgs/msg/Point32")
-        corners = place_footprint(circle(0.2), *self.pose)
+        corners = place_footprint(make_circle(0.2), *self.pose)
         message.polygon.points = [point(x=float(x), y=float(y)) for x, y in corners]
         self._footprint.publish(message)
 

@@ -23,7 +23,7 @@ LIMITS = [AxisLimits(-0.5, 0.5, 2.5, -2.0), AxisLimits(-1.0, 1.0, 0.0, 0.0), Axi
 def test_velocity_and_acceleration_limits_hold_on_each_axis(target, current, scaled):
     smoothed = smooth_velocities(LIMITS, current, target, 0.05, keep_direction=scaled)
     for limits, old, velocity, goal in zip(LIMITS, current, smoothed, target, strict=True):
-        assert abs(velocity - old) <= limits.max_change(old, limits.clamped(goal), 0.05) + 1e-12
+        assert abs(velocity - old) <= limits.compute_max_change(old, limits.clamp(goal), 0.05) + 1e-12
         assert min(old, limits.min_velocity) - 1e-12 <= velocity <= max(old, limits.max_velocity) + 1e-12
 
 

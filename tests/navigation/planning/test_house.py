@@ -38,7 +38,7 @@ def load_house() -> Grid:
 def reachable_cells(grid: Grid) -> np.ndarray:
     """Return the cells that a planner reaches from the living room; unknown cells are allowed."""
     distances = distance_field(grid.cells == OCCUPIED, grid.resolution)
-    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, ROBOT_RADIUS_M)
+    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).compute_costs(distances, ROBOT_RADIUS_M)
     costs = np.where(distances > 0.6, 0, costs).astype(np.uint8)
     costs[(grid.cells == UNSEEN) & (costs < INSCRIBED)] = UNKNOWN
     row, column = grid.cells_of(np.array(ROOM_POINTS["living room"]))

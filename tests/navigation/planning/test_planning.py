@@ -36,7 +36,7 @@ def costmap_of_text(*rows: str) -> Costmap:
 
 def inflated_costmap(obstacles) -> Costmap:
     distances = distance_field(obstacles, RESOLUTION_M)
-    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).costs(distances, 0.2)
+    costs = Inflation(inflation_radius=0.6, cost_scaling_factor=3.0).compute_costs(distances, 0.2)
     return make_costmap(np.where(distances > 0.6, 0, costs))
 
 

@@ -60,7 +60,7 @@ def test_branch_and_bound_matches_exhaustive_search(reference):
     initial_pose = np.array([-1.9, -3.0, 0.1])
     likelihood = LikelihoodField(reference.points, search.cell, search.smear_deviation)
     pose, response = run_to_end(find_best_pose(likelihood, scan.points, initial_pose, search))
-    grid, _ = likelihood.level(0)
+    grid, _ = likelihood.get_level(0)
     step = min(search.angle_resolution, 1.5 * 0.05 / np.quantile(np.hypot(*scan.points.T), 0.8))
     count = int(np.ceil(search.angle_offset / step - 1e-9))
     best_score = 0.0

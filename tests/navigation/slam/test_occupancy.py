@@ -61,7 +61,7 @@ def test_redrawn_scan_leaves_no_trace_at_old_pose():
     for number in range(3):
         redrawn_map.erase(number)
     assert redrawn_map.grid() is None
-    assert redrawn_map.drawn_pose(0) is None
+    assert redrawn_map.get_drawn_pose(0) is None
 
 
 def test_map_matches_apartment():

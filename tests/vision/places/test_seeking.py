@@ -7,7 +7,7 @@ from math import atan2, cos, hypot, inf, pi, sin
 import pytest
 
 from linkwright.vision.places.object_requests import Answer
-from linkwright.vision.places.seeking import Observation, Phase, Seeker, SeekSettings
+from linkwright.vision.places.seeker import Observation, Phase, Seeker, SeekSettings
 
 PERIOD_S = 0.1
 

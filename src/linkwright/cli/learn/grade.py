@@ -102,7 +102,7 @@ def _add_limits(parser: argparse.ArgumentParser) -> None:
 def run_grade(arguments: argparse.Namespace) -> int:
     """Grade a class, and return 1 if a folder or a step of it could not be graded."""
     from linkwright.learning.course import DEFAULT_COURSE, find_course, load_course
-    from linkwright.learning.grading.grading import check_extras, grade_class
+    from linkwright.learning.grading.class_grading import check_extras, grade_class
     from linkwright.learning.grading.journal import Journal
     from linkwright.learning.grading.marks import describe_class_size
     from linkwright.learning.grading.submissions import find_submissions

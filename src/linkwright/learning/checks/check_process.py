@@ -134,13 +134,13 @@ def _drop_repeated_messages(results: Sequence[CheckResult]) -> list[CheckResult]
 
     One missing file may fail all checks of a step with the same message.
     """
-    seen: set[LocalText] = set()
+    seen_messages: set[LocalText] = set()
     unique: list[CheckResult] = []
     for result in results:
-        if result.message is not None and result.message in seen:
+        if result.message is not None and result.message in seen_messages:
             result = replace(result, message=None)
         elif result.message is not None:
-            seen.add(result.message)
+            seen_messages.add(result.message)
         unique.append(result)
     return unique
 
@@ -185,9 +185,9 @@ def check_in_process(
 class CheckProcess:
     """A process that runs the checks of a step.
 
-    All processes that it started end with it. If it takes longer than `time_limit`, or dies, the result of the
-    step is a failure with a message. The load of the machine does not count: the limit applies to the time on a
-    `PatientClock`, and to the processor time of all processes divided by the number of processors.
+    All processes that it started end with it. If it takes longer than `time_limit`, or dies, the result of the step is
+    a failure with a message. The load of the machine does not count: the limit applies to the time on a `PatientClock`,
+    and to the processor time of all processes divided by the number of processors.
 
     Args:
         step: the step whose checks run.

@@ -421,8 +421,8 @@ class LaunchCheck:
             return phrase("there is no node '{name}'; there is '{similar}'", name=name, similar=similar[0])
         if problem := self._find_first_problem():
             return phrase("there is no node '{name}'; the launch says: {message}", name=name, message=problem)
-        others = quoted_names(sorted(nodes)) or "-"
-        return phrase("there is no node '{name}'; the running nodes are {nodes}", name=name, nodes=others)
+        other_nodes = quoted_names(sorted(nodes)) or "-"
+        return phrase("there is no node '{name}'; the running nodes are {nodes}", name=name, nodes=other_nodes)
 
     def _list_error_lines(self) -> list[str]:
         """Return the lines of the launch's output that report errors.

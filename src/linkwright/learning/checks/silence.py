@@ -66,13 +66,13 @@ def _explain_idle(test: Any) -> Phrase:
         if (publishers := graph.get_publishers_info_by_topic(name))
     }
     for name, types in sorted(subscriptions.items()):
-        others = sorted(other for other in published if other not in subscriptions and types & published[other])
-        if name not in published and others:
+        other_topics = sorted(topic for topic in published if topic not in subscriptions and types & published[topic])
+        if name not in published and other_topics:
             return phrase(
                 "the program subscribes to {topic}, but no node publishes it; messages of this type are published "
                 "on {other_topic}",
                 topic=name,
-                other_topic=others[0],
+                other_topic=other_topics[0],
             )
     for name, types in sorted(subscriptions.items()):
         if name in published and not types & published[name]:
@@ -106,9 +106,9 @@ def _is_incompatible(graph: Graph, topic: str) -> bool:
     offered = offered or graph.get_publishers_info_by_topic(topic)
     requested = [info for info in graph.get_subscriptions_info_by_topic(topic) if info.node_name != _TEST_NODE_NAME]
     return any(
-        qos_check_compatible(one.qos_profile, other.qos_profile)[0] is QoSCompatibility.ERROR
-        for one in offered
-        for other in requested
+        qos_check_compatible(publisher.qos_profile, subscription.qos_profile)[0] is QoSCompatibility.ERROR
+        for publisher in offered
+        for subscription in requested
     )
 
 
@@ -116,12 +116,12 @@ def _list_types_by_topic(test: Any, *, published: bool) -> dict[str, set[str]]:
     """Return the types by topic of the publishers or subscriptions of the learner's programs."""
     graph = test.graph
     find = graph.get_publisher_names_and_types_by_node if published else graph.get_subscriber_names_and_types_by_node
-    endpoints: dict[str, set[str]] = {}
+    types_by_topic: dict[str, set[str]] = {}
     for name, namespace in test.program_nodes:
         for topic, types in find(name, namespace):
             if topic not in _GENERAL_TOPICS:
-                endpoints.setdefault(topic, set()).update(types)
-    return endpoints
+                types_by_topic.setdefault(topic, set()).update(types)
+    return types_by_topic
 
 
 def _find_similar_topic(topic: str, topics: dict[str, set[str]]) -> str | None:

@@ -54,8 +54,8 @@ class Job:
 def run_job(job: Job) -> Mark:
     """Check a step in the sandbox, and return the mark.
 
-    The step is not graded if a check failed because of the machine, or if the run ended before the first check
-    began, before any code of the student ran.
+    The step is not graded if a check failed because of the machine, or if the run ended before the first check began,
+    before any code of the student ran.
 
     Raises:
         LinkwrightError: LEARN901, LEARN902: the sandbox cannot be used.

@@ -158,9 +158,9 @@ def copy_workspace(submission: Submission, target: Path) -> bool:
     count = size = 0
     target.mkdir()
     for path, status in _walk_entries(submission.folder, omitted_counts):
-        folder = target / path.relative_to(submission.folder)
+        copy = target / path.relative_to(submission.folder)
         if stat.S_ISDIR(status.st_mode):
-            folder.mkdir(exist_ok=True)
+            copy.mkdir(exist_ok=True)
             continue
         count, size = count + 1, size + status.st_size
         if count > _MAX_FILES or size > _MAX_BYTES:
@@ -171,8 +171,8 @@ def copy_workspace(submission: Submission, target: Path) -> bool:
             submission.is_readable = False
             return False
         try:
-            shutil.copyfile(path, folder, follow_symlinks=False)
-            folder.chmod(0o755 if status.st_mode & stat.S_IXUSR else 0o644)
+            shutil.copyfile(path, copy, follow_symlinks=False)
+            copy.chmod(0o755 if status.st_mode & stat.S_IXUSR else 0o644)
         except OSError:
             omitted_counts["unreadable"] += 1
     for kind, number in sorted(omitted_counts.items()):
@@ -205,9 +205,9 @@ def _walk_entries(folder: Path, omitted_counts: Counter[str]) -> Iterator[tuple[
 
     Each folder precedes its contents.
     """
-    waiting = [(folder, 0)]
-    while waiting:
-        current, depth = waiting.pop()
+    pending_folders = [(folder, 0)]
+    while pending_folders:
+        current, depth = pending_folders.pop()
         try:
             paths = sorted(current.iterdir())
         except OSError:
@@ -221,7 +221,7 @@ def _walk_entries(folder: Path, omitted_counts: Counter[str]) -> Iterator[tuple[
                 omitted_counts["links"] += 1
             elif stat.S_ISDIR(status.st_mode) and depth < _MAX_DEPTH:
                 yield path, status
-                waiting.append((path, depth + 1))
+                pending_folders.append((path, depth + 1))
             elif stat.S_ISDIR(status.st_mode):
                 omitted_counts["deep"] += 1
             elif stat.S_ISREG(status.st_mode):

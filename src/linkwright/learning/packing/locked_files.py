@@ -81,13 +81,12 @@ def check_extras(extras: Sequence[str], packages: Packages) -> None:
 def find_needed_packages(target: Target, extras: Iterable[str], packages: Packages) -> list[str]:
     """Return the keys of the packages that Linkwright with some extras needs on a target.
 
-    `OWN_PACKAGES` are left out.
-    The result always includes pip, which installs the other packages.
+    `OWN_PACKAGES` are left out. The result always includes pip, which installs the other packages.
     """
     environment = target.markers
     queue: list[tuple[str, str]] = [("linkwright", ""), *(("linkwright", extra) for extra in extras)]
     queue += [(key, "") for key in packages if key.startswith("pip ")]
-    seen = set(queue)
+    visited = set(queue)
     while queue:
         key, extra = queue.pop()
         package = packages[key]
@@ -96,10 +95,10 @@ def find_needed_packages(target: Target, extras: Iterable[str], packages: Packag
             if "marker" in edge and not _is_satisfied(edge["marker"], environment):
                 continue
             for name in ("", *edge.get("extras", ())):
-                if (edge["key"], name) not in seen:
-                    seen.add((edge["key"], name))
+                if (edge["key"], name) not in visited:
+                    visited.add((edge["key"], name))
                     queue.append((edge["key"], name))
-    return sorted({key for key, _ in seen} - set(OWN_PACKAGES))
+    return sorted({key for key, _ in visited} - set(OWN_PACKAGES))
 
 
 def _is_satisfied(marker: str, environment: dict[str, str]) -> bool:

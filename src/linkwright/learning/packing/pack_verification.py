@@ -159,7 +159,7 @@ def _find_missing_requirements(
     """Yield the direct and indirect requirements of Linkwright that no wheel satisfies."""
     root = Requirement(f"linkwright[{','.join(settings.extras)}]" if settings.extras else "linkwright")
     queue: list[tuple[Requirement, str]] = [(root, "pack.json")]
-    seen: set[tuple[str, str]] = set()
+    visited: set[tuple[str, str]] = set()
     while queue:
         requirement, dependent = queue.pop()
         name = canonicalize_name(requirement.name)
@@ -176,8 +176,8 @@ def _find_missing_requirements(
             continue
         for unknown in set(map(canonicalize_name, requirement.extras)) - wheel.extras:
             yield _unsuitable_wheel_problem(phrase("'{file}' has no extra '{extra}'", file=wheel.file, extra=unknown))
-        for extra in {"", *requirement.extras} - {extra for key, extra in seen if key == name}:
-            seen.add((name, extra))
+        for extra in {"", *requirement.extras} - {extra for key, extra in visited if key == name}:
+            visited.add((name, extra))
             queue += [(needed, wheel.file) for needed in wheel.requirements if _does_apply(needed, extra, target)]
 
 

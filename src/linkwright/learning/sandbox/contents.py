@@ -117,8 +117,7 @@ def _delete_folder(path: str, folder: str) -> None:
 def _list_paths(folder: str) -> list[str]:
     """Return all paths in a folder, each folder before its contents.
 
-    Folders that are nested too deeply are left out.
-    Folders are made readable during the search.
+    Folders that are nested too deeply are left out. Folders are made readable during the search.
     """
     found = []
     waiting = [folder]

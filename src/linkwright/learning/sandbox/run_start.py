@@ -188,10 +188,10 @@ class Start:
         _take_standard_streams(self.output)
         lower_priority(plan.processors)
         os.chdir(plan.folder)
-        others = 0 if self._is_counted_alone(confinement) else count_threads_of_user()
+        other_threads = 0 if self._is_counted_alone(confinement) else count_threads_of_user()
         if sys.platform == "linux":
             self._restrict(confinement, parent)
-        apply_limits(plan.limits, other_threads=others)
+        apply_limits(plan.limits, other_threads=other_threads)
         self.messages.send(applied=confinement.to_message())
         _restore_signals()
         os.closerange(3, self.messages.writer)

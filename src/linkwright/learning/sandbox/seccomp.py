@@ -45,8 +45,7 @@ class _Program(ctypes.Structure):
 def filter_system_calls(*, forbid_local_servers: bool) -> bool:
     """Filter the system calls of this process and its descendants.
 
-    Returns whether the system supports filters.
-    The process must have called `forbid_new_privileges` before.
+    Returns whether the system supports filters. The process must have called `forbid_new_privileges` before.
 
     Args:
         forbid_local_servers: whether to forbid sockets for servers on this machine, except network sockets.

@@ -10,7 +10,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.costmaps.footprints import Footprint, outline
+from linkwright.navigation.costmaps.footprints import Footprint, make_outline
 from linkwright.navigation.grids.grid import Grid
 
 FREE: Final = 0
@@ -68,7 +68,9 @@ class Costmap:
         )
         return costs
 
-    def footprint_cost(self, poses: NDArray[np.float64] | tuple[float, float, float], footprint: Footprint) -> Any:
+    def compute_footprint_cost(
+        self, poses: NDArray[np.float64] | tuple[float, float, float], footprint: Footprint
+    ) -> Any:
         """Return the highest cost under the outline of a footprint, for one pose or many.
 
         Args:
@@ -79,7 +81,7 @@ class Costmap:
             Costs of shape (...); `LETHAL` if part of the outline is outside the grid and no part is in an unknown cell.
         """
         poses = np.asarray(poses, np.float64)
-        outline_points = outline(footprint, self.grid.resolution / _OUTLINE_POINTS_PER_CELL)
+        outline_points = make_outline(footprint, self.grid.resolution / _OUTLINE_POINTS_PER_CELL)
         cosine, sine = np.cos(poses[..., 2, None]), np.sin(poses[..., 2, None])
         x = poses[..., 0, None] + cosine * outline_points[:, 0] - sine * outline_points[:, 1]
         y = poses[..., 1, None] + sine * outline_points[:, 0] + cosine * outline_points[:, 1]

@@ -26,7 +26,7 @@ class BadFootprintError(ValueError):
     """
 
 
-def circle(radius: float) -> Footprint:
+def make_circle(radius: float) -> Footprint:
     """Return the footprint of a round robot: a regular polygon of 16 corners.
 
     `radius` is in meters.
@@ -60,7 +60,7 @@ def pad_footprint(footprint: Footprint, padding: float) -> Footprint:
     return padded_corners
 
 
-def radii(footprint: Footprint) -> tuple[float, float]:
+def compute_radii(footprint: Footprint) -> tuple[float, float]:
     """Return the radii of the inscribed and circumscribed circles of a footprint, in meters.
 
     Both circles are centered at the origin of the robot.
@@ -74,7 +74,7 @@ def radii(footprint: Footprint) -> tuple[float, float]:
     return inscribed_radius, float(np.hypot(footprint[:, 0], footprint[:, 1]).max())
 
 
-def outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
+def make_outline(footprint: Footprint, spacing: float) -> NDArray[np.float64]:
     """Return points along the outline of a footprint, at most `spacing` meters apart.
 
     The points have shape (points, 2).

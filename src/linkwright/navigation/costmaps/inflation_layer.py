@@ -35,7 +35,7 @@ class Inflation:
     inflate_unknown: bool = False
     inflate_around_unknown: bool = False
 
-    def costs(self, distances: NDArray[np.float64], inscribed_radius: float) -> Costs:
+    def compute_costs(self, distances: NDArray[np.float64], inscribed_radius: float) -> Costs:
         """Return the costs at distances, in meters, from the nearest obstacle.
 
         The costs have the shape of `distances`.
@@ -88,7 +88,7 @@ class InflationLayer(Layer):
         all_distances = distance_field(is_source, grid.resolution)
         top, left = window.top - padded_window.top, window.left - padded_window.left
         distances = all_distances[top : top + window.bottom - window.top, left : left + window.right - window.left]
-        costs = self._inflation.costs(distances, context.inscribed_radius)
+        costs = self._inflation.compute_costs(distances, context.inscribed_radius)
         costs[distances > radius_in_cells * grid.resolution] = FREE
         cells = grid.cells[window.cells]
         is_unknown = cells == UNKNOWN

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from linkwright.navigation.costmaps.costmap import FREE, UNKNOWN, Costmap
-from linkwright.navigation.costmaps.footprints import Footprint, pad_footprint, place_footprint, radii
+from linkwright.navigation.costmaps.footprints import Footprint, compute_radii, pad_footprint, place_footprint
 from linkwright.navigation.costmaps.layer import Layer, UpdateContext, Window
 from linkwright.navigation.grids.grid import Grid
 
@@ -66,7 +66,7 @@ class LayeredCostmap:
     @footprint.setter
     def footprint(self, unpadded: Footprint) -> None:
         self._footprint = pad_footprint(unpadded, self.padding)
-        self.inscribed_radius, self.circumscribed_radius = radii(self._footprint)
+        self.inscribed_radius, self.circumscribed_radius = compute_radii(self._footprint)
 
     def resize(self, grid: Grid) -> None:
         """Change the size, origin or resolution.

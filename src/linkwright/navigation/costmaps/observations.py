@@ -59,7 +59,7 @@ class Observation:
     source: Source
     time_ns: int
 
-    def obstacles(self) -> NDArray[np.float64]:
+    def select_obstacles(self) -> NDArray[np.float64]:
         """Return the points within the range for marking, of shape (n, 3)."""
         squared_distances = ((self.points - self.origin) ** 2).sum(axis=1)
         is_in_range = (squared_distances < self.source.obstacle_max_range**2) & (
@@ -90,7 +90,7 @@ class ObservationBuffer:
         self._observations.append(Observation(origin, points[is_valid], self.source, time_ns))
         self._updated_ns = time_ns
 
-    def observations(self, time_ns: int) -> list[Observation]:
+    def select_valid(self, time_ns: int) -> list[Observation]:
         """Drop the observations that have expired at a time, and return the others."""
         if self.source.observation_persistence:
             oldest_ns = time_ns - round(self.source.observation_persistence * NANOSECONDS_PER_SECOND)

@@ -83,7 +83,7 @@ class ObstacleLayer(PersistentLayer):
         observed = [
             (observation, buffer.source)
             for buffer in self.buffers
-            for observation in buffer.observations(context.time_ns)
+            for observation in buffer.select_valid(context.time_ns)
         ]
         for observation, source in observed:
             if source.clearing:
@@ -120,14 +120,14 @@ class ObstacleLayer(PersistentLayer):
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
         """Mark the cells that contain obstacle points, and return the window around these cells."""
-        cells = grid.cells_of(self.obstacles(observation)[:, :2])
+        cells = grid.cells_of(self.select_obstacles(observation)[:, :2])
         cells = cells[grid.contains(cells)]
         self.layer_grid.cells[cells[:, 0], cells[:, 1]] = LETHAL
         return Window.around(cells, grid)
 
-    def obstacles(self, observation: Observation) -> NDArray[np.float64]:
+    def select_obstacles(self, observation: Observation) -> NDArray[np.float64]:
         """Return the points within the range and the height limits for obstacles, of shape (n, 3)."""
-        points = observation.obstacles()
+        points = observation.select_obstacles()
         heights = points[:, 2]
         obstacle_points: NDArray[np.float64] = points[
             (heights >= self.heights.min_obstacle_height) & (heights <= self.heights.max_obstacle_height)

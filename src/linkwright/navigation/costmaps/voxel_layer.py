@@ -111,7 +111,7 @@ class VoxelLayer(ObstacleLayer):
 
     def mark_points(self, observation: Observation, grid: Grid) -> Window:
         """Mark the voxels that contain points, and return the window around their cells."""
-        points = self.obstacles(observation)
+        points = self.select_obstacles(observation)
         cells = grid.cells_of(points[:, :2])
         levels, is_marked = self._find_levels(points[:, 2])
         is_marked &= grid.contains(cells)

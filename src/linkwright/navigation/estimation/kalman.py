@@ -84,7 +84,7 @@ class Control:
     deceleration_limits: tuple[float, ...]
     deceleration_gains: tuple[float, ...]
 
-    def acceleration(self, index: int, velocity: float, commanded: float) -> float:
+    def compute_acceleration(self, index: int, velocity: float, commanded: float) -> float:
         """Return the acceleration that brings one of the six velocities to its commanded value.
 
         The acceleration is within the limits, in m/s2 or rad/s2.
@@ -241,7 +241,9 @@ class KalmanFilter(ABC):
             if not is_controlled:
                 continue
             velocity = float(self.state[TWIST][index])
-            acceleration = control.acceleration(index, velocity, 0.0 if has_timed_out else float(command[index]))
+            acceleration = control.compute_acceleration(
+                index, velocity, 0.0 if has_timed_out else float(command[index])
+            )
             if index < 3:
                 self.state[ACCELERATION][index] = acceleration
             else:

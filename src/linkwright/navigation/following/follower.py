@@ -112,7 +112,7 @@ def to_robot_frame(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float6
     return robot_points
 
 
-def distances_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
+def compute_distances_along(path: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the distance along a path to each of its poses, in meters, of shape (poses,)."""
     steps = np.hypot(*np.diff(path[:, :2], axis=0).T)
     lengths: NDArray[np.float64] = np.concatenate(([0.0], np.cumsum(steps)))

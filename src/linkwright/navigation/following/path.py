@@ -7,7 +7,7 @@ from math import hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from linkwright.navigation.following.follower import distances_along
+from linkwright.navigation.following.follower import compute_distances_along
 
 
 class FollowedPath:
@@ -23,7 +23,7 @@ class FollowedPath:
 
     def __init__(self, poses: NDArray[np.float64], search_distance: float) -> None:
         self.poses = poses
-        self._lengths = distances_along(poses)
+        self._lengths = compute_distances_along(poses)
         self._search_distance = search_distance
         self._index = 0
 
@@ -33,7 +33,7 @@ class FollowedPath:
         nearby_points = self.poses[self._index : max(end, self._index + 1), :2]
         self._index += int(np.argmin((nearby_points[:, 0] - x) ** 2 + (nearby_points[:, 1] - y) ** 2))
 
-    def poses_ahead(self, distance: float) -> NDArray[np.float64]:
+    def get_poses_ahead(self, distance: float) -> NDArray[np.float64]:
         """Return the poses from the robot up to a distance, in meters, ahead along the path.
 
         The result contains at least two poses.
@@ -42,7 +42,7 @@ class FollowedPath:
         first = min(self._index, len(self.poses) - 2)
         return self.poses[first : max(end, first + 2)]
 
-    def remaining_distance(self, x: float, y: float) -> float:
+    def compute_remaining_distance(self, x: float, y: float) -> float:
         """Return the remaining distance from a position along the path to its end, in meters."""
         px, py = self.poses[self._index, :2]
         return hypot(px - x, py - y) + float(self._lengths[-1] - self._lengths[self._index])

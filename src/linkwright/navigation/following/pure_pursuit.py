@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linkwright.navigation.costmaps.costmap import FREE, INSCRIBED, LETHAL, UNKNOWN, Costmap
-from linkwright.navigation.costmaps.footprints import Footprint, radii
+from linkwright.navigation.costmaps.footprints import Footprint, compute_radii
 from linkwright.navigation.following.follower import (
     ControlInput,
     Follower,
@@ -23,7 +23,7 @@ from linkwright.navigation.following.follower import (
     Pose,
     Velocity,
     apply_speed_limit,
-    distances_along,
+    compute_distances_along,
     predict_poses,
     to_robot_frame,
     wrap_angle,
@@ -139,7 +139,7 @@ class RegulatedPurePursuit(Follower):
                 self._limit_speed_near_obstacles(control_input.pose, control_input.costmap, control_input.footprint),
             )
         speed = min(max(speed, parameters.regulated_linear_scaling_min_speed), self._max_speed)
-        remaining_distance = float(distances_along(points)[-1])
+        remaining_distance = float(compute_distances_along(points)[-1])
         if (
             parameters.approach_velocity_scaling_dist > 0.0
             and remaining_distance < parameters.approach_velocity_scaling_dist
@@ -158,7 +158,7 @@ class RegulatedPurePursuit(Follower):
         cost = int(costmap.cost_at(np.array(pose[:2])))
         if cost in (FREE, UNKNOWN):
             return self._max_speed
-        inscribed, _ = radii(footprint)
+        inscribed, _ = compute_radii(footprint)
         distance = (
             inscribed - log(min(cost, INSCRIBED - 1) / (INSCRIBED - 1)) / parameters.inflation_cost_scaling_factor
         )
@@ -246,14 +246,14 @@ def is_free(control_input: ControlInput, command: Velocity, seconds: float) -> b
 
     `seconds` is the duration of the motion.
     """
-    _, circumscribed_radius = radii(control_input.footprint)
+    _, circumscribed_radius = compute_radii(control_input.footprint)
     max_point_speed = hypot(command.x, command.y) + abs(command.yaw) * circumscribed_radius
     if max_point_speed <= 0.0:
         return True
     step = control_input.costmap.grid.resolution / max_point_speed
     times = np.arange(step, max(seconds, step) + step, step)
     poses = predict_poses(control_input.pose, np.array([command]), times)
-    costs = control_input.costmap.footprint_cost(poses, control_input.footprint)
+    costs = control_input.costmap.compute_footprint_cost(poses, control_input.footprint)
     return not bool(np.any(costs == LETHAL))
 
 

@@ -15,7 +15,7 @@ from linkwright.navigation.following.follower import (
     Follower,
     FollowingError,
     Velocity,
-    distances_along,
+    compute_distances_along,
     to_robot_frame,
 )
 from linkwright.navigation.following.pure_pursuit import compute_rotation_speed, is_free
@@ -63,7 +63,7 @@ class RotationShim(Follower):
         """Return the velocity for the next cycle, as described in `Follower.compute_velocity`."""
         parameters = self._parameters
         points = to_robot_frame(control_input.pose, control_input.path[:, :2])
-        lengths = distances_along(control_input.path)
+        lengths = compute_distances_along(control_input.path)
         index = min(int(np.searchsorted(lengths, parameters.forward_sampling_distance)), len(points) - 1)
         angle = atan2(float(points[index, 1]), float(points[index, 0]))
         if self._is_new_path:

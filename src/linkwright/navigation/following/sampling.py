@@ -21,7 +21,7 @@ from linkwright.navigation.following.follower import (
     FollowingError,
     Velocity,
     apply_speed_limit,
-    distances_along,
+    compute_distances_along,
     predict_poses,
     to_robot_frame,
     wrap_angle,
@@ -79,7 +79,7 @@ class SamplingParameters:
 
 _MAX_CHECKED_FOOTPRINTS = 60
 """The maximum number of velocities that are checked with the footprint, best first. This check is slow."""
-_LOOK_AHEAD = 0.35
+_LOOK_AHEAD_M = 0.35
 """The distance from a motion's end to the point ahead on the path that the robot should face, in meters."""
 
 
@@ -115,7 +115,7 @@ class SamplingFollower(Follower):
 
     def _find_angle_to_path(self, control_input: ControlInput) -> float:
         points = to_robot_frame(control_input.pose, control_input.path[:, :2])
-        index = min(int(np.searchsorted(distances_along(control_input.path), _LOOK_AHEAD)), len(points) - 1)
+        index = min(int(np.searchsorted(compute_distances_along(control_input.path), _LOOK_AHEAD_M)), len(points) - 1)
         return atan2(float(points[index, 1]), float(points[index, 0]))
 
     def _compute_turn_velocity(self, angle: float, control_input: ControlInput) -> Velocity:
@@ -159,9 +159,9 @@ class SamplingFollower(Follower):
         free_indices = np.flatnonzero(max_costs < INSCRIBED)
         motion_costs = self._rate_motions(motions[free_indices], max_costs[free_indices] / INSCRIBED, control_input)
         for index in free_indices[np.argsort(motion_costs)][:_MAX_CHECKED_FOOTPRINTS]:
-            best = Velocity(*map(float, candidates[index]))
-            if max_costs[index] <= 0.0 or is_free(control_input, best, parameters.simulated_seconds):
-                return self._limit_change(best, control_input)
+            candidate = Velocity(*map(float, candidates[index]))
+            if max_costs[index] <= 0.0 or is_free(control_input, candidate, parameters.simulated_seconds):
+                return self._limit_change(candidate, control_input)
         raise FollowingError("every sampled velocity leads to a collision")
 
     def _sample_candidates(self, control_input: ControlInput) -> NDArray[np.float64]:
@@ -194,7 +194,12 @@ class SamplingFollower(Follower):
             max_change = (deceleration if abs(new_speed) < abs(old_speed) else acceleration) * period
             if abs(new_speed - old_speed) > max_change:
                 fraction = min(fraction, max_change / abs(new_speed - old_speed))
-        return Velocity(*(before + fraction * (after - before) for before, after in zip(current, target, strict=True)))
+        return Velocity(
+            *(
+                old_value + fraction * (new_value - old_value)
+                for old_value, new_value in zip(current, target, strict=True)
+            )
+        )
 
     def _rate_motions(
         self, motions: NDArray[np.float64], costs: NDArray[np.float64], control_input: ControlInput
@@ -205,7 +210,7 @@ class SamplingFollower(Follower):
         """
         parameters = self.parameters
         path = control_input.path
-        lengths = distances_along(path)
+        lengths = compute_distances_along(path)
         checked_points = motions[:, [parameters.step_count // 2, -1], :2]
         squared = ((checked_points[:, :, None] - path[None, None, :, :2]) ** 2).sum(axis=-1)
         nearest = squared.argmin(axis=-1)
@@ -214,7 +219,7 @@ class SamplingFollower(Follower):
         remaining = lengths[-1] - lengths[ends]
         end_distances = np.hypot(*(motions[:, -1, :2] - path[-1, :2]).T)
         remaining = np.where(ends == len(path) - 1, end_distances, remaining)
-        ahead_indices = np.minimum(np.searchsorted(lengths, lengths[ends] + _LOOK_AHEAD), len(path) - 1)
+        ahead_indices = np.minimum(np.searchsorted(lengths, lengths[ends] + _LOOK_AHEAD_M), len(path) - 1)
         directions = path[ahead_indices, :2] - motions[:, -1, :2]
         heading_errors = np.arctan2(directions[:, 1], directions[:, 0]) - motions[:, -1, 2]
         heading_errors = np.abs(np.arctan2(np.sin(heading_errors), np.cos(heading_errors)))

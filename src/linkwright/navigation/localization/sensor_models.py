@@ -82,7 +82,7 @@ class MapLikelihoods:
         self._cached_table: tuple[tuple[str, float], NDArray[np.float32]] | None = None
         self._free_cells = np.argwhere(grid.cells == FREE)
 
-    def likelihoods(
+    def compute_likelihoods(
         self, model: str, particles: Poses, beams: Beams, beam_skipping: BeamSkipping | None = None
     ) -> Likelihoods:
         """Return the likelihood of a scan from each pose by one of `MODELS`, of shape (particles,).
@@ -91,13 +91,13 @@ class MapLikelihoods:
         """
         if model == "beam":
             return self._compute_beam_likelihoods(particles, beams)
-        is_product = model == "likelihood_field_prob"
+        uses_product = model == "likelihood_field_prob"
         hit_points = beams.end_points[beams.hit_mask]
         if not len(hit_points):
             return np.ones(len(particles))
         cells = self._find_end_cells(particles, hit_points)
         values = self._compute_contributions(model, beams.range_max).take(cells)
-        if not is_product:
+        if not uses_product:
             sums: Likelihoods = values.sum(axis=1, dtype=np.float64)
             return 1.0 + sums
         if beam_skipping is not None:
@@ -107,7 +107,7 @@ class MapLikelihoods:
         likelihoods: Likelihoods = np.exp(exponents - exponents.max())
         return likelihoods
 
-    def matching_share(self, pose: tuple[float, float, float], beams: Beams) -> float | None:
+    def compute_matching_share(self, pose: tuple[float, float, float], beams: Beams) -> float | None:
         """Return the share of beams from a pose that end near an obstacle of the map, 0 to 1.
 
         Returns None if no beam hit anything.
@@ -118,7 +118,7 @@ class MapLikelihoods:
         distances = self._distances.take(self._find_end_cells(np.array([pose]), hit_points))
         return float((distances <= _FIT_DISTANCE_M).mean())
 
-    def random_poses(self, count: int, random: np.random.Generator) -> Poses:
+    def draw_random_poses(self, count: int, random: np.random.Generator) -> Poses:
         """Return random poses of shape (count, 3), uniformly distributed over the free cells.
 
         If no cell is free, the poses are distributed over the whole map.
@@ -167,17 +167,19 @@ class MapLikelihoods:
         return cells
 
     def _select_unskipped_beams(self, cells: NDArray[np.int64], beam_skipping: BeamSkipping) -> NDArray[np.bool_]:
-        fits: NDArray[np.bool_] = self._distances.take(cells) < beam_skipping.distance
-        is_kept: NDArray[np.bool_] = fits.mean(axis=0) > beam_skipping.threshold
+        is_fit: NDArray[np.bool_] = self._distances.take(cells) < beam_skipping.distance
+        is_kept: NDArray[np.bool_] = is_fit.mean(axis=0) > beam_skipping.threshold
         return is_kept if 1.0 - is_kept.mean() < beam_skipping.error_threshold else np.ones_like(is_kept)
 
     def _compute_beam_likelihoods(self, particles: Poses, beams: Beams) -> Likelihoods:
         settings, measured, max_range = self._settings, beams.ranges, beams.range_max
         cosine, sine = np.cos(particles[:, 2]), np.sin(particles[:, 2])
         x, y = beams.origin
-        lasers = np.column_stack((particles[:, 0] + cosine * x - sine * y, particles[:, 1] + sine * x + cosine * y))
+        laser_positions = np.column_stack(
+            (particles[:, 0] + cosine * x - sine * y, particles[:, 1] + sine * x + cosine * y)
+        )
         angles = particles[:, 2, None] + beams.angles
-        expected = cast_rays(self.distances, lasers[:, None, :], angles, max_range)
+        expected = cast_rays(self.distances, laser_positions[:, None, :], angles, max_range)
         errors = measured - expected
         probability = settings.z_hit * np.exp(-0.5 * (errors / settings.sigma_hit) ** 2)
         short_probability = settings.z_short * settings.lambda_short * np.exp(-settings.lambda_short * measured)

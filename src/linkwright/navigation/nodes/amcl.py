@@ -204,14 +204,14 @@ class AmclNode(ManagedNode):
             self._odometry = odometry
             beam_skipping = settings.beam_skipping if self._filter.has_converged() else None
             self._filter.update_weights(
-                self._map.likelihoods(
+                self._map.compute_likelihoods(
                     settings.parameters.laser_model_type, self._filter.particles, beams, beam_skipping
                 )
             )
             self._update_count += 1
             if self._update_count % settings.parameters.resample_interval == 0:
                 grid = self._map
-                self._filter.resample(lambda count: grid.random_poses(count, self._filter.random))
+                self._filter.resample(lambda count: grid.draw_random_poses(count, self._filter.random))
                 must_publish = True
             self._publish_cloud(stamp_ns)
         if must_publish:
@@ -273,7 +273,7 @@ class AmclNode(ManagedNode):
     def _check_fit(self, estimate: Estimate, beams: Beams) -> None:
         """Warn if several consecutive scans did not match the map."""
         assert self._map is not None, "there is an estimate"
-        fit = self._map.matching_share(estimate.pose, beams)
+        fit = self._map.compute_matching_share(estimate.pose, beams)
         if fit is None:
             return
         self._misfit_count = 0 if fit > _MIN_FIT else self._misfit_count + 1
@@ -365,7 +365,9 @@ class AmclNode(ManagedNode):
             self.get_logger().error("There is no map yet, so the robot cannot be placed on it")
             return response
         self.get_logger().info("Initializing with uniform distribution")
-        self._filter.set_particles(self._map.random_poses(self._settings.filter.max_particles, self._filter.random))
+        self._filter.set_particles(
+            self._map.draw_random_poses(self._settings.filter.max_particles, self._filter.random)
+        )
         self._reset()
         self._pose = self._pose or (0.0, 0.0, 0.0)
         self.get_logger().info("Global initialization done!")

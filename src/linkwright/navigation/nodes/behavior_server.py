@@ -32,7 +32,7 @@ from linkwright.navigation.behaviors.behaviors import (
 from linkwright.navigation.costmaps.costmap import LETHAL, Costmap
 from linkwright.navigation.costmaps.footprints import Footprint
 from linkwright.navigation.following.follower import ZERO_VELOCITY, Pose, Velocity
-from linkwright.navigation.nodes.costmap_reading import costmap_from_message
+from linkwright.navigation.nodes.costmap_conversion import costmap_from_message
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.plugins import get_plugin_type, get_string_list
@@ -265,7 +265,7 @@ class BehaviorNode(ManagedNode):
     def _is_free(self, poses: NDArray[np.float64]) -> bool:
         assert self._costmap is not None, "`_missing_data_reason` checked it"
         assert self._footprint is not None, "`_missing_data_reason` checked it"
-        return not bool(np.any(self._costmap.footprint_cost(poses, self._footprint) == LETHAL))
+        return not bool(np.any(self._costmap.compute_footprint_cost(poses, self._footprint) == LETHAL))
 
     def _find_robot_pose(self) -> Pose | None:
         """Return the robot's pose in the frame of the costmap, or None if it is unknown."""

@@ -23,7 +23,7 @@ from linkwright.graph.transforms.core import BufferCore
 from linkwright.graph.transforms.listener import TransformListener
 from linkwright.messages import get_action, get_message, get_service
 from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, Costmap
-from linkwright.navigation.nodes.costmap_reading import costmap_from_message
+from linkwright.navigation.nodes.costmap_conversion import costmap_from_message
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedServer
 from linkwright.navigation.nodes.plugins import get_string_list

@@ -229,7 +229,7 @@ class ControllerNode(ManagedNode):
         control_input = ControlInput(
             pose=pose,
             velocity=velocity,
-            path=_transform_poses(frame, self._path.poses_ahead(self._local_radius)),
+            path=_transform_poses(frame, self._path.get_poses_ahead(self._local_radius)),
             costmap=self.costmap.costmap,
             footprint=self.costmap.footprint,
             period=1.0 / self._frequency,
@@ -243,7 +243,7 @@ class ControllerNode(ManagedNode):
         self._last_valid_ns = now_ns
         self._publish(command)
         goals.publish_feedback(
-            distance_to_goal=self._path.remaining_distance(x, y),
+            distance_to_goal=self._path.compute_remaining_distance(x, y),
             speed=hypot(self._measured_velocity.x, self._measured_velocity.y),
         )
 

@@ -27,7 +27,7 @@ from linkwright.navigation.costmaps.costmap import Costmap
 from linkwright.navigation.costmaps.footprints import (
     BadFootprintError,
     Footprint,
-    circle,
+    make_circle,
     parse_footprint,
     place_footprint,
 )
@@ -154,7 +154,7 @@ class CostmapNode(ManagedNode):
         """Whether the costmap was updated and the data of its layers are recent enough."""
         return self._layered is not None and self._layered.is_current(self.now_ns())
 
-    def robot_pose(self) -> Pose | None:
+    def find_robot_pose(self) -> Pose | None:
         """Return x, y (meters) and yaw (radians) of the robot in the frame of the costmap.
 
         Returns None if the transform is not available.
@@ -248,7 +248,7 @@ class CostmapNode(ManagedNode):
         Returns False, without an update, if the robot's pose is unknown.
         """
         assert self._layer_context is not None, "it is configured"
-        pose = self.robot_pose()
+        pose = self.find_robot_pose()
         if pose is None:
             return False
         for sensor in self._layer_context.sensors:
@@ -274,7 +274,7 @@ class CostmapNode(ManagedNode):
     def _read_footprint(self) -> Footprint:
         text = self._parameter_values.footprint
         if self.uses_radius:
-            return circle(self._get_positive_value("robot_radius"))
+            return make_circle(self._get_positive_value("robot_radius"))
         try:
             return parse_footprint(text)
         except BadFootprintError as error:
@@ -385,7 +385,7 @@ class CostmapNode(ManagedNode):
         return self._clear(request, response, clear_outside=True)
 
     def _clear(self, request: Any, response: Any, *, clear_outside: bool) -> Any:
-        pose = self.robot_pose()
+        pose = self.find_robot_pose()
         if pose is None:
             self.get_logger().error("Cannot clear map because robot pose cannot be retrieved.")
             return response
@@ -400,7 +400,7 @@ class CostmapNode(ManagedNode):
     def _get_cost(self, request: Any, response: Any) -> Any:
         pose = (request.x, request.y, request.theta)
         if request.use_footprint:
-            response.cost = float(self.costmap.footprint_cost(pose, self.footprint))
+            response.cost = float(self.costmap.compute_footprint_cost(pose, self.footprint))
         else:
             response.cost = float(self.costmap.cost_at(np.array(pose[:2])))
         return response

@@ -220,7 +220,7 @@ class PlannerNode(ManagedNode):
     def _find_start_pose(self, request: Any) -> Pose:
         if request.use_start:
             return self._pose_in_costmap(request.start)
-        pose = self.costmap.robot_pose()
+        pose = self.costmap.find_robot_pose()
         if pose is None:
             raise GoalError("TF_ERROR", "Unable to get start pose")
         return pose
@@ -236,7 +236,7 @@ class PlannerNode(ManagedNode):
     def _on_is_path_valid(self, request: Any, response: Any) -> Any:
         """Report whether a path is collision-free from the robot's position onward."""
         poses = poses_from_messages(request.path.poses)
-        robot_pose = self.costmap.robot_pose() if self.is_active else None
+        robot_pose = self.costmap.find_robot_pose() if self.is_active else None
         response.is_valid = bool(len(poses))
         if not len(poses) or robot_pose is None:
             return response
@@ -246,7 +246,7 @@ class PlannerNode(ManagedNode):
             costs = self.costmap.costmap.cost_at(poses_ahead[:, :2], outside_cost=LETHAL)
             is_invalid = (costs == LETHAL) | (costs == INSCRIBED)
         else:
-            is_invalid = self.costmap.costmap.footprint_cost(poses_ahead, self.costmap.footprint) == LETHAL
+            is_invalid = self.costmap.costmap.compute_footprint_cost(poses_ahead, self.costmap.footprint) == LETHAL
         response.invalid_pose_indices = [first_index + int(index) for index in np.flatnonzero(is_invalid)]
         response.is_valid = not is_invalid.any()
         return response

@@ -17,12 +17,12 @@ from linkwright.graph.time.values import Duration
 from linkwright.messages import get_message
 from linkwright.navigation.costmaps.costmap import INSCRIBED, LETHAL, Costmap
 from linkwright.navigation.grids.library import load_scipy
-from linkwright.navigation.nodes.costmap_reading import costmap_from_message
+from linkwright.navigation.nodes.costmap_conversion import costmap_from_message
 from linkwright.navigation.nodes.goals import GoalServer
 from linkwright.navigation.nodes.managed import ManagedNode, ManagedServer
 from linkwright.navigation.nodes.paths import path_message, poses_from_messages
 from linkwright.navigation.nodes.plugins import declare_unused, get_plugin_type, get_string_list
-from linkwright.navigation.planning.smoothing import Smoothing, directions, smooth_path
+from linkwright.navigation.planning.smoothing import Smoothing, compute_directions, smooth_path
 from linkwright.nodes.parameter_tables import declare_table
 
 _SIMPLE: Final = "nav2_smoother/SimpleSmoother"
@@ -84,7 +84,7 @@ class SmootherNode(ManagedNode):
             values = {field.name: self.get_parameter(f"{name}.{field.name}").value for field in fields(Smoothing)}
             poses = poses_from_messages(request.path.poses)
             points, _ = smooth_path(poses[:, :2], Smoothing(**values), self._costmap)
-            poses = np.column_stack((points, directions(points, poses[-1, 2])))
+            poses = np.column_stack((points, compute_directions(points, poses[-1, 2])))
             path = path_message(poses, request.path.header.frame_id, request.path.header.stamp)
             self._output.publish(path)
             self._finish(request, path, poses, began_ns)

@@ -24,11 +24,11 @@ class AxisLimits:
     deceleration: float
     deadband: float = 0.0
 
-    def clamped(self, velocity: float) -> float:
+    def clamp(self, velocity: float) -> float:
         """Return a velocity clamped to the minimum and maximum velocity."""
         return min(max(velocity, self.min_velocity), self.max_velocity)
 
-    def max_change(self, current: float, requested: float, seconds: float) -> float:
+    def compute_max_change(self, current: float, requested: float, seconds: float) -> float:
         """Return the maximum magnitude of the velocity change in a cycle of some seconds.
 
         The acceleration limit applies if the speed increases or stays equal in the same direction; otherwise the
@@ -59,10 +59,10 @@ def smooth_velocities(
         seconds: the period of the cycle.
         keep_direction: whether all changes are reduced by the factor of the most limited axis.
     """
-    targets = [axis.clamped(velocity) for axis, velocity in zip(limits, requested, strict=True)]
+    targets = [axis.clamp(velocity) for axis, velocity in zip(limits, requested, strict=True)]
     differences = [target - velocity for target, velocity in zip(targets, current, strict=True)]
     max_changes = [
-        axis.max_change(velocity, target, seconds)
+        axis.compute_max_change(velocity, target, seconds)
         for axis, velocity, target in zip(limits, current, targets, strict=True)
     ]
     factor = 1.0

@@ -50,7 +50,7 @@ class _Slope:
             or max(self.potential_at(row, to_column), self.potential_at(to_row, column)) < inf
         )
 
-    def steepest_neighbor(self, cell: Cell) -> Cell:
+    def find_steepest_neighbor(self, cell: Cell) -> Cell:
         """Return the neighbor with the steepest descent, or the cell if no neighbor is lower."""
         row, column = cell
         cost = self.potential_at(row, column)
@@ -62,7 +62,7 @@ class _Slope:
                 best_neighbor, steepest_descent = neighbor, descent
         return best_neighbor
 
-    def direction(self, position: Position) -> Position | None:
+    def compute_direction(self, position: Position) -> Position | None:
         """Return the direction of steepest descent as a unit vector (rows, columns).
 
         Returns None if the potential is flat at the position.
@@ -134,7 +134,7 @@ def descend(costs: FloatArray, source: Cell, start: Position) -> Generator[None,
             yield
         next_position = _step_downhill(slope, position, cell) if steps_in_cell < _MAX_STEPS_IN_CELL else None
         if next_position is None:
-            neighbor = slope.steepest_neighbor(cell)
+            neighbor = slope.find_steepest_neighbor(cell)
             next_position = (neighbor[0] + 0.5, neighbor[1] + 0.5)
         next_cell = (floor(next_position[0]), floor(next_position[1]))
         steps_in_cell = steps_in_cell + 1 if next_cell == cell else 0
@@ -149,7 +149,7 @@ def _step_downhill(slope: _Slope, position: Position, cell: Cell) -> Position | 
 
     Returns None if the potential is flat or the step leads to an unreachable cell.
     """
-    direction = slope.direction(position)
+    direction = slope.compute_direction(position)
     if direction is None:
         return None
     next_position = (position[0] + _STEP_CELLS * direction[0], position[1] + _STEP_CELLS * direction[1])

@@ -62,7 +62,7 @@ def smooth_path(points: Points, smoothing: Smoothing, costmap: Costmap | None = 
     return result, all_points_moved
 
 
-def directions(points: Points, last_yaw: float) -> NDArray[np.float64]:
+def compute_directions(points: Points, last_yaw: float) -> NDArray[np.float64]:
     """Return the yaw from each point of a path to the next one, in radians, of shape (n,).
 
     The yaw of the last point is `last_yaw`.

@@ -204,7 +204,7 @@ class Mapper:
         """
         tolerance = _REDRAW_FRACTION * self.occupancy.resolution
         for index, scan in enumerate(self.scans):
-            pose, drawn_pose = self.graph.poses[index], self.occupancy.drawn_pose(index)
+            pose, drawn_pose = self.graph.poses[index], self.occupancy.get_drawn_pose(index)
             if drawn_pose is not None:
                 change = relative_pose(drawn_pose, pose)
                 if np.hypot(change[0], change[1]) + _FAR_POINT_DISTANCE_M * abs(change[2]) < tolerance:

@@ -137,7 +137,7 @@ def _compute_normal_equations(
         wall; and the error of the points that were used, in meters.
     """
     points = transform_points(pose, scan.points)
-    distances, _, wall_points, normals, flatness = reference.nearest(points)
+    distances, _, wall_points, normals, flatness = reference.find_nearest(points)
     sensor = transform_points(pose, scan.origin[None])[0]
     is_facing = np.einsum("ni,ni->n", normals, sensor - wall_points) > 0  # Ignore the other side of a thin wall.
     is_used = (distances < max_distance) & is_facing & (flatness > 0.3)

@@ -72,7 +72,7 @@ class OccupancyMap:
         if trace is not None:
             self._add_counts(trace, -1)
 
-    def drawn_pose(self, scan_index: int) -> FloatArray | None:
+    def get_drawn_pose(self, scan_index: int) -> FloatArray | None:
         """Return the pose at which a scan was added, or None if the scan is not in the map."""
         trace = self._traces.get(scan_index)
         return None if trace is None else trace.pose

@@ -56,7 +56,7 @@ class Reference:
         return len(self.points)
 
     def find_lines(self) -> None:
-        """Compute the direction of the wall at each point, as required by `nearest`."""
+        """Compute the direction of the wall at each point, as required by `find_nearest`."""
         self._tree = load_scipy("spatial").cKDTree(self.points)
         count = min(_NEIGHBOR_COUNT, len(self.points))
         distances, indices = self._tree.query(self.points, k=count)
@@ -75,7 +75,9 @@ class Reference:
         self._normals: FloatArray = normals
         self._flatness: FloatArray = flatness if count >= 3 else np.zeros(len(self.points))
 
-    def nearest(self, points: FloatArray) -> tuple[FloatArray, NDArray[np.int64], FloatArray, FloatArray, FloatArray]:
+    def find_nearest(
+        self, points: FloatArray
+    ) -> tuple[FloatArray, NDArray[np.int64], FloatArray, FloatArray, FloatArray]:
         """Return the nearest reference point of each of the points, of shape (n, 2).
 
         Returns:
@@ -109,7 +111,7 @@ class LikelihoodField:
         finest_level[finest_level < _MIN_LIKELIHOOD] = 0.0
         self._levels: list[NDArray[np.float32]] = [finest_level]
 
-    def level(self, exponent: int) -> tuple[NDArray[np.float32], int]:
+    def get_level(self, exponent: int) -> tuple[NDArray[np.float32], int]:
         """Return the grid of maxima over blocks of 2^exponent x 2^exponent cells.
 
         Returns:

@@ -107,7 +107,7 @@ class _Window:
 
     def set_bounds(self, blocks: _Blocks, level: int) -> None:
         """Set the upper bounds of blocks of a level."""
-        grid, offset = self._likelihood.level(level)
+        grid, offset = self._likelihood.get_level(level)
         height, width = grid.shape
         flat = grid.ravel()
         rows = np.clip(self._rows[blocks.angle] + (blocks.row + offset)[:, None].astype(np.int32), 0, height - 1)
@@ -136,7 +136,7 @@ class _Window:
     def divide(self, blocks: _Blocks, level: int) -> _Blocks:
         """Return the quarters of blocks that are within the window, with bounds of 0.
 
-        `level` is the level of the quarters.
+        `get_level` is the level of the quarters.
         """
         block_side = 1 << level
         angle, row, column = (np.repeat(array, 4) for array in (blocks.angle, blocks.row, blocks.column))

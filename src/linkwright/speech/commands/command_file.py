@@ -18,12 +18,12 @@ from linkwright.diagnostics import (
 )
 from linkwright.diagnostics.translation import LANGUAGES, localized
 from linkwright.files.yaml_documents import YamlDocument, read_source
-from linkwright.speech.commands.action_reading import ActionReader
+from linkwright.speech.commands.action_reader import ActionReader
 from linkwright.speech.commands.actions import MOTIONS
 from linkwright.speech.commands.command_set import ANY, ByLanguage, Command, CommandSet, Destination
+from linkwright.speech.commands.keys import Keys
 from linkwright.speech.commands.phrases import Template, TemplateError, parse_templates
 from linkwright.speech.commands.quantities import GRAMMAR_VALUES, parse_quantity
-from linkwright.speech.commands.reading import Keys
 from linkwright.speech.commands.words import Words, split_into_words
 
 DEFAULT_FILE = Path(__file__).with_name("default.yaml")

@@ -23,7 +23,7 @@ from linkwright.speech.commands.actions import (
     resolve_amount,
 )
 from linkwright.speech.commands.command_set import ANY, CommandSet, Match, choose_text
-from linkwright.speech.nodes.driving import Driver, Ending
+from linkwright.speech.nodes.driver import Driver, Ending
 from linkwright.speech.nodes.requests import Requests
 
 

@@ -41,10 +41,10 @@ class SampleStamps:
         """
         length = samples * NANOSECONDS_PER_SECOND // RATE
         start = max(0, now - length)
-        if self._next_ns is not None and -_MAX_AHEAD_NS < (behind := start - self._next_ns) < _MAX_BEHIND_NS:
+        if self._next_ns is not None and -_MAX_AHEAD_NS < (delay_ns := start - self._next_ns) < _MAX_BEHIND_NS:
             max_correction = round(_MAX_DRIFT * length)
-            jump = min(round(lost * NANOSECONDS_PER_SECOND), max(behind, 0) + _MAX_AHEAD_NS)
-            start = self._next_ns + min(max(behind, -max_correction), max_correction) + jump
+            jump = min(round(lost * NANOSECONDS_PER_SECOND), max(delay_ns, 0) + _MAX_AHEAD_NS)
+            start = self._next_ns + min(max(delay_ns, -max_correction), max_correction) + jump
         self._next_ns = start + length
         return start
 

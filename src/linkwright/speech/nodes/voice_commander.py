@@ -32,8 +32,8 @@ from linkwright.speech.nodes.audio_messages import (
     AudioReader,
 )
 from linkwright.speech.nodes.conversation import Conversation
-from linkwright.speech.nodes.driving import Driver, Ending
-from linkwright.speech.nodes.listening import Listener
+from linkwright.speech.nodes.driver import Driver, Ending
+from linkwright.speech.nodes.listener import Listener
 from linkwright.speech.nodes.presses import PLEASE_REPEAT, ButtonPresses
 from linkwright.speech.nodes.requests import Requests
 from linkwright.speech.nodes.sound_gaps import SoundGaps

@@ -121,7 +121,7 @@ def encode_run_lengths(mask: Any) -> tuple[int, ...]:
     flat = mask.ravel(order="F")
     changes = np.flatnonzero(flat[1:] != flat[:-1]) + 1
     ends = [0, *changes.tolist(), len(flat)]
-    counts = [after - before for before, after in pairwise(ends)]
+    counts = [end - previous_end for previous_end, end in pairwise(ends)]
     return tuple([0, *counts] if flat[0] else counts)
 
 

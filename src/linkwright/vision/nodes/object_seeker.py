@@ -34,7 +34,7 @@ from linkwright.vision.places.object_requests import (
     make_answer_phrase,
     parse_request,
 )
-from linkwright.vision.places.seeking import Observation, Phase, Seeker, SeekSettings
+from linkwright.vision.places.seeker import Observation, Phase, Seeker, SeekSettings
 
 _QUEUE_DEPTH = 10
 _STEP_S = 0.05

@@ -62,7 +62,7 @@ class ToolboxServices:
         self._refuse("\n".join(render(diagnostic) for diagnostic in error.diagnostics))
 
     def _on_get_map(self, _request: Any, response: Any) -> Any:
-        message = self._toolbox.map_message()
+        message = self._toolbox.make_map_message()
         if message is not None:
             response.map = message
         return response

@@ -192,7 +192,7 @@ class Toolbox:
         """Return the current map, or None if no cell is known."""
         return self.mapper.occupancy.grid()
 
-    def map_message(self) -> Any | None:
+    def make_map_message(self) -> Any | None:
         """Return the current map as a nav_msgs/OccupancyGrid, or None if no cell is known."""
         grid = self.grid()
         if grid is None:
@@ -332,7 +332,7 @@ class Toolbox:
 
     def publish_map(self) -> None:
         """Publish the map and its metadata if a map exists, and the graph if it has subscribers."""
-        message = self.map_message()
+        message = self.make_map_message()
         if message is None:
             return
         self._has_published = True

@@ -38,10 +38,13 @@ class Optimizer:
         ]
         self._momenta = [torch.zeros_like(kernel) for kernel in self._kernels]
         kernel_ids = {id(kernel) for kernel in self._kernels}
-        others = [parameter for parameter in parameters if id(parameter) not in kernel_ids]
+        other_parameters = [parameter for parameter in parameters if id(parameter) not in kernel_ids]
         groups = [
-            {"params": [parameter for parameter in others if parameter.ndim > 1], "weight_decay": _WEIGHT_DECAY},
-            {"params": [other for other in others if other.ndim <= 1], "weight_decay": 0.0},
+            {
+                "params": [parameter for parameter in other_parameters if parameter.ndim > 1],
+                "weight_decay": _WEIGHT_DECAY,
+            },
+            {"params": [other for other in other_parameters if other.ndim <= 1], "weight_decay": 0.0},
         ]
         self._network = network
         self._adamw = torch.optim.AdamW(groups, lr=rate, betas=(0.9, 0.98))

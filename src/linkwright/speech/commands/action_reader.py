@@ -28,7 +28,7 @@ from linkwright.speech.commands.actions import (
     fill_template,
 )
 from linkwright.speech.commands.command_set import Destination
-from linkwright.speech.commands.reading import Keys
+from linkwright.speech.commands.keys import Keys
 
 _SLOT_PATTERN = re.compile(r"\{(\w+)\}")
 _GRIPPER_TYPE = "control_msgs/action/GripperCommand"
