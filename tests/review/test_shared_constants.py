@@ -23,7 +23,8 @@ Arm::Arm() : Node("arm") {
 }
 """
 CPP = {**MANIFEST, "arm/include/arm/names.hpp": HEADER, "arm/src/arm.cpp": TALKER}
-MODULE = "SCAN = 'scan'\n"
+MODULE = "SCAN = 'scan'\nPRICE = '\\$'\n"
+"""A module with an invalid escape sequence, about which Python warns."""
 NODE = "import rclpy\n{}\nnode = rclpy.create_node('arm')\nnode.create_publisher(LaserScan, {}, 10)\n"
 
 

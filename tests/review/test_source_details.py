@@ -11,7 +11,7 @@ import pytest
 
 from linkwright.review.sources.python2 import as_python3
 from tests.repositories import PACKAGE_XML
-from tests.review.conftest import breaking, sentences
+from tests.review.conftest import breaking, sentences, subject
 
 MANIFEST = {"arm/package.xml": PACKAGE_XML.replace("arm_description", "arm"), "arm/arm/__init__.py": ""}
 
@@ -237,3 +237,14 @@ def test_argument_with_a_default_is_no_constant_of_a_source(repository, compare)
     repository.write({"arm/a.cpp": text.replace('"scan"', '"laser"')})
     (found,) = compare(repository).subjects
     assert sentences(found) == ['values: f(topic="scan" -> "laser")']
+
+
+def test_a_function_with_the_same_code_and_another_name_is_renamed(repository, compare):
+    text = "def convert_or_nan(field):\n    return float(field or 'nan')\n\n\ndef walk(x):\n    return x\n"
+    package = PACKAGE_XML.replace("arm_description", "arm")
+    repository.commit({"arm/package.xml": package, "arm/arm/__init__.py": "", "arm/arm/values.py": text})
+    repository.write({"arm/arm/values.py": text.replace("convert_or_nan", "safe")})
+    expected = "function 'convert_or_nan' (field) renamed to 'safe' (field)"
+    result = compare(repository)
+    assert sentences(subject(result, "arm/arm/values.py"))[0] == expected
+    assert breaking(result) == [expected]

@@ -188,6 +188,8 @@ class _Pair:
         kept = [item for name, item in before.items() if name not in after and self.new.keeps(item, path)]
         used = [item for name, item in after.items() if name not in before and self.old.keeps(item, old_path)]
         pairs = with_same_callback([*removed, *kept], [*added, *used], old_names, new_names)
+        if kind is NameKind.FUNCTION:
+            pairs = list(self._with_same_code(removed, added))
         taken = [item for pair in pairs for item in pair]
         rest = [[item for item in items if item not in taken] for items in ([*removed, *kept], [*added, *used])]
         for old_item, new_item in [*pairs, *_pair_renamed(*rest)]:
@@ -202,6 +204,19 @@ class _Pair:
             added = [item for item in added if item is not new_item]
         yield from self._expression_changes(kind, removed, added)
         yield from self._lone_changes(kind, removed, added, old_names)
+
+    def _with_same_code(
+        self, removed: Sequence[SourceName], added: Sequence[SourceName]
+    ) -> Iterator[tuple[SourceName, SourceName]]:
+        """Yield the removed and added functions with equal arguments and code, unless several are alike."""
+        old, new = self.old.codes.get(self.file.old_path or ""), self.new.codes.get(self.file.new_path or "")
+        if old is None or new is None:
+            return
+        for item in removed:
+            body = old.body(item.name)
+            same = [other for other in added if other.details == item.details and new.body(other.name) == body]
+            if body and len(same) == 1 and sum(old.body(other.name) == body for other in removed) == 1:
+                yield item, same[0]
 
     def _detail_changes(
         self, kind: NameKind, changed: Sequence[tuple[SourceName, Phrase, Phrase | None]], old_names: SourceNames

@@ -8,8 +8,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path, PurePosixPath
 
+from linkwright.diagnostics import SourceText
 from linkwright.files.git_repository import ChangedFile
 from linkwright.packages import enclosing_package
+from linkwright.packages.readers.python_values import PythonFile
 from linkwright.review.sources.names import CPP_SUFFIXES, HEADER_SUFFIXES, PYTHON_SUFFIX
 from linkwright.review.versions import TEST_FOLDERS, Version, Versions
 
@@ -83,7 +85,9 @@ def _python_constants(path: str, _modified: int) -> Mapping[str, ast.expr]:
     """Return the names at the top of a Python file that are assigned a text once."""
     file = Path(path)
     try:
-        tree = ast.parse(file.read_text("utf-8")) if file.stat().st_size <= _MAX_BYTES else ast.Module([], [])
+        if file.stat().st_size > _MAX_BYTES:
+            return {}
+        tree = PythonFile(SourceText(path, file.read_text("utf-8"))).tree
     except (OSError, SyntaxError, ValueError, RecursionError):
         return {}
     stored = [node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)]
