@@ -107,7 +107,7 @@ def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -
     assert len(started) == 1
     assert candidates_after("linkwright topic echo /") == []
     assert len(started) == 1  # the first process still runs
-    path = graph_names._cache_path()
+    path = graph_names._find_cache_path()
     path.write_text(json.dumps({"topics": ["/tf"], "nodes": ["/talker"], "services": ["/go"], "actions": ["/turn"]}))
     assert candidates_after("ros2 topic echo /t") == ["/tf"]
     assert candidates_after("ros2 node info ") == ["/talker"]
