@@ -20,7 +20,7 @@ from typing import Any
 
 from packaging.requirements import Requirement
 
-from linkwright.cli.command import find_command_groups, collect_help_texts, create_parser
+from linkwright.cli.command import collect_help_texts, create_parser, find_command_groups
 from linkwright.cli.language import translate_help
 from linkwright.descriptions import load
 from linkwright.diagnostics.translation import set_language, translate_phrase
@@ -245,7 +245,8 @@ TABLES: dict[str, Callable[[bool], str]] = {
 
 def _format_command(name: str) -> str:
     first = next(describe_command(create_parser(name), "")).partition("\n")[0].removeprefix("## ").strip()
-    return f"| [`linkwright {name}`](commands.md#{first.replace(' ', '-')}) | {translate_help(collect_help_texts()[name])} |"
+    help_text = translate_help(collect_help_texts()[name])
+    return f"| [`linkwright {name}`](commands.md#{first.replace(' ', '-')}) | {help_text} |"
 
 
 def _format_row(cells: Sequence[str]) -> str:

@@ -110,7 +110,7 @@ def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -
     assert len(started) == 1
     assert complete_line("linkwright topic echo /") == []
     assert len(started) == 1  # the first process still runs
-    path = graph_names._cache_path()
+    path = graph_names._find_cache_path()
     path.write_text(json.dumps({"topics": ["/tf"], "nodes": ["/talker"], "services": ["/go"], "actions": ["/turn"]}))
     assert complete_line("ros2 topic echo /t") == ["/tf"]
     assert complete_line("ros2 node info ") == ["/talker"]

@@ -13,7 +13,7 @@ def test_rate_window_measures_steady_rate():
     window = RateWindow(100)
     for tick in range(11):
         assert not window.add(tick * 100 * MILLISECOND_NS)
-    spread = window.spread()
+    spread = window.pop_spread()
     assert spread is not None
     assert format_rate(spread) == "average rate: 10.000\n\tmin: 0.100s max: 0.100s std dev: 0.00000s window: 10"
 
@@ -21,17 +21,17 @@ def test_rate_window_measures_steady_rate():
 def test_rate_window_returns_spread_once():
     window = RateWindow(100)
     window.add(0)
-    assert window.spread() is None
+    assert window.pop_spread() is None
     window.add(MILLISECOND_NS)
-    assert window.spread() is not None
-    assert window.spread() is None
+    assert window.pop_spread() is not None
+    assert window.pop_spread() is None
 
 
 def test_rate_window_drops_old_messages():
     window = RateWindow(2)
     for now in (0, 10 * MILLISECOND_NS, 20 * MILLISECOND_NS, 120 * MILLISECOND_NS):
         window.add(now)
-    spread = window.spread()
+    spread = window.pop_spread()
     assert spread is not None
     assert (spread.count, spread.minimum, spread.maximum) == (2, 10 * MILLISECOND_NS, 100 * MILLISECOND_NS)
 
@@ -41,7 +41,7 @@ def test_rate_window_restarts_when_time_jumps_back():
     window.add(100 * MILLISECOND_NS)
     window.add(200 * MILLISECOND_NS)
     assert window.add(50 * MILLISECOND_NS)
-    assert window.spread() is None
+    assert window.pop_spread() is None
 
 
 def test_rate_table_lists_several_topics():

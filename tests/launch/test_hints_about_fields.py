@@ -2,7 +2,7 @@
 
 import pytest
 
-from linkwright.launch.errors.user_code import hint_about
+from linkwright.launch.errors.user_code import create_hint
 from linkwright.messages import get_message
 
 
@@ -19,4 +19,4 @@ from linkwright.messages import get_message
 def test_missing_field_has_hint(name, field, hint):
     with pytest.raises(AttributeError) as error:
         getattr(get_message(name)(), field)
-    assert str(hint_about(error.value)) == hint
+    assert str(create_hint(error.value)) == hint

@@ -197,7 +197,7 @@ def test_launch_maps_document_texts_to_their_files(write):
         assert call is not None
         assert (call.path, call.arguments) == (path, (("n", "2"),))
         assert descriptions.library.read(text).robot.links["l2"].element.span().file == str(path)
-        assert [warning.code for warning in descriptions.warnings_of(call)] == ["XAC703"]
+        assert [warning.code for warning in descriptions.get_warnings(call)] == ["XAC703"]
         assert descriptions.read_ns(call)
     assert descriptions.find_call(changed) is None
 

@@ -83,7 +83,7 @@ class EchoFormat:
             message_info=message_info,
         )
 
-    def text(self, message: Any, info: MessageInfo | None = None) -> str:
+    def format_message(self, message: Any, info: MessageInfo | None = None) -> str:
         """Format a message, given as an object or as bytes.
 
         Raises:

@@ -58,7 +58,7 @@ def run_command(command: Callable[[], int]) -> int:
         _print_findings([Diagnostic("CLI204", phrase("there is not enough memory"))])
         return FINDINGS
     except Exception as error:  # noqa: BLE001 - the last resort: a bug must not print a traceback
-        diagnostic = _system_error_diagnostic(error) if isinstance(error, OSError) else None
+        diagnostic = _create_system_error_diagnostic(error) if isinstance(error, OSError) else None
         if diagnostic is None:
             _report_bug(error)
             return BUG
@@ -89,7 +89,7 @@ def _open_null_device(stream_number: int, flags: int, mode: str) -> object:
     return open(stream_number, mode, encoding="utf-8", closefd=False)
 
 
-def _system_error_diagnostic(error: OSError) -> Diagnostic | None:
+def _create_system_error_diagnostic(error: OSError) -> Diagnostic | None:
     """Return the diagnostic for an operating system error, or None for a bug in Linkwright."""
     reason = foreign(error.strerror or error)
     # Functions that write files name the file in the error, so an error without a file name concerns standard output.

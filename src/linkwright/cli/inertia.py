@@ -107,7 +107,7 @@ def run(arguments: argparse.Namespace) -> int:
                 )
             )
     if result is not None:
-        print_diagnostics(_refusal_findings(result.refusals, robot), sys.stderr)
+        print_diagnostics(_create_refusal_findings(result.refusals, robot), sys.stderr)
     return 1 if has_errors(description.diagnostics) or (result is not None and result.refusals) else 0
 
 
@@ -166,7 +166,7 @@ def _unknown_link_error(name: str, robot: Robot) -> Diagnostic:
     )
 
 
-def _refusal_findings(reasons: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
+def _create_refusal_findings(reasons: Mapping[str, str], robot: Robot) -> list[Diagnostic]:
     """Return a finding for each ``<inertial>`` element that could not be written."""
     diagnostics = []
     for name, reason in reasons.items():

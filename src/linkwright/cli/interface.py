@@ -25,7 +25,7 @@ def _add_kind_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("-a", "--only-actions", dest="action", action="store_true", help="list only action types")
 
 
-def _requested_kinds(arguments: argparse.Namespace) -> list[str]:
+def _find_requested_kinds(arguments: argparse.Namespace) -> list[str]:
     """Return the requested kinds (``msg``, ``srv``, ``action``), by default all."""
     return [kind for kind in _TITLES if getattr(arguments, kind)] or list(_TITLES)
 
@@ -39,7 +39,7 @@ def run_list(arguments: argparse.Namespace) -> int:
     """Print the type names by kind, as ros2 does."""
     from linkwright.messages import interface_names
 
-    for kind in _requested_kinds(arguments):
+    for kind in _find_requested_kinds(arguments):
         print(_TITLES[kind])
         for name in interface_names(kind):
             print(f"    {name}")
@@ -56,7 +56,7 @@ def run_packages(arguments: argparse.Namespace) -> int:
     from linkwright.messages import interface_names
 
     for package in sorted(
-        {name.split("/")[0] for kind in _requested_kinds(arguments) for name in interface_names(kind)}
+        {name.split("/")[0] for kind in _find_requested_kinds(arguments) for name in interface_names(kind)}
     ):
         print(package)
     return 0
@@ -80,7 +80,7 @@ def run_package(arguments: argparse.Namespace) -> int:
             "run `linkwright interface packages` to list the packages with types"
         )
         raise LinkwrightError(Diagnostic("CLI441", phrase("Unknown package '{package}'", package=package), hint=hint))
-    names = [name for kind in _requested_kinds(arguments) for name in names_by_kind[kind]]
+    names = [name for kind in _find_requested_kinds(arguments) for name in names_by_kind[kind]]
     for name in sorted(name for name in names if name.startswith(f"{package}/")):
         print(name)
     return 0

@@ -121,10 +121,10 @@ def run_list(arguments: argparse.Namespace) -> int:
 async def _format_list(
     parameters: RemoteParameters, arguments: argparse.Namespace, pattern: re.Pattern[str]
 ) -> list[str]:
-    names = [name for name in await parameters.names(arguments.param_prefixes) if pattern.search(name)]
+    names = [name for name in await parameters.list_names(arguments.param_prefixes) if pattern.search(name)]
     if not arguments.param_type:
         return [f"  {name}" for name in names]
-    descriptors = await parameters.descriptors(names)
+    descriptors = await parameters.get_descriptors(names)
     return [f"  {descriptor.name} (type: {TYPE_NAMES.get(descriptor.type, 'unknown')})" for descriptor in descriptors]
 
 
@@ -140,7 +140,7 @@ def run_get(arguments: argparse.Namespace) -> int:
 
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)
-        values = await parameters.values([arguments.parameter_name])
+        values = await parameters.get_values([arguments.parameter_name])
         if not values or values[0].type == 0:
             await parameters.check_declared([arguments.parameter_name])
             print("Parameter not set.")
@@ -165,7 +165,7 @@ def run_describe(arguments: argparse.Namespace) -> int:
     async def job(session: Session) -> int:
         parameters = await RemoteParameters.of(session, arguments)
         await parameters.check_declared(arguments.parameter_names)
-        for descriptor in await parameters.descriptors(arguments.parameter_names):
+        for descriptor in await parameters.get_descriptors(arguments.parameter_names):
             print("\n".join(_format_description(descriptor)))
         return 0
 
@@ -261,8 +261,8 @@ def run_dump(arguments: argparse.Namespace) -> int:
         from linkwright.graph.parameters.files import format_parameter_file, plain_value
 
         parameters = await RemoteParameters.of(session, arguments)
-        names = await parameters.names()
-        values = await parameters.values(names) if names else []
+        names = await parameters.list_names()
+        values = await parameters.get_values(names) if names else []
         plain_values = {name: plain_value(value) for name, value in zip(names, values, strict=False)}
         text = format_parameter_file(parameters.node, plain_values)
         if arguments.output_dir is None:

@@ -54,7 +54,7 @@ class RemoteParameters:
         )
         return cls(session, node, arguments.service_timeout)
 
-    async def names(self, prefixes: Sequence[str] = ()) -> list[str]:
+    async def list_names(self, prefixes: Sequence[str] = ()) -> list[str]:
         """Return the sorted names of the declared parameters.
 
         Args:
@@ -63,12 +63,12 @@ class RemoteParameters:
         response = await self._call("list_parameters", prefixes=list(prefixes))
         return sorted(response.result.names)
 
-    async def values(self, names: Sequence[str]) -> list[Any]:
+    async def get_values(self, names: Sequence[str]) -> list[Any]:
         """Return the values (rcl_interfaces/msg/ParameterValue) of parameters in the given order."""
         response = await self._call("get_parameters", names=list(names))
         return list(response.values)
 
-    async def descriptors(self, names: Sequence[str]) -> list[Any]:
+    async def get_descriptors(self, names: Sequence[str]) -> list[Any]:
         """Return the descriptors (rcl_interfaces/msg/ParameterDescriptor) in the given order."""
         response = await self._call("describe_parameters", names=list(names))
         return list(response.descriptors)
@@ -93,7 +93,7 @@ class RemoteParameters:
         Raises:
             LinkwrightError: CLI424, for each parameter that is not declared.
         """
-        declared_names = await self.names()
+        declared_names = await self.list_names()
         missing = [
             Diagnostic(
                 "CLI424",

@@ -241,7 +241,7 @@ def _format_event(event: Any, echo_format: EchoFormat) -> str:
 
     event_type = event.info.event_type
     event_name = EventType(event_type).name if event_type in iter(EventType) else str(event_type)
-    return echo_format.text(event).replace(f"event_type: {event_type}\n", f"event_type: {event_name}\n", 1)
+    return echo_format.format_message(event).replace(f"event_type: {event_type}\n", f"event_type: {event_name}\n", 1)
 
 
 VERBS = {

@@ -62,9 +62,9 @@ def install_hint(extra: str, package: str = "") -> Phrase:
             " which needs a compiler",
             package=package,
             version=".".join(map(str, _PYTHON_VERSION)),
-            command=_installation().command_for_packages(package),
+            command=_load_installation().command_for_packages(package),
         )
-    installation = _installation()
+    installation = _load_installation()
     command = installation.command_for_extras(extra)
     if installation.origin.is_missing:
         return phrase(
@@ -82,10 +82,10 @@ def package_hint(distribution: str) -> Phrase:
 
     The command installs the package into the environment of Linkwright's Python.
     """
-    return phrase("run {command}", command=_installation().command_for_packages(distribution))
+    return phrase("run {command}", command=_load_installation().command_for_packages(distribution))
 
 
-def _installation() -> Installation:
+def _load_installation() -> Installation:
     from linkwright.diagnostics.installation import find_installation  # takes 15 ms, needed only for errors
 
     return find_installation()

@@ -80,17 +80,17 @@ class Installation:
 
     def command_for_extras(self, *extras: str) -> str:
         """Return the command that adds extras to the installation."""
-        return self._command(self.tool, {*self.extras, *extras}, self.other_packages)
+        return self._create_command(self.tool, {*self.extras, *extras}, self.other_packages)
 
     def command_for_packages(self, *packages: str) -> str:
         """Return the command that adds other packages, by their names for pip."""
         if self.tool == PIPX:
             return _quote_command(["pipx", "inject", self.origin.name, *packages])
         if self.tool == UV_TOOL:
-            return self._command(self.tool, self.extras, (*self.other_packages, *packages))
+            return self._create_command(self.tool, self.extras, (*self.other_packages, *packages))
         return _quote_command([*self.tool, *packages])
 
-    def _command(self, tool: tuple[str, ...], extras: Iterable[str], other_packages: Iterable[str]) -> str:
+    def _create_command(self, tool: tuple[str, ...], extras: Iterable[str], other_packages: Iterable[str]) -> str:
         others = (argument for name in other_packages for argument in ("--with", name))
         return _quote_command([*tool, *others, *self.origin.installer_arguments(extras)])
 

@@ -68,7 +68,7 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> Non
     """
     color, lang = wants_color(stream), language()
     all_diagnostics = list(diagnostics)
-    printed = _most_severe(all_diagnostics)
+    printed = _select_most_severe(all_diagnostics)
     for diagnostic in translated(printed):
         print(render(diagnostic, color=color, lang=lang), file=stream)
     if len(printed) < len(all_diagnostics):
@@ -78,7 +78,7 @@ def print_diagnostics(diagnostics: Iterable[Diagnostic], stream: IO[str]) -> Non
     stream.flush()
 
 
-def _most_severe(diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
+def _select_most_severe(diagnostics: Sequence[Diagnostic]) -> Sequence[Diagnostic]:
     """Return the findings to print, in their original order.
 
     If there are too many, errors take precedence.

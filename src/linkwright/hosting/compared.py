@@ -65,9 +65,9 @@ class ComparedView(ModelView):
     """
 
     def __init__(self, pair: Pair, options: HostOptions, log: LaunchLog) -> None:
-        super().__init__(_xacro_call(pair.new), pair.new.finder, options, log)
+        super().__init__(_to_xacro_call(pair.new), pair.new.finder, options, log)
         self._pair = pair
-        self._old_call = _xacro_call(pair.old)
+        self._old_call = _to_xacro_call(pair.old)
         self._old = _OldDescriptions(pair.old.finder, self.descriptions.library)
         self.reload = LiveReload(self.descriptions, self._show_findings, log)
         self._old_reload = LiveReload(self._old, self._show_findings, log)
@@ -140,5 +140,5 @@ class _OldDescriptions(Descriptions):
         return super().store(call, description, old_description_key(description) if text is None else text)
 
 
-def _xacro_call(model: Model) -> XacroCall:
+def _to_xacro_call(model: Model) -> XacroCall:
     return XacroCall(model.path, tuple(model.values.items()))

@@ -182,7 +182,7 @@ def run_description(
         with use_descriptions(Descriptions(finder)):
             description, initial_locals = load(log)
             if options.foxglove is not None:
-                description.add_action(_foxglove_bridge_action(options.foxglove))
+                description.add_action(_create_foxglove_bridge_action(options.foxglove))
             session = partial(LaunchSession, finder, options.for_session(title), log)
             all_configurations = {**options.configurations, **configurations}
             quiet = options.noninteractive
@@ -209,7 +209,7 @@ async def _run(
     return await session.run(description, initial_locals)
 
 
-def _foxglove_bridge_action(port: int) -> Action:
+def _create_foxglove_bridge_action(port: int) -> Action:
     """Return the action that starts the node for connections from Foxglove and Lichtblick."""
     from linkwright.launch.ros import Node
 

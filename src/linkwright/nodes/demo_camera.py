@@ -49,8 +49,8 @@ class DemoCamera(SingleNode):
                 )
         qos = QoSProfile(
             depth=depth,
-            history=HistoryPolicy[_policy_name(HistoryPolicy, "history", history)],
-            reliability=ReliabilityPolicy[_policy_name(ReliabilityPolicy, "reliability", reliability)],
+            history=HistoryPolicy[_parse_policy_name(HistoryPolicy, "history", history)],
+            reliability=ReliabilityPolicy[_parse_policy_name(ReliabilityPolicy, "reliability", reliability)],
         )
         self._publisher = node.create_publisher(get_message("sensor_msgs/msg/Image"), "image", qos)
         self._image = _create_test_image(width, height)
@@ -86,7 +86,7 @@ def _create_test_image(width: int, height: int) -> NDArray[np.uint8]:
     return image
 
 
-def _policy_name(kind: type[HistoryPolicy | ReliabilityPolicy], name: str, value: str) -> str:
+def _parse_policy_name(kind: type[HistoryPolicy | ReliabilityPolicy], name: str, value: str) -> str:
     choices = [policy.name.lower() for policy in kind if policy.name not in ("UNKNOWN", "BEST_AVAILABLE")]
     if value not in choices:
         raise LinkwrightError(

@@ -101,7 +101,7 @@ def parse_settings(values: Mapping[str, Any]) -> JointSettings:
         source_list=reader.read_texts("source_list"),
         delta=reader.read_number("delta"),
         zeros={joint: reader.read_number(f"zeros.{joint}") for joint in reader.list_names_below("zeros")},
-        dependent_joints=reader.dependent_joints(),
+        dependent_joints=reader.read_dependent_joints(),
     )
     if reader.problems:
         raise LinkwrightError(*reader.problems)
@@ -144,7 +144,7 @@ class _Reader:
             return ()
         return tuple(value)
 
-    def dependent_joints(self) -> dict[str, Dependence]:
+    def read_dependent_joints(self) -> dict[str, Dependence]:
         dependent: dict[str, dict[str, Any]] = {}
         for entry_name in self.list_names_below("dependent_joints"):
             # Joint names can contain dots, so split at the last dot.

@@ -101,7 +101,7 @@ class JointPositions:
         position, or would otherwise have no position, also keep their position, clamped to the new limits. All other
         joints start at their zero position, or without a position if ``publish_default_positions`` is false.
         """
-        old_states, old_rows = self._free_states(), self._rows
+        old_states, old_rows = self._collect_free_states(), self._rows
         old_zeros = {joint.name: joint.zero for joint in self.layout.free}
         self.layout = layout
         self._rows = {joint.name: row for row, joint in enumerate(layout.free)}
@@ -187,7 +187,7 @@ class JointPositions:
         if efforts is not None:
             message.effort = array("d", efforts.tobytes())
 
-    def _free_states(self) -> Array:
+    def _collect_free_states(self) -> Array:
         return np.array([self._position.values, self._velocity.values, self._effort.values])
 
     def _restore_state(self, joint: JointRange, state: Array, old_zero: float) -> None:
@@ -243,7 +243,7 @@ class JointStatePublisher(SingleNode):
             declare_settings(self._node)
             self._settings = self._read_settings()
             self._joints = JointPositions(self._settings)
-            robot = self._robot_from_arguments(arguments)
+            robot = self._read_robot_from_arguments(arguments)
             self._publisher = self._node.create_publisher(JointState, "joint_states", DEFAULT_QOS)
             self._publish_trigger = self._node.create_guard_condition(self._publish_now)
             self._timer: Timer = self._node.create_timer(1.0 / self._settings.rate, self._on_timer)
@@ -268,7 +268,7 @@ class JointStatePublisher(SingleNode):
         """Publish in the next iteration of the event loop, once even after several calls."""
         self._publish_trigger.trigger()
 
-    def _robot_from_arguments(self, arguments: Sequence[str]) -> Robot | None:
+    def _read_robot_from_arguments(self, arguments: Sequence[str]) -> Robot | None:
         if not arguments:
             return None
         if len(arguments) > 1:

@@ -103,14 +103,14 @@ class JointPanel:
     def randomize(self) -> None:
         """Set every free joint to a random position within its limits."""
         self._logger.info("Randomizing")
-        for slider in self._free_sliders():
+        for slider in self._find_free_sliders():
             self._joints.set_position(slider.name, self._random.uniform(slider.lower, slider.upper))
         self._publish_move()
 
     def center(self) -> None:
         """Set every free joint to its zero position, which need not be the middle of its range."""
         self._logger.info("Centering")
-        for slider in self._free_sliders():
+        for slider in self._find_free_sliders():
             self._joints.set_position(slider.name, slider.zero)
         self._publish_move()
 
@@ -169,7 +169,7 @@ class JointPanel:
         """Notify the subscribers that joints have moved."""
         self._positions_changed.trigger()
 
-    def _free_sliders(self) -> list[JointSlider]:
+    def _find_free_sliders(self) -> list[JointSlider]:
         return [slider for slider in self._sliders if slider.mimic is None]
 
     def _publish_move(self) -> None:

@@ -83,7 +83,7 @@ async def _run(factory: Factory, arguments: list[str], logging: LoggingSetup, *,
     try:
         if joins:
             _join_network(graph)
-        node = factory(graph, NodeOptions(arguments=arguments, terminal=_terminal_descriptor()))
+        node = factory(graph, NodeOptions(arguments=arguments, terminal=_find_terminal_descriptor()))
         if isinstance(node, FinishingNode):
             node.finished.add_done_callback(lambda _: end_event.set())
         await end_event.wait()
@@ -94,7 +94,7 @@ async def _run(factory: Factory, arguments: list[str], logging: LoggingSetup, *,
         await graph.close()
 
 
-def _terminal_descriptor() -> int | None:
+def _find_terminal_descriptor() -> int | None:
     """Return the file descriptor of standard input if it is a terminal, otherwise None."""
     try:
         descriptor = sys.stdin.fileno()

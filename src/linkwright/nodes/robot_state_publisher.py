@@ -325,7 +325,7 @@ class RobotStatePublisher(SingleNode):
         node = self._node
         text: str = node.declare_parameter("robot_description", "").value
         if not text and arguments:
-            text = self._description_from_file(arguments[0])
+            text = self._read_description(arguments[0])
         if not text:
             raise LinkwrightError(
                 Diagnostic(
@@ -360,7 +360,7 @@ class RobotStatePublisher(SingleNode):
         node.add_post_set_parameters_callback(self._apply_parameters)
         self._use_description(text, robot)
 
-    def _description_from_file(self, path: str) -> str:
+    def _read_description(self, path: str) -> str:
         self._node.get_logger().warning(
             "No robot_description parameter, but command-line argument available.  Assuming argument is name of URDF "
             "file.  This backwards compatibility fallback will be removed in the future."

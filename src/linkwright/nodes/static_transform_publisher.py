@@ -91,7 +91,7 @@ class StaticTransformPublisher(SingleNode):
     """
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        self._node, arguments = create_node(graph, options, f"static_transform_publisher_{_random_suffix()}")
+        self._node, arguments = create_node(graph, options, f"static_transform_publisher_{_create_random_suffix()}")
         self.finished: asyncio.Future[int] = asyncio.get_running_loop().create_future()
         if any(word in ("-h", "--help") for word in arguments):
             options.output(HELP)
@@ -120,7 +120,7 @@ class StaticTransformPublisher(SingleNode):
         )
 
 
-def _random_suffix() -> str:
+def _create_random_suffix() -> str:
     """Return random letters and digits that make the node's name unique, as in tf2_ros."""
     return "".join(secrets.choice(string.ascii_letters + string.digits) for _ in range(16))
 

@@ -66,12 +66,12 @@ def read_points(
     dtype = dtype_from_fields(cloud.fields, cloud.point_step, is_bigendian=cloud.is_bigendian)
     points: NDArray[Any] = _to_flat_points(cloud, dtype)
     if field_names is not None:
-        missing = [name for name in field_names if name not in _field_names(dtype)]
+        missing = [name for name in field_names if name not in _list_field_names(dtype)]
         if missing:
-            raise AssertionError(f"the point cloud has no field {missing}; it has {list(_field_names(dtype))}")
+            raise AssertionError(f"the point cloud has no field {missing}; it has {list(_list_field_names(dtype))}")
         points = points[list(field_names)]
     if uvs is not None:
-        points = points[_point_indices(uvs, cloud.width)]
+        points = points[_compute_point_indices(uvs, cloud.width)]
     if skip_nans:
         points = points[_is_not_nan(points)]
     if reshape_organized_cloud and cloud.height > 1 and points.size == cloud.width * cloud.height:
@@ -92,7 +92,7 @@ def read_points_numpy(
         AssertionError: the fields have different types, or a field is missing.
     """
     points = read_points(cloud, field_names, skip_nans, uvs, reshape_organized_cloud)
-    if len({points.dtype[name] for name in _field_names(points.dtype)}) > 1:
+    if len({points.dtype[name] for name in _list_field_names(points.dtype)}) > 1:
         raise AssertionError("the fields have different types: select fields of one type with field_names")
     return structured_to_unstructured(points)
 
@@ -102,7 +102,7 @@ def read_points_list(
 ) -> list[Any]:
     """Return the points of a cloud as named tuples. See `read_points`."""
     points = read_points(cloud, field_names, skip_nans, uvs)
-    point = namedtuple("Point", _field_names(points.dtype))  # type: ignore[misc]  # noqa: PYI024 - the cloud's names
+    point = namedtuple("Point", _list_field_names(points.dtype))  # type: ignore[misc]  # noqa: PYI024 - the cloud's names
     return [point._make(values) for values in points.tolist()]
 
 
@@ -147,7 +147,7 @@ def create_cloud_xyz32(header: Any, points: Iterable[Any] | NDArray[Any], step: 
     return create_cloud(header, fields, points, step)
 
 
-def _field_names(dtype: np.dtype[Any]) -> tuple[str, ...]:
+def _list_field_names(dtype: np.dtype[Any]) -> tuple[str, ...]:
     return dtype.names or ()
 
 
@@ -161,14 +161,14 @@ def _to_flat_points(cloud: Any, dtype: np.dtype[Any]) -> NDArray[Any]:
     return np.frombuffer(data, dtype, count=width * height)
 
 
-def _point_indices(uvs: Iterable[Any], width: int) -> NDArray[np.intp]:
+def _compute_point_indices(uvs: Iterable[Any], width: int) -> NDArray[np.intp]:
     indices = np.array(list(uvs), dtype=np.intp)
     return indices[:, 1] * width + indices[:, 0] if indices.ndim == 2 else indices
 
 
 def _is_not_nan(points: NDArray[Any]) -> NDArray[np.bool_]:
     is_valid = np.ones(points.shape, np.bool_)
-    for name in _field_names(points.dtype):
+    for name in _list_field_names(points.dtype):
         if points.dtype[name].kind == "f":
             is_valid &= ~np.isnan(points[name])
     return is_valid
@@ -178,12 +178,12 @@ def _to_structured(points: Iterable[Any] | NDArray[Any], dtype: np.dtype[Any]) -
     if not isinstance(points, np.ndarray):
         return _fill_gaps([tuple(point) for point in points], dtype)
     if points.dtype.names is None:
-        if points.shape[-1] != len(_field_names(dtype)):
+        if points.shape[-1] != len(_list_field_names(dtype)):
             raise AssertionError(
-                f"points have {points.shape[-1]} values, but there are {len(_field_names(dtype))} fields"
+                f"points have {points.shape[-1]} values, but there are {len(_list_field_names(dtype))} fields"
             )
         return _fill_gaps(unstructured_to_structured(points, dtype), dtype)
-    if points.dtype.names != dtype.names or any(points.dtype[name] != dtype[name] for name in _field_names(dtype)):
+    if points.dtype.names != dtype.names or any(points.dtype[name] != dtype[name] for name in _list_field_names(dtype)):
         raise AssertionError(f"points have the type {points.dtype}, but the fields have the type {dtype}")
     return _fill_gaps(points, dtype)
 

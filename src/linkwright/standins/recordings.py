@@ -203,7 +203,7 @@ class SequentialReader:
         if not topics:
             self._stream = iter(())
         elif self._last is None:
-            self._stream = self._messages_from(topics, self._start_ns)
+            self._stream = self._read_messages_from(topics, self._start_ns)
         else:
             stamp_ns = self._last[1]
             same_stamp_messages = list(bag.messages((), stamp_ns, stamp_ns + 1))
@@ -215,11 +215,11 @@ class SequentialReader:
                 if message[0] in topics
             ]
             self._stream = chain(
-                remaining_messages, self._messages_from(topics, stamp_ns + (-1 if self._reverse else 1))
+                remaining_messages, self._read_messages_from(topics, stamp_ns + (-1 if self._reverse else 1))
             )
         self._advance()
 
-    def _messages_from(self, topics: Collection[str], stamp_ns: int | None) -> Iterator[_Message]:
+    def _read_messages_from(self, topics: Collection[str], stamp_ns: int | None) -> Iterator[_Message]:
         if self._reverse:
             return _read_backwards(self._open_bag(), topics, stamp_ns)
         return self._open_bag().messages(topics, stamp_ns)

@@ -98,7 +98,7 @@ class Viewer:
         )
         config.options.set(("Fixed Frame",), fixed_frame_parameter.value)
         self._receivers: dict[str, Callable[[Page, Any], object]] = {}
-        self._audience = Audience(self._opening, self._receivers, self._on_page_closed, self._node.get_logger())
+        self._audience = Audience(self._create_opening, self._receivers, self._on_page_closed, self._node.get_logger())
         shared_objects: dict[str, Any] = {"meshes": self._server.meshes, "downloads": self._server.downloads}
         if beside is not None:  # share the files, and the IDs, which must be unique on a server
             host_context = beside.context
@@ -275,7 +275,7 @@ class Viewer:
 
     # --- pages -------------------------------------------------------------------------------------------------
 
-    def _opening(self, page: Page) -> list[Payload]:
+    def _create_opening(self, page: Page) -> list[Payload]:
         manager = self.managers.enter(page)
         messages, frames = self.opening_messages(manager)
         manager.pages.add(page)  # added here so that messages published later follow the opening messages

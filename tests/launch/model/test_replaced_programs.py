@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.launch.model.replaced_programs import find_replacing_node, replaced_programs
+from linkwright.launch.model.replaced_programs import find_replacing_node, load_replaced_programs
 from linkwright.loading import extensions
 from linkwright.nodes.node_command import NodeCommand
 
@@ -36,9 +36,9 @@ def installed_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     extensions._read_all_groups.cache_clear()
 
 
-@pytest.mark.parametrize("name", [*replaced_programs()])
+@pytest.mark.parametrize("name", [*load_replaced_programs()])
 def test_builtin_replacements_can_be_imported(name: str) -> None:
-    assert callable(replaced_programs()[name].load())
+    assert callable(load_replaced_programs()[name].load())
 
 
 def test_program_of_another_package_is_replaced(installed_package: None) -> None:

@@ -120,13 +120,13 @@ def run_play(arguments: argparse.Namespace) -> int:
 
     options = PlayOptions(
         rate=arguments.rate,
-        topics=[_absolute_name(name) for name in arguments.topics],
+        topics=[_to_absolute_name(name) for name in arguments.topics],
         pattern=arguments.regex,
         without_pattern=arguments.exclude,
-        clock_topics=[_absolute_name(name) for name in arguments.clock_topics],
+        clock_topics=[_to_absolute_name(name) for name in arguments.clock_topics],
         clock_before_all=arguments.clock_topics_all,
         until_ns=_compute_until_ns(arguments),
-        without=[_absolute_name(name) for name in arguments.exclude_topics],
+        without=[_to_absolute_name(name) for name in arguments.exclude_topics],
         loop=arguments.loop,
         clock_hz=arguments.clock,
         delay=arguments.delay,
@@ -181,7 +181,7 @@ def _compute_until_ns(arguments: argparse.Namespace) -> int | None:
     return None if until_ns is None or until_ns < 0 else until_ns
 
 
-def _absolute_name(name: str) -> str:
+def _to_absolute_name(name: str) -> str:
     return f"/{name.lstrip('/')}"
 
 

@@ -34,7 +34,7 @@ def read_names(kind: str) -> list[str]:
     Returns:
         The names, or an empty list if there is no cache or the cache is too old.
     """
-    path = _cache_path()
+    path = _find_cache_path()
     try:
         age = time.time() - path.stat().st_mtime
         names: list[str] = json.loads(path.read_text(encoding="utf-8"))[kind]
@@ -45,7 +45,7 @@ def read_names(kind: str) -> list[str]:
     return names if age < _MAX_AGE_S else []
 
 
-def _cache_path() -> Path:
+def _find_cache_path() -> Path:
     return cache_folder() / "completion" / f"graph-{os.environ.get('ROS_DOMAIN_ID') or 0}.json"
 
 
@@ -86,7 +86,7 @@ def discover() -> int:
         suffix = "/_action/feedback"
         topics = [name for name, _ in node.get_topic_names_and_types()]
         names_by_kind["actions"] = sorted(name.removesuffix(suffix) for name in topics if name.endswith(suffix))
-        path = _cache_path()
+        path = _find_cache_path()
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary_path = path.with_suffix(f".{os.getpid()}")
         temporary_path.write_text(json.dumps(names_by_kind), encoding="utf-8")

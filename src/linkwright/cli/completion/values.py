@@ -45,11 +45,11 @@ def find_argument_candidates(
     return [] if find_candidates is None else find_candidates((path, positionals, table))
 
 
-def _packages(request: Request) -> Iterable[str]:
+def _find_packages(request: Request) -> Iterable[str]:
     return sorted({*PackageFinder().packages(), *request[2]["executables"]})
 
 
-def _executables(request: Request) -> Iterable[str]:
+def _find_executables(request: Request) -> Iterable[str]:
     _, positionals, table = request
     package = positionals[-1] if positionals else ""
     names = set(table["executables"].get(package, ()))
@@ -65,11 +65,11 @@ def _executables(request: Request) -> Iterable[str]:
     return sorted(names)
 
 
-def _launch_packages(_: Request) -> Iterable[str]:
+def _find_launch_packages(_: Request) -> Iterable[str]:
     return [*sorted(PackageFinder().packages()), FILES]
 
 
-def _launch_files(request: Request) -> Iterable[str]:
+def _find_launch_files(request: Request) -> Iterable[str]:
     path_or_package = Path(request[1][0])
     if path_or_package.is_file():
         return _find_declared_arguments(path_or_package, _LAUNCH_ARGUMENT)
@@ -77,7 +77,7 @@ def _launch_files(request: Request) -> Iterable[str]:
     return [] if share is None else sorted(path.name for path in launch_files_below(share))
 
 
-def _launch_arguments(request: Request) -> Iterable[str]:
+def _find_launch_arguments(request: Request) -> Iterable[str]:
     package, file = request[1][:2]
     if Path(package).is_file():
         return _find_declared_arguments(Path(package), _LAUNCH_ARGUMENT)
@@ -86,13 +86,13 @@ def _launch_arguments(request: Request) -> Iterable[str]:
     return [] if launch_file is None else _find_declared_arguments(launch_file, _LAUNCH_ARGUMENT)
 
 
-def _description_arguments(request: Request) -> Iterable[str]:
+def _find_description_arguments(request: Request) -> Iterable[str]:
     paths = [Path(word) for word in request[1] if ":=" not in word]
     return [name for path in paths if path.is_file() for name in _find_declared_arguments(path, _XACRO_ARGUMENT)]
 
 
-def _second_description(request: Request) -> Iterable[str]:
-    return [*_description_arguments(request), FILES]
+def _find_second_description(request: Request) -> Iterable[str]:
+    return [*_find_description_arguments(request), FILES]
 
 
 def _find_declared_arguments(path: Path, pattern: re.Pattern[str]) -> list[str]:
@@ -105,7 +105,7 @@ def _find_declared_arguments(path: Path, pattern: re.Pattern[str]) -> list[str]:
     return [f"{name}:=" for name in dict.fromkeys(names)]
 
 
-def _types(request: Request) -> Iterable[str]:
+def _find_types(request: Request) -> Iterable[str]:
     path, _, table = request
     kinds = _INTERFACE_KINDS.get(path[0], ("msg", "srv", "action"))
     package_types = (
@@ -121,45 +121,45 @@ def _graph_names(kind: str) -> Callable[[Request], Iterable[str]]:
     return lambda _: read_names(kind)
 
 
-def _detectors(request: Request) -> Iterable[str]:
+def _find_detectors(request: Request) -> Iterable[str]:
     from linkwright.vision.detectors.registry import detector_names
 
-    return [*detector_names(), *_files(request)]
+    return [*detector_names(), *_find_files(request)]
 
 
-def _models(_: Request) -> Iterable[str]:
+def _find_models(_: Request) -> Iterable[str]:
     from linkwright.model_files import model_table
 
     return model_table()
 
 
-def _engines(_: Request) -> Iterable[str]:
+def _find_engines(_: Request) -> Iterable[str]:
     from linkwright.speech.engine import engine_names
 
     return engine_names()
 
 
-def _files(_: Request) -> Iterable[str]:
+def _find_files(_: Request) -> Iterable[str]:
     return [FILES]
 
 
 _FINDERS_BY_KIND: dict[str, Callable[[Request], Iterable[str]]] = {
-    "PACKAGE": _packages,
-    "EXECUTABLE": _executables,
-    "LAUNCH_PACKAGE": _launch_packages,
-    "LAUNCH_FILE": _launch_files,
-    "LAUNCH_ARGUMENT": _launch_arguments,
-    "NAME:=VALUE": _description_arguments,
-    "NEW": _second_description,
-    "MODEL": _models,
-    "ENGINE": _engines,
-    "WAV": _files,
+    "PACKAGE": _find_packages,
+    "EXECUTABLE": _find_executables,
+    "LAUNCH_PACKAGE": _find_launch_packages,
+    "LAUNCH_FILE": _find_launch_files,
+    "LAUNCH_ARGUMENT": _find_launch_arguments,
+    "NAME:=VALUE": _find_description_arguments,
+    "NEW": _find_second_description,
+    "MODEL": _find_models,
+    "ENGINE": _find_engines,
+    "WAV": _find_files,
     "TOPIC": _graph_names("topics"),
     "NODE": _graph_names("nodes"),
     "CONTAINER": _graph_names("nodes"),
     "SERVICE": _graph_names("services"),
     "ACTION": _graph_names("actions"),
-    "TYPE": _types,
-    "FILE|NAME": _detectors,
-    **dict.fromkeys(("IMAGE", "FILE", "FOLDER", "DIR", "OUT", "BAG", "FILE|FOLDER|NAME:=VALUE"), _files),
+    "TYPE": _find_types,
+    "FILE|NAME": _find_detectors,
+    **dict.fromkeys(("IMAGE", "FILE", "FOLDER", "DIR", "OUT", "BAG", "FILE|FOLDER|NAME:=VALUE"), _find_files),
 }

@@ -113,7 +113,7 @@ def run_grade(arguments: argparse.Namespace) -> int:
     _check_outputs(outputs)
     submissions = find_submissions(arguments.folders, course)
     limits = _create_limits(arguments)
-    journal = Journal(_journal_path(outputs))
+    journal = Journal(_choose_journal_path(outputs))
     line = ProgressLine()
     start_time = time.monotonic()
     if arguments.ray is None:
@@ -187,7 +187,7 @@ def _check_outputs(outputs: Sequence[Path]) -> None:
             raise LinkwrightError(Diagnostic("LEARN121", message, hint=hint))
 
 
-def _journal_path(outputs: Sequence[Path]) -> Path | None:
+def _choose_journal_path(outputs: Sequence[Path]) -> Path | None:
     from linkwright.learning.grading.journal import SUFFIX
 
     return outputs[0].with_name(outputs[0].name + SUFFIX) if outputs else None

@@ -30,7 +30,7 @@ def main(name: str, words: Sequence[str]) -> int:
     return run_command(lambda: TOOLS[name](words))
 
 
-def _xacro(words: Sequence[str]) -> int:
+def _run_xacro(words: Sequence[str]) -> int:
     return linkwright(["xacro", *words], program="")
 
 
@@ -58,7 +58,7 @@ def _check_urdf(words: Sequence[str]) -> int:
     return FINE
 
 
-def _urdf_to_graphviz(words: Sequence[str]) -> int:
+def _run_urdf_to_graphviz(words: Sequence[str]) -> int:
     if not 1 <= len(words) <= 2:
         print(
             "Usage: urdf_to_graphviz input.xml [OUTPUT]\n"
@@ -74,11 +74,11 @@ def _run(package: str, executable: str, words: Sequence[str]) -> int:
     return linkwright(["run", package, executable, *words])
 
 
-def _launch_test(words: Sequence[str]) -> int:
+def _run_launch_test(words: Sequence[str]) -> int:
     return linkwright(["test", *words], program="launch_test")
 
 
-def _colcon(words: Sequence[str]) -> int:
+def _run_colcon(words: Sequence[str]) -> int:
     try:
         from colcon_core.command import main as colcon  # type: ignore[import-untyped]  # it ships no types
     except ModuleNotFoundError as error:
@@ -93,12 +93,12 @@ def _colcon(words: Sequence[str]) -> int:
 
 TOOLS: dict[str, Callable[[Sequence[str]], int]] = {
     "ros2": ros2,
-    "xacro": _xacro,
+    "xacro": _run_xacro,
     "check_urdf": _check_urdf,
-    "urdf_to_graphviz": _urdf_to_graphviz,
+    "urdf_to_graphviz": _run_urdf_to_graphviz,
     "rviz2": partial(_run, "rviz2", "rviz2"),
     **{executable: partial(_run, package, executable) for package, executable in PANEL_PROGRAMS},
-    "launch_test": _launch_test,
-    "colcon": _colcon,
+    "launch_test": _run_launch_test,
+    "colcon": _run_colcon,
 }
 """The functions that run the commands with their arguments and return the exit status."""

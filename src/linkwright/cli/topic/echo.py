@@ -74,7 +74,7 @@ def run_echo(arguments: argparse.Namespace) -> int:
         def show(message: Any, info: MessageInfo) -> None:
             if matches_filter is not None and not matches_filter(select_field(message, echo_format.field)):
                 return
-            text = echo_format.text(message, info)
+            text = echo_format.format_message(message, info)
             write(_CLEAR_SEQUENCE + text if arguments.clear else text)
             if arguments.once:
                 session.finish()

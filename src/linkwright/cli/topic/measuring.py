@@ -78,7 +78,7 @@ def run_hz(arguments: argparse.Namespace) -> int:
                 print(f"Subscribed to [{name}]")
 
         def format_report() -> str | None:
-            spreads = {name: window.spread() for name, window in windows.items()}
+            spreads = {name: window.pop_spread() for name, window in windows.items()}
             measured_spreads = {name: spread for name, spread in spreads.items() if spread is not None}
             if len(names) > 1:
                 return format_rate_table(measured_spreads) if measured_spreads else "no new messages"

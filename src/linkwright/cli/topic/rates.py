@@ -77,7 +77,7 @@ class RateWindow:
         self._times.append(now_ns - previous_ns)
         return False
 
-    def spread(self) -> Spread | None:
+    def pop_spread(self) -> Spread | None:
         """Return the statistics, or None if no message arrived since the last call."""
         if not self._has_new_message or not self._times:
             return None

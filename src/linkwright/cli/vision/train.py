@@ -114,7 +114,7 @@ def run(arguments: argparse.Namespace) -> int:
         threads=arguments.threads,
         precision=arguments.precision,
         device=arguments.device,
-        weights=_weights_path(arguments.weights),
+        weights=_choose_weights_path(arguments.weights),
         resume=arguments.resume,
         held_out=tuple(arguments.held_out),
         command=shlex.join(["linkwright", *(word for word in sys.argv[1:] if word != "--resume")]),
@@ -144,7 +144,7 @@ def _print_epoch(epoch: Epoch, epoch_count: int) -> None:
     print(line, file=sys.stderr, flush=True)
 
 
-def _weights_path(text: str | None) -> Path | None:
+def _choose_weights_path(text: str | None) -> Path | None:
     from linkwright.vision.models.things import FILE
 
     return FILE if text == FILE.stem else Path(text) if text else None

@@ -144,7 +144,7 @@ class LaunchService:
         with self.__lock:
             if self.__session is not None:
                 raise RuntimeError("LaunchService cannot be run multiple times concurrently.")
-            finder = PackageFinder(start=_starting_folders())
+            finder = PackageFinder(start=_find_starting_folders())
             options = SessionOptions(
                 open_browser=False, isolate=self._isolates_nodes, shutdown_when_idle=shutdown_when_idle
             )
@@ -184,7 +184,7 @@ class ProcessLaunchService(LaunchService):
     _isolates_nodes = True
 
 
-def _starting_folders() -> list[Path]:
+def _find_starting_folders() -> list[Path]:
     """Return the folders where the search for packages starts.
 
     These are the folder of the program and the current folder.

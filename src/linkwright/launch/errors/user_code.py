@@ -80,7 +80,7 @@ def explain(error: BaseException, subject: str, fallback: SourceLocation | None 
     callers = dict.fromkeys(reversed(user_locations[:-1]))  # report a recursive function only once
     notes = tuple(Note(phrase("called from here"), caller.span(read_source(caller.file))) for caller in callers)
     diagnostic = Diagnostic(
-        "LAUNCH104", message, span, notes=notes, hint=hint_about(error, source, span), source=source
+        "LAUNCH104", message, span, notes=notes, hint=create_hint(error, source, span), source=source
     )
     return as_ros_error(error if isinstance(error, Exception) else None, diagnostic)
 
@@ -113,7 +113,7 @@ def _find_user_locations(traceback: TracebackType | None) -> Iterable[SourceLoca
         traceback_entry = traceback_entry.tb_next
 
 
-def hint_about(error: BaseException, source: SourceText | None = None, span: Span | None = None) -> Phrase | None:
+def create_hint(error: BaseException, source: SourceText | None = None, span: Span | None = None) -> Phrase | None:
     """Return a hint with the name that the user may have meant, or None if no name is similar.
 
     Args:

@@ -37,7 +37,7 @@ def parse_substitution(string_value: str) -> list[Substitution]:
     """
     if not string_value:
         return [TextSubstitution(text=string_value)]
-    return _TextParser(string_value, location_of(string_value)).template()
+    return _TextParser(string_value, location_of(string_value)).parse_template()
 
 
 def parse_if_substitutions(value: Any) -> Any:
@@ -80,7 +80,7 @@ class _TextParser:
         self._at = 0
         self._location = location
 
-    def template(self) -> list[Substitution]:
+    def parse_template(self) -> list[Substitution]:
         """Parse the entire text, and return its substitutions."""
         substitutions = self._parse_parts(closing_quote="", is_argument=False)
         assert self._at == len(self._text)
@@ -114,7 +114,7 @@ class _TextParser:
 
     def _add_text(self, substitutions: list[Substitution], start: int) -> None:
         if start < self._at:
-            with reading_markup_at(self._location_of_range(start, self._at)):
+            with reading_markup_at(self._locate_range(start, self._at)):
                 substitutions.append(TextSubstitution(text=replace_escaped_characters(self._text[start : self._at])))
 
     def _parse_substitution(self, quote: str) -> Substitution:
@@ -137,7 +137,7 @@ class _TextParser:
                 self._unexpected_character_error(match[0])
             arguments.append(self._parse_argument(quote))
         self._at += 1
-        return instantiate_substitution(match[0], arguments, self._location_of_range(start, self._at))
+        return instantiate_substitution(match[0], arguments, self._locate_range(start, self._at))
 
     def _parse_argument(self, quote: str) -> list[Substitution]:
         opening_quote = self._text[self._at]
@@ -182,10 +182,10 @@ class _TextParser:
             hint or phrase("separate arguments by spaces"),
         )
 
-    def _location_of_range(self, start: int, end: int) -> SourceLocation | None:
+    def _locate_range(self, start: int, end: int) -> SourceLocation | None:
         return self._location.part(start, end) if isinstance(self._location, MarkupLocation) else self._location
 
     def _fail(self, message: Phrase, hint: Phrase) -> NoReturn:
-        location = self._location_of_range(self._at, self._at + 1)
+        location = self._locate_range(self._at, self._at + 1)
         text = phrase("substitution in '{text}' cannot be parsed: {message}", text=self._text, message=message)
         raise error_at(location, "LAUNCH119", text, hint, ros_error=ValueError(text))

@@ -66,7 +66,7 @@ class MarkupEntity(Entity):
                 "'{type_name}' accepts {names}", type_name=self._type_name, names=quoted_names(sorted(known_names))
             )
         raise error_at(
-            self._location_of_part(name),
+            self._locate_part(name),
             "LAUNCH116",
             phrase(
                 "'{type_name}' has no {part_kind} '{name}'",
@@ -78,7 +78,7 @@ class MarkupEntity(Entity):
             ros_error=ValueError(f"{ros_text} `{self._type_name}`: {{{names_text}}}"),
         )
 
-    def _location_of_part(self, name: str) -> SourceLocation | None:
+    def _locate_part(self, name: str) -> SourceLocation | None:
         return self._location
 
     def _fail_missing(self, name: str, present: Collection[str], ros_error: str) -> NoReturn:
@@ -100,7 +100,7 @@ class MarkupEntity(Entity):
             value=repr(value),
             type=describe_type(data_type),
         )
-        raise error_at(self._location_of_part(name), "LAUNCH118", message, ros_error=TypeError(ros_error))
+        raise error_at(self._locate_part(name), "LAUNCH118", message, ros_error=TypeError(ros_error))
 
 
 def describe_type(data_type: Any) -> Phrase:

@@ -174,7 +174,7 @@ class Parser:
             InvalidFrontendLaunchFileError: LAUNCH107 to LAUNCH109 and XML codes, the errors in the file.
         """
         name, text = read_file(file)
-        candidates = cls.get_parsers_from_filename(name) or _parsers_by_suffix(name, cls._parsers())
+        candidates = cls.get_parsers_from_filename(name) or _find_parsers_by_suffix(name, cls._parsers())
         errors: list[Exception] = []
         for parser in candidates or cls._parsers().values():
             file_copy = io.StringIO(text)
@@ -187,7 +187,9 @@ class Parser:
                 errors.append(error)
         extension = os.path.splitext(name)[1][1:] if cls.is_filename_valid(name) else ""  # noqa: PTH122
         ros_error = InvalidFrontendLaunchFileError(extension, likely_errors=errors)
-        raise as_ros_error(ros_error, *_likely_diagnostics(name, text, errors)) from (errors[0] if errors else None)
+        raise as_ros_error(ros_error, *_choose_likely_diagnostics(name, text, errors)) from (
+            errors[0] if errors else None
+        )
 
     @classmethod
     def _parsers(cls) -> dict[str, type[Parser]]:
@@ -211,7 +213,7 @@ def read_file(file: Any) -> tuple[str, str]:
     return name if isinstance(name, str) else "<string>", file.read()
 
 
-def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tuple[Diagnostic, ...]:
+def _choose_likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tuple[Diagnostic, ...]:
     """Return the findings of the parser for the language that an unreadable file probably has.
 
     If no parser fits, the result is one finding LAUNCH107.
@@ -225,6 +227,6 @@ def _likely_diagnostics(name: str, text: str, errors: Sequence[Exception]) -> tu
     return (Diagnostic("LAUNCH107", message),)
 
 
-def _parsers_by_suffix(name: str, parsers: dict[str, type[Parser]]) -> list[type[Parser]]:
+def _find_parsers_by_suffix(name: str, parsers: dict[str, type[Parser]]) -> list[type[Parser]]:
     suffix = {".xml": "xml", ".launch": "xml", ".yaml": "yaml", ".yml": "yaml"}.get(os.path.splitext(name)[1])  # noqa: PTH122
     return [parsers[suffix]] if suffix in parsers else []

@@ -104,7 +104,7 @@ def _run_module(source: SourceText, path: Path) -> ModuleType:
     try:
         code = compile(source.text, source.name, "exec", dont_inherit=True)
     except SyntaxError as error:
-        raise as_ros_error(error, _syntax_diagnostic(error, source)) from error
+        raise as_ros_error(error, _create_syntax_diagnostic(error, source)) from error
     except ValueError as error:  # Python before 3.12 raises this for a null byte
         raise _create_error(
             "LAUNCH103",
@@ -158,7 +158,7 @@ def read_launch_file(path: Path) -> SourceText:
         ) from error
 
 
-def _syntax_diagnostic(error: SyntaxError, source: SourceText) -> Diagnostic:
+def _create_syntax_diagnostic(error: SyntaxError, source: SourceText) -> Diagnostic:
     line = error.lineno or 1
     column = max(error.offset or 1, 1)
     end_line = error.end_lineno or line

@@ -81,7 +81,7 @@ class Entity(MarkupEntity):
             )
             self._fail_wrong_type(name, str(value), data_type, ros_error)
 
-    def _location_of_part(self, name: str) -> SourceLocation | None:
+    def _locate_part(self, name: str) -> SourceLocation | None:
         element, source = self._element, self._element.source
         if name not in element.attributes:
             child = element.first(name)

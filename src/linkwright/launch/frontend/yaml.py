@@ -121,9 +121,9 @@ class Entity(MarkupEntity):
             message = phrase(
                 "key '{name}' of '{type_name}' must be a list of mappings", name=name, type_name=self.type_name
             )
-            raise error_at(self._location_of_part(name), "LAUNCH118", message, ros_error=TypeError(text))
+            raise error_at(self._locate_part(name), "LAUNCH118", message, ros_error=TypeError(text))
         if data_type is str and isinstance(value, (bool, int, float)):
-            return LocatedText(_format_scalar(value), self._location_of_part(name))
+            return LocatedText(_format_scalar(value), self._locate_part(name))
         if not is_instance_of(value, data_type, can_be_str=can_be_str):
             text = (
                 f"Attribute '{name}' of Entity '{self.type_name}' expected to be of type '{data_type}', "
@@ -132,7 +132,7 @@ class Entity(MarkupEntity):
             self._fail_wrong_type(name, value, data_type, text)
         return value
 
-    def _location_of_part(self, name: str) -> SourceLocation | None:
+    def _locate_part(self, name: str) -> SourceLocation | None:
         for key, value in self._element.items() if isinstance(self._element, dict) else ():
             if key == name:
                 return (

@@ -22,7 +22,7 @@ _INTERPRETERS = ("ruby",)
 """Interpreters that may precede a program in a command, because the program is a script."""
 
 
-def replaced_programs() -> Mapping[str, EntryPoint]:
+def load_replaced_programs() -> Mapping[str, EntryPoint]:
     """Return the entry points of command-line parsers by the name of the replaced program."""
     return extensions("linkwright.replaced_programs")
 
@@ -42,7 +42,7 @@ def find_replacing_node(words: Sequence[str], environment: Mapping[str, str]) ->
     """
     if words and PurePath(words[0]).name in _INTERPRETERS:
         words = words[1:]
-    entry_point = replaced_programs().get(PurePath(words[0]).name) if words else None
+    entry_point = load_replaced_programs().get(PurePath(words[0]).name) if words else None
     if entry_point is None or shutil.which(words[0], path=environment.get("PATH")):
         return None
     message = phrase("the node that replaces '{program}' cannot be imported", program=entry_point.name)

@@ -16,7 +16,7 @@ class Substitution(Located):
     """An object that evaluates to text in a launch context."""
 
     def __repr__(self) -> str:
-        return f"<{_public_name(type(self))} {self.describe()}>"
+        return f"<{_find_public_name(type(self))} {self.describe()}>"
 
     def describe(self) -> str:
         """Return the text of the substitution in listings such as ``ros2 launch --show-args``."""
@@ -85,7 +85,7 @@ def _as_substitution(value: Any) -> Substitution:
     raise TypeError(f"expected a text or a substitution in the list, got {value!r} of type {type(value).__name__}")
 
 
-def _public_name(kind: type) -> str:
+def _find_public_name(kind: type) -> str:
     """Return the full name with which users import a class.
 
     Linkwright's own classes have the names of ``launch.substitutions``.

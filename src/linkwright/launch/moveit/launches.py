@@ -38,7 +38,7 @@ def generate_moveit_rviz_launch(moveit_config: MoveItConfigs) -> LaunchDescripti
     description = LaunchDescription()
     description.add_action(DeclareBooleanLaunchArg("debug", default_value=False))
     description.add_action(
-        DeclareLaunchArgument("rviz_config", default_value=_package_file(moveit_config, "config/moveit.rviz"))
+        DeclareLaunchArgument("rviz_config", default_value=_find_package_file(moveit_config, "config/moveit.rviz"))
     )
     add_debuggable_node(
         description,
@@ -98,7 +98,7 @@ def generate_spawn_controllers_launch(moveit_config: MoveItConfigs) -> LaunchDes
 def generate_warehouse_db_launch(moveit_config: MoveItConfigs) -> LaunchDescription:
     """Return a launch description that starts the warehouse database."""
     defaults = {
-        "moveit_warehouse_database_path": _package_file(moveit_config, "default_warehouse_mongo_db"),
+        "moveit_warehouse_database_path": _find_package_file(moveit_config, "default_warehouse_mongo_db"),
         "moveit_warehouse_port": "33829",
         "moveit_warehouse_host": "localhost",
     }
@@ -154,7 +154,7 @@ def generate_move_group_launch(moveit_config: MoveItConfigs) -> LaunchDescriptio
         description,
         package="moveit_ros_move_group",
         executable="move_group",
-        commands_file=_package_file(moveit_config, "launch/gdb_settings.gdb"),
+        commands_file=_find_package_file(moveit_config, "launch/gdb_settings.gdb"),
         output="screen",
         parameters=[moveit_config.to_dict(), settings],
         extra_debug_args=["--debug"],
@@ -171,7 +171,7 @@ def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path
         launch_package_path: the share folder of the package whose launch files are included; None for the package of
             `moveit_config`.
     """
-    folder = Path(launch_package_path or _package_folder(moveit_config)) / "launch"
+    folder = Path(launch_package_path or _find_package_folder(moveit_config)) / "launch"
 
     def include(file: str, **kwargs: Any) -> IncludeLaunchDescription:
         return IncludeLaunchDescription(PythonLaunchDescriptionSource(str(folder / file)), **kwargs)
@@ -189,7 +189,7 @@ def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path
     description.add_action(include("move_group.launch.py"))
     description.add_action(include("moveit_rviz.launch.py", condition=IfCondition(LaunchConfiguration("use_rviz"))))
     description.add_action(include("warehouse_db.launch.py", condition=IfCondition(LaunchConfiguration("db"))))
-    controllers = _package_file(moveit_config, "config/ros2_controllers.yaml")
+    controllers = _find_package_file(moveit_config, "config/ros2_controllers.yaml")
     remappings = [("/controller_manager/robot_description", "/robot_description")]
     description.add_action(
         Node(
@@ -203,12 +203,12 @@ def generate_demo_launch(moveit_config: MoveItConfigs, launch_package_path: Path
     return description
 
 
-def _package_folder(configs: MoveItConfigs) -> Path:
+def _find_package_folder(configs: MoveItConfigs) -> Path:
     return Path(configs.package_path or "")
 
 
-def _package_file(configs: MoveItConfigs, file: str) -> str:
-    return str(_package_folder(configs) / file)
+def _find_package_file(configs: MoveItConfigs, file: str) -> str:
+    return str(_find_package_folder(configs) / file)
 
 
 def _read_virtual_joints(text: Any) -> Iterator[tuple[str, str]]:

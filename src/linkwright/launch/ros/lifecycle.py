@@ -179,7 +179,7 @@ class LifecycleNode(Node):
         self.__manager.setup_lifecycle_manager(context)
         next_entities = list(super().execute(context) or [])
         if is_autostarted(context, self.__autostart):
-            next_entities += autostart_actions(self)
+            next_entities += create_autostart_actions(self)
         return next_entities
 
 
@@ -190,7 +190,7 @@ def is_autostarted(context: LaunchContext, value: Any) -> bool:
     return bool(perform_typed_substitution(context, normalize_typed_substitution(value, bool), bool))
 
 
-def autostart_actions(action: Any) -> list[Any]:
+def create_autostart_actions(action: Any) -> list[Any]:
     """Return actions that configure and activate a lifecycle node after its start.
 
     The node is configured when it has started, and activated when it has been configured.

@@ -89,12 +89,12 @@ class LifecycleTransition(Action):
             ):
                 start, goal = _STATES_BY_TRANSITION[transition_id]
                 handler = OnStateTransition(
-                    matcher=_transition_matcher(name, start, goal), entities=[next_action], handle_once=True
+                    matcher=_create_transition_matcher(name, start, goal), entities=[next_action], handle_once=True
                 )
                 self._handlers.setdefault(name, []).append(handler)
                 register_actions.append(RegisterEventHandler(handler))
             error_handler = EventHandler(
-                matcher=_transition_matcher(name, None, "errorprocessing"),
+                matcher=_create_transition_matcher(name, None, "errorprocessing"),
                 entities=[self._create_end_action(name, "error occured during transitions")],
                 handle_once=True,
             )
@@ -128,7 +128,7 @@ def _create_request(name: str, transition_id: int) -> EmitEvent:
     return EmitEvent(event=ChangeState(lifecycle_node_matcher=matches_node_name(name), transition_id=transition_id))
 
 
-def _transition_matcher(name: str, start_state: str | None, goal_state: str) -> Any:
+def _create_transition_matcher(name: str, start_state: str | None, goal_state: str) -> Any:
     full_name = name if name.startswith("/") else f"/{name}"
 
     def matches(event: Event) -> bool:

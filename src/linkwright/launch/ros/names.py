@@ -61,12 +61,12 @@ def prefix_namespace(base_ns: str | None, ns: str | None, *, return_absolute_ns:
 
 def add_node_name(context: Any, node_name: str) -> None:
     """Record that a node with the given full name was started."""
-    _node_name_counts(context)[node_name] += 1
+    _get_node_name_counts(context)[node_name] += 1
 
 
 def get_node_name_count(context: Any, node_name: str) -> int:
     """Return the number of nodes that the launch started with the given full name."""
-    return _node_name_counts(context).get(node_name, 0)
+    return _get_node_name_counts(context).get(node_name, 0)
 
 
 def record_node_start(context: Any, node_name: str) -> str | None:
@@ -82,7 +82,7 @@ def record_node_start(context: Any, node_name: str) -> str | None:
     return f"there are now at least {node_count} nodes with the name {node_name} created within this launch context"
 
 
-def _node_name_counts(context: Any) -> defaultdict[str, int]:
+def _get_node_name_counts(context: Any) -> defaultdict[str, int]:
     try:
         counts: defaultdict[str, int] = getattr(context.locals, _COUNTS_GLOBAL)
     except AttributeError:

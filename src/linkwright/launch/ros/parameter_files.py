@@ -192,14 +192,14 @@ def substitute_text(source: SourceText, context: LaunchContext) -> str:
     """
     Parser.load_launch_extensions()
     text = source.text
-    comments = list(_comment_spans(text))
+    comments = list(_find_comment_spans(text))
     chunks: list[str] = []
     end_offset = 0
     for match in _SUBSTITUTION_START.finditer(text):
         start = match.start()
         if start < end_offset or any(begin <= start < end for begin, end in comments):
             continue
-        end = _substitution_end(text, start)
+        end = _find_substitution_end(text, start)
         location = MarkupLocation(source, start, end)
         try:
             value = perform_substitutions(context, parse_substitution(LocatedText(text[start:end], location)))
@@ -210,7 +210,7 @@ def substitute_text(source: SourceText, context: LaunchContext) -> str:
     return "".join([*chunks, text[end_offset:]])
 
 
-def _substitution_end(text: str, start: int) -> int:
+def _find_substitution_end(text: str, start: int) -> int:
     """Return the end offset of the substitution that starts at a given offset.
 
     If it has no closing parenthesis, the result is the end of the line.
@@ -227,7 +227,7 @@ def _substitution_end(text: str, start: int) -> int:
     return line_end if line_end >= 0 else len(text)
 
 
-def _comment_spans(text: str) -> Iterator[tuple[int, int]]:
+def _find_comment_spans(text: str) -> Iterator[tuple[int, int]]:
     quoted_spans = [match.span() for match in _QUOTED_TEXT.finditer(text)]
     for comment in _COMMENT.finditer(text):
         if not any(begin < comment.start() < end for begin, end in quoted_spans):

@@ -163,7 +163,7 @@ def _normalize_value(value: Any, key: Any) -> Any:
 
 
 def _normalize_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
-    item_kinds = {_item_kind(item, key) for item in items}
+    item_kinds = {_find_item_kind(item, key) for item in items}
     if item_kinds <= {int, float}:
         return tuple(items) if len(item_kinds) < 2 else tuple(float(item) for item in items)
     if item_kinds <= {str}:
@@ -181,7 +181,7 @@ def _normalize_sequence(items: Sequence[Any], key: Any) -> tuple[Any, ...]:
     )
 
 
-def _item_kind(item: Any, key: Any) -> type:
+def _find_item_kind(item: Any, key: Any) -> type:
     for item_type in (Substitution, str, bool, int, float):
         if isinstance(item, item_type):
             return item_type

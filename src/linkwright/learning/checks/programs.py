@@ -169,7 +169,7 @@ def _iterate_names(statement: ast.stmt) -> Iterator[str]:
 
 def describe_failure(error: Exception, workspace: Path) -> Phrase:
     """Return an exception as one sentence, with the last traceback line in the learner's files."""
-    from linkwright.launch.errors.user_code import hint_about
+    from linkwright.launch.errors.user_code import create_hint
 
     text = _MEMORY_ADDRESS.sub("", f"{type(error).__name__}: {error}")
     if isinstance(error, ImportError):
@@ -186,7 +186,7 @@ def describe_failure(error: Exception, workspace: Path) -> Phrase:
         path, line = own_frames[-1].filename, own_frames[-1].lineno or 1
         hint = (
             _hint_about_own_module(error, Path(path))
-            or hint_about(error)
+            or create_hint(error)
             or hint_about_line(error, linecache.getline(path, line))
         )
         if isinstance(error, LinkwrightError):

@@ -42,7 +42,7 @@ class _Switch(TopicTool):
             service_class = get_service(f"topic_tools_interfaces/srv/{self._SERVICE_PREFIX}{verb.capitalize()}")
             self._node.create_service(service_class, f"~/{verb}", callback)
 
-    def _options(self, options: NodeOptions, arguments: list[str]) -> NodeOptions:
+    def _parse_options(self, options: NodeOptions, arguments: list[str]) -> NodeOptions:
         parameters: dict[str, object] = {self._SINGLE_PARAMETER: arguments[0]} if arguments else {}
         if arguments[1:]:
             parameters[self._CHOICES_PARAMETER] = arguments[1:]

@@ -77,7 +77,7 @@ class Throttle(_InputToOutput):
         "output_topic": str,
     }
 
-    def _options(self, options: NodeOptions, arguments: list[str]) -> NodeOptions:
+    def _parse_options(self, options: NodeOptions, arguments: list[str]) -> NodeOptions:
         names = self._BYTES if arguments[:1] == ["bytes"] else self._MESSAGES
         return options_from_arguments(options, arguments, names, self.USAGE)
 

@@ -40,7 +40,7 @@ class TopicTool(SingleNode, ABC):
     _lazy = False
 
     def __init__(self, graph: Graph, options: NodeOptions) -> None:
-        options = self._options(options, get_arguments(options))
+        options = self._parse_options(options, get_arguments(options))
         self._graph = graph
         self._node, _ = create_node(graph, options, self.DEFAULT_NAME)
         self._publisher: Publisher[Any] | None = None
@@ -58,7 +58,7 @@ class TopicTool(SingleNode, ABC):
         self._graph.unwatch(self._changed.trigger)
         super().close()
 
-    def _options(self, options: NodeOptions, arguments: list[str]) -> NodeOptions:
+    def _parse_options(self, options: NodeOptions, arguments: list[str]) -> NodeOptions:
         """Return the options with parameters that are set by command-line arguments."""
         return options_from_arguments(options, arguments, self.WORDS, self.USAGE)
 

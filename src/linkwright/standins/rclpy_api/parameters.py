@@ -54,11 +54,11 @@ def parameter_dict_from_yaml_file(
     # The leading slash of a node name is optional, both in `target_nodes` and in the file.
     values_by_node: dict[str, dict[str, Any]] = {}
     for pattern, values in read_parameter_file(parameter_file):
-        values_by_node.setdefault(_absolute_name(pattern), {}).update(values)
+        values_by_node.setdefault(_to_absolute_name(pattern), {}).update(values)
     node_names = (
         list(values_by_node)
         if target_nodes is None
-        else [name for name in map(_absolute_name, target_nodes) if name in values_by_node]
+        else [name for name in map(_to_absolute_name, target_nodes) if name in values_by_node]
     )
     if target_nodes is not None and use_wildcard and ANY_NODE in values_by_node:
         node_names.insert(0, ANY_NODE)
@@ -74,5 +74,5 @@ def parameter_dict_from_yaml_file(
     return parameters
 
 
-def _absolute_name(pattern: str) -> str:
+def _to_absolute_name(pattern: str) -> str:
     return "/" + pattern.lstrip("/")

@@ -18,22 +18,22 @@ def get_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     Raises:
         LookupError: one of the packages does not exist.
     """
-    return _interfaces_by_package(("msg", "srv", "action"), package_names)
+    return _find_interfaces_by_package(("msg", "srv", "action"), package_names)
 
 
 def get_message_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the messages of each package, such as ``msg/String``."""
-    return _interfaces_by_package(("msg",), package_names)
+    return _find_interfaces_by_package(("msg",), package_names)
 
 
 def get_service_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the services of each package, such as ``srv/SetBool``."""
-    return _interfaces_by_package(("srv",), package_names)
+    return _find_interfaces_by_package(("srv",), package_names)
 
 
 def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[str]]:
     """Return the actions of each package, such as ``action/Fibonacci``."""
-    return _interfaces_by_package(("action",), package_names)
+    return _find_interfaces_by_package(("action",), package_names)
 
 
 def get_interface_path(interface_name: str) -> str:
@@ -54,7 +54,7 @@ def get_interface_path(interface_name: str) -> str:
     return str(path)
 
 
-def _interfaces_by_package(kinds: tuple[str, ...], package_names: Iterable[str]) -> dict[str, list[str]]:
+def _find_interfaces_by_package(kinds: tuple[str, ...], package_names: Iterable[str]) -> dict[str, list[str]]:
     requested_packages = set(package_names)
     names_by_package: dict[str, list[str]] = {}
     for kind in kinds:

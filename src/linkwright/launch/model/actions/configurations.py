@@ -26,7 +26,7 @@ class SetLaunchConfiguration(AssigningAction):
 
     def execute(self, context: LaunchContext) -> None:
         """Set the launch configuration."""
-        context.launch_configurations[self.resolved_name(context)] = self.resolved_value(context)
+        context.launch_configurations[self.evaluate_name(context)] = self.evaluate_value(context)
 
 
 @expose_action("unset")
@@ -35,7 +35,7 @@ class UnsetLaunchConfiguration(NamedAction):
 
     def execute(self, context: LaunchContext) -> None:
         """Unset the launch configuration."""
-        context.launch_configurations.pop(self.resolved_name(context), None)
+        context.launch_configurations.pop(self.evaluate_name(context), None)
 
 
 class PushLaunchConfigurations(Action):

@@ -35,7 +35,7 @@ class SetEnvironmentVariable(AssigningAction):
 
     def execute(self, context: LaunchContext) -> None:
         """Set the environment variable."""
-        context.environment[self.resolved_name(context)] = self.resolved_value(context)
+        context.environment[self.evaluate_name(context)] = self.evaluate_value(context)
 
 
 @expose_action("unset_env")
@@ -44,7 +44,7 @@ class UnsetEnvironmentVariable(NamedAction):
 
     def execute(self, context: LaunchContext) -> None:
         """Unset the environment variable."""
-        context.environment.pop(self.resolved_name(context), None)
+        context.environment.pop(self.evaluate_name(context), None)
 
 
 @expose_action("append_env")
@@ -91,7 +91,7 @@ class AppendEnvironmentVariable(AssigningAction):
 
     def execute(self, context: LaunchContext) -> None:
         """Add the value to the environment variable."""
-        name, value = self.resolved_name(context), self.resolved_value(context)
+        name, value = self.evaluate_name(context), self.evaluate_value(context)
         values = [context.environment[name]] if name in context.environment else []
         values.insert(0 if perform_typed_substitution(context, self._prepend, bool) else len(values), value)
         context.environment[name] = perform_substitutions(context, self._separator).join(values)

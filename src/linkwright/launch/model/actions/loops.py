@@ -50,7 +50,7 @@ class ForEach(Action):
         _, kwargs = super().parse(entity, parser)
         kwargs["input_values"] = parser.parse_substitution(entity.get_attr("values"))
         children = [parser.parse_action(child) for child in entity.children]
-        kwargs["function"] = lambda **values: iteration_entities(children, values)
+        kwargs["function"] = lambda **values: create_iteration_entities(children, values)
         return cls, kwargs
 
     @property
@@ -126,7 +126,7 @@ class ForLoop(Action):
         kwargs["length"] = parser.parse_substitution(entity.get_attr("len"))
         name = kwargs["name"] = entity.get_attr("name")
         children = [parser.parse_action(child) for child in entity.children]
-        kwargs["function"] = lambda i: iteration_entities(children, {name: i})
+        kwargs["function"] = lambda i: create_iteration_entities(children, {name: i})
         return cls, kwargs
 
     @property
@@ -169,7 +169,7 @@ def _name(function: Callable[..., Any]) -> str:
     return str(getattr(function, "__name__", type(function).__name__))
 
 
-def iteration_entities(
+def create_iteration_entities(
     children: Sequence[LaunchDescriptionEntity], values: Mapping[str, Any]
 ) -> list[LaunchDescriptionEntity]:
     """Return the actions of one iteration of a loop.

@@ -50,7 +50,7 @@ class NamedAction(Action):
         """Return a text with the name."""
         return f"{type(self).__name__}({describe(self._name)})"
 
-    def resolved_name(self, context: LaunchContext) -> str:
+    def evaluate_name(self, context: LaunchContext) -> str:
         """Return the evaluated name."""
         return perform_substitutions(context, self._name)
 
@@ -78,7 +78,7 @@ class AssigningAction(NamedAction):
         """Return a text with the name and the value."""
         return f"{type(self).__name__}({describe(self._name)}, {describe(self._value)})"
 
-    def resolved_value(self, context: LaunchContext) -> str:
+    def evaluate_value(self, context: LaunchContext) -> str:
         """Return the evaluated value."""
         return perform_substitutions(context, self._value)
 

@@ -95,9 +95,9 @@ class FindExecutable(DeclaredSubstitution, tag="find-exec", shown="FindExec({nam
         path = shutil.which(name, path=context.environment.get("PATH"))
         if path is not None:
             return path
-        from linkwright.launch.model.replaced_programs import replaced_programs
+        from linkwright.launch.model.replaced_programs import load_replaced_programs
 
-        replaceable_programs = IN_PROCESS_PROGRAMS | replaced_programs().keys()
+        replaceable_programs = IN_PROCESS_PROGRAMS | load_replaced_programs().keys()
         if name in replaceable_programs:
             return name
         hint = did_you_mean(name, replaceable_programs) or phrase("install it, or add its folder to PATH")

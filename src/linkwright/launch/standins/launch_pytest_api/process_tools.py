@@ -67,7 +67,7 @@ class _Wait:
             deadline = self._compute_deadline()
             while not value:
                 try:
-                    await asyncio.wait_for(event.wait(), _remaining_seconds(deadline))
+                    await asyncio.wait_for(event.wait(), _compute_remaining_seconds(deadline))
                 except asyncio.TimeoutError:
                     self._on_timeout()
                     break
@@ -85,7 +85,7 @@ class _Wait:
             value = self._evaluate_condition()
             deadline = self._compute_deadline()
             while not value:
-                if not event.wait(_remaining_seconds(deadline)):
+                if not event.wait(_compute_remaining_seconds(deadline)):
                     self._on_timeout()
                     break
                 event.clear()
@@ -114,7 +114,7 @@ class _Wait:
             self._context.unregister_event_handler(handler)
 
 
-def _remaining_seconds(deadline: float | None) -> float | None:
+def _compute_remaining_seconds(deadline: float | None) -> float | None:
     """Return the seconds until a deadline on the monotonic clock, at least 0.
 
     The result is None if there is no deadline.
