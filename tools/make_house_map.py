@@ -64,7 +64,9 @@ def _scan_world(world: World) -> Grid:
         scanned_cells.add(tuple(cell))
         position = grid.centers_of(cell)
         origin = np.array((*position, LASER_HEIGHT_M))
-        distances, _ = cast_rays(simulation.model, simulation.data, origin, rays, groups, excluded_body=-1, max_distance=LASER_RANGE_M)
+        distances, _ = cast_rays(
+            simulation.model, simulation.data, origin, rays, groups, excluded_body=-1, max_distance=LASER_RANGE_M
+        )
         is_hit = distances > 0.0
         # Slightly inside the object, so that a wall on the border of two cells belongs to one of them.
         ends = position + (np.where(is_hit, distances + 0.002, LASER_RANGE_M))[:, None] * rays[:, :2]

@@ -93,7 +93,8 @@ def _format_index() -> str:
     parts = [INDEX]
     for start, (name, heading, _) in GROUPS.items():
         rows = [
-            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} | {_escape(make_rule_page(rule).title)} "
+            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} "
+            f"| {_escape(make_rule_page(rule).title)} "
             f"| {rule.severity.value} | {'' if rule.default else 'off'} |"
             for rule in _list_rules(start)
         ]

@@ -58,7 +58,9 @@ def test_attitude_at_rest_matches_orientation(roll, pitch, yaw, world):
         )
         < 1e-6
     )
-    rpy_without_field = rpy_from_quaternion(compute_attitude_at_rest(acceleration_at_rest(orientation, world), None, world))
+    rpy_without_field = rpy_from_quaternion(
+        compute_attitude_at_rest(acceleration_at_rest(orientation, world), None, world)
+    )
     assert rpy_without_field == pytest.approx((roll, pitch, 0.0), abs=1e-9)
 
 

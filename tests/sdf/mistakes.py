@@ -16,7 +16,5 @@ def describe_findings(text: str) -> str:
         path = Path(folder, "w.world")
         path.write_text(text, encoding="utf-8")
         diagnostics = examine_world(path, environment={"HOME": folder}).diagnostics
-        lines = [
-            line for diagnostic in sort_by_location(diagnostics, str(path)) for line in finding_lines(diagnostic)
-        ]
+        lines = [line for diagnostic in sort_by_location(diagnostics, str(path)) for line in finding_lines(diagnostic)]
         return "\n".join(lines).replace(folder, "FOLDER")

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from linkwright.geometry.arrays import Array
-from linkwright.kinematics.tree import MOVING, resolve_mimics
+from linkwright.kinematics.tree import MOVING_TYPES, resolve_mimics
 from linkwright.planning.robot_model import (
     PlacedShape,
     PositionExpansion,
@@ -93,7 +93,7 @@ class CollisionScene:
         self, robot: Robot, shapes: Shapes, objects: Iterable[SceneObject], allowed: AllowedCollisions
     ) -> None:
         self._mujoco = mujoco = load_mujoco()
-        moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING and any(joint.axis)]
+        moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING_TYPES and any(joint.axis)]
         joint_names, relations = resolve_mimics(robot, moving)
         spec = make_spec()
         spec.option.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_FILTERPARENT)

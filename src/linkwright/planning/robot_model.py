@@ -13,7 +13,7 @@ import numpy as np
 
 from linkwright.geometry.arrays import Array, row_from_pose
 from linkwright.geometry.shapes import Box, Capsule, Cylinder, SimpleShape, Sphere
-from linkwright.kinematics.tree import MOVING, resolve_mimics
+from linkwright.kinematics.tree import MOVING_TYPES, resolve_mimics
 from linkwright.simulation.library import load_mujoco
 from linkwright.urdf import Robot, children_of, parent_joints
 
@@ -45,7 +45,7 @@ class RobotModel:
 
     def __init__(self, robot: Robot, shapes: Shapes | None = None) -> None:
         self.robot = robot
-        moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING and any(joint.axis)]
+        moving = [joint.name for joint in robot.joints.values() if joint.type in MOVING_TYPES and any(joint.axis)]
         self.joint_names, relations = resolve_mimics(robot, moving)
         spec = make_spec()
         add_robot(spec, robot, moving, shapes or {})

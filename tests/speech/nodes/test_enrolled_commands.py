@@ -41,7 +41,9 @@ async def publish_sound(robot, samples):
     """Publish sound in blocks of 100 ms, as a microphone does."""
     for start in range(0, len(samples), BLOCK_LENGTH):
         robot.sound.publish(
-            make_audio_stamped(samples[start : start + BLOCK_LENGTH].tobytes(), robot.harness.node.get_clock().now().to_msg())
+            make_audio_stamped(
+                samples[start : start + BLOCK_LENGTH].tobytes(), robot.harness.node.get_clock().now().to_msg()
+            )
         )
         await robot.harness.graph.settle()
 

@@ -88,7 +88,9 @@ class ControllerNode(ManagedNode):
         Raises:
             LinkwrightError: a parameter is missing or has an invalid value.
         """
-        self._frequency = check_positive(self, "controller_frequency", self._get_parameter_value("controller_frequency"))
+        self._frequency = check_positive(
+            self, "controller_frequency", self._get_parameter_value("controller_frequency")
+        )
         humble_checkers = [self._humble_progress_checker] if self._humble_progress_checker else None
         self._progress = {
             checker: make_progress_checker(self, checker)
