@@ -15,7 +15,7 @@ from tests.images.test_images import image
 from tests.rviz.clouds.test_clouds import make_cloud, make_depth_image, make_scan, xyz_array
 from tests.rviz.displays.test_cloud_displays import make_camera_info, with_frame
 from tests.rviz.displays.test_map_displays import make_cell_grid, make_grid, make_update
-from tests.viewer.packed_images import depth_message, jpeg, packed
+from tests.viewer.packed_images import make_compressed_image, make_depth_message, make_jpeg
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -317,8 +317,10 @@ def test_depth_cloud_uses_chosen_image_transports(live, open_page):
     assert "choose raw, compressed" in viewer.status("DepthCloud")["Depth Map Transport Hint"][1]
     set_property(viewer, 0, ("Depth Map Transport Hint",), "compressedDepth")
     viewer.publish("/depth/camera_info", make_camera_info(2, 1))
-    viewer.publish("/color/image/compressed", packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 255), 2, 1)))
-    viewer.publish("/depth/image/compressedDepth", depth_message(np.array([[2000, 4000]], np.uint16), "rvl"))
+    viewer.publish(
+        "/color/image/compressed", make_compressed_image("rgb8; jpeg compressed bgr8", make_jpeg((0, 0, 255), 2, 1))
+    )
+    viewer.publish("/depth/image/compressedDepth", make_depth_message(np.array([[2000, 4000]], np.uint16), "rvl"))
     until(page, "lw.displays[0]?.drawn?.points === 2 && lw.displays[1].drawn?.width === 2")
     viewer.settle(page)
     assert drawing_of(page)["bounds"] == [[0, 0, 2], [2, 0, 4]]

@@ -96,7 +96,7 @@ class Files:
     """A workspace with some files.
 
     Args:
-        folder: the folder.
+        folder: the root of the workspace.
         files: path -> text.
     """
 

@@ -22,7 +22,7 @@ from linkwright.learning.page.course_guide import CourseGuide
 from linkwright.learning.page.feature import CourseFeature
 from linkwright.learning.page.step_html import step_html
 from linkwright.page.program_pages import ProgramPages
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
 WRONG = '<robot name="r"><link name="bux"/></robot>'
@@ -49,7 +49,7 @@ async def classroom(workspace: Path, shown: ShownFiles | None = None) -> AsyncIt
     async with open_world() as world:
         room = open_classroom(workspace, "example")
         show_course(world, room, (shown or ShownFiles()).paths.append)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             yield client
 
 
@@ -88,9 +88,9 @@ async def test_opened_page_receives_course_step_and_last_results(tmp_path):
         workspace.mkdir()
         room = open_classroom(workspace, "example")
         show_course(world, room, lambda _: None)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await wait_for_results(client)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             opened = await client.opened()
     assert opened["course"]["folder"] == str(workspace)
     assert opened["course_step"]["title"] == {"en": "A box", "zh": "一个方块"}
@@ -130,7 +130,7 @@ async def test_slow_checks_pause_worlds_and_quick_checks_do_not(tmp_path, monkey
     monkeypatch.setattr(programs, "resume_worlds", lambda: paused.append(False))
     async with open_world() as world:
         show_course(world, open_classroom(workspace, str(course)), lambda _: None, programs)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             while not (await wait_for_results(client))["checks"]:
                 pass
         while_open = list(paused)

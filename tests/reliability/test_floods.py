@@ -112,7 +112,7 @@ def test_blocking_subscriber_does_not_delay_others(machine: Machine) -> None:
 
 @pytest.mark.parametrize("size", [10, 20_000])
 def test_reliable_messages_are_not_lost_with_slow_subscriber(machine: Machine, size: int) -> None:
-    """Reliable messages are not lost without a limit of the queue.
+    """Reliable messages are not lost if the queue is unlimited.
 
     The flood ends long before the subscriber has read all messages.
     """

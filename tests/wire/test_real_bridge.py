@@ -1,4 +1,4 @@
-"""A bridge between nodes of real ROS 2 on Fast DDS and nodes of ours over Zenoh.
+"""A bridge between nodes of real ROS 2 on Fast DDS and nodes of Linkwright over Zenoh.
 
 See `test_real_ros`.
 

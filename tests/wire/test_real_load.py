@@ -1,4 +1,4 @@
-"""Many simultaneous calls and goals between nodes of real ROS 2 on Fast DDS and ours.
+"""Many simultaneous calls and goals between nodes of real ROS 2 on Fast DDS and of Linkwright.
 
 See `test_real_ros`.
 

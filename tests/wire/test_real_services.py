@@ -46,7 +46,7 @@ def wait_for_result(process, future):
 
 
 def ask_while_spinning(process, peer, *question):
-    """Ask the peer a question, and run our callbacks until it answers."""
+    """Ask the peer a question, and run callbacks until it answers."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(peer.ask(*question)))
     thread.start()

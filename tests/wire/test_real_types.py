@@ -22,7 +22,7 @@ LARGE_BYTES, LARGE_MESSAGE_COUNT = 8_000_000, 5
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 """The side of the publisher or client, and the side of the subscription or server."""
 INTERNAL_TYPES = "rmw_dds_common/"
-"""Types that only the transport uses; ours are Humble's."""
+"""Types that only the transport uses; Linkwright's are those of Humble."""
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 

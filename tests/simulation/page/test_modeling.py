@@ -14,7 +14,7 @@ from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.rviz.config.locations import recovery_folder
 from tests.sdf.editing.texts import BOX, PLAIN
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 from tests.waiting import eventually
 
 STRING = get_message("std_msgs/msg/String")
@@ -67,7 +67,7 @@ async def modeling_session(path: Path | None = None, *, loads: bool = True):
     """Run a simulation of the world in a file, with a page that edits it."""
     async with open_world() as world:
         simulation = FakeSimulator(world, path, loads=loads)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.until("modeling_state", available=True)
             await client.send("set_modeling", active=True)
             client.state = await client.until("modeling_state", active=True)
@@ -85,7 +85,7 @@ def make_change(name: str, **fields) -> dict:
 
 
 async def test_modeling_is_unavailable_without_simulation():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         state = (await client.opened())["modeling_state"]
         assert (state["available"], state["active"], state["entities"]) == (False, False, [])
         await client.send("set_modeling", active=True)
@@ -174,7 +174,7 @@ async def test_new_entity_gets_unused_name(tmp_path):
 
 
 async def test_pages_share_edited_world(tmp_path):
-    async with modeling_session(write_world(tmp_path)) as (_, client, world), page(world.viewer) as other:
+    async with modeling_session(write_world(tmp_path)) as (_, client, world), open_page(world.viewer) as other:
         assert (await other.opened())["modeling_state"]["active"] is True
         await client.send("delete_entities", names=["box"])
         assert len((await other.until("modeling_state", unsaved=True))["entities"]) == 2

@@ -42,7 +42,7 @@ def peer(programs, router_port, monkeypatch):
 
 
 def ask_while_spinning(process, question):
-    """Ask the peer a question, and run our callbacks until it answers."""
+    """Ask the peer a question, and run callbacks until it answers."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(question()))
     thread.start()
