@@ -46,17 +46,17 @@ def test_reading_mesh_releases_memory_of_file(kind, tmp_path):
     path = write_cone(tmp_path, kind)
     read_mesh(path)
     gc.collect()
-    before = _count_mesh_bytes()
+    before = _count_mesh_objects()
     gc.disable()
     try:
         for _ in range(3):
             read_mesh(path)
-        assert _count_mesh_bytes() == before
+        assert _count_mesh_objects() == before
     finally:
         gc.enable()
 
 
-def _count_mesh_bytes():
+def _count_mesh_objects():
     """Return the number of objects with corners, triangles or the bytes of a file."""
     kinds = (trimesh.caching.TrackedArray, trimesh.caching.DataStore, trimesh.parent.LoadSource)
     return sum(isinstance(candidate, kinds) for candidate in gc.get_objects())

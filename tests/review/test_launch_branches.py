@@ -45,8 +45,8 @@ launch_in_condition = launch_text(f"if {CHECK}:", "    actions.append(driver)")
          ["other code added: print('ready')"]),
     ],
 )  # fmt: skip
-def test_if_statement_is_a_condition_of_the_actions_in_it(changes_of, old, new, expected):
-    found, _ = changes_of("arm.launch.py", old, old, new)
+def test_if_statement_is_a_condition_of_the_actions_in_it(review_changes, old, new, expected):
+    found, _ = review_changes("arm.launch.py", old, old, new)
     assert found == expected
 
 
@@ -62,9 +62,9 @@ def test_if_statement_is_a_condition_of_the_actions_in_it(changes_of, old, new, 
         ("actions.append(driver)", f"if {CHECK}:", "    check(driver)"),
     ],
 )
-def test_actions_outside_of_an_if_statement_have_no_condition(changes_of, lines):
+def test_actions_outside_of_an_if_statement_have_no_condition(review_changes, lines):
     new = launch_text(*lines)
     old = new.replace(f"if {CHECK}:", "if True:")
-    found, breaking = changes_of("arm.launch.py", old, old, new)
+    found, breaking = review_changes("arm.launch.py", old, old, new)
     assert not [sentence for sentence in found if "arm/driver" in sentence]
     assert not breaking

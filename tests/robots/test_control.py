@@ -33,7 +33,7 @@ ROBOT_RADIUS_M = 0.2
 
 
 @pytest.fixture
-def load(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+def load_module(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """Return a function that imports a module of the package, as a sourced workspace does."""
     standins.activate()
     monkeypatch.syspath_prepend(str(CONTROL_PACKAGE))
@@ -61,10 +61,10 @@ def logged_texts(test: SteppedSimulation) -> list[str]:
 
 
 @pytest.mark.slow
-def test_drive_square_closes_square(load: Any) -> None:
+def test_drive_square_closes_square(load_module: Any) -> None:
     with SteppedSimulation(world_path("empty"), ROBOT) as test:
         test.init_rclpy()
-        load("drive_square").DriveSquare()
+        load_module("drive_square").DriveSquare()
         odometry = test.record("/odom")
         corners: list[tuple[float, float]] = []
         for _ in range(60):
@@ -86,10 +86,10 @@ def test_drive_square_closes_square(load: Any) -> None:
 
 
 @pytest.mark.slow
-def test_follow_wall_goes_through_maze(load: Any) -> None:
+def test_follow_wall_goes_through_maze(load_module: Any) -> None:
     with SteppedSimulation(world_path("maze"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy()
-        load("follow_wall").FollowWall()
+        load_module("follow_wall").FollowWall()
         scans = test.record("/scan")
         test.advance(2.0)
         way, before, beside, nearest = 0.0, true_position(test), [], []
@@ -106,10 +106,10 @@ def test_follow_wall_goes_through_maze(load: Any) -> None:
         assert math.dist(true_position(test), (0.0, 0.0)) > 4.0, "mbot gets through the maze"
 
 
-def test_follow_wall_works_on_left_side(load: Any) -> None:
+def test_follow_wall_works_on_left_side(load_module: Any) -> None:
     with SteppedSimulation(world_path("maze"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy(["--ros-args", "-p", "side:=left"])
-        load("follow_wall").FollowWall()
+        load_module("follow_wall").FollowWall()
         scans = test.record("/scan")
         test.advance(5.0)
         assert true_position(test)[0] > 0.7
@@ -117,10 +117,10 @@ def test_follow_wall_works_on_left_side(load: Any) -> None:
 
 
 @pytest.mark.parametrize(("x", "y", "yaw"), [(1.0, 0.5, 1.57), (-0.8, -0.4, 0.0)])
-def test_go_to_pose_reaches_pose(load: Any, x: float, y: float, yaw: float) -> None:
+def test_go_to_pose_reaches_pose(load_module: Any, x: float, y: float, yaw: float) -> None:
     with SteppedSimulation(world_path("empty"), ROBOT) as test:
         test.init_rclpy()
-        load("go_to_pose").GoToPose()
+        load_module("go_to_pose").GoToPose()
         odometry = test.record("/odom")
         test.advance(0.2)
         goal = get_message("geometry_msgs/msg/PoseStamped")()
@@ -144,11 +144,11 @@ def test_go_to_pose_reaches_pose(load: Any, x: float, y: float, yaw: float) -> N
 
 
 @pytest.mark.slow
-def test_follow_line_follows_line(load: Any) -> None:
+def test_follow_line_follows_line(load_module: Any) -> None:
     line = _line_piece_centers()
     with SteppedSimulation(world_path("line_track"), ROBOT, arguments={"camera": True}) as test:
         test.init_rclpy()
-        load("follow_line").FollowLine()
+        load_module("follow_line").FollowLine()
         way, before = 0.0, true_position(test)
         for _ in range(18):
             test.advance(1.0)
@@ -158,10 +158,10 @@ def test_follow_line_follows_line(load: Any) -> None:
 
 
 @pytest.mark.slow
-def test_avoid_obstacles_touches_nothing(load: Any) -> None:
+def test_avoid_obstacles_touches_nothing(load_module: Any) -> None:
     with SteppedSimulation(world_path("obstacles"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy()
-        load("avoid_obstacles").AvoidObstacles()
+        load_module("avoid_obstacles").AvoidObstacles()
         scans = test.record("/scan")
         way, before = 0.0, true_position(test)
         for _ in range(60):
@@ -172,10 +172,10 @@ def test_avoid_obstacles_touches_nothing(load: Any) -> None:
         assert any("m ahead" in text for text in logged_texts(test))
 
 
-def test_avoid_obstacles_stops_before_box(load: Any) -> None:
+def test_avoid_obstacles_stops_before_box(load_module: Any) -> None:
     with SteppedSimulation(world_path("obstacles"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy(["--ros-args", "-p", "wander:=false"])
-        load("avoid_obstacles").AvoidObstacles()
+        load_module("avoid_obstacles").AvoidObstacles()
         scans, odometry = test.record("/scan"), test.record("/odom")
         test.advance(20.0)
         assert true_position(test)[0] > 2.0, "mbot drives toward the boxes, which are 3.6 m away"
@@ -184,10 +184,10 @@ def test_avoid_obstacles_stops_before_box(load: Any) -> None:
         assert abs(odometry.last.twist.twist.linear.x) < 1e-3
 
 
-def test_silent_laser_stops_robot(load: Any) -> None:
+def test_silent_laser_stops_robot(load_module: Any) -> None:
     with SteppedSimulation(world_path("empty"), ROBOT) as test:
         test.init_rclpy()
-        load("avoid_obstacles").AvoidObstacles()
+        load_module("avoid_obstacles").AvoidObstacles()
         velocities = test.record("/cmd_vel")
         scan = get_message("sensor_msgs/msg/LaserScan")(angle_min=-math.pi, angle_increment=math.pi / 180)
         scan.range_max, scan.ranges = 6.0, [6.0] * 360
@@ -199,9 +199,9 @@ def test_silent_laser_stops_robot(load: Any) -> None:
         assert velocities.last.linear.x == 0.0
 
 
-def test_decision_tests_of_package_pass(load: Any) -> None:
+def test_decision_tests_of_package_pass(load_module: Any) -> None:
     path = CONTROL_PACKAGE / "test" / "test_decisions.py"
-    load("driving_node")
+    load_module("driving_node")
     names: dict[str, Any] = {"__name__": "test_decisions"}
     exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
     tests = [value for name, value in names.items() if name.startswith("test_")]
@@ -224,11 +224,11 @@ def test_nodes_have_parameters_launch_files_and_entry_points() -> None:
 
 
 @pytest.mark.parametrize("name", NODES)
-def test_parameter_file_matches_declared_parameters(load: Any, name: str) -> None:
+def test_parameter_file_matches_declared_parameters(load_module: Any, name: str) -> None:
     text = yaml.safe_load((CONTROL_PACKAGE / "config" / "control.yaml").read_text(encoding="utf-8"))
     with SteppedSimulation(world_path("empty")) as test:
         test.init_rclpy()
-        module = load(name)
+        module = load_module(name)
         (kind,) = [
             member
             for member in vars(module).values()
