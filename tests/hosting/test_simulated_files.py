@@ -29,7 +29,7 @@ from tests.waiting import eventually
 ARM = """<robot name="arm"><link name="base"/><link name="tip"><inertial><mass value="1"/>
 <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="turn" type="continuous"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/></joint>{}</robot>"""
-MORE = '<link name="more"/><joint name="on" type="fixed"><parent link="tip"/><child link="more"/></joint>'
+EXTRA_LINK = '<link name="more"/><joint name="on" type="fixed"><parent link="tip"/><child link="more"/></joint>'
 FALLING = box("falling", "0 0 9 0 0 0")
 
 
@@ -192,7 +192,7 @@ async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
 
     async with running_simulation(add_robot(tmp_path, ARM.format(""))) as running:
         await running.look(elsewhere)
-        (tmp_path / "robot.urdf").write_text(ARM.format(MORE))
+        (tmp_path / "robot.urdf").write_text(ARM.format(EXTRA_LINK))
         await running.wait_until(lambda simulation: "arm::more" in simulation.scene.bodies)
         pose = await running.look(lambda simulation: simulation.model_pose("arm"))
         assert pose[:3] == pytest.approx((1.0, 2.0, 3.0))

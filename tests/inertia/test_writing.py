@@ -149,7 +149,7 @@ def test_plain_link_of_xacro_file_is_written(write_inertia):
     assert "<inertial>" in text
 
 
-ONES = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+UNIT_INERTIA = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
 REFUSED = {
     "the macro 'part' generates it": """
       <xacro:macro name="part" params="n"><link name="${n}"/></xacro:macro>
@@ -158,9 +158,9 @@ REFUSED = {
       <xacro:property name="s" value="1"/>
       <link name="a"><visual><geometry><box size="${s} 1 1"/></geometry></visual></link>""",
     "its <inertial> is written with expressions": f"""
-      <link name="a"><inertial><mass value="${{1 + 1}}"/>{ONES}</inertial></link>""",
+      <link name="a"><inertial><mass value="${{1 + 1}}"/>{UNIT_INERTIA}</inertial></link>""",
     "<xacro:heavy> generates a part of it": f"""
-      <xacro:macro name="heavy"><inertial><mass value="1"/>{ONES}</inertial></xacro:macro>
+      <xacro:macro name="heavy"><inertial><mass value="1"/>{UNIT_INERTIA}</inertial></xacro:macro>
       <link name="a"><xacro:heavy/></link>""",
 }
 

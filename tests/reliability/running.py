@@ -52,7 +52,7 @@ finally:
         node.destroy_node()
     rclpy.try_shutdown()
 """
-MARK = "LINKWRIGHT_RELIABILITY"
+PROCESS_MARK = "LINKWRIGHT_RELIABILITY"
 
 
 class RunningProcess:
@@ -62,7 +62,7 @@ class RunningProcess:
         self.mark = f"{os.getpid()}-{time.monotonic_ns()}"
         self.process = subprocess.Popen(
             command,
-            env={**os.environ, **variables, MARK: self.mark},
+            env={**os.environ, **variables, PROCESS_MARK: self.mark},
             cwd=folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -131,7 +131,7 @@ class RunningProcess:
 
 def _is_marked(process: psutil.Process, mark: str) -> bool:
     try:
-        return process.status() != psutil.STATUS_ZOMBIE and process.environ().get(MARK) == mark
+        return process.status() != psutil.STATUS_ZOMBIE and process.environ().get(PROCESS_MARK) == mark
     except psutil.Error:
         return False
 

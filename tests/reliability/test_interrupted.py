@@ -20,7 +20,7 @@ import psutil
 import pytest
 
 from tests.begun import BEGUN, command_that_reports
-from tests.reliability.running import MARK, Machine, launch_file_text, program_text
+from tests.reliability.running import PROCESS_MARK, Machine, launch_file_text, program_text
 from tests.waiting import TIMEOUT_S, wait_until
 
 TALKER = """
@@ -90,7 +90,7 @@ def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) ->
             stdin=terminal,
             stdout=terminal,
             stderr=terminal,
-            env={**os.environ, **machine.variables, MARK: "terminal"},
+            env={**os.environ, **machine.variables, PROCESS_MARK: "terminal"},
             cwd=machine.folder,
             start_new_session=True,
         )

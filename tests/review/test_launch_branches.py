@@ -25,15 +25,15 @@ def launch_text(*lines: str) -> str:
 
 
 CHECK = "'nav2' in get_packages_with_prefixes()"
-PLAIN = launch_text("actions.append(driver)")
+WITHOUT_CONDITION = launch_text("actions.append(driver)")
 launch_in_condition = launch_text(f"if {CHECK}:", "    actions.append(driver)")
 
 
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        (PLAIN, launch_in_condition, [f"node 'arm/driver': condition if `{CHECK}` added"]),
-        (launch_in_condition, PLAIN, [f"node 'arm/driver': condition if `{CHECK}` removed"]),
+        (WITHOUT_CONDITION, launch_in_condition, [f"node 'arm/driver': condition if `{CHECK}` added"]),
+        (launch_in_condition, WITHOUT_CONDITION, [f"node 'arm/driver': condition if `{CHECK}` removed"]),
         (launch_in_condition, launch_in_condition.replace("'nav2'", "'nav3'"),
          [f"node 'arm/driver': condition if `{CHECK}` -> if `'nav3' in get_packages_with_prefixes()`"]),
         (launch_text("actions += [Node(package='arm', executable='camera')]"),

@@ -26,7 +26,7 @@ def work(n, seed):
         os.kill(os.getpid(), signal.SIGKILL)
     return {{"square": beside.square(n)}}
 """
-TWO = """import sys
+CLUSTER_PROGRAM = """import sys
 import ray.cluster_utils
 cluster = ray.cluster_utils.Cluster()
 for _ in range(2):
@@ -49,7 +49,7 @@ def test_ray_cluster_completes_table_after_losing_worker(tmp_path):
         "RAY_raylet_start_wait_time_s": "600",
     }
     result = subprocess.run(
-        [sys.executable, "-c", TWO], cwd=tmp_path, env=environment, capture_output=True, check=False
+        [sys.executable, "-c", CLUSTER_PROGRAM], cwd=tmp_path, env=environment, capture_output=True, check=False
     )
     assert result.returncode == 0, result.stderr
     assert lost.exists()

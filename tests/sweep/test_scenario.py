@@ -84,7 +84,7 @@ def test_run_failure_is_recorded_as_outcome(tmp_path, body, error):
     assert outcome.results == {}
 
 
-BAD = {
+INVALID_SCENARIOS = {
     "SWEEP102 squares.py:1:5 the file is not valid Python: invalid syntax": "def :\n",
     "SWEEP102 squares.py:2:1 the scenario cannot be loaded: ZeroDivisionError: division by zero": "\n1 / 0\n",
     "SWEEP102 squares.py:1:1 the scenario cannot be loaded: ModuleNotFoundError: No module named 'nothing_of_this'": (
@@ -117,7 +117,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("message", "text"), BAD.items(), ids=range(len(BAD)))
+@pytest.mark.parametrize(("message", "text"), INVALID_SCENARIOS.items(), ids=range(len(INVALID_SCENARIOS)))
 def test_invalid_scenario_is_one_error(tmp_path, monkeypatch, message, text):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(LinkwrightError) as raised:
