@@ -91,7 +91,7 @@ def find_switchable_features() -> list[str]:
 def test_pixels_do_not_depend_on_processor_features(count: int) -> None:
     names = find_switchable_features()[-count:]
     paths = [str(REPOSITORY), *filter(None, [os.environ.get("PYTHONPATH")])]
-    program = "import json; from tests.picture.test_same_pixels import compute_digests; print(json.dumps(compute_digests()))"
+    program = "import json; from tests.picture import test_same_pixels as t; print(json.dumps(t.compute_digests()))"
     environment = {**os.environ, "NPY_DISABLE_CPU_FEATURES": " ".join(names), "PYTHONPATH": os.pathsep.join(paths)}
     environment["OPENBLAS_CORETYPE"] = "Prescott"
     printed = subprocess.run(
