@@ -17,7 +17,7 @@ VISION_PACKAGE = REPOSITORY / "robots" / "my_robot_vision"
 PUBLISHED = (REPOSITORY.parent / "shared" / "tutorial" / "my_robot_description").resolve()
 """The folder of the tutorial's published package, which is not part of the repository and may not exist."""
 TUTORIAL_PACKAGES = [PACKAGE, *([PUBLISHED] if PUBLISHED.is_dir() else [])]
-"""The packages that a reader of the tutorial may have: ours, and the published one."""
+"""The packages that a reader of the tutorial may have: Linkwright's, and the published one."""
 
 
 def without_meshes(package: Path, folder: Path) -> Path:

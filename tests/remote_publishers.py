@@ -51,7 +51,7 @@ class RemotePublisher:
     """A publisher of another process.
 
     Args:
-        transport: the transport.
+        transport: the transport that announces the publisher.
         topic: the absolute name of its topic.
         node: the name of its node.
         msg_type: the message type.

@@ -26,9 +26,9 @@ SYSTEMS = {
     "macOS x86_64": ("darwin", "x86_64", list(mac_platforms((15, 0), "x86_64"))),
     "Windows": ("win32", "AMD64", ["win_amd64"]),
 }
-PLAIN = {"empy", "srt"}
+PURE_PYTHON = {"empy", "srt"}
 """Pure Python packages without wheels: their installation needs no compiler."""
-PLAIN_IF_NEED_BE = {"pyyaml": "3.15"}
+PURE_PYTHON_IF_NEEDED = {"pyyaml": "3.15"}
 """Packages that work without their compiled part, and the Python from which on they have no wheels."""
 
 
@@ -45,19 +45,19 @@ def lock() -> dict[str, list[dict[str, Any]]]:
 def test_all_dependencies_install_without_compiler(
     system: str, python: str, lock: dict[str, list[dict[str, Any]]]
 ) -> None:
-    allowed = PLAIN | {
-        name for name, since in PLAIN_IF_NEED_BE.items() if PYTHONS.index(python) >= PYTHONS.index(since)
+    allowed = PURE_PYTHON | {
+        name for name, since in PURE_PYTHON_IF_NEEDED.items() if PYTHONS.index(python) >= PYTHONS.index(since)
     }
     required_packages = {package["name"]: package for package in _needed(lock, _environment(system, python))}
     tags = _tags(system, python)
     packages_without_wheel = {name for name, package in required_packages.items() if not _has_wheel(package, tags)}
     assert {"aiohttp", "numpy", "pillow", "vosk"} <= set(required_packages)  # packages of the base and of extras
     assert packages_without_wheel - allowed == set()
-    assert packages_without_wheel >= PLAIN, "packages with wheels must be removed from the exceptions"
+    assert packages_without_wheel >= PURE_PYTHON, "packages with wheels must be removed from the exceptions"
 
 
 def test_exceptions_for_new_python_versions_are_needed(lock: dict[str, list[dict[str, Any]]]) -> None:
-    for name, since in PLAIN_IF_NEED_BE.items():
+    for name, since in PURE_PYTHON_IF_NEEDED.items():
         assert not _has_wheel(lock[name][0], _tags("Linux x86_64", since)), name
 
 

@@ -51,47 +51,47 @@ class RecorderHarness:
 
 
 @pytest.fixture
-async def scene(tmp_path: Path):
+async def open_scene(tmp_path: Path):
     graph = Graph(clock=JumpClock(START_NS))
     yield lambda **options: RecorderHarness(graph, tmp_path / "bag", **options)
     await graph.close()
 
 
-async def test_recorder_pauses_and_resumes(scene) -> None:
-    scene = scene()
-    await scene.say("one")
-    await scene.call("pause")
-    await scene.call("pause")
-    assert (await scene.call("is_paused")).paused
-    await scene.say("two")
-    await scene.call("resume")
-    assert not (await scene.call("is_paused")).paused
-    await scene.say("three")
-    assert scene.recorded() == ["one", "three"]
+async def test_recorder_pauses_and_resumes(open_scene) -> None:
+    open_scene = open_scene()
+    await open_scene.say("one")
+    await open_scene.call("pause")
+    await open_scene.call("pause")
+    assert (await open_scene.call("is_paused")).paused
+    await open_scene.say("two")
+    await open_scene.call("resume")
+    assert not (await open_scene.call("is_paused")).paused
+    await open_scene.say("three")
+    assert open_scene.recorded() == ["one", "three"]
 
 
-async def test_split_bagfile_starts_next_file_and_publishes_event(scene, tmp_path: Path) -> None:
-    scene = scene()
-    await scene.say("one")
-    await scene.call("split_bagfile")
-    await scene.say("two")
-    assert scene.events == [("bag_0.mcap", "bag_1.mcap")]
-    assert scene.recorded() == ["one", "two"]
+async def test_split_bagfile_starts_next_file_and_publishes_event(open_scene, tmp_path: Path) -> None:
+    open_scene = open_scene()
+    await open_scene.say("one")
+    await open_scene.call("split_bagfile")
+    await open_scene.say("two")
+    assert open_scene.events == [("bag_0.mcap", "bag_1.mcap")]
+    assert open_scene.recorded() == ["one", "two"]
     with BagReader(tmp_path / "bag") as bag:
         assert [file.name for file in bag.files] == ["bag_0.mcap", "bag_1.mcap"]
 
 
-async def test_snapshot_mode_writes_only_snapshots(scene) -> None:
-    scene = scene(snapshot_size=1000)
-    await scene.say("one")
-    assert (await scene.call("snapshot")).success
-    await scene.say("two")
-    assert scene.recorded() == ["one"]
+async def test_snapshot_mode_writes_only_snapshots(open_scene) -> None:
+    open_scene = open_scene(snapshot_size=1000)
+    await open_scene.say("one")
+    assert (await open_scene.call("snapshot")).success
+    await open_scene.say("two")
+    assert open_scene.recorded() == ["one"]
 
 
-async def test_snapshot_service_exists_only_in_snapshot_mode(scene) -> None:
-    scene = scene()
-    names = [name for name, _ in scene.graph.get_service_names_and_types()]
+async def test_snapshot_service_exists_only_in_snapshot_mode(open_scene) -> None:
+    open_scene = open_scene()
+    names = [name for name, _ in open_scene.graph.get_service_names_and_types()]
     assert "/rosbag2_recorder/split_bagfile" in names
     assert "/rosbag2_recorder/snapshot" not in names
-    assert scene.recorded() == []
+    assert open_scene.recorded() == []

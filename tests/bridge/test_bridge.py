@@ -28,8 +28,8 @@ from linkwright.wire.zenoh.tokens import Token
 from tests.bridge.conftest import spin_all
 from tests.waiting import TIMEOUT_S, wait_until
 
-LASTING = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-EVERYTHING = QoSProfile(history=HistoryPolicy.KEEP_ALL)
+TRANSIENT_LOCAL = QoSProfile(3, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+KEEP_ALL = QoSProfile(history=HistoryPolicy.KEEP_ALL)
 WAYS = [("dds", "zenoh"), ("zenoh", "dds")]
 AddTwoInts = get_interface("example_interfaces/srv/AddTwoInts")
 CALL_COUNT = 50
@@ -46,16 +46,16 @@ def listen(process, topic, qos):
 def test_topic_messages_are_bridged_once_and_in_order(networks, source, target):
     networks.bridge()
     remote, local = networks.make(source)("remote"), networks.make(target)("local")
-    received_here = listen(local, "chatter", EVERYTHING)
-    received_there = listen(remote, "chatter", EVERYTHING)
-    publisher = remote.node.create_publisher(String, "chatter", EVERYTHING)
+    received_here = listen(local, "chatter", KEEP_ALL)
+    received_there = listen(remote, "chatter", KEEP_ALL)
+    publisher = remote.node.create_publisher(String, "chatter", KEEP_ALL)
     spin_all(lambda: publisher.get_subscription_count() >= 2 and local.node.count_publishers("chatter"), remote, local)
     words = [str(number) for number in range(500)]
     for word in words:
         publisher.publish(String(data=word))
     spin_all(lambda: len(received_here) >= len(words), local, remote)
     # A message that the bridge sent back would arrive before the message of this publisher.
-    back = local.node.create_publisher(String, "chatter", EVERYTHING)
+    back = local.node.create_publisher(String, "chatter", KEEP_ALL)
     spin_all(lambda: back.get_subscription_count() >= 2, local, remote)
     back.publish(String(data="end"))
     spin_all(lambda: "end" in received_there and "end" in received_here, remote, local)
@@ -137,13 +137,13 @@ def test_first_messages_of_new_publisher_reach_existing_subscription(networks, s
 @pytest.mark.parametrize(("source", "target"), WAYS)
 def test_late_subscription_receives_latched_messages_once(networks, source, target):
     remote = networks.make(source)("remote")
-    publisher = remote.node.create_publisher(String, "described", LASTING)
+    publisher = remote.node.create_publisher(String, "described", TRANSIENT_LOCAL)
     for word in ("one", "two", "three", "four"):
         publisher.publish(String(data=word))
     networks.bridge()
     for name in ("first", "second"):
         local = networks.make(target)(name)
-        received = listen(local, "described", LASTING)
+        received = listen(local, "described", TRANSIENT_LOCAL)
         spin_all(lambda received=received: len(received) >= 3, local)
         assert received == ["two", "three", "four"]
     publisher.publish(String(data="five"))
@@ -155,11 +155,11 @@ def test_late_subscription_receives_latched_messages_once(networks, source, targ
 def test_first_message_of_second_publisher_on_bridged_topic_is_not_lost(networks, source, target):
     networks.bridge()
     first, local = networks.make(source)("first"), networks.make(target)("local")
-    received = listen(local, "chatter", EVERYTHING)
-    publisher = first.node.create_publisher(String, "chatter", EVERYTHING)
+    received = listen(local, "chatter", KEEP_ALL)
+    publisher = first.node.create_publisher(String, "chatter", KEEP_ALL)
     spin_all(publisher.get_subscription_count, first)
     late_process = networks.make(source)("late")
-    publisher = late_process.node.create_publisher(String, "chatter", EVERYTHING)
+    publisher = late_process.node.create_publisher(String, "chatter", KEEP_ALL)
     spin_all(publisher.get_subscription_count, late_process)
     publisher.publish(String(data="at once"))
     spin_all(lambda: received, local)
@@ -175,8 +175,8 @@ def test_last_message_of_closed_publisher_is_delivered(networks, monkeypatch, so
     monkeypatch.setattr("linkwright.wire.dds.engine.CLOSING_TIME", TIMEOUT_S)
     networks.bridge()
     remote, local = networks.make(source)("remote"), networks.make(target)("local")
-    received = listen(local, "chatter", EVERYTHING)
-    publisher = remote.node.create_publisher(String, "chatter", EVERYTHING)
+    received = listen(local, "chatter", KEEP_ALL)
+    publisher = remote.node.create_publisher(String, "chatter", KEEP_ALL)
     spin_all(publisher.get_subscription_count, remote, local)
     publisher.publish(String(data="first"))
     spin_all(lambda: received, local, remote)
@@ -342,8 +342,8 @@ def test_two_bridges_deliver_each_message_once_and_one_takes_over(networks):
     first = networks.bridge("b0")
     networks.bridge("b1")
     remote, local = networks.dds("remote"), networks.zenoh("local")
-    received = listen(local, "chatter", EVERYTHING)
-    publisher = remote.node.create_publisher(String, "chatter", EVERYTHING)
+    received = listen(local, "chatter", KEEP_ALL)
+    publisher = remote.node.create_publisher(String, "chatter", KEEP_ALL)
 
     def settled() -> bool:
         node_names = [endpoint.node_name for endpoint in remote.node.get_subscriptions_info_by_topic("chatter")]

@@ -102,12 +102,12 @@ class ArmPage:
         return yaml.safe_load(text)["Visualization Manager"]
 
 
-def open_scene(live: Any, open_page: Any) -> ArmPage:
+def open_scene(start_viewer: Any, open_page: Any) -> ArmPage:
     """Publish the arm, and open a page that shows it from above.
 
     The arguments are the fixtures of these names.
     """
-    viewer = live(yaml.safe_dump(CONFIG))
+    viewer = start_viewer(yaml.safe_dump(CONFIG))
     viewer.publish("/robot_description", String(data=ARM), DESCRIPTION_QOS)
     viewer.place("tip", *TIP, 0.0)
     viewer.place("mark", 0.0, 0.0, 0.0, parent="tip")

@@ -197,7 +197,7 @@ def program_starter(start_program: Callable[..., forked.Program], folder: Path) 
 
 
 @pytest.fixture
-def live() -> Iterator[Callable[..., LiveViewer]]:
+def start_viewer() -> Iterator[Callable[..., LiveViewer]]:
     """Return a function that starts a viewer in this process with a configuration.
 
     See `LiveViewer`.
@@ -249,12 +249,14 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
 
 
 @pytest.fixture
-def grouped_displays(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[LiveViewer, Page]:
+def grouped_displays(
+    start_viewer: Callable[..., LiveViewer], open_page: Callable[..., Page]
+) -> tuple[LiveViewer, Page]:
     """Return a viewer and its page.
 
     The viewer has a grid, and a group of axes and an unknown display.
     """
-    viewer = live(configuration(_GROUPED))
+    viewer = start_viewer(configuration(_GROUPED))
     viewer.place("tip", 1.0, 0.0, 0.0)
     page = open_page(viewer, wait=False)
     page.wait_for_selector("[data-key='display-4']")

@@ -162,7 +162,7 @@ class Firefox:
     def press(self, *keys: str) -> None:
         """Press keys one after another.
 
-        WebDriver names them by a letter, or by a code such as ``\ue014`` (right).
+        WebDriver names them by a letter, or by a code such as ``\\ue014`` (right).
         """
         actions = [{"type": action_type, "value": key} for key in keys for action_type in ("keyDown", "keyUp")]
         source = {"type": "key", "id": "keyboard", "actions": actions}

@@ -112,8 +112,8 @@ def test_keyboard_focus_has_visible_ring(start, open_page, tmp_path: Path):
     assert len(focused_elements) > 40, focused_elements
 
 
-def test_displays_menu_and_dialogs_pass_axe(live: Callable[..., LiveViewer], open_page):
-    page = open_page(live(configuration(DISPLAYS)), wait=False)
+def test_displays_menu_and_dialogs_pass_axe(start_viewer: Callable[..., LiveViewer], open_page):
+    page = open_page(start_viewer(configuration(DISPLAYS)), wait=False)
     until(page, "lw.displays.length === 3")
     row = page.locator("[data-key='display-1'] .row-title")
     row.click()
@@ -135,8 +135,8 @@ def publish_until_shown(publish: Callable[[], None], shown_text: Locator) -> Non
     wait_until_equal(is_shown, True)
 
 
-def test_live_panels_pass_axe(live: Callable[..., LiveViewer], open_page):
-    viewer = live(configuration(DISPLAYS))
+def test_live_panels_pass_axe(start_viewer: Callable[..., LiveViewer], open_page):
+    viewer = start_viewer(configuration(DISPLAYS))
 
     def join() -> Logger:
         arm = viewer.node.graph.create_node("arm")
@@ -194,8 +194,8 @@ def test_world_modeling_passes_axe(start, open_page, tmp_path: Path):
     assert find_violations(page, "dialog") == []
 
 
-def test_token_form_and_page_without_webgl_pass_axe(live: Callable[..., LiveViewer], browser: Browser):
-    viewer = live(configuration(DISPLAYS))
+def test_token_form_and_page_without_webgl_pass_axe(start_viewer: Callable[..., LiveViewer], browser: Browser):
+    viewer = start_viewer(configuration(DISPLAYS))
     with browser.new_context(locale="en-US") as context:
         context.set_default_timeout(1000 * TIMEOUT_S)
         context.add_init_script("HTMLCanvasElement.prototype.getContext = () => null")

@@ -5,13 +5,13 @@ from __future__ import annotations
 import pytest
 
 from tests.browser.conftest import until
-from tests.hosting.test_argument_form import box as box  # a fixture
+from tests.hosting.test_argument_form import box_file as box_file  # a fixture
 
 pytestmark = pytest.mark.browser
 
 
-def test_argument_form_accepts_keyboard_choice_and_shows_robot(start_fresh, open_page, box):
-    page = open_page(start_fresh("view", str(box)), wait=False)
+def test_argument_form_accepts_keyboard_choice_and_shows_robot(start_fresh, open_page, box_file):
+    page = open_page(start_fresh("view", str(box_file)), wait=False)
     form = page.get_by_role("form", name="Arguments of the description")
     form.wait_for()
     model = form.get_by_label("model", exact=True)

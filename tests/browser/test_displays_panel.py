@@ -149,12 +149,12 @@ def test_context_menu_renames_and_groups_display(grouped_displays):
     assert display_names(page) == ["Grid", "Marks", "Group", "Axes", "Radar"]
 
 
-def test_reason_for_empty_display_is_shown_in_row_and_diagnostics(live, open_page):
+def test_reason_for_empty_display_is_shown_in_row_and_diagnostics(start_viewer, open_page):
     """The tooltip, the help below the list and the diagnostics show the reason.
 
     The diagnostics link to the row.
     """
-    viewer = live(configuration(_SILENT))
+    viewer = start_viewer(configuration(_SILENT))
     page = open_page(viewer, wait=False)
     reason = "Topic: No messages received: the topic has no publisher"
     card = page.locator(".diagnostic", has_text="Clicks")

@@ -102,13 +102,13 @@ def robot_with_meshes(folder: Path) -> str:
 MESHES = (".dae", ".obj", ".stl")
 
 
-def test_exported_page_draws_the_same_as_viewer(live, open_page, open_file, tmp_path):
+def test_exported_page_draws_the_same_as_viewer(start_viewer, open_page, open_file, tmp_path):
     folder = tmp_path / "meshes"
     folder.mkdir()
     text = robot_with_meshes(folder)
     (tmp_path / "robot.urdf").write_text(text)
     export_page(tmp_path / "robot.html", tmp_path / "robot.urdf")
-    viewer = live(ROBOT)
+    viewer = start_viewer(ROBOT)
     for name in ("skin", "inches", "own", "plain"):
         viewer.place(name, 0.0, 0.0, 0.0)
     viewer.publish("/robot_description", String(data=text), DESCRIPTION_QOS)
@@ -183,8 +183,8 @@ def test_exported_grid_fits_small_mesh_robot(open_file, tmp_path):
     wait_until_equal(lambda: grid_drawing(page)["cell"], pytest.approx(0.01))
 
 
-def open_gripper(live, open_page):
-    viewer = live(ROBOT)
+def open_gripper(start_viewer, open_page):
+    viewer = start_viewer(ROBOT)
     viewer.place("arm", 0.0, 0.0, 0.25, 0.0, 0.0, 0.70710678, 0.70710678)
     viewer.place("left", 0.0, 0.5, 1.0, parent="arm")
     viewer.place("right", 0.0, -0.75, 1.0, parent="arm")
@@ -205,8 +205,8 @@ def save_from_menu(page, entry: str, folder: Path) -> Path:
     return path
 
 
-def test_viewer_exports_current_joints_and_view(live, open_page, open_file, tmp_path):
-    _, page = open_gripper(live, open_page)
+def test_viewer_exports_current_joints_and_view(start_viewer, open_page, open_file, tmp_path):
+    _, page = open_gripper(start_viewer, open_page)
     path = save_from_menu(page, "Export HTML…", tmp_path)
     assert path.name == "gripper.html"
     exported_page = open_file(path)
@@ -216,11 +216,11 @@ def test_viewer_exports_current_joints_and_view(live, open_page, open_file, tmp_
     assert_alike(drawn_visuals(exported_page), drawn_visuals(page))
 
 
-def test_exported_glb_shows_the_same_robot(live, open_page, tmp_path):
-    _, page = open_gripper(live, open_page)
+def test_exported_glb_shows_the_same_robot(start_viewer, open_page, tmp_path):
+    _, page = open_gripper(start_viewer, open_page)
     path = save_from_menu(page, "Export glb…", tmp_path)
     visuals = drawn_visuals(page)
-    viewer = live(ROBOT)
+    viewer = start_viewer(ROBOT)
     robot = f'<robot name="again"><link name="base">{mesh_visual(path, "")}</link></robot>'
     viewer.publish("/robot_description", String(data=robot), DESCRIPTION_QOS)
     (drawn_model,) = drawn_visuals(open_page(viewer))["base"]
@@ -248,10 +248,10 @@ def test_files_outside_package_are_listed_before_export(start, open_page, tmp_pa
     wait_until_equal(dialog.get_by_role("listitem").all_inner_texts, ["elsewhere/part.urdf"])
 
 
-def test_screenshots_and_videos_are_saved(live, open_page, tmp_path):
+def test_screenshots_and_videos_are_saved(start_viewer, open_page, tmp_path):
     from PIL import Image
 
-    _, page = open_gripper(live, open_page)
+    _, page = open_gripper(start_viewer, open_page)
     canvas = page.locator(".canvas-box canvas").bounding_box()
     with Image.open(save_from_menu(page, "Screenshot, 2 times as large", tmp_path)) as image:
         assert image.format == "PNG"

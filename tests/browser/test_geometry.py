@@ -98,8 +98,8 @@ def drawn_size(drawing: dict) -> list[float]:
     return [high - low for low, high in zip(drawing["bounds"]["min"], drawing["bounds"]["max"], strict=True)]
 
 
-def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
-    viewer = live(DISPLAYS)
+def test_displays_draw_their_messages_at_the_right_pose(start_viewer, open_page):
+    viewer = start_viewer(DISPLAYS)
     publish_all(viewer)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.every((display) => display.drawn?.bounds)")
@@ -127,8 +127,8 @@ def test_displays_draw_their_messages_at_the_right_pose(live, open_page):
     wait_until_equal(lambda: {display["level"] for display in state(page, "displays")}, {"ok"})
 
 
-def test_property_changes_and_disabling_act_at_once(live, open_page):
-    viewer = live(DISPLAYS)
+def test_property_changes_and_disabling_act_at_once(start_viewer, open_page):
+    viewer = start_viewer(DISPLAYS)
     publish_all(viewer)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.every((display) => display.drawn?.bounds)")
@@ -160,8 +160,8 @@ def test_property_changes_and_disabling_act_at_once(live, open_page):
     assert drawing["Guess"]["bounds"]["max"] == pytest.approx([1.3, 2.05, 1.05], abs=1e-3)
 
 
-def test_tf_filters_limit_drawn_frames(live, open_page):
-    viewer = live(configuration("- {Class: rviz_default_plugins/TF, Enabled: true, Filter (whitelist): wheel}"))
+def test_tf_filters_limit_drawn_frames(start_viewer, open_page):
+    viewer = start_viewer(configuration("- {Class: rviz_default_plugins/TF, Enabled: true, Filter (whitelist): wheel}"))
     for number, name in enumerate(("left_wheel", "right_wheel", "camera")):
         viewer.place(name, 0.0, 0.0, 1.0 + number)
     page = open_page(viewer, wait=False)
@@ -203,8 +203,8 @@ def locate_row(page, key: str):
     return page.locator(f'.row[data-key="{key}"]')
 
 
-def test_tree_rows_of_frames_links_and_joints_match_scene(live, open_page):
-    viewer = live(ROWS)
+def test_tree_rows_of_frames_links_and_joints_match_scene(start_viewer, open_page):
+    viewer = start_viewer(ROWS)
     viewer.publish("/robot_description", String(data=CRANE), DESCRIPTION_QOS)
     viewer.place("tip", 0.0, 0.0, 1.0)
     page = open_page(viewer)

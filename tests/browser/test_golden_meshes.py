@@ -38,16 +38,16 @@ def drawn_visual(page, name: str) -> dict:
     return robot["links"][name]["visuals"][0]
 
 
-def open_robot(live, open_page, links: str, names):
-    viewer = live(ROBOT)
+def open_robot(start_viewer, open_page, links: str, names):
+    viewer = start_viewer(ROBOT)
     for name in names:
         viewer.place(name, 0.0, 0.0, 0.0)
     viewer.publish("/robot_description", String(data=robot_of(links)), DESCRIPTION_QOS)
     return open_page(viewer)
 
 
-def test_bounds_and_colors_match_rviz(live, open_page, tmp_path):
-    page = open_robot(live, open_page, golden_links(tmp_path), GOLDEN)
+def test_bounds_and_colors_match_rviz(start_viewer, open_page, tmp_path):
+    page = open_robot(start_viewer, open_page, golden_links(tmp_path), GOLDEN)
     mismatches = {}
     for name, (_, _, _, _, (low, high), color, opacity) in GOLDEN.items():
         drawing = drawn_visual(page, name)
@@ -63,7 +63,7 @@ def test_bounds_and_colors_match_rviz(live, open_page, tmp_path):
     assert mismatches == {}
 
 
-def test_textures_are_drawn(live, open_page, tmp_path):
+def test_textures_are_drawn(start_viewer, open_page, tmp_path):
     (tmp_path / "skin.png").write_bytes(make_png(255, 255, 0))
     texture = f'<material name="skin"><texture filename="{(tmp_path / "skin.png").as_uri()}"/></material>'
     image = "<texture texture='c' texcoord='UV'/>"
@@ -82,7 +82,7 @@ def test_textures_are_drawn(live, open_page, tmp_path):
     links = link_element("dae", mesh_visual(tmp_path / "skin.dae", "")) + link_element(
         "stl", mesh_visual(tmp_path / "plain.stl", texture)
     )
-    page = open_robot(live, open_page, links, ("dae", "stl"))
+    page = open_robot(start_viewer, open_page, links, ("dae", "stl"))
     assert [drawn_visual(page, name)["materials"][0]["textured"] for name in ("dae", "stl")] == [True, True]
     assert {row["level"] for row in state(page, "displays")[0]["status"]} == {"ok"}
 
@@ -113,9 +113,9 @@ LAYERS = (
 )
 
 
-def test_transparent_layers_are_blended_by_depth(live, open_page):
+def test_transparent_layers_are_blended_by_depth(start_viewer, open_page):
     names = ("near", "far")
-    viewer = live(ROBOT)
+    viewer = start_viewer(ROBOT)
     for name in names:
         viewer.place(name, 0.0, 0.0, 0.0)
     page = None

@@ -14,8 +14,8 @@ pytestmark = pytest.mark.browser
 DISPLAY = "- {Class: grid_map_rviz_plugin/GridMap, Enabled: true, Name: Map, Topic: /grid_map}"
 
 
-def test_grid_map_with_missing_cell_is_drawn(live, open_page, tmp_path):
-    viewer = live(configuration(DISPLAY, distance=9))
+def test_grid_map_with_missing_cell_is_drawn(start_viewer, open_page, tmp_path):
+    viewer = start_viewer(configuration(DISPLAY, distance=9))
     page = open_page(viewer, wait=False)
     x, y = np.meshgrid(np.linspace(-2, 2, 21), np.linspace(-2, 2, 21))
     heights = 1.5 * np.exp(-(x**2) - y**2)

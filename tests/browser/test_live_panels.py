@@ -38,11 +38,11 @@ class Robot:
     They also have parameters, log, and receive velocities.
     """
 
-    live: LiveViewer
+    viewer: LiveViewer
     velocities: list[tuple[float, float]] = field(default_factory=list)
 
     async def start(self) -> None:
-        graph = self.live.node.graph
+        graph = self.viewer.node.graph
         current = graph.create_node("motor", namespace="/left").create_publisher(FLOAT, "/left/current", 1000)
         arm = graph.create_node("arm")
         joints = arm.create_publisher(JOINT_STATE, "/joint_states", 10)
@@ -71,23 +71,23 @@ class Robot:
 
     def log_texts(self, *texts: str) -> None:
         for text in texts:
-            self.live.run(lambda text=text: self.base.get_logger().warning(text))
+            self.viewer.run(lambda text=text: self.base.get_logger().warning(text))
 
     async def stop(self) -> None:
         self._task.cancel()
 
 
 @pytest.fixture
-def robot(live: Callable[..., LiveViewer]) -> Iterator[Robot]:
-    robot = Robot(live(configuration(GRID)))
-    robot.live.run(robot.start)
+def robot(start_viewer: Callable[..., LiveViewer]) -> Iterator[Robot]:
+    robot = Robot(start_viewer(configuration(GRID)))
+    robot.viewer.run(robot.start)
     yield robot
-    robot.live.run(robot.stop)
+    robot.viewer.run(robot.stop)
 
 
 @pytest.fixture
 def page(robot: Robot, open_page: Callable[..., Page]) -> Page:
-    return open_page(robot.live, wait=False)
+    return open_page(robot.viewer, wait=False)
 
 
 def open_panel(page: Page, name: str) -> None:
@@ -102,7 +102,7 @@ def add_series(page: Page, text: str) -> None:
 
 
 def subscriber_count(robot: Robot, topic: str) -> int:
-    return robot.live.run(lambda: robot.live.node.graph.count_subscribers(topic))
+    return robot.viewer.run(lambda: robot.viewer.node.graph.count_subscribers(topic))
 
 
 MONITOR = "lw.panels.monitor"
@@ -235,7 +235,7 @@ def test_node_graph_shows_publishers_and_subscribers(page: Page, robot: Robot):
         ["node:/arm", "node:/planner"],
     )
     # A new node is drawn without a reload.
-    robot.live.run(lambda: robot.live.node.graph.create_node("late").create_publisher(FLOAT, "/left/current", 10))
+    robot.viewer.run(lambda: robot.viewer.node.graph.create_node("late").create_publisher(FLOAT, "/left/current", 10))
     page.locator(".vertex[data-id='node:/late']").wait_for()
     page.get_by_role("checkbox", name="Group").check()
     page.locator(".vertex[data-id='group:/left']").click()
@@ -253,17 +253,17 @@ def test_parameters_are_edited(page: Page, robot: Robot):
     speed = page.get_by_role("textbox", name="speed")
     speed.fill("0.75")
     speed.press("Enter")
-    wait_until(lambda: robot.live.run(lambda: robot.base.get_parameter("speed").value) == 0.75)
+    wait_until(lambda: robot.viewer.run(lambda: robot.base.get_parameter("speed").value) == 0.75)
     speed.fill("9")
     speed.press("Enter")
     page.get_by_text("out of range").wait_for()
-    assert robot.live.run(lambda: robot.base.get_parameter("speed").value) == 0.75
+    assert robot.viewer.run(lambda: robot.base.get_parameter("speed").value) == 0.75
     wheels = page.get_by_role("textbox", name="wheels")
     assert wheels.input_value() == '["left", "right"]'
     wheels.fill('["left", "right, rear"]')
     wheels.press("Enter")
     result = ["left", "right, rear"]
-    wait_until(lambda: robot.live.run(lambda: list(robot.base.get_parameter("wheels").value)) == result)
+    wait_until(lambda: robot.viewer.run(lambda: list(robot.base.get_parameter("wheels").value)) == result)
     with page.expect_download() as download:
         page.get_by_role("button", name="YAML").click()
     assert download.value.suggested_filename == "base.yaml"
@@ -335,7 +335,7 @@ def test_teleop_pad_publishes_while_held(page: Page, robot: Robot):
     wait_until(lambda: len(robot.velocities) >= 2)
     page.close()
     wait_until(lambda: robot.velocities[-1] == (0.0, 0.0))
-    wait_until(lambda: robot.live.run(lambda: robot.live.node.graph.count_publishers("/cmd_vel")) == 0)
+    wait_until(lambda: robot.viewer.run(lambda: robot.viewer.node.graph.count_publishers("/cmd_vel")) == 0)
 
 
 def test_teleop_pad_stops_when_touch_ends_tab_hides_or_page_crashes(page: Page, robot: Robot):

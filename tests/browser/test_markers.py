@@ -80,10 +80,10 @@ def make_all_markers(mesh: Path) -> list[Marker]:
     return markers
 
 
-def test_all_marker_types_are_drawn(live, open_page, tmp_path):
+def test_all_marker_types_are_drawn(start_viewer, open_page, tmp_path):
     mesh = tmp_path / "triangle.stl"
     mesh.write_bytes(CUBE_STL)
-    viewer = live(MARKERS)
+    viewer = start_viewer(MARKERS)
     page = open_page(viewer, wait=False)
     viewer.publish("/marks", MarkerArray(markers=make_all_markers(mesh)))
     until(page, "Object.keys(lw.displays[1]?.drawn?.markers ?? {}).length === 13")
@@ -101,10 +101,10 @@ def test_all_marker_types_are_drawn(live, open_page, tmp_path):
     until(page, "Object.keys(lw.displays[1].drawn.markers).length === 0")
 
 
-def test_unreadable_marker_mesh_is_reported(live, open_page, tmp_path):
+def test_unreadable_marker_mesh_is_reported(start_viewer, open_page, tmp_path):
     mesh = tmp_path / "broken.glb"
     mesh.write_text("no mesh")
-    viewer = live(MARKERS)
+    viewer = start_viewer(MARKERS)
     page = open_page(viewer, wait=False)
     mesh_marker = make_marker(1, kind=Marker.MESH_RESOURCE, mesh_resource=mesh.as_uri())
     viewer.publish("/marks", MarkerArray(markers=[mesh_marker]))
@@ -112,8 +112,8 @@ def test_unreadable_marker_mesh_is_reported(live, open_page, tmp_path):
     assert "Mesh resource marker [a/1]" in viewer.status("Marks")["a/1"][1]
 
 
-def test_box_selection_ignores_hidden_markers(live, open_page):
-    viewer = live(MARKERS.replace("Pitch: 0.6", "Pitch: 0").replace("Yaw: 0.8", "Yaw: 0"))
+def test_box_selection_ignores_hidden_markers(start_viewer, open_page):
+    viewer = start_viewer(MARKERS.replace("Pitch: 0.6", "Pitch: 0").replace("Yaw: 0.8", "Yaw: 0"))
     page = open_page(viewer, wait=False)
     wall, hidden, neighbor = (
         make_marker(number, kind=Marker.CUBE, color=make_color(0.0, 1.0, 0.0)) for number in range(3)
@@ -149,9 +149,9 @@ INTERACTIVE = configuration(
 )
 
 
-def test_interactive_marker_is_dragged_along_its_axis(live, open_page):
+def test_interactive_marker_is_dragged_along_its_axis(start_viewer, open_page):
     along_x = Control(name="x", interaction_mode=Control.MOVE_AXIS)
-    viewer = live(INTERACTIVE)
+    viewer = start_viewer(INTERACTIVE)
     server = viewer.run(lambda: MarkerServer(viewer._graph, interactive_marker("one", along_x)))
     page = open_page(viewer, wait=False)
     until(page, "lw.displays[0]?.drawn?.one !== undefined")

@@ -27,7 +27,7 @@ def link_element(name: str, mesh: str, y: float) -> str:
 
 
 @pytest.fixture
-def robot(tmp_path):
+def write_robot(tmp_path):
     box = trimesh.creation.box((0.2, 0.1, 0.3))
     for extension in ("stl", "obj", "glb"):
         box.export(tmp_path / f"box.{extension}")
@@ -50,21 +50,21 @@ def mesh_rows(page):
     return {row["name"]: (row["level"], row["text"]) for row in display["status"]}
 
 
-def test_all_mesh_formats_are_drawn(start, open_page, robot):
-    page = open_page(start("view", robot()))
+def test_all_mesh_formats_are_drawn(start, open_page, write_robot):
+    page = open_page(start("view", write_robot()))
     assert state(page, "robot.visuals") == len(FILE_FORMATS)
     wait_until_equal(
         lambda: [mesh_rows(page).get(kind, ("", ""))[0] for kind in FILE_FORMATS], ["ok"] * len(FILE_FORMATS)
     )
 
 
-def test_malformed_collada_is_read_as_leniently_as_by_rviz(start, open_page, robot, tmp_path):
+def test_malformed_collada_is_read_as_leniently_as_by_rviz(start, open_page, write_robot, tmp_path):
     """Exporters write invalid XML: assimp names the nodes of an STL ``<STL_BINARY>``."""
     well_formed = (tmp_path / "box.dae").read_text()
     malformed = well_formed.replace('<node id="body"', '<!-- made -- by hand --><node id="<STL_BINARY>"', 1)
     assert malformed != well_formed
     (tmp_path / "loose.dae").write_text(malformed)
-    page = open_page(start("view", robot(link_element("loose", f"file://{tmp_path}/loose.dae", 2))))
+    page = open_page(start("view", write_robot(link_element("loose", f"file://{tmp_path}/loose.dae", 2))))
     wait_until_equal(lambda: mesh_rows(page).get("loose", ("", ""))[0], "ok")
 
 
@@ -85,11 +85,11 @@ BROKEN = {
 """The contents of broken files, and the expected messages."""
 
 
-def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
+def test_broken_mesh_is_reported_at_its_link(start, open_page, write_robot, tmp_path):
     for name, (data, _) in BROKEN.items():
         (tmp_path / name).write_bytes(data)
     links = [link_element(f"broken_{name[:-4]}", f"file://{tmp_path}/{name}", -0.4) for name in BROKEN]
-    page = open_page(start("view", robot(*links)))
+    page = open_page(start("view", write_robot(*links)))
     files_by_link = {f"broken_{name[:-4]}": (name, message) for name, (_, message) in BROKEN.items()}
     wait_until_equal(
         lambda: {link: mesh_rows(page).get(link, ("", ""))[0] for link in files_by_link},
@@ -105,8 +105,8 @@ def test_broken_mesh_is_reported_at_its_link(start, open_page, robot, tmp_path):
     assert state(page, "robot.visuals") == len(FILE_FORMATS)
 
 
-def test_slow_mesh_is_reported_until_loaded(start, open_page, robot):
-    page = open_page(start("view", robot()))
+def test_slow_mesh_is_reported_until_loaded(start, open_page, write_robot):
+    page = open_page(start("view", write_robot()))
     held_requests = []
 
     def hold(route) -> None:

@@ -74,10 +74,10 @@ def make_kitchen_scene(*, wrist: float = 0.2):
     return kitchen_scene
 
 
-def test_planning_scene_and_trajectory_are_drawn(live, open_page, tmp_path):
+def test_planning_scene_and_trajectory_are_drawn(start_viewer, open_page, tmp_path):
     (tmp_path / "hand.stl").write_bytes(CUBE_STL)
     mesh = f'<mesh filename="{(tmp_path / "hand.stl").as_uri()}" scale="0.2 0.2 0.2"/>'
-    viewer = live(MOTION_PLANNING)
+    viewer = start_viewer(MOTION_PLANNING)
     viewer.publish("/robot_description", String(data=ARM.replace('<sphere radius="0.1"/>', mesh)), DESCRIPTION_QOS)
     page = open_page(viewer, wait=False)
     viewer.publish("/monitored_planning_scene", make_kitchen_scene())
@@ -100,10 +100,10 @@ def test_planning_scene_and_trajectory_are_drawn(live, open_page, tmp_path):
     assert viewer.run(lambda: [row.text for row in viewer.viewer.displays[1].status if row.level != "ok"]) == []
 
 
-def test_moving_mesh_is_not_reloaded(live, open_page, tmp_path):
+def test_moving_mesh_is_not_reloaded(start_viewer, open_page, tmp_path):
     (tmp_path / "hand.stl").write_bytes(CUBE_STL)
     mesh = f'<mesh filename="{(tmp_path / "hand.stl").as_uri()}"/>'
-    viewer = live(configuration("- {Class: moveit_rviz_plugin/PlanningScene, Enabled: true, Name: Scene}"))
+    viewer = start_viewer(configuration("- {Class: moveit_rviz_plugin/PlanningScene, Enabled: true, Name: Scene}"))
     viewer.publish("/robot_description", String(data=ARM.replace('<sphere radius="0.1"/>', mesh)), DESCRIPTION_QOS)
     page = open_page(viewer, wait=False)
     viewer.publish("/monitored_planning_scene", make_scene(robot=make_robot_state(shoulder=0.0)))
@@ -119,8 +119,8 @@ def test_moving_mesh_is_not_reloaded(live, open_page, tmp_path):
     assert page.evaluate(loads) == 1
 
 
-def test_missing_mesh_is_reported(live, open_page):
-    viewer = live(configuration("- {Class: moveit_rviz_plugin/PlanningScene, Enabled: true, Name: Scene}"))
+def test_missing_mesh_is_reported(start_viewer, open_page):
+    viewer = start_viewer(configuration("- {Class: moveit_rviz_plugin/PlanningScene, Enabled: true, Name: Scene}"))
     text = ARM.replace('<sphere radius="0.1"/>', '<mesh filename="file:///nowhere/hand.stl"/>')
     viewer.publish("/robot_description", String(data=text), DESCRIPTION_QOS)
     page = open_page(viewer, wait=False)

@@ -70,7 +70,7 @@ def scene_pixels(page: Any) -> np.ndarray:
         return np.asarray(image.convert("RGB")).astype(int)
 
 
-def test_moving_meshes_are_simplified_and_look_the_same(live, open_page, tmp_path):
+def test_moving_meshes_are_simplified_and_look_the_same(start_viewer, open_page, tmp_path):
     trimesh.creation.icosphere(subdivisions=5, radius=0.5).export(tmp_path / "ball.stl")
     box = trimesh.creation.box((0.6, 0.6, 0.6)).subdivide_loop(0)
     for _ in range(4):
@@ -78,7 +78,7 @@ def test_moving_meshes_are_simplified_and_look_the_same(live, open_page, tmp_pat
     box.unmerge_vertices()
     box.export(tmp_path / "box.glb")
     (tmp_path / "package.xml").write_text("<package><name>shapes</name></package>")
-    viewer = live(configuration(DISPLAYS, distance=6.0), packages={"shapes": tmp_path})
+    viewer = start_viewer(configuration(DISPLAYS, distance=6.0), packages={"shapes": tmp_path})
     for name, x in zip(LINKS, (0.0, 1.2, -1.2), strict=True):
         viewer.place(name, 0.0, 0.5 * x, x)
     meshes = ('ball.stl"', 'box.glb"', 'ball.stl" scale="-0.5 0.3 1"')

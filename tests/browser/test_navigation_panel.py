@@ -20,8 +20,8 @@ Panels:
 VALUES = "[...document.querySelectorAll('.navigation-value')].map((element) => element.textContent)"
 
 
-def test_configuration_opens_navigation_panel_and_its_buttons_work(live, open_page, tmp_path):
-    viewer = live(PANELS + configuration("- {Class: rviz_default_plugins/Grid, Enabled: true, Name: Grid}"))
+def test_configuration_opens_navigation_panel_and_its_buttons_work(start_viewer, open_page, tmp_path):
+    viewer = start_viewer(PANELS + configuration("- {Class: rviz_default_plugins/Grid, Enabled: true, Name: Grid}"))
     nav2 = viewer.run(lambda: Nav2(viewer.node.graph))
     page = open_page(viewer, wait=False)
     until(page, f"{VALUES}[0] === 'active' && {VALUES}[1] === 'active'")

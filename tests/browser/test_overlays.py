@@ -203,8 +203,8 @@ def test_fit_button_shows_whole_robot(start, open_page, tmp_path):
     until(page, "lw.view.values.Distance < 10")
 
 
-def test_replaced_description_is_reported(live, open_page):
-    viewer = live(configuration("- {Class: rviz_default_plugins/RobotModel, Name: Robot, Enabled: true}"))
+def test_replaced_description_is_reported(start_viewer, open_page):
+    viewer = start_viewer(configuration("- {Class: rviz_default_plugins/RobotModel, Name: Robot, Enabled: true}"))
     viewer.publish("/robot_description", String(data=WIDE), DESCRIPTION_QOS)
     page = open_page(viewer)
     notice = page.locator("[data-notice=owner]")
@@ -216,9 +216,9 @@ def test_replaced_description_is_reported(live, open_page):
     wait_until_equal(lambda: "Robot The description of /other is shown" in notice.inner_text(), True)
 
 
-def test_missing_fixed_frame_offers_existing_frame_and_robot_display(live, open_page):
+def test_missing_fixed_frame_offers_existing_frame_and_robot_display(start_viewer, open_page):
     grid = "- {Class: rviz_default_plugins/Grid, Name: Grid, Enabled: true}"
-    viewer = live(configuration(grid, distance=100.0).replace("Fixed Frame: base", "Fixed Frame: map"))
+    viewer = start_viewer(configuration(grid, distance=100.0).replace("Fixed Frame: base", "Fixed Frame: map"))
     viewer.publish("/robot_description", String(data=WIDE), DESCRIPTION_QOS)
     viewer.place("base", 8, 0, 0, parent="odom")
     page = open_page(viewer, wait=False)

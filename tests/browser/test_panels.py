@@ -69,11 +69,11 @@ def is_unsaved(page) -> bool:
     return page.locator(".file-name .unsaved").count() == 1
 
 
-def test_rviz_file_opens_panels_that_rviz_shows(live, open_page, tmp_path: Path):
+def test_rviz_file_opens_panels_that_rviz_shows(start_viewer, open_page, tmp_path: Path):
     path, other_path = tmp_path / "robot.rviz", tmp_path / "other.rviz"
     path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
     other_path.write_text("Panels:\n  - {Class: rviz_common/Time, Name: Time}\n" + configuration(GRID))
-    viewer = live(configuration(GRID))
+    viewer = start_viewer(configuration(GRID))
     page = open_page(viewer, wait=False)
     wait_for_panels(page, *DEFAULT_PANELS)  # the file does not list panels
     open_file(page, path)
@@ -90,10 +90,10 @@ def test_rviz_file_opens_panels_that_rviz_shows(live, open_page, tmp_path: Path)
     assert viewer.run(viewer.viewer.config.text) == path.read_text()
 
 
-def test_opened_and_closed_panels_are_remembered_and_saved(live, open_page, tmp_path: Path):
+def test_opened_and_closed_panels_are_remembered_and_saved(start_viewer, open_page, tmp_path: Path):
     path = tmp_path / "robot.rviz"
     path.write_text(RVIZ_PANELS + configuration(GRID) + window_state(Selection=False, **{"Tool Properties": False}))
-    viewer = live(configuration(GRID))
+    viewer = start_viewer(configuration(GRID))
     page = open_page(viewer, wait=False)
     wait_for_panels(page, *DEFAULT_PANELS)
     open_file(page, path)
@@ -137,8 +137,8 @@ def test_reopened_diagnostics_tab_shows_count(start, open_page, tmp_path: Path):
     page.get_by_role("tab", name=text.strip(), exact=True).wait_for()
 
 
-def test_close_button_of_tab_is_beside_its_title(live, open_page):
-    page = open_page(live(configuration(GRID)), wait=False)
+def test_close_button_of_tab_is_beside_its_title(start_viewer, open_page):
+    page = open_page(start_viewer(configuration(GRID)), wait=False)
     tab = page.locator(".panel-tab", has_text="Tool Properties")
     tab.locator(".tab-title").click()
     cross, name = tab.locator(".tab-close").bounding_box(), tab.locator(".tab-title").bounding_box()

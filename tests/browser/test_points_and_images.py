@@ -15,7 +15,7 @@ from tests.images.test_images import image
 from tests.rviz.clouds.test_clouds import make_cloud, make_depth_image, make_scan, xyz_array
 from tests.rviz.displays.test_cloud_displays import make_camera_info, with_frame
 from tests.rviz.displays.test_map_displays import make_cell_grid, make_grid, make_update
-from tests.viewer.packed_images import depth_message, jpeg, packed
+from tests.viewer.packed_images import make_compressed_image, make_depth_message, make_jpeg
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.browser
@@ -60,9 +60,9 @@ def set_property(viewer: Any, display: int, path: tuple[str, ...], value: object
     viewer.run(lambda: viewer.viewer.displays[display].set_property(path, value))
 
 
-def test_point_cloud_is_drawn_in_all_styles(live, open_page):
+def test_point_cloud_is_drawn_in_all_styles(start_viewer, open_page):
     size = {"Size (m)": 0.6, "Size (Pixels)": 30}
-    viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, **size)))
+    viewer = start_viewer(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, **size)))
     page = open_page(viewer, wait=False)
     viewer.place("lidar", 0.0, 1.0, 0.0)
     viewer.publish("/cloud", three_points(frame="lidar"))
@@ -85,8 +85,8 @@ def test_point_cloud_is_drawn_in_all_styles(live, open_page):
     wait_until_equal(lambda: colors_from_above(page, (-2.0, 1.0)), [pytest.approx((152, 24, 24), abs=2)])
 
 
-def test_clicked_point_is_selected_and_shows_fields(live, open_page):
-    viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2})))
+def test_clicked_point_is_selected_and_shows_fields(start_viewer, open_page):
+    viewer = start_viewer(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2})))
     page = open_page(viewer, wait=False)
     viewer.publish("/cloud", three_points())
     until(page, "lw.displays[0]?.drawn?.points === 3")
@@ -106,8 +106,10 @@ def test_clicked_point_is_selected_and_shows_fields(live, open_page):
     assert "0; 255; 0" in text
 
 
-def test_large_cloud_is_updated_continuously(live, open_page):
-    viewer = live(make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, Color_Transformer="AxisColor")))
+def test_large_cloud_is_updated_continuously(start_viewer, open_page):
+    viewer = start_viewer(
+        make_config(display_entry("PointCloud2", Topic={"Value": "/cloud"}, Color_Transformer="AxisColor"))
+    )
     page = open_page(viewer, wait=False)
     rng = np.random.default_rng(0)
     array = np.zeros(100_000, xyz_array([]).dtype)
@@ -125,13 +127,13 @@ def test_large_cloud_is_updated_continuously(live, open_page):
         until(page, f"lw.displays[0].drawn.bounds[1][0] === {20 + number} && lw.displays[0].drawn.points === 100000")
 
 
-def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
+def test_laser_scan_temperature_and_grid_cells_are_drawn(start_viewer, open_page):
     displays = (
         display_entry("LaserScan", Topic={"Value": "/scan"}, **{"Size (m)": 0.5}),
         display_entry("Temperature", Topic={"Value": "/temperature"}, **{"Size (m)": 0.5}),
         display_entry("GridCells", Topic={"Value": "/cells"}),
     )
-    viewer = live(make_config(*displays))
+    viewer = start_viewer(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.place("thermometer", 0.0, -2.0, 0.0)
     viewer.publish("/scan", with_frame(make_scan([1.0, 2.0, 3.0], [0.0, 1.0, 2.0])))
@@ -145,12 +147,12 @@ def test_laser_scan_temperature_and_grid_cells_are_drawn(live, open_page):
     wait_until_equal(lambda: colors_from_above(page, *points), [RED, (255, 0, 255), RED, (25, 255, 0), BACKGROUND])
 
 
-def test_map_is_drawn_and_updated(live, open_page):
+def test_map_is_drawn_and_updated(start_viewer, open_page):
     displays = (
         display_entry("Map", Topic={"Value": "/map"}, Alpha=1.0),
         display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.2}),
     )
-    viewer = live(make_config(*displays))
+    viewer = start_viewer(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.publish("/map", make_grid(data=[0, 100, -1, 50, 110, -128]))
     until(page, "lw.displays[0]?.drawn?.cells === 6")
@@ -175,12 +177,12 @@ def test_map_is_drawn_and_updated(live, open_page):
     wait_until_equal(lambda: colors_from_above(page, points[0]), [(0, 0, 0)])
 
 
-def test_map_drawn_behind_does_not_hide_points(live, open_page):
+def test_map_drawn_behind_does_not_hide_points(start_viewer, open_page):
     displays = (
         display_entry("PointCloud2", Topic={"Value": "/cloud"}, **{"Size (m)": 0.4}),
         display_entry("Map", Topic={"Value": "/map"}, Alpha=1.0, Draw_Behind=True),
     )
-    viewer = live(make_config(*displays))
+    viewer = start_viewer(make_config(*displays))
     page = open_page(viewer, wait=False)
     viewer.place("cellar", 0.0, 0.0, -3.0)
     viewer.publish("/map", make_grid())
@@ -193,8 +195,8 @@ def test_map_drawn_behind_does_not_hide_points(live, open_page):
     wait_until_equal(lambda: colors_from_above(page, (0.1, 0.1)) != [GREEN], True)
 
 
-def test_image_has_its_own_panel(live, open_page):
-    viewer = live(make_config(display_entry("Image", Topic={"Value": "/image"})))
+def test_image_has_its_own_panel(start_viewer, open_page):
+    viewer = start_viewer(make_config(display_entry("Image", Topic={"Value": "/image"})))
     page = open_page(viewer, wait=False)
     page.get_by_text("No image").wait_for()
     pixels = np.zeros((20, 40, 3), np.uint8)
@@ -237,8 +239,8 @@ def compositing_layers(page: Any) -> list[str]:
     return [" ".join([node["nodeName"], *node.get("attributes", [])]) for node in elements]
 
 
-def test_image_is_composited_without_repainting_page(live, open_page):
-    viewer = live(make_config(display_entry("Image", Topic={"Value": "/image"})))
+def test_image_is_composited_without_repainting_page(start_viewer, open_page):
+    viewer = start_viewer(make_config(display_entry("Image", Topic={"Value": "/image"})))
     page = open_page(viewer, wait=False)
     viewer.publish("/image", image("rgb8", 40, 20, bytes(2400)))
     until(page, "lw.displays[0]?.drawn?.width === 40")
@@ -249,8 +251,8 @@ def test_image_is_composited_without_repainting_page(live, open_page):
     )
 
 
-def test_compressed_image_is_decoded_by_browser(live, open_page):
-    viewer = live(make_config(display_entry("Image", Topic={"Value": "/image/compressed"})))
+def test_compressed_image_is_decoded_by_browser(start_viewer, open_page):
+    viewer = start_viewer(make_config(display_entry("Image", Topic={"Value": "/image/compressed"})))
     page = open_page(viewer, wait=False)
     # An image of one blue pixel.
     data = page.evaluate(
@@ -263,12 +265,12 @@ def test_compressed_image_is_decoded_by_browser(live, open_page):
     until(page, "lw.displays[0]?.drawn?.width === 1 && lw.displays[0].drawn.corner[2] === 255")
 
 
-def test_camera_display_shows_scene_over_image(live, open_page):
+def test_camera_display_shows_scene_over_image(start_viewer, open_page):
     displays = (
         display_entry("Camera", Topic={"Value": "/camera/image"}, **{"Image Rendering": "background"}),
         display_entry("PointCloud2", Topic={"Value": "/cloud"}, Style="Boxes", **{"Size (m)": 0.4}),
     )
-    viewer = live(make_config(*displays))
+    viewer = start_viewer(make_config(*displays))
     page = open_page(viewer, wait=False)
     # The camera is at the origin and looks along x: its z axis points ahead, and its x axis to the right.
     viewer.place("camera", 0.0, 0.0, 0.0, -0.5, 0.5, -0.5, 0.5)
@@ -291,9 +293,9 @@ def test_camera_display_shows_scene_over_image(live, open_page):
     until(page, "lw.displays[0].drawn.middle[1] === 255")
 
 
-def test_depth_image_is_drawn_as_points(live, open_page):
+def test_depth_image_is_drawn_as_points(start_viewer, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
-    viewer = live(make_config(display_entry("DepthCloud", **topics)))
+    viewer = start_viewer(make_config(display_entry("DepthCloud", **topics)))
     page = open_page(viewer, wait=False)
     viewer.publish("/depth/camera_info", make_camera_info(2, 1))
     viewer.publish("/color/image", with_frame(image("rgb8", 2, 1, bytes([255, 0, 0, 0, 255, 0]))))
@@ -304,10 +306,10 @@ def test_depth_image_is_drawn_as_points(live, open_page):
     wait_until_equal(lambda: colors_from_above(page, (-0.3, 0.0), (2.8, 0.0)), [RED, GREEN])
 
 
-def test_depth_cloud_uses_chosen_image_transports(live, open_page):
+def test_depth_cloud_uses_chosen_image_transports(start_viewer, open_page):
     topics = {"Depth Map Topic": "/depth/image", "Color Image Topic": "/color/image"}
     hints = {"Depth Map Transport Hint": "theora", "Color Transport Hint": "compressed"}
-    viewer = live(
+    viewer = start_viewer(
         make_config(
             display_entry("DepthCloud", **topics, **hints),
             display_entry("Image", Topic={"Value": "/depth/image/compressedDepth"}),
@@ -317,8 +319,10 @@ def test_depth_cloud_uses_chosen_image_transports(live, open_page):
     assert "choose raw, compressed" in viewer.status("DepthCloud")["Depth Map Transport Hint"][1]
     set_property(viewer, 0, ("Depth Map Transport Hint",), "compressedDepth")
     viewer.publish("/depth/camera_info", make_camera_info(2, 1))
-    viewer.publish("/color/image/compressed", packed("rgb8; jpeg compressed bgr8", jpeg((0, 0, 255), 2, 1)))
-    viewer.publish("/depth/image/compressedDepth", depth_message(np.array([[2000, 4000]], np.uint16), "rvl"))
+    viewer.publish(
+        "/color/image/compressed", make_compressed_image("rgb8; jpeg compressed bgr8", make_jpeg((0, 0, 255), 2, 1))
+    )
+    viewer.publish("/depth/image/compressedDepth", make_depth_message(np.array([[2000, 4000]], np.uint16), "rvl"))
     until(page, "lw.displays[0]?.drawn?.points === 2 && lw.displays[1].drawn?.width === 2")
     viewer.settle(page)
     assert drawing_of(page)["bounds"] == [[0, 0, 2], [2, 0, 4]]
@@ -326,8 +330,8 @@ def test_depth_cloud_uses_chosen_image_transports(live, open_page):
     assert drawing_of(page, 1)["corner"] == [0, 0, 0, 255]
 
 
-def test_idle_displays_are_not_redrawn(live, open_page):
-    viewer = live(
+def test_idle_displays_are_not_redrawn(start_viewer, open_page):
+    viewer = start_viewer(
         make_config(
             display_entry("PointCloud2", Topic={"Value": "/cloud"}), display_entry("Map", Topic={"Value": "/map"})
         )

@@ -73,8 +73,8 @@ class SlowAddress:
         self.url = url
 
 
-def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
-    viewer = live(SENSES)
+def test_slow_connection_thins_heavy_topics_and_shows_notice(start_viewer, open_page):
+    viewer = start_viewer(SENSES)
     viewer.place("tip", 1.0, 0.0, 0.0)
     line = slow_line(viewer.url, 100_000.0)  # images are scaled to the size of their panel
     page = open_page(SlowAddress(viewer.run(line.__aenter__)), wait=False)
@@ -111,8 +111,8 @@ def test_slow_connection_thins_heavy_topics_and_shows_notice(live, open_page):
     viewer.run(lambda: line.__aexit__(None, None, None))
 
 
-def test_fast_connection_shows_no_notice(live, open_page):
-    viewer = live(SENSES)
+def test_fast_connection_shows_no_notice(start_viewer, open_page):
+    viewer = start_viewer(SENSES)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.length === 2")
     heavy_messages = make_cloud(100_000)
@@ -122,9 +122,9 @@ def test_fast_connection_shows_no_notice(live, open_page):
     until(page, "document.querySelector('.line-notice').hidden")
 
 
-def test_scene_is_not_drawn_before_displays_are_known(live, browser):
+def test_scene_is_not_drawn_before_displays_are_known(start_viewer, browser):
     """Without a GPU, each frame of a waiting page would cost a frame of the robot's page."""
-    viewer = live(SENSES)
+    viewer = start_viewer(SENSES)
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     context.add_init_script(_HELD)
     page = context.new_page()
@@ -137,8 +137,8 @@ def test_scene_is_not_drawn_before_displays_are_known(live, browser):
     context.close()
 
 
-def test_page_requests_nothing_from_other_hosts(live, browser):
-    viewer = live(SENSES)
+def test_page_requests_nothing_from_other_hosts(start_viewer, browser):
+    viewer = start_viewer(SENSES)
     host = urlsplit(viewer.url).netloc
     context = browser.new_context(viewport={"width": 1280, "height": 800})
     page = context.new_page()

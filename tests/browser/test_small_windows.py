@@ -27,9 +27,9 @@ DISPLAYS = """
 
 
 @pytest.fixture
-def open_window_of_size(browser: Browser, live: Callable[..., LiveViewer]) -> Iterator[Callable[..., Page]]:
+def open_window_of_size(browser: Browser, start_viewer: Callable[..., LiveViewer]) -> Iterator[Callable[..., Page]]:
     """Return a function that opens a page in a window of some size, as on the first visit."""
-    viewer = live(configuration(DISPLAYS))
+    viewer = start_viewer(configuration(DISPLAYS))
     contexts = []
 
     def open_window(width: int, height: int, locale: str = "en-US") -> Page:
@@ -122,10 +122,10 @@ def test_title_bar_fits_phone(open_window_of_size, width):
     assert all(one[1] <= following[0] + 0.5 for one, following in pairwise(edges)), edges
 
 
-def test_phone_view_fits_map_until_user_moves_camera(browser, live):
+def test_phone_view_fits_map_until_user_moves_camera(browser, start_viewer):
     displays = "- {Class: rviz_default_plugins/Map, Name: Map, Enabled: true, Topic: {Value: /map}}"
     above = configuration(displays).replace("rviz_default_plugins/Orbit", "rviz_default_plugins/TopDownOrtho")
-    viewer = live(above.replace("Distance: 10.0", "Scale: 60"))
+    viewer = start_viewer(above.replace("Distance: 10.0", "Scale: 60"))
     grid = get_message("nav_msgs/msg/OccupancyGrid")()
     grid.header.frame_id = "base"
     grid.info.width = grid.info.height = 100

@@ -213,12 +213,12 @@ def test_history_supports_pause_seek_and_return_to_live(start, open_page, tmp_pa
     until(page, f"lw.timeline.length > {paused_timeline['length'] + 1}")
     page.get_by_role("slider", name="Time within the last minutes").click(position={"x": 3, "y": 5})
     until(page, "lw.timeline.position < 1")
-    live = page.get_by_role("button", name="Live: follow the newest messages")
+    start_viewer = page.get_by_role("button", name="Live: follow the newest messages")
     for width in (360, 390):  # on phones, the button stays in its line
         page.set_viewport_size({"width": width, "height": 844})
-        box = live.bounding_box()
+        box = start_viewer.bounding_box()
         assert (box["height"], box["x"] + box["width"] <= width) == (22, True)
-    live.click()
+    start_viewer.click()
     until(page, "lw.timeline.live && lw.timeline.sizeBytes <= 1e6 && lw.frames.tip")
 
 

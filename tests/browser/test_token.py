@@ -20,8 +20,8 @@ GRID = configuration("- {Class: rviz_default_plugins/Grid, Name: Grid, Enabled: 
 
 
 @pytest.fixture
-def viewer(live):
-    return live(GRID)
+def viewer(start_viewer):
+    return start_viewer(GRID)
 
 
 @pytest.fixture

@@ -16,8 +16,8 @@ pytestmark = pytest.mark.browser
 
 
 @pytest.fixture
-def scene(live, open_page) -> ArmPage:
-    return open_scene(live, open_page)
+def scene(start_viewer, open_page) -> ArmPage:
+    return open_scene(start_viewer, open_page)
 
 
 # --- tools -----------------------------------------------------------------------------------------------------------

@@ -74,8 +74,8 @@ class Robot:
 
 
 @pytest.fixture
-def voice_page(live: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[Robot, Page]:
-    viewer = live(configuration(GRID))
+def voice_page(start_viewer: Callable[..., LiveViewer], open_page: Callable[..., Page]) -> tuple[Robot, Page]:
+    viewer = start_viewer(configuration(GRID))
     robot = Robot(viewer)
     page = open_page(viewer, wait=False)
     until(page, "lw.displays.length === 1")

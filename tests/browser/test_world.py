@@ -42,8 +42,10 @@ SERVICES = {
 }
 
 
-def publish_world(live, extra=""):
-    viewer = live(configuration(DISPLAYS + extra, distance=12.0).replace("Fixed Frame: base", "Fixed Frame: world"))
+def publish_world(start_viewer, extra=""):
+    viewer = start_viewer(
+        configuration(DISPLAYS + extra, distance=12.0).replace("Fixed Frame: base", "Fixed Frame: world")
+    )
     viewer.publish("/world_description", String(data=WORLD), DESCRIPTION_QOS)
     return viewer
 
@@ -61,8 +63,8 @@ def drawn_bounds(page, link: str, shape: int = 0) -> list[list[float]]:
     return [[round(coordinate, 2) for coordinate in box[end]] for end in ("min", "max")]
 
 
-def test_models_are_drawn_and_moved(live, open_page):
-    viewer = publish_world(live)
+def test_models_are_drawn_and_moved(start_viewer, open_page):
+    viewer = publish_world(start_viewer)
     page = open_page(viewer)
     viewer.settle(page)
     assert drawn_bounds(page, "crate::link") == [[-2, -2, -0.5], [2, 2, 0.5]]
@@ -73,12 +75,12 @@ def test_models_are_drawn_and_moved(live, open_page):
     assert drawn_bounds(page, "crate::link") == [[1, -2, -0.5], [5, 2, 0.5]]
 
 
-def test_simulation_bar_and_mouse_control_models(live, open_page, monkeypatch, tmp_path):
+def test_simulation_bar_and_mouse_control_models(start_viewer, open_page, monkeypatch, tmp_path):
     list_requested = threading.Event()
     monkeypatch.setattr(
         entities, "model_choices", lambda packages: (list_requested.wait(TIMEOUT_S), ModelChoices([]))[1]
     )
-    viewer = publish_world(live)
+    viewer = publish_world(start_viewer)
     requests_made: list[tuple[str, object]] = []
 
     def answer(name: str, request, response):
@@ -185,8 +187,8 @@ def test_camera_shows_world_origin_when_robot_falls_out_of_view(start, open_page
     assert abs(state(page, "view.values['Focal Point/Z']")) < 1
 
 
-def test_model_without_collision_is_reported_until_dismissed(live, open_page):
-    viewer = publish_world(live)
+def test_model_without_collision_is_reported_until_dismissed(start_viewer, open_page):
+    viewer = publish_world(start_viewer)
     page = open_page(viewer)
     falls = phrase("no link of '{name}' has a <collision>, so the model has no contacts and falls", name="seen")
     light_links_text = phrase("links without a mass")
@@ -207,9 +209,9 @@ def test_model_without_collision_is_reported_until_dismissed(live, open_page):
     banner.wait_for(state="hidden")
 
 
-def test_slow_world_is_reported_with_button_to_switch_off_images(live, open_page):
+def test_slow_world_is_reported_with_button_to_switch_off_images(start_viewer, open_page):
     image = "\n- {Class: rviz_default_plugins/Image, Name: Front, Enabled: true, Topic: {Value: /front}}"
-    viewer = publish_world(live, image)
+    viewer = publish_world(start_viewer, image)
     page = open_page(viewer)
     until(page, "lw.displays.some(({ name, enabled }) => name === 'Front' && enabled)")
     slow = Diagnostic("SIM146", phrase("links without a mass"), severity=Severity.WARNING)
@@ -233,7 +235,7 @@ LAMPS = """
 </world>"""
 
 
-def test_world_lighting_follows_chosen_light(live, open_page):
+def test_world_lighting_follows_chosen_light(start_viewer, open_page):
     def read_light(page) -> dict:
         return page.evaluate("() => window.linkwright.displays[0].drawn.light")
 
@@ -243,7 +245,7 @@ def test_world_lighting_follows_chosen_light(live, open_page):
         ("World", {"lighting": "World", "lights": 3, "shadows": 1}),
     ):
         displays = DISPLAYS.replace("Name: World", f"Name: World, Light: {choice}")
-        viewer = live(configuration(displays, distance=16.0).replace("Fixed Frame: base", "Fixed Frame: world"))
+        viewer = start_viewer(configuration(displays, distance=16.0).replace("Fixed Frame: base", "Fixed Frame: world"))
         viewer.publish("/world_description", String(data=WORLD.replace("</world>", LAMPS)), DESCRIPTION_QOS)
         page = open_page(viewer)
         viewer.settle(page)
@@ -260,11 +262,11 @@ SENSING = """
 </world>"""
 
 
-def test_sensor_rays_and_frustums_follow_display_properties(live, open_page):
+def test_sensor_rays_and_frustums_follow_display_properties(start_viewer, open_page):
     def drawn(page) -> dict:
         return page.evaluate("() => window.linkwright.displays[0].drawn.sensors")
 
-    viewer = publish_world(live)
+    viewer = publish_world(start_viewer)
     viewer.publish("/world_description", String(data=WORLD.replace("</world>", SENSING)), DESCRIPTION_QOS)
     page = open_page(viewer)
     viewer.settle(page)

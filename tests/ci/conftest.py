@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from tests.ci.runner import Runner
-from tests.ci.service import Service, serving
+from tests.ci.service import Service, serve
 from tests.repositories import ARM, MACRO, PACKAGE, Repository
 
 HOSTILE_BRANCH = "$(touch${IFS}pwned)`touch${IFS}pwned`;\"'&|<x>@octocat"
@@ -72,7 +72,7 @@ def example(tmp_path: Path) -> Example:
 
 @pytest.fixture
 def service() -> Iterator[Service]:
-    with serving(Service()) as running:
+    with serve(Service()) as running:
         yield running
 
 

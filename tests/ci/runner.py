@@ -92,7 +92,7 @@ class Runner:
         }
 
     def run(self, action: str, event: Mapping[str, Any], **inputs: str) -> Run:
-        """Run an action of ours with inputs, whose names have ``_`` for ``-``."""
+        """Run one of Linkwright's actions with inputs, whose names have ``_`` for ``-``."""
         folder = TEMPLATES / action
         definition = yaml.safe_load((folder / "action.yml").read_text(encoding="utf-8"))
         event_file = self.temporary / "event.json"
@@ -101,19 +101,19 @@ class Runner:
         inputs_by_name = {name.replace("_", "-"): value for name, value in inputs.items()}
         assert inputs_by_name.keys() <= definition["inputs"].keys()
         context["inputs"] = {
-            name: inputs_by_name.get(name, _filled(declared.get("default", ""), context))
+            name: inputs_by_name.get(name, _fill_expressions(declared.get("default", ""), context))
             for name, declared in definition["inputs"].items()
         }
         variables = {"GITHUB_EVENT_PATH": str(event_file), "GITHUB_ACTION_PATH": str(folder)}
         result = Run()
         for step in definition["runs"]["steps"]:
-            if _holds(step.get("if", ""), context):
+            if _is_met(step.get("if", ""), context):
                 outputs = self._step(step, context, variables, result)
                 context["steps"][step.get("id", "")] = {"outputs": outputs}
             if result.failed:
                 break
         result.outputs = {
-            name: _filled(output["value"], context) for name, output in definition.get("outputs", {}).items()
+            name: _fill_expressions(output["value"], context) for name, output in definition.get("outputs", {}).items()
         }
         return result
 
@@ -121,14 +121,14 @@ class Runner:
         self, step: Mapping[str, Any], context: Mapping[str, Any], variables: Mapping[str, str], result: Run
     ) -> dict[str, str]:
         if "uses" in step:
-            values = {name: _filled(str(value), context) for name, value in step["with"].items()}
+            values = {name: _fill_expressions(str(value), context) for name, value in step["with"].items()}
             result.used.append((step["uses"], values))
             if step["uses"].startswith("actions/upload-artifact@"):
                 result.uploaded[values["name"]] = Path(values["path"])
                 return {"artifact-url": "https://example.org/artifacts/8"}
             return {}
         assert step["shell"] == "bash"
-        values = {name: _filled(str(value), context) for name, value in step.get("env", {}).items()}
+        values = {name: _fill_expressions(str(value), context) for name, value in step.get("env", {}).items()}
         process = self.bash(step["run"], {**variables, **values})
         result.output += process.stdout
         if process.returncode:
@@ -154,26 +154,26 @@ class Runner:
         )
 
 
-def _filled(text: str, context: Mapping[str, Any]) -> str:
+def _fill_expressions(text: str, context: Mapping[str, Any]) -> str:
     """Replace the expressions in a text by their values."""
-    return _EXPRESSION.sub(lambda match: str(_value(match[1], context)), text)
+    return _EXPRESSION.sub(lambda match: str(_find_value(match[1], context)), text)
 
 
-def _value(name: str, context: Mapping[str, Any]) -> Any:
+def _find_value(name: str, context: Mapping[str, Any]) -> Any:
     value: Any = context
     for part in name.split("."):
         value = value.get(part, "") if isinstance(value, Mapping) else ""
     return value
 
 
-def _holds(condition: str, context: Mapping[str, Any]) -> bool:
-    return all(_clause(clause.strip(), context) for clause in condition.split("&&") if clause.strip())
+def _is_met(condition: str, context: Mapping[str, Any]) -> bool:
+    return all(_evaluate_clause(clause.strip(), context) for clause in condition.split("&&") if clause.strip())
 
 
-def _clause(clause: str, context: Mapping[str, Any]) -> bool:
+def _evaluate_clause(clause: str, context: Mapping[str, Any]) -> bool:
     match = _COMPARISON.fullmatch(clause)
     assert match is not None, clause
-    value = _value(match[1], context)
+    value = _find_value(match[1], context)
     if match[2] is None:
         return bool(value)
     return (str(value) == match[3]) == (match[2] == "==")

@@ -109,7 +109,7 @@ class Service:
 
 
 @contextmanager
-def serving(service: Service) -> Iterator[Service]:
+def serve(service: Service) -> Iterator[Service]:
     """Serve on a free port of this machine."""
 
     class Handler(BaseHTTPRequestHandler):

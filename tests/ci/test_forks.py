@@ -20,7 +20,7 @@ from tests.ci.service import Service
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the scripts are for Linux and macOS")
 
-GOOD = (
+VALID_COMMENT = (
     f"{MARKER}\n### Robot review: a to b\n\n1 breaking change\n\n- **link &#60;a&#62; removed** (<code>a.urdf</code>)\n"
 )
 REPORT = '{"subjects": [{}], "new_findings": [], "fixed_findings": [], "notes": []}'
@@ -28,7 +28,9 @@ LINE = "> This report comes from [a run of the fork](https://example.org/runs/6)
 HEAD = "c" * 40
 
 
-def packed(comment: str | bytes = GOOD, report: str = REPORT, number: str = "5\n", **extra_entries: str) -> bytes:
+def pack_artifact(
+    comment: str | bytes = VALID_COMMENT, report: str = REPORT, number: str = "5\n", **extra_entries: str
+) -> bytes:
     """Return an artifact as a zip file."""
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -39,7 +41,7 @@ def packed(comment: str | bytes = GOOD, report: str = REPORT, number: str = "5\n
     return data.getvalue()
 
 
-def event(head: str = HEAD, **changes: Any) -> dict[str, Any]:
+def run_event(head: str = HEAD, **changes: Any) -> dict[str, Any]:
     """Return the event of a run of the fork."""
     run = {"id": 6, "event": "pull_request", "head_sha": head, "html_url": "https://example.org/runs/6"}
     run |= {"head_repository": {"id": 2}, "head_branch": "$(touch pwned)"}
@@ -62,12 +64,12 @@ def make_runner(checkout: Path, service: Service) -> Runner:
 def fork(service: Service) -> Service:
     """A service with the pull request of a fork."""
     service.pulls[5] = {"state": "open", "head": {"sha": HEAD, "repo": {"id": 2}}}
-    service.artifact = packed()
+    service.artifact = pack_artifact()
     return service
 
 
-def comment(runner: Runner, head: str = HEAD, **changes: Any) -> Run:
-    return runner.run("comment", event(head, **changes))
+def comment_on_pull_request(runner: Runner, head: str = HEAD, **changes: Any) -> Run:
+    return runner.run("comment", run_event(head, **changes))
 
 
 def test_review_report_is_posted(example: Example, fork: Service) -> None:
@@ -77,22 +79,24 @@ def test_review_report_is_posted(example: Example, fork: Service) -> None:
     files = {path.name: path.read_bytes() for path in folder.iterdir()}
     fork.can_write = True
     fork.pulls[5]["head"]["sha"] = example.head
-    fork.artifact = packed(files["comment.md"], files["report.json"].decode(), files["pull-request.txt"].decode())
+    fork.artifact = pack_artifact(
+        files["comment.md"], files["report.json"].decode(), files["pull-request.txt"].decode()
+    )
     fork.requests.clear()
     fork.tokens.clear()
-    run = comment(runner, example.head)
+    run = comment_on_pull_request(runner, example.head)
     assert run.output == "::notice::the comment is posted\n"
     assert fork.bodies == [files["comment.md"].decode().replace("\n", f"\n{LINE}\n", 1)]
     assert run.used == []
     assert dict(zip(fork.requests, fork.tokens, strict=True))["GET /storage"] == ""
-    assert "the comment is up to date" in comment(runner, example.head).output
+    assert "the comment is up to date" in comment_on_pull_request(runner, example.head).output
     example.assert_nothing_ran()
 
 
 def test_comment_is_edited(fork: Service, runner: Runner) -> None:
-    comment(runner)
-    fork.artifact = packed(GOOD.replace("1 breaking", "2 breaking"))
-    assert comment(runner).output == "::notice::the comment is updated\n"
+    comment_on_pull_request(runner)
+    fork.artifact = pack_artifact(VALID_COMMENT.replace("1 breaking", "2 breaking"))
+    assert comment_on_pull_request(runner).output == "::notice::the comment is updated\n"
     assert len(fork.comments) == 1
     assert "2 breaking changes" not in fork.bodies[0]
     assert "2 breaking change" in fork.bodies[0]
@@ -100,16 +104,16 @@ def test_comment_is_edited(fork: Service, runner: Runner) -> None:
 
 def test_comments_of_others_are_not_edited(fork: Service, runner: Runner) -> None:
     fork.add(f"{MARKER}\nmine", "stranger", "User")
-    assert comment(runner).output == "::notice::the comment is posted\n"
+    assert comment_on_pull_request(runner).output == "::notice::the comment is posted\n"
     assert fork.bodies[0] == f"{MARKER}\nmine"
 
 
 def test_owner_of_other_token_edits_own_comment(fork: Service, runner: Runner) -> None:
     fork.me = "robot-team"
     fork.add(f"{MARKER}\nold", "github-actions[bot]", "Bot")
-    comment(runner)
+    comment_on_pull_request(runner)
     assert fork.comments[1]["user"]["login"] == "robot-team"
-    assert comment(runner).output == "::notice::the comment is up to date\n"
+    assert comment_on_pull_request(runner).output == "::notice::the comment is up to date\n"
 
 
 @pytest.mark.parametrize(
@@ -133,8 +137,8 @@ def test_owner_of_other_token_edits_own_comment(fork: Service, runner: Runner) -
     ids=lambda value: value if isinstance(value, str) and len(value) < 30 and "\n" not in value else "",
 )
 def test_text_that_is_not_a_report_is_not_posted(fork: Service, runner: Runner, text: str | bytes, reason: str) -> None:
-    fork.artifact = packed(text)
-    run = comment(runner)
+    fork.artifact = pack_artifact(text)
+    run = comment_on_pull_request(runner)
     assert run.failed == "Comment on the pull request", reason
     assert run.output.startswith("::error::")
     assert len(run.output.splitlines()) == 1
@@ -143,15 +147,15 @@ def test_text_that_is_not_a_report_is_not_posted(fork: Service, runner: Runner, 
 
 
 def test_urls_in_names_are_not_links(fork: Service, runner: Runner) -> None:
-    fork.artifact = packed(f"{MARKER}\n- mesh https://example.org/a.stl and www.example.org\n")
-    comment(runner)
+    fork.artifact = pack_artifact(f"{MARKER}\n- mesh https://example.org/a.stl and www.example.org\n")
+    comment_on_pull_request(runner)
     assert fork.bodies[0].endswith("- mesh https://\u200bexample.org/a.stl and www.\u200bexample.org\n")
 
 
 @pytest.mark.parametrize("number", ["", "5; touch pwned", "$(touch pwned)", "-5", "5\n6", "5" * 20, "../5", "0"])
 def test_malformed_pull_request_number_is_rejected(fork: Service, runner: Runner, number: str, tmp_path: Path) -> None:
-    fork.artifact = packed(number=number)
-    assert comment(runner).output.startswith("::error::")
+    fork.artifact = pack_artifact(number=number)
+    assert comment_on_pull_request(runner).output.startswith("::error::")
     assert fork.writes == []
     assert not list(tmp_path.rglob("pwned"))
 
@@ -160,34 +164,39 @@ def test_pull_request_of_another_repository_is_rejected(fork: Service, runner: R
     fork.pulls[6] = {"state": "open", "head": {"sha": HEAD, "repo": {"id": 3}}}
     fork.pulls[7] = {"state": "open", "head": {"sha": HEAD, "repo": None}}
     for number in ("6", "7"):
-        fork.artifact = packed(number=number)
-        assert "is not one of the fork" in comment(runner).output
-    fork.artifact = packed(number="8")
-    assert "/pulls/8 answers 404" in comment(runner).output
+        fork.artifact = pack_artifact(number=number)
+        assert "is not one of the fork" in comment_on_pull_request(runner).output
+    fork.artifact = pack_artifact(number="8")
+    assert "/pulls/8 answers 404" in comment_on_pull_request(runner).output
     assert fork.writes == []
 
 
 @pytest.mark.parametrize("changes", [{"state": "closed"}, {"head": {"sha": "d" * 40, "repo": {"id": 2}}}])
 def test_outdated_run_posts_nothing(fork: Service, runner: Runner, changes: dict[str, Any]) -> None:
     fork.pulls[5] |= changes
-    run = comment(runner)
+    run = comment_on_pull_request(runner)
     assert (run.failed, fork.writes) == ("", [])
     assert "is closed or has newer commits" in run.output
 
 
 @pytest.mark.parametrize("changes", [{"event": "push"}, {"head_repository": {"id": 1}}, {"head_repository": None}])
 def test_runs_without_fork_post_nothing(fork: Service, runner: Runner, changes: dict[str, Any]) -> None:
-    run = comment(runner, **changes)
+    run = comment_on_pull_request(runner, **changes)
     assert (run.failed, fork.requests) == ("", [])
     assert "is not one of a fork's pull request" in run.output
 
 
 def test_missing_or_malformed_artifact_is_reported(fork: Service, runner: Runner) -> None:
     fork.artifact = None
-    assert comment(runner).output == "::notice::the run has no artifact 'linkwright-review'\n"
-    for artifact in (b"no archive", packed(report="[" * 100_000), packed(report="[]"), zip_without_report()):
+    assert comment_on_pull_request(runner).output == "::notice::the run has no artifact 'linkwright-review'\n"
+    for artifact in (
+        b"no archive",
+        pack_artifact(report="[" * 100_000),
+        pack_artifact(report="[]"),
+        zip_without_report(),
+    ):
         fork.artifact = artifact
-        run = comment(runner)
+        run = comment_on_pull_request(runner)
         assert run.output.startswith("::error::the comment is not posted, because a file is not one of a review")
         assert "Traceback" not in run.output
     assert fork.writes == []
@@ -195,8 +204,8 @@ def test_missing_or_malformed_artifact_is_reported(fork: Service, runner: Runner
 
 def test_artifact_files_are_not_written_to_disk(fork: Service, runner: Runner, tmp_path: Path) -> None:
     before = set(tmp_path.rglob("*"))
-    fork.artifact = packed(**{"../../pwned": "x", "pwned": "x"})
-    comment(runner)
+    fork.artifact = pack_artifact(**{"../../pwned": "x", "pwned": "x"})
+    comment_on_pull_request(runner)
     after = {path.name for path in tmp_path.rglob("*") if path not in before}
     assert after <= {"event.json", "step.sh"}
     assert len(fork.comments) == 1
@@ -204,9 +213,9 @@ def test_artifact_files_are_not_written_to_disk(fork: Service, runner: Runner, t
 
 def test_temporary_service_failures_are_retried(fork: Service, runner: Runner) -> None:
     fork.failures = [502, 429]
-    assert comment(runner).output == "::notice::the comment is posted\n"
+    assert comment_on_pull_request(runner).output == "::notice::the comment is posted\n"
     fork.failures = [500] * 3
-    run = comment(runner)
+    run = comment_on_pull_request(runner)
     assert run.failed
     assert run.output.startswith(
         "::error::the comment is not posted: /repos/team/robots/actions/runs/6/artifacts answers"
@@ -214,10 +223,10 @@ def test_temporary_service_failures_are_retried(fork: Service, runner: Runner) -
 
 
 def test_missing_token_and_unreachable_service_are_reported(runner: Runner, tmp_path: Path) -> None:
-    run = runner.run("comment", event(), token="")
+    run = runner.run("comment", run_event(), token="")
     assert run.output == "::notice::there is no comment, because the variable LINKWRIGHT_TOKEN is not set\n"
     variables = {"GITHUB_API_URL": "http://127.0.0.1:1", "GITHUB_REPOSITORY": "team/robots"}
-    run = comment(Runner(tmp_path, tmp_path / "offline", variables))
+    run = comment_on_pull_request(Runner(tmp_path, tmp_path / "offline", variables))
     assert run.failed
     assert run.output.startswith("::error::the comment is not posted: ")
     assert len(run.output.splitlines()) == 1
@@ -226,5 +235,5 @@ def test_missing_token_and_unreachable_service_are_reported(runner: Runner, tmp_
 def zip_without_report() -> bytes:
     data = io.BytesIO()
     with zipfile.ZipFile(data, "w") as archive:
-        archive.writestr("comment.md", GOOD)
+        archive.writestr("comment.md", VALID_COMMENT)
     return data.getvalue()

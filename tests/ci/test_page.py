@@ -18,13 +18,13 @@ from tests.repositories import Repository
 PAGES = {"en": DOCS / "howto-review.md", "zh": DOCS / "zh" / "howto-review.md"}
 
 
-def files(page: Path = PAGES["en"]) -> dict[str, Any]:
+def yaml_files(page: Path = PAGES["en"]) -> dict[str, Any]:
     """Return the YAML files of the page by name."""
     return {block.title: yaml.safe_load(block.text) for block in read_blocks(page) if block.language == "yaml"}
 
 
-def steps(name: str) -> list[dict[str, Any]]:
-    (job,) = files()[name]["jobs"].values()
+def job_steps(name: str) -> list[dict[str, Any]]:
+    (job,) = yaml_files()[name]["jobs"].values()
     found: list[dict[str, Any]] = job["steps"]
     return found
 
@@ -66,7 +66,7 @@ def test_output_of_a_scenario_is_current(
 
 @pytest.mark.parametrize("name", [".github/workflows/review.yml", ".gitea/workflows/review.yml"])
 def test_workflow_uses_review_action(name: str) -> None:
-    checkout, review, *_ = steps(name)
+    checkout, review, *_ = job_steps(name)
     assert checkout["with"] == {"fetch-depth": 0}
     _, _, path = review["uses"].partition("/linkwright/")
     assert path == "packaging/ci/review@REF"
@@ -75,22 +75,22 @@ def test_workflow_uses_review_action(name: str) -> None:
 
 
 def test_workflow_for_forks_checks_out_nothing() -> None:
-    workflow = files()[".github/workflows/review-comment.yml"]
-    (step,) = steps(".github/workflows/review-comment.yml")
+    workflow = yaml_files()[".github/workflows/review-comment.yml"]
+    (step,) = job_steps(".github/workflows/review-comment.yml")
     assert step == {"uses": "OWNER/linkwright/packaging/ci/comment@REF"}
-    assert workflow[True]["workflow_run"]["workflows"] == [files()[".github/workflows/review.yml"]["name"]]
+    assert workflow[True]["workflow_run"]["workflows"] == [yaml_files()[".github/workflows/review.yml"]["name"]]
     assert workflow["permissions"] == {"actions": "read", "pull-requests": "write"}
 
 
 def test_workflows_do_not_give_token_to_pull_request_code() -> None:
-    for name, content in files().items():
+    for name, content in yaml_files().items():
         assert "pull_request_target" not in str(content), name
     for name in (".github/workflows/review.yml", ".gitea/workflows/review.yml"):
-        assert files()[name][True] == "pull_request"
+        assert yaml_files()[name][True] == "pull_request"
 
 
 def test_gitlab_file_includes_template() -> None:
-    settings = files()[".gitlab-ci.yml"]
+    settings = yaml_files()[".gitlab-ci.yml"]
     template = yaml.safe_load((TEMPLATES / "gitlab" / "review.yml").read_text(encoding="utf-8"))
     assert (TEMPLATES.parent.parent / settings["include"][0]["file"]).is_file()
     for name, job in settings.items():
@@ -99,7 +99,7 @@ def test_gitlab_file_includes_template() -> None:
 
 
 def test_local_hook_matches_published_hook() -> None:
-    (local,) = files()[".pre-commit-config.yaml"]["repos"][0]["hooks"]
+    (local,) = yaml_files()[".pre-commit-config.yaml"]["repos"][0]["hooks"]
     hook = HOOKS[local["id"]]
     assert local["entry"] == " ".join([hook["entry"], *hook["args"]])
     assert (local["name"], local["files"]) == (hook["name"], hook["files"])

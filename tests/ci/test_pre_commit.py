@@ -15,17 +15,17 @@ from tests.places import REPOSITORY
 from tests.repositories import ARM, PACKAGE, Repository
 
 HOOKS = {hook["id"]: hook for hook in yaml.safe_load((REPOSITORY / ".pre-commit-hooks.yaml").read_text("utf-8"))}
-WRONG = ARM.replace("</robot>", '<link name="loose"/></robot>')
+FAULTY_ARM = ARM.replace("</robot>", '<link name="loose"/></robot>')
 
 
 @pytest.fixture
 def repository(tmp_path: Path) -> Repository:
     repository = Repository(tmp_path / "repository")
-    repository.commit({**PACKAGE, "arm_description/urdf/old.urdf.xacro": WRONG.replace('"arm"', '"old"')})
+    repository.commit({**PACKAGE, "arm_description/urdf/old.urdf.xacro": FAULTY_ARM.replace('"arm"', '"old"')})
     return repository
 
 
-def run(repository: Repository, name: str) -> subprocess.CompletedProcess[str]:
+def run_hook(repository: Repository, name: str) -> subprocess.CompletedProcess[str]:
     """Run a hook that checks all files, as pre-commit does."""
     hook: dict[str, Any] = HOOKS[name]
     command, *words = hook["entry"].split()
@@ -49,15 +49,15 @@ def test_hooks_have_fields_that_pre_commit_requires() -> None:
 
 
 def test_old_findings_fail_only_hook_that_checks_all(repository: Repository) -> None:
-    assert run(repository, "linkwright-check").returncode == 1
-    result = run(repository, "linkwright-check-changed")
+    assert run_hook(repository, "linkwright-check").returncode == 1
+    result = run_hook(repository, "linkwright-check-changed")
     assert result.returncode == 0, result.stderr
 
 
 def test_new_findings_stop_commit(repository: Repository) -> None:
-    repository.write({"arm_description/urdf/arm.urdf.xacro": WRONG})
+    repository.write({"arm_description/urdf/arm.urdf.xacro": FAULTY_ARM})
     repository.git("add", "--all")
-    result = run(repository, "linkwright-check-changed")
+    result = run_hook(repository, "linkwright-check-changed")
     assert result.returncode == 1
     assert "loose" in result.stderr
     assert "old.urdf.xacro" not in result.stderr

@@ -11,7 +11,7 @@ from linkwright.graph import Graph
 
 
 @pytest.fixture
-def in_graph(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Graph], object]], None]:
+def add_to_graph(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Graph], object]], None]:
     """Return a function that adds nodes to the graphs of later commands.
 
     It registers a callback. The graphs stay local.

@@ -52,8 +52,8 @@ def _accept_positive_orders(order: int) -> GoalResponse:
 GOAL = ["action", "send_goal", "/fibonacci", "example_interfaces/action/Fibonacci"]
 
 
-def test_action_list_info_and_type_print_action(in_graph, capsys):
-    in_graph(serve_fibonacci)
+def test_action_list_info_and_type_print_action(add_to_graph, capsys):
+    add_to_graph(serve_fibonacci)
     assert run_command(capsys, "action", "list")[0] == "/fibonacci\n"
     assert run_command(capsys, "action", "list", "-t")[0] == "/fibonacci [example_interfaces/action/Fibonacci]\n"
     assert run_command(capsys, "action", "list", "-c")[0] == "1\n"
@@ -70,8 +70,8 @@ def test_action_list_info_and_type_print_action(in_graph, capsys):
     )
 
 
-def test_action_topics_and_services_are_hidden(in_graph, capsys):
-    in_graph(serve_fibonacci)
+def test_action_topics_and_services_are_hidden(add_to_graph, capsys):
+    add_to_graph(serve_fibonacci)
     assert "/_action/" not in run_command(capsys, "topic", "list")[0]
     assert "/_action/" not in run_command(capsys, "service", "list")[0]
     assert (
@@ -80,8 +80,8 @@ def test_action_topics_and_services_are_hidden(in_graph, capsys):
     )
 
 
-def test_send_goal_prints_goal_and_result(in_graph, capsys):
-    in_graph(serve_fibonacci)
+def test_send_goal_prints_goal_and_result(add_to_graph, capsys):
+    add_to_graph(serve_fibonacci)
     out, _ = run_command(capsys, *GOAL, "{order: 3}")
     assert re.fullmatch(
         r"Waiting for an action server to become available\.\.\.\n"
@@ -93,14 +93,14 @@ def test_send_goal_prints_goal_and_result(in_graph, capsys):
     ), out
 
 
-def test_send_goal_prints_feedback(in_graph, capsys):
-    in_graph(serve_fibonacci)
+def test_send_goal_prints_feedback(add_to_graph, capsys):
+    add_to_graph(serve_fibonacci)
     out, _ = run_command(capsys, *GOAL, "{order: 3}", "--feedback")
     assert "Feedback:\n    sequence:\n- 0\n- 1\n- 1\n\n" in out
 
 
-def test_send_goal_reports_rejected_goal(in_graph, capsys):
-    in_graph(serve_fibonacci)
+def test_send_goal_reports_rejected_goal(add_to_graph, capsys):
+    add_to_graph(serve_fibonacci)
     assert run_command(capsys, *GOAL, "{order: 30}", status=1)[0].endswith("Goal was rejected.\n")
 
 
@@ -112,8 +112,8 @@ def test_send_goal_reports_rejected_goal(in_graph, capsys):
         (["/no", "example_interfaces/action/Fibonacci", "{}", "--timeout", "0.1"], "no server of action '/no'"),
     ],
 )
-def test_send_goal_reports_invalid_arguments(in_graph, capsys, words, message):
-    in_graph(serve_fibonacci)
+def test_send_goal_reports_invalid_arguments(add_to_graph, capsys, words, message):
+    add_to_graph(serve_fibonacci)
     assert message in run_command(capsys, "action", "send_goal", *words, status=1)[1]
 
 
@@ -136,21 +136,21 @@ def create_camera_node(graph: Graph) -> None:
     graph.create_node("other")
 
 
-def test_lifecycle_nodes_prints_managed_nodes(in_graph, capsys):
-    in_graph(create_camera_node)
+def test_lifecycle_nodes_prints_managed_nodes(add_to_graph, capsys):
+    add_to_graph(create_camera_node)
     assert run_command(capsys, "lifecycle", "nodes")[0] == "/camera\n"
     assert run_command(capsys, "lifecycle", "nodes", "-c")[0] == "1\n"
 
 
-def test_lifecycle_get_prints_state(in_graph, capsys):
-    in_graph(create_camera_node)
+def test_lifecycle_get_prints_state(add_to_graph, capsys):
+    add_to_graph(create_camera_node)
     assert run_command(capsys, "lifecycle", "get", "/camera")[0] == "unconfigured [1]\n"
     assert run_command(capsys, "lifecycle", "get")[0] == "/camera: unconfigured [1]\n"
     assert "Node not found" in run_command(capsys, "lifecycle", "get", "/nothing", status=1)[1]
 
 
-def test_lifecycle_list_prints_transitions(in_graph, capsys):
-    in_graph(create_camera_node)
+def test_lifecycle_list_prints_transitions(add_to_graph, capsys):
+    add_to_graph(create_camera_node)
     assert run_command(capsys, "lifecycle", "list", "camera")[0].splitlines() == [
         "- configure [1]",
         "\tStart: unconfigured",
@@ -163,8 +163,8 @@ def test_lifecycle_list_prints_transitions(in_graph, capsys):
     assert len(all_transitions) == 3 * 25
 
 
-def test_lifecycle_set_changes_state(in_graph, capsys):
-    in_graph(create_camera_node)
+def test_lifecycle_set_changes_state(add_to_graph, capsys):
+    add_to_graph(create_camera_node)
     assert run_command(capsys, "lifecycle", "set", "/camera", "configure")[0] == "Transitioning successful\n"
     _, err = run_command(capsys, "lifecycle", "set", "/camera", "configur", status=1)
     assert "Unknown transition requested" in err
@@ -186,8 +186,8 @@ def test_component_types_prints_registered_types(capsys):
     assert "did you mean" in run_command(capsys, "component", "types", "demo_nodes_cp", status=1)[1]
 
 
-def test_component_list_prints_containers_and_components(in_graph, capsys):
-    in_graph(create_container)
+def test_component_list_prints_containers_and_components(add_to_graph, capsys):
+    add_to_graph(create_container)
     assert run_command(capsys, "component", "list")[0] == "/box\n  1  /talker\n"
     assert run_command(capsys, "component", "list", "--containers-only")[0] == "/box\n"
     assert run_command(capsys, "component", "list", "/box")[0] == "1  /talker\n"
@@ -196,8 +196,8 @@ def test_component_list_prints_containers_and_components(in_graph, capsys):
     assert "did you mean '/box'?" in err
 
 
-def test_component_load_and_unload_change_container(in_graph, capsys):
-    in_graph(create_container)
+def test_component_load_and_unload_change_container(add_to_graph, capsys):
+    add_to_graph(create_container)
     words = ["demo_nodes_cpp", "demo_nodes_cpp::Listener", "-n", "ear", "--node-namespace", "/head", "-r", "chatter:=c"]
     assert run_command(capsys, "component", "load", "/box", *words)[0] == (
         "Loaded component 2 into '/box' container node as '/head/ear'\n"
@@ -261,8 +261,8 @@ def replace_standalone_process(monkeypatch, deaf_to: set[int], status: int | Non
 STANDALONE = ["component", "standalone", "-c", "box", "demo_nodes_cpp"]
 
 
-def test_standalone_component_runs_until_container_ends(in_graph, capsys, monkeypatch):
-    in_graph(create_container)
+def test_standalone_component_runs_until_container_ends(add_to_graph, capsys, monkeypatch):
+    add_to_graph(create_container)
     started = replace_standalone_process(monkeypatch, set(), 3)
     run_command(capsys, *STANDALONE, "demo_nodes_cpp::Listener", status=3)
     assert started[0].told == []
@@ -276,15 +276,15 @@ def test_standalone_component_runs_until_container_ends(in_graph, capsys, monkey
         ({signal.SIGINT, signal.SIGTERM}, [signal.SIGINT, signal.SIGTERM, signal.SIGKILL]),
     ],
 )
-def test_standalone_component_ends_container_if_loading_fails(in_graph, capsys, monkeypatch, deaf_to, message):
-    in_graph(create_container)
+def test_standalone_component_ends_container_if_loading_fails(add_to_graph, capsys, monkeypatch, deaf_to, message):
+    add_to_graph(create_container)
     started = replace_standalone_process(monkeypatch, deaf_to, None)
     run_command(capsys, *STANDALONE, "demo_nodes_cpp::Nobody", status=1)
     assert started[0].told == message
 
 
-def test_component_commands_report_invalid_arguments(in_graph, capsys):
-    in_graph(create_container)
+def test_component_commands_report_invalid_arguments(add_to_graph, capsys):
+    add_to_graph(create_container)
     _, err = run_command(capsys, "component", "load", "/box", "demo_nodes_cpp", "demo_nodes_cpp::Talkr", status=1)
     assert "Failed to load component" in err
     _, err = run_command(capsys, "component", "unload", "/box", "7", status=1)

@@ -24,7 +24,7 @@ def repository(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def check(capsys):
+def run_check(capsys):
     """Run the command, and return the exit status and the codes of the findings, each once."""
 
     def run(*words: str) -> tuple[int, set[str]]:
@@ -34,16 +34,16 @@ def check(capsys):
     return run
 
 
-def test_baseline_hides_known_findings_despite_moved_lines(repository, check, capsys):
-    _, codes = check(".")
+def test_baseline_hides_known_findings_despite_moved_lines(repository, run_check, capsys):
+    _, codes = run_check(".")
     assert codes
     assert main(["check", "--baseline", "known.json", "--write-baseline", "."]) == 0
     assert "to known.json" in capsys.readouterr().err
-    assert check("--baseline", "known.json", ".") == (0, set())
+    assert run_check("--baseline", "known.json", ".") == (0, set())
     repository.write({SEGMENT: MOVED})
-    assert check("--baseline", "known.json", ".") == (0, set())
+    assert run_check("--baseline", "known.json", ".") == (0, set())
     repository.write({SEGMENT: WORSE})
-    _, new_codes = check("--baseline", "known.json", ".")
+    _, new_codes = run_check("--baseline", "known.json", ".")
     assert new_codes
     assert new_codes.isdisjoint(codes)
 
@@ -70,25 +70,25 @@ def test_malformed_baseline_is_an_error_and_hides_nothing(repository, capsys, co
     assert "--write-baseline" in errors
 
 
-def test_changed_hides_findings_of_commit(repository, check):
-    assert check("--changed", "HEAD", ".") == (0, set())
+def test_changed_hides_findings_of_commit(repository, run_check):
+    assert run_check("--changed", "HEAD", ".") == (0, set())
     repository.write({SEGMENT: MOVED})
-    assert check("--changed", "HEAD", ".") == (0, set())
+    assert run_check("--changed", "HEAD", ".") == (0, set())
     repository.write({SEGMENT: WORSE})
-    _, codes = check("--changed", "HEAD", ".")
+    _, codes = run_check("--changed", "HEAD", ".")
     assert codes
     repository.commit({SEGMENT: WORSE})
-    assert check("--changed", "HEAD", ".") == (0, set())
-    assert check("--changed", "HEAD~1", "arm_description/urdf/arm.urdf.xacro")[1] == codes
+    assert run_check("--changed", "HEAD", ".") == (0, set())
+    assert run_check("--changed", "HEAD~1", "arm_description/urdf/arm.urdf.xacro")[1] == codes
 
 
-def test_changed_matches_findings_of_renamed_file(repository, check):
+def test_changed_matches_findings_of_renamed_file(repository, run_check):
     text = (repository.root / "arm_description/urdf/arm.urdf.xacro").read_text()
     repository.commit({"arm_description/urdf/arm.urdf.xacro": None, "arm_description/urdf/robot.urdf.xacro": text})
-    assert check("--changed", "HEAD~1", ".") == (0, set())
+    assert run_check("--changed", "HEAD~1", ".") == (0, set())
 
 
-def test_changed_skips_descriptions_unaffected_by_change(repository, monkeypatch, check):
+def test_changed_skips_descriptions_unaffected_by_change(repository, monkeypatch, run_check):
     from linkwright.lint.checking import Checker
 
     def refuse(*_):
@@ -96,7 +96,7 @@ def test_changed_skips_descriptions_unaffected_by_change(repository, monkeypatch
 
     repository.write({"README.md": "An arm."})
     monkeypatch.setattr(Checker, "check", refuse)
-    assert check("--changed", "HEAD", ".") == (0, set())
+    assert run_check("--changed", "HEAD", ".") == (0, set())
 
 
 @pytest.mark.parametrize(

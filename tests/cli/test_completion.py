@@ -123,12 +123,14 @@ def test_graph_names_are_completed_from_cache(monkeypatch: pytest.MonkeyPatch) -
     assert len(started) == 2
 
 
-def test_graph_discovery_stores_names_of_running_nodes(in_graph: Callable[[Callable[[Graph], object]], None]) -> None:
+def test_graph_discovery_stores_names_of_running_nodes(
+    add_to_graph: Callable[[Callable[[Graph], object]], None],
+) -> None:
     def make(graph: Graph) -> None:
         node = graph.create_node("talker", namespace="left")
         node.create_publisher(get_message("std_msgs/msg/String"), "chatter", 1)
 
-    in_graph(make)
+    add_to_graph(make)
     assert graph_names.discover() == 0
     assert "/left/talker" in graph_names.read_names("nodes")
     assert "/left/chatter" in graph_names.read_names("topics")

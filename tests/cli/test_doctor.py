@@ -38,27 +38,27 @@ def run_doctor(capsys, *words: str, status: int) -> str:
     return captured.out + captured.err
 
 
-def test_healthy_robot_has_no_problems(in_graph, capsys):
-    in_graph(create_robot)
+def test_healthy_robot_has_no_problems(add_to_graph, capsys):
+    add_to_graph(create_robot)
     assert "No problems found: 2 nodes, 6 topics, 3 frames" in run_doctor(capsys, status=0)
 
 
-def test_missing_joint_states_publisher_is_reported(in_graph, capsys):
-    in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
+def test_missing_joint_states_publisher_is_reported(add_to_graph, capsys):
+    add_to_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
     output = run_doctor(capsys, status=1)
     assert "[DOC401]: no node publishes joint states, so there is no transform of frame 'wheel'" in output
     assert "start joint_state_publisher" in output
 
 
-def test_doctor_output_is_translated_to_chinese(in_graph, capsys):
-    in_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
+def test_doctor_output_is_translated_to_chinese(add_to_graph, capsys):
+    add_to_graph(lambda graph: RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED)))
     output = run_doctor(capsys, "--lang", "zh", status=1)
     assert "正在观察运行中的计算图，1 秒……\n" in output
     assert "没有节点发布关节状态，所以坐标系“wheel”没有变换" in output
     assert "1 个问题；1 个节点、" in output
 
 
-def test_misspelled_joint_name_is_reported(in_graph, capsys):
+def test_misspelled_joint_name_is_reported(add_to_graph, capsys):
     def make(graph: Graph) -> None:
         RobotStatePublisher(graph, NodeOptions(parameters=DESCRIBED))
         node = graph.create_node("driver")
@@ -70,7 +70,7 @@ def test_misspelled_joint_name_is_reported(in_graph, capsys):
 
         node.create_timer(0.05, publish)
 
-    in_graph(make)
+    add_to_graph(make)
     output = run_doctor(capsys, status=1)
     assert "joint 'spin' is not in the joint states, so there is no transform of frame 'wheel'" in output
     assert "did you mean 'spinn'?" in output
@@ -97,19 +97,19 @@ def create_second_publisher(graph: Graph) -> None:
     )
 
 
-def test_two_publishers_of_same_transform_are_reported(in_graph, capsys):
-    in_graph(create_second_publisher)
+def test_two_publishers_of_same_transform_are_reported(add_to_graph, capsys):
+    add_to_graph(create_second_publisher)
     output = run_doctor(capsys, status=1)
     assert "2 nodes publish the transform of frame 'wheel': '/odometry', '/robot_state_publisher'" in output
 
 
-def test_disconnected_trees_and_missing_fixed_frame_are_reported(in_graph, capsys, tmp_path: Path):
+def test_disconnected_trees_and_missing_fixed_frame_are_reported(add_to_graph, capsys, tmp_path: Path):
     def make(graph: Graph) -> None:
         create_robot(graph)
         publisher = graph.create_node("camera").create_publisher(TFMessage, "/tf_static", STATIC_TF_PUBLISHER_QOS)
         publisher.publish(TFMessage(transforms=[make_transform("camera", "lens")]))
 
-    in_graph(make)
+    add_to_graph(make)
     rviz = tmp_path / "robot.rviz"
     rviz.write_text("Visualization Manager:\n  Global Options:\n    Fixed Frame: map\n", encoding="utf-8")
     output = run_doctor(capsys, "--rviz", str(rviz), status=1)
@@ -118,18 +118,18 @@ def test_disconnected_trees_and_missing_fixed_frame_are_reported(in_graph, capsy
     assert "robot.rviz' does not exist, so nothing is shown" in output
 
 
-def test_fixed_frame_of_viewer_is_checked(in_graph, capsys):
+def test_fixed_frame_of_viewer_is_checked(add_to_graph, capsys):
     def make(graph: Graph) -> None:
         create_robot(graph)
         viewer = graph.create_node("rviz2", parameters={"fixed_frame": "odom"})
         viewer.declare_parameter("fixed_frame", "map")
         viewer.create_subscription(TFMessage, "/tf", print, TF_QOS)
 
-    in_graph(make)
+    add_to_graph(make)
     assert "the fixed frame 'odom' of '/rviz2' does not exist" in run_doctor(capsys, status=1)
 
 
-def test_stamps_far_from_clock_are_reported(in_graph, capsys):
+def test_stamps_far_from_clock_are_reported(add_to_graph, capsys):
     def make(graph: Graph) -> None:
         node = graph.create_node("lidar")
         publisher = node.create_publisher("sensor_msgs/msg/LaserScan", "scan", 5)
@@ -137,11 +137,11 @@ def test_stamps_far_from_clock_are_reported(in_graph, capsys):
         message.header.stamp.sec = 1000
         node.create_timer(0.05, lambda: publisher.publish(message))
 
-    in_graph(make)
+    add_to_graph(make)
     assert "the stamps of '/lidar' on '/scan' are" in run_doctor(capsys, status=1)
 
 
-def test_twist_type_qos_and_unserved_client_problems_are_reported(in_graph, capsys):
+def test_twist_type_qos_and_unserved_client_problems_are_reported(add_to_graph, capsys):
     def make(graph: Graph) -> None:
         graph.create_node("teleop").create_publisher("geometry_msgs/msg/Twist", "cmd_vel", 10)
         base = graph.create_node("base")
@@ -151,7 +151,7 @@ def test_twist_type_qos_and_unserved_client_problems_are_reported(in_graph, caps
         base.create_subscription("sensor_msgs/msg/LaserScan", "scan", print, 10)
         base.create_client("std_srvs/srv/Empty", "reset")
 
-    in_graph(make)
+    add_to_graph(make)
     output = run_doctor(capsys, status=1)
     assert "topic '/cmd_vel' carries Twist for some nodes and TwistStamped for others" in output
     reports_mismatch = "reliability: '/lidar' offers BEST_EFFORT, '/base' requests RELIABLE" in output
@@ -159,25 +159,25 @@ def test_twist_type_qos_and_unserved_client_problems_are_reported(in_graph, caps
     assert "no node provides service '/reset', which '/base' calls" in output
 
 
-def test_mixed_use_sim_time_is_reported(in_graph, capsys):
+def test_mixed_use_sim_time_is_reported(add_to_graph, capsys):
     def make(graph: Graph) -> None:
         graph.create_node("one", parameters={"use_sim_time": True})
         graph.create_node("two")
 
-    in_graph(make)
+    add_to_graph(make)
     output = run_doctor(capsys, status=1)
     assert "use_sim_time is true for '/one', but no node publishes /clock" in output
     assert "use_sim_time is true for '/one', but false for '/two'" in output
 
 
-def test_empty_graph_is_reported(in_graph, capsys):
-    in_graph(lambda graph: None)
+def test_empty_graph_is_reported(add_to_graph, capsys):
+    add_to_graph(lambda graph: None)
     assert "no running nodes were found" in run_doctor(capsys, status=1)
 
 
 @pytest.mark.parametrize("form", ["json", "concise"])
-def test_json_and_other_formats_are_printed(in_graph, capsys, form):
-    in_graph(create_second_publisher)
+def test_json_and_other_formats_are_printed(add_to_graph, capsys, form):
+    add_to_graph(create_second_publisher)
     assert main(["doctor", "--seconds", "1", "--format", form]) == 1
     printed = capsys.readouterr().out
     if form == "json":
@@ -186,8 +186,8 @@ def test_json_and_other_formats_are_printed(in_graph, capsys, form):
         assert "DOC302" in printed
 
 
-def test_report_has_sections_of_ros2_doctor(in_graph, capsys):
-    in_graph(create_robot)
+def test_report_has_sections_of_ros2_doctor(add_to_graph, capsys):
+    add_to_graph(create_robot)
     output = run_doctor(capsys, "--report", status=0)
     for title in ("PLATFORM INFORMATION", "RMW MIDDLEWARE", "PACKAGE VERSIONS", "NETWORK CONFIGURATION"):
         assert f"\n   {title}\n" in output
@@ -196,13 +196,13 @@ def test_report_has_sections_of_ros2_doctor(in_graph, capsys):
     assert re.search(r"^publisher count +: 1$", output, re.MULTILINE)
 
 
-def test_report_failed_prints_only_with_problems(in_graph, capsys):
-    in_graph(create_robot)
+def test_report_failed_prints_only_with_problems(add_to_graph, capsys):
+    add_to_graph(create_robot)
     assert "PLATFORM" not in run_doctor(capsys, "--report-failed", status=0)
 
 
-def test_parameter_file_sections_without_nodes_are_reported(in_graph, capsys, tmp_path):
-    in_graph(create_robot)
+def test_parameter_file_sections_without_nodes_are_reported(add_to_graph, capsys, tmp_path):
+    add_to_graph(create_robot)
     path = tmp_path / "params.yaml"
     sections = ("/**", "robot_state_publisher", "joint_state_publsher", "/left/*")
     path.write_text("".join(f"{section}: {{ros__parameters: {{a: 1}}}}\n" for section in sections))

@@ -140,7 +140,7 @@ def test_recording_on_full_disk_fails_once_and_keeps_messages(tmp_path: Path, st
 @needs_rosbags
 @needs_limits
 def test_bag_record_reports_full_disk_once(
-    in_graph: Callable[[Callable[[Graph], object]], None],
+    add_to_graph: Callable[[Callable[[Graph], object]], None],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -151,7 +151,7 @@ def test_bag_record_reports_full_disk_once(
         node.create_timer(0.001, lambda: publisher.publish(String(data="x" * 1000)))
 
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "log"))
-    in_graph(talk)
+    add_to_graph(talk)
     with full_disk(20_000):
         assert main(["bag", "record", "-a", "-o", str(tmp_path / "bag")]) == 1
     printed = capsys.readouterr().err

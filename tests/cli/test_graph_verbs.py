@@ -32,8 +32,8 @@ def add_two_ints(request, response):
 
 
 @pytest.fixture(autouse=True)
-def _robot(in_graph):
-    in_graph(create_robot)
+def _robot(add_to_graph):
+    add_to_graph(create_robot)
 
 
 def run_command(capsys, *words: str, status: int = 0) -> tuple[str, str]:
@@ -51,12 +51,12 @@ def test_node_list_prints_nodes(capsys):
     assert "/_hidden_node\n" in run_command(capsys, "node", "list", "-a")[0]
 
 
-def test_duplicate_node_names_cause_warning(in_graph, capsys):
+def test_duplicate_node_names_cause_warning(add_to_graph, capsys):
     def twice(graph: Graph) -> None:
         create_robot(graph)
         create_robot(graph)
 
-    in_graph(twice)
+    add_to_graph(twice)
     out, err = run_command(capsys, "node", "list")
     assert out == "/complex_node\n/complex_node\n"
     assert "WARNING: Be aware that there are nodes in the graph that share an exact name" in err
@@ -307,8 +307,8 @@ def run_watching_command(graph: Graph) -> None:
     node.create_timer(0.05, ask)
 
 
-def test_service_echo_prints_events(in_graph, capsys):
-    in_graph(run_watching_command)
+def test_service_echo_prints_events(add_to_graph, capsys):
+    add_to_graph(run_watching_command)
     out, _ = run_command(capsys, "service", "echo", "/sum", "--flow-style", status=130)
     received, sent = out.split("---\n")[:2]
     assert received.startswith("info:\n  event_type: REQUEST_RECEIVED\n  stamp:\n    sec: ")
@@ -317,19 +317,19 @@ def test_service_echo_prints_events(in_graph, capsys):
     assert sent.endswith("request: []\nresponse: [{sum: 5}]\n")
 
 
-def test_service_echo_prints_csv(in_graph, capsys):
-    in_graph(run_watching_command)
+def test_service_echo_prints_csv(add_to_graph, capsys):
+    add_to_graph(run_watching_command)
     out, _ = run_command(capsys, "service", "echo", "/sum", "example_interfaces/srv/AddTwoInts", "--csv", status=130)
     first = out.splitlines()[0].split(",")
     assert (first[0], first[-4:]) == ("1", ["1", "2", "3", ""])
 
 
-def test_service_echo_reports_missing_introspection(in_graph, capsys):
+def test_service_echo_reports_missing_introspection(add_to_graph, capsys):
     def silent(graph: Graph) -> None:
         create_robot(graph)
         graph.create_node("user").create_timer(0.05, lambda: signal.raise_signal(signal.SIGINT))
 
-    in_graph(silent)
+    add_to_graph(silent)
     assert (
         "service '/add_two_ints' has no events yet"
         in run_command(capsys, "service", "echo", "/add_two_ints", status=130)[1]
@@ -340,13 +340,13 @@ def test_unknown_service_suggests_nearest(capsys):
     assert "did you mean '/add_two_ints'?" in run_command(capsys, "service", "type", "/add_two_int", status=1)[1]
 
 
-def test_service_call_times_out_if_server_hangs(in_graph, capsys):
+def test_service_call_times_out_if_server_hangs(add_to_graph, capsys):
     async def never(_request, _response):
         import asyncio
 
         await asyncio.sleep(60)
 
-    in_graph(lambda graph: graph.create_node("slow").create_service("std_srvs/srv/Empty", "hang", never))
+    add_to_graph(lambda graph: graph.create_node("slow").create_service("std_srvs/srv/Empty", "hang", never))
     words = ["service", "call", "/hang", "std_srvs/srv/Empty", "--timeout", "0.2"]
     assert "did not respond within 0.2 s" in run_command(capsys, *words, status=1)[1]
 

@@ -24,7 +24,7 @@ from linkwright.packages.creation.licenses import known_licenses, license_text
 from linkwright.packages.creation.request import BUILD_TYPES, Maintainer, PackageRequest
 from linkwright.packages.naming import check_package_name, is_email
 from tests.places import REPOSITORY
-from tests.robots.workspaces import colcon_build, sourced
+from tests.robots.workspaces import colcon_build, read_sourced_variable
 
 ADA = ("--maintainer-name", "Ada", "--maintainer-email", "ada@example.org")
 
@@ -346,7 +346,7 @@ def test_colcon_builds_created_package(options: tuple[str, ...], tmp_path: Path)
     assert main(["pkg", "create", *words, *destination, *ADA]) == 0
     colcon_build(tmp_path, "my_robot", *options)
     prefix = tmp_path / "install" / "my_robot"
-    assert sourced(tmp_path, "AMENT_PREFIX_PATH") == str(prefix)
+    assert read_sourced_variable(tmp_path, "AMENT_PREFIX_PATH") == str(prefix)
     assert (prefix / "share" / "my_robot" / "package.xml").is_file()
     assert (prefix / "lib" / "my_robot" / "hello").is_file()
 

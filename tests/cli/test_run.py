@@ -56,7 +56,7 @@ def workspace(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
-def run() -> Iterator[Run]:
+def run_node() -> Iterator[Run]:
     running: list[subprocess.Popen[str]] = []
 
     def begin(*words: str) -> subprocess.Popen[str]:
@@ -69,46 +69,46 @@ def run() -> Iterator[Run]:
         process.communicate()
 
 
-def test_entry_point_receives_arguments_and_returns_exit_status(run: Run) -> None:
-    process = run("arm", "wave", "--fast", "-h", "--ros-args", "-r", "a:=b")
+def test_entry_point_receives_arguments_and_returns_exit_status(run_node: Run) -> None:
+    process = run_node("arm", "wave", "--fast", "-h", "--ros-args", "-r", "a:=b")
     out, err = process.communicate(timeout=60)
     assert out == "['--fast', '-h', '--ros-args', '-r', 'a:=b']\n", err
     assert process.returncode == 6
 
 
 @pytest.mark.parametrize(("number", "status"), [(signal.SIGINT, 4), (signal.SIGTERM, 9)])
-def test_executable_receives_signals(run: Run, number: int, status: int) -> None:
-    process = run("arm", "wave", "wait")
+def test_executable_receives_signals(run_node: Run, number: int, status: int) -> None:
+    process = run_node("arm", "wave", "wait")
     assert process.stdout is not None
     assert process.stdout.readline() == "['wait']\n"
     process.send_signal(number)
     assert process.wait(60) == status
 
 
-def test_prefix_precedes_executable(run: Run, workspace: Path) -> None:
-    process = run("--prefix", "echo 'a b'", "arm", "wave", "c")
+def test_prefix_precedes_executable(run_node: Run, workspace: Path) -> None:
+    process = run_node("--prefix", "echo 'a b'", "arm", "wave", "c")
     out, _ = process.communicate(timeout=60)
     assert out.startswith(f"a b {workspace}")
     assert out.endswith("/lib/arm/wave c\n")
 
 
-def test_run_starts_built_in_node(run: Run) -> None:
-    process = run("demo_nodes_py", "talker_qos", "-n", "1", "--ros-args", "-r", "__node:=tk", "-r", "__ns:=/x")
+def test_run_starts_built_in_node(run_node: Run) -> None:
+    process = run_node("demo_nodes_py", "talker_qos", "-n", "1", "--ros-args", "-r", "__node:=tk", "-r", "__ns:=/x")
     _, err = process.communicate(timeout=60)
     assert process.returncode == 0
     assert '] [x.tk]: Publishing: "Hello World: 0"' in err
 
 
-def test_built_in_node_ends_on_sigint(run: Run) -> None:
-    process = run("demo_nodes_cpp", "talker")
+def test_built_in_node_ends_on_sigint(run_node: Run) -> None:
+    process = run_node("demo_nodes_cpp", "talker")
     assert process.stderr is not None
     assert "Publishing" in process.stderr.readline()
     process.send_signal(signal.SIGINT)
     assert process.wait(TIMEOUT_S) == 0
 
 
-def test_run_opens_panel_of_rqt_program(run: Run) -> None:
-    process = run("--no-open", "rqt_graph", "rqt_graph", "--fast", "--ros-args", "-r", "__ns:=/x")
+def test_run_opens_panel_of_rqt_program(run_node: Run) -> None:
+    process = run_node("--no-open", "rqt_graph", "rqt_graph", "--fast", "--ros-args", "-r", "__ns:=/x")
     assert process.stdout is not None
     assert process.stdout.readline().startswith("Viewer: http://127.0.0.1:")
     process.send_signal(signal.SIGINT)
@@ -117,15 +117,15 @@ def test_run_opens_panel_of_rqt_program(run: Run) -> None:
     assert "rqt_graph has no argument '--fast'" in err
 
 
-def test_missing_program_of_rqt_names_replacement(run: Run) -> None:
-    process = run("rqt_publisher", "rqt_publisher")
+def test_missing_program_of_rqt_names_replacement(run_node: Run) -> None:
+    process = run_node("rqt_publisher", "rqt_publisher")
     _, err = process.communicate(timeout=60)
     assert process.returncode == 1
     assert "the page has no panel that replaces 'rqt_publisher'; run `ros2 topic pub TOPIC TYPE VALUES`" in err
 
 
-def test_run_starts_viewer(run: Run) -> None:
-    process = run("--no-open", "rviz2", "rviz2")
+def test_run_starts_viewer(run_node: Run) -> None:
+    process = run_node("--no-open", "rviz2", "rviz2")
     assert process.stdout is not None
     assert process.stdout.readline().startswith("Viewer: http://127.0.0.1:")
     process.send_signal(signal.SIGINT)
@@ -149,8 +149,8 @@ def test_unknown_packages_and_executables_are_reported(
     assert hint in err
 
 
-def test_missing_prefix_program_is_reported(run: Run) -> None:
-    process = run("--prefix", "no-such-program", "arm", "wave")
+def test_missing_prefix_program_is_reported(run_node: Run) -> None:
+    process = run_node("--prefix", "no-such-program", "arm", "wave")
     _, err = process.communicate(timeout=60)
     assert process.returncode == FINDINGS
     assert "error[CLI110]: 'no-such-program' cannot be run: No such file or directory" in err
@@ -161,8 +161,8 @@ def test_missing_arguments_are_usage_error(capsys: pytest.CaptureFixture[str]) -
     assert "usage: linkwright run [options] PACKAGE EXECUTABLE [ARGUMENT ...]" in capsys.readouterr().err
 
 
-def test_killed_run_returns_signal(run: Run) -> None:
-    process = run("arm", "wave", "wait")
+def test_killed_run_returns_signal(run_node: Run) -> None:
+    process = run_node("arm", "wave", "wait")
     assert process.stdout is not None
     process.stdout.readline()
     os.kill(process.pid, signal.SIGKILL)

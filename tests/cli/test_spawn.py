@@ -17,7 +17,7 @@ ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
 
 
 @pytest.fixture
-def spawn_requests(in_graph) -> list[Any]:
+def spawn_requests(add_to_graph) -> list[Any]:
     """Return the requests for entities; a used name is refused."""
     requests: list[Any] = []
 
@@ -30,7 +30,7 @@ def spawn_requests(in_graph) -> list[Any]:
     def simulator(graph: Graph) -> None:
         graph.create_node("gazebo").create_service(get_service("gazebo_msgs/srv/SpawnEntity"), "/spawn_entity", spawn)
 
-    in_graph(simulator)
+    add_to_graph(simulator)
     return requests
 
 
@@ -68,8 +68,8 @@ def test_simulation_rejection_is_one_error(spawn_requests, tmp_path, capsys):
     assert "rejects 'r': it is there" in output
 
 
-def test_missing_simulation_is_reported_with_hint(in_graph, tmp_path, capsys, monkeypatch):
-    in_graph(lambda graph: None)
+def test_missing_simulation_is_reported_with_hint(add_to_graph, tmp_path, capsys, monkeypatch):
+    add_to_graph(lambda graph: None)
     monkeypatch.setattr(calls, "SERVICE_TIMEOUT_S", 0.0)
     assert main(["spawn", robot(tmp_path)]) == 1
     output = capsys.readouterr().err

@@ -34,20 +34,20 @@ def out(capsys) -> str:
 # list, type, find, info
 
 
-def test_topic_list_prints_names(in_graph, capsys):
-    in_graph(talker)
+def test_topic_list_prints_names(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "list"]) == 0
     assert out(capsys).splitlines() == ["/chatter", *COMMON]
 
 
-def test_topic_list_prints_types(in_graph, capsys):
-    in_graph(talker)
+def test_topic_list_prints_types(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "list", "-t"]) == 0
     assert "/chatter [std_msgs/msg/String]" in out(capsys).splitlines()
 
 
-def test_topic_list_prints_count(in_graph, capsys):
-    in_graph(talker)
+def test_topic_list_prints_count(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "list", "-c"]) == 0
     assert out(capsys) == "3\n"
 
@@ -55,16 +55,16 @@ def test_topic_list_prints_count(in_graph, capsys):
 @pytest.mark.parametrize(
     "words", [["list", "-a"], ["list", "--include-hidden-topics"], ["--include-hidden-topics", "list"]]
 )
-def test_hidden_topics_are_listed_only_with_option(in_graph, capsys, words):
-    in_graph(lambda graph: talker(graph, topic="_secret"))
+def test_hidden_topics_are_listed_only_with_option(add_to_graph, capsys, words):
+    add_to_graph(lambda graph: talker(graph, topic="_secret"))
     assert main(["topic", *words]) == 0
     assert "/_secret" in out(capsys)
     assert main(["topic", "list"]) == 0
     assert "/_secret" not in out(capsys)
 
 
-def test_topic_list_verbose_prints_publishers_and_subscribers(in_graph, capsys):
-    in_graph(talker)
+def test_topic_list_verbose_prints_publishers_and_subscribers(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "list", "-v"]) == 0
     lines = out(capsys).splitlines()
     assert lines[0] == "Published topics:"
@@ -72,42 +72,42 @@ def test_topic_list_verbose_prints_publishers_and_subscribers(in_graph, capsys):
     assert lines[lines.index("") + 1] == "Subscribed topics:"
 
 
-def test_topic_type_prints_type(in_graph, capsys):
-    in_graph(talker)
+def test_topic_type_prints_type(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "type", "chatter"]) == 0
     assert out(capsys) == "std_msgs/msg/String\n"
 
 
-def test_topic_type_of_unknown_topic_suggests_nearest(in_graph, capsys):
-    in_graph(talker)
+def test_topic_type_of_unknown_topic_suggests_nearest(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "type", "/chater"]) == 1
     captured = capsys.readouterr()
     assert captured.out == ""
     assert "did you mean '/chatter'?" in captured.err
 
 
-def test_topic_find_prints_topics_of_type(in_graph, capsys):
-    in_graph(talker)
+def test_topic_find_prints_topics_of_type(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "find", "std_msgs/msg/String"]) == 0
     assert out(capsys) == "/chatter\n"
     assert main(["topic", "find", "-c", "std_msgs/msg/String"]) == 0
     assert out(capsys) == "1\n"
 
 
-def test_topic_info_prints_type_and_counts(in_graph, capsys):
-    in_graph(talker)
+def test_topic_info_prints_type_and_counts(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "info", "/chatter"]) == 0
     assert out(capsys) == "Type: std_msgs/msg/String\nPublisher count: 1\nSubscription count: 0\n"
 
 
-def test_topic_info_of_unknown_topic_is_an_error(in_graph, capsys):
-    in_graph(talker)
+def test_topic_info_of_unknown_topic_is_an_error(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "info", "/unknown_topic"]) == 1
     assert "Unknown topic '/unknown_topic'" in capsys.readouterr().err
 
 
-def test_topic_info_verbose_prints_endpoints(in_graph, capsys):
-    in_graph(talker)
+def test_topic_info_verbose_prints_endpoints(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "info", "-v", "/chatter"]) == 0
     text = out(capsys)
     lines = [line for line in text.splitlines() if not line.startswith("Topic type hash: RIHS01_")]
@@ -141,8 +141,8 @@ def test_topic_info_verbose_prints_endpoints(in_graph, capsys):
 # echo
 
 
-def test_echo_once_prints_one_message(in_graph, capsys):
-    in_graph(talker)
+def test_echo_once_prints_one_message(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "echo", "--once", "/chatter"]) == 0
     assert re.fullmatch(r"data: Hello \d+\n---\n", out(capsys))
 
@@ -152,8 +152,8 @@ def latched(graph: Graph) -> None:
     node.create_publisher(String, "robot_description", DESCRIPTION_QOS).publish(String(data="<robot/>"))
 
 
-def test_echo_prints_latched_message(in_graph, capsys):
-    in_graph(latched)
+def test_echo_prints_latched_message(add_to_graph, capsys):
+    add_to_graph(latched)
     assert main(["topic", "echo", "--once", "robot_description", "--timeout", "2"]) == 0
     assert out(capsys) == "data: <robot/>\n---\n"
 
@@ -197,39 +197,39 @@ effort: []
         (["--filter", "len(m.name) == 2 and m.position[1] > 0.7"], STATE_YAML),
     ],
 )
-def test_echo_options_change_output(in_graph, capsys, options, printed):
-    in_graph(state)
+def test_echo_options_change_output(add_to_graph, capsys, options, printed):
+    add_to_graph(state)
     assert main(["topic", "echo", "--once", "--timeout", "5", *options, "/joint_states"]) == 0
     assert out(capsys) == printed
 
 
-def test_echo_truncates_long_strings(in_graph, capsys):
-    in_graph(latched)
+def test_echo_truncates_long_strings(add_to_graph, capsys):
+    add_to_graph(latched)
     assert main(["topic", "echo", "--once", "-l", "4", "/robot_description"]) == 0
     assert out(capsys) == "data: <rob...\n---\n"
 
 
-def test_echo_raw_prints_bytes(in_graph, capsys):
-    in_graph(latched)
+def test_echo_raw_prints_bytes(add_to_graph, capsys):
+    add_to_graph(latched)
     assert main(["topic", "echo", "--once", "--raw", "/robot_description"]) == 0
     assert out(capsys).startswith("b'\\x00\\x01\\x00\\x00\\t\\x00\\x00\\x00<robot/>\\x00")
 
 
-def test_echo_prints_message_info(in_graph, capsys):
-    in_graph(state)
+def test_echo_prints_message_info(add_to_graph, capsys):
+    add_to_graph(state)
     words = ["--once", "-i", "--field", "header.stamp", "/joint_states"]
     assert main(["topic", "echo", *words]) == 0
     assert re.match(r"received_timestamp: \d{19}\nsource_timestamp: \d{19}\n---\nsec: 1\n", out(capsys))
 
 
-def test_echo_waits_for_topic_of_given_type(in_graph, capsys):
-    in_graph(lambda graph: None)
+def test_echo_waits_for_topic_of_given_type(add_to_graph, capsys):
+    add_to_graph(lambda graph: None)
     assert main(["topic", "echo", "/later", "std_msgs/msg/String", "--timeout", "0.1"]) == 0
     assert out(capsys) == ""
 
 
-def test_echo_reports_unknown_topic(in_graph, capsys):
-    in_graph(talker)
+def test_echo_reports_unknown_topic(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "echo", "/chattr"]) == 1
     err = capsys.readouterr().err
     assert err.startswith("WARNING: topic [/chattr] does not appear to be published yet\n")
@@ -249,14 +249,14 @@ def test_echo_reports_unknown_topic(in_graph, capsys):
         (["/joint_states", "--filter", "m."], "the filter is not a Python expression"),
     ],
 )
-def test_echo_reports_invalid_arguments(in_graph, capsys, words, message):
-    in_graph(state)
+def test_echo_reports_invalid_arguments(add_to_graph, capsys, words, message):
+    add_to_graph(state)
     assert main(["topic", "echo", "--timeout", "5", *words]) == 1
     assert message in capsys.readouterr().err
 
 
-def test_echo_warns_about_incompatible_qos(in_graph, capsys):
-    in_graph(lambda graph: talker(graph, qos=QoSProfile(10, ReliabilityPolicy.BEST_EFFORT)))
+def test_echo_warns_about_incompatible_qos(add_to_graph, capsys):
+    add_to_graph(lambda graph: talker(graph, qos=QoSProfile(10, ReliabilityPolicy.BEST_EFFORT)))
     assert main(["topic", "echo", "/chatter", "--qos-reliability", "reliable", "--timeout", "0.2"]) == 0
     captured = capsys.readouterr()
     assert captured.out == ""
@@ -270,8 +270,8 @@ def two_types(graph: Graph) -> None:
     node.create_publisher(Header, "mixed", 10)
 
 
-def test_echo_rejects_topic_with_two_types(in_graph, capsys):
-    in_graph(two_types)
+def test_echo_rejects_topic_with_two_types(add_to_graph, capsys):
+    add_to_graph(two_types)
     assert main(["topic", "echo", "/mixed"]) == 1
     err = capsys.readouterr().err
     assert "contains more than one type: [std_msgs/msg/Header, std_msgs/msg/String]" in err
@@ -294,26 +294,26 @@ def listener(messages: list, kind=String, topic: str = "chatter"):
     return make
 
 
-def test_pub_once_publishes_one_message(in_graph, capsys):
+def test_pub_once_publishes_one_message(add_to_graph, capsys):
     messages: list = []
-    in_graph(listener(messages))
+    add_to_graph(listener(messages))
     words = ["pub", "--once", "/chatter", "std_msgs/msg/String", "data: hello"]
     assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
     assert [message.data for message in messages] == ["hello"]
     assert out(capsys) == "publisher: beginning loop\npublishing #1: std_msgs.msg.String(data='hello')\n\n"
 
 
-def test_pub_times_publishes_given_number_of_messages(in_graph, capsys):
+def test_pub_times_publishes_given_number_of_messages(add_to_graph, capsys):
     messages: list = []
-    in_graph(listener(messages))
+    add_to_graph(listener(messages))
     words = ["pub", "-t", "3", "-r", "100", "-p", "2", "/chatter", "std_msgs/String", "{data: x}"]
     assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
     assert len(messages) == 3
     assert out(capsys) == "publisher: beginning loop\npublishing #2: std_msgs.msg.String(data='x')\n\n"
 
 
-def test_pub_times_out_without_subscription(in_graph, capsys):
-    in_graph(lambda graph: None)
+def test_pub_times_out_without_subscription(add_to_graph, capsys):
+    add_to_graph(lambda graph: None)
     words = ["pub", "-1", "/chatter", "std_msgs/msg/String", "--max-wait-time-secs", "0.1"]
     assert main(["topic", *words]) == 1
     captured = capsys.readouterr()
@@ -321,18 +321,18 @@ def test_pub_times_out_without_subscription(in_graph, capsys):
     assert "Timed out" in captured.err
 
 
-def test_pub_sets_stamp_to_publishing_time(in_graph):
+def test_pub_sets_stamp_to_publishing_time(add_to_graph):
     messages: list = []
-    in_graph(listener(messages, JointState, "joint_states"))
+    add_to_graph(listener(messages, JointState, "joint_states"))
     words = ["pub", "-1", "/joint_states", "sensor_msgs/msg/JointState", "{header: auto, name: [a], position: [1]}"]
     assert main(["topic", *words, "--keep-alive", "0.02"]) == 0
     assert messages[0].header.stamp.sec > 1_500_000_000
     assert list(messages[0].position) == [1.0]
 
 
-def test_pub_reads_messages_from_yaml_file(in_graph, tmp_path):
+def test_pub_reads_messages_from_yaml_file(add_to_graph, tmp_path):
     messages: list = []
-    in_graph(listener(messages))
+    add_to_graph(listener(messages))
     file = tmp_path / "messages.yaml"
     file.write_text("data: one\n---\ndata: two\n---\n", encoding="utf-8")
     words = ["pub", "/chatter", "std_msgs/msg/String", "--yaml-file", str(file), "-r", "50", "-w", "1"]
@@ -352,14 +352,14 @@ def test_pub_reads_messages_from_yaml_file(in_graph, tmp_path):
         ("std_msgs/msg/UInt8", "{data: 300}", "field 'data' is of type uint8"),
     ],
 )
-def test_pub_reports_invalid_values_with_location(in_graph, capsys, kind, values, message):
-    in_graph(lambda graph: None)
+def test_pub_reports_invalid_values_with_location(add_to_graph, capsys, kind, values, message):
+    add_to_graph(lambda graph: None)
     assert main(["topic", "pub", "-1", "/t", kind, values]) == 1
     assert message in capsys.readouterr().err
 
 
-def test_pub_marks_unknown_field(in_graph, capsys):
-    in_graph(lambda graph: None)
+def test_pub_marks_unknown_field(add_to_graph, capsys):
+    add_to_graph(lambda graph: None)
     main(["topic", "pub", "-1", "/t", "geometry_msgs/msg/Twist", "{linear: {x: 1.0, w: 2.0}}"])
     err = capsys.readouterr().err
     assert "<values>:1:19" in err
@@ -382,8 +382,8 @@ def run_for(seconds: float, words: list[str], monkeypatch: pytest.MonkeyPatch) -
     return main(words)
 
 
-def test_hz_prints_average_rate(in_graph, capsys, monkeypatch):
-    in_graph(lambda graph: talker(graph, period=0.01))
+def test_hz_prints_average_rate(add_to_graph, capsys, monkeypatch):
+    add_to_graph(lambda graph: talker(graph, period=0.01))
     assert run_for(1.2, ["topic", "hz", "/chatter"], monkeypatch) == 0
     text = out(capsys)
     match = re.fullmatch(
@@ -394,12 +394,12 @@ def test_hz_prints_average_rate(in_graph, capsys, monkeypatch):
     assert shortest - 0.001 <= 1 / rate <= longest + 0.001
 
 
-def test_hz_prints_table_for_several_topics(in_graph, capsys, monkeypatch):
+def test_hz_prints_table_for_several_topics(add_to_graph, capsys, monkeypatch):
     def make(graph: Graph) -> None:
         talker(graph, topic="a")
         state(graph)
 
-    in_graph(make)
+    add_to_graph(make)
     assert run_for(1.2, ["topic", "hz", "/a", "/joint_states"], monkeypatch) == 0
     lines = out(capsys).splitlines()
     assert lines[:2] == ["Subscribed to [/a]", "Subscribed to [/joint_states]"]
@@ -408,22 +408,22 @@ def test_hz_prints_table_for_several_topics(in_graph, capsys, monkeypatch):
     assert lines[4].split()[0] == "/a"
 
 
-def test_hz_counts_filtered_messages(in_graph, capsys, monkeypatch):
-    in_graph(lambda graph: talker(graph, period=0.01))
+def test_hz_counts_filtered_messages(add_to_graph, capsys, monkeypatch):
+    add_to_graph(lambda graph: talker(graph, period=0.01))
     words = ["topic", "hz", "/chatter", "--filter", "m.data.endswith('0')"]
     assert run_for(1.2, words, monkeypatch) == 0
     assert 6 < float(out(capsys).split()[2]) < 14
 
 
-def test_bw_prints_bandwidth(in_graph, capsys, monkeypatch):
-    in_graph(lambda graph: talker(graph, period=0.01))
+def test_bw_prints_bandwidth(add_to_graph, capsys, monkeypatch):
+    add_to_graph(lambda graph: talker(graph, period=0.01))
     assert run_for(1.2, ["topic", "bw", "/chatter"], monkeypatch) == 0
     text = out(capsys)
     pattern = r"Subscribed to \[/chatter\]\n[\d.]+ K?B/s from \d+ messages\n\tMessage size mean: .* min: .* max: .*\n"
     assert re.fullmatch(pattern, text), text
 
 
-def test_delay_prints_average_delay(in_graph, capsys, monkeypatch):
+def test_delay_prints_average_delay(add_to_graph, capsys, monkeypatch):
     def make(graph: Graph) -> None:
         node = graph.create_node("camera", start_parameter_services=False)
         publisher = node.create_publisher("sensor_msgs/msg/Range", "range", 10)
@@ -436,14 +436,14 @@ def test_delay_prints_average_delay(in_graph, capsys, monkeypatch):
 
         node.create_timer(0.02, publish)
 
-    in_graph(make)
+    add_to_graph(make)
     assert run_for(1.2, ["topic", "delay", "/range"], monkeypatch) == 0
     match = re.match(r"average delay: (-?\d\.\d{3})\n\tmin: ", out(capsys))
     assert match
     assert abs(float(match[1])) < 0.5
 
 
-def test_delay_requires_header(in_graph, capsys):
-    in_graph(talker)
+def test_delay_requires_header(add_to_graph, capsys):
+    add_to_graph(talker)
     assert main(["topic", "delay", "/chatter"]) == 1
     assert "msg does not have header" in capsys.readouterr().err

@@ -12,7 +12,7 @@ from tests.places import PACKAGE
 from tests.urdf.robots import chain_of_links, robot_text
 
 XACRO_PREFIX = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
-GOOD = robot_text(chain_of_links("fixed"))
+VALID_ROBOT = robot_text(chain_of_links("fixed"))
 XACRO = (
     '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="link" default="a"/>'
     '<link name="$(arg link)"/></robot>'
@@ -21,7 +21,7 @@ XACRO = (
 
 class TestLoad:
     def test_load_accepts_text(self):
-        assert load(GOOD).root == "a"
+        assert load(VALID_ROBOT).root == "a"
 
     def test_load_accepts_path(self):
         assert load(PACKAGE / "urdf" / "mbot_base.urdf").name == "mbot"
@@ -57,7 +57,7 @@ class TestTinyxmlTolerance:
     """Differences between tinyxml2 and the XML standard."""
 
     def test_whitespace_before_xml_declaration_is_accepted(self):
-        assert load('\n  <?xml version="1.0"?>\n' + GOOD).name == "r"
+        assert load('\n  <?xml version="1.0"?>\n' + VALID_ROBOT).name == "r"
 
     def test_locations_account_for_leading_whitespace(self):
         diagnostic = examine('\n<?xml version="1.0"?>\n<robot name="r"/>').diagnostics[0]
@@ -65,11 +65,11 @@ class TestTinyxmlTolerance:
 
     @pytest.mark.parametrize("trailing_text", ["<robot/>", "\n<more>\n</more>", "\nwords"])
     def test_text_after_root_is_ignored(self, trailing_text):
-        assert load(GOOD + trailing_text).name == "r"
+        assert load(VALID_ROBOT + trailing_text).name == "r"
 
     def test_text_after_root_must_be_well_formed(self):
         with pytest.raises(LinkwrightError):
-            load(GOOD + "<broken")
+            load(VALID_ROBOT + "<broken")
 
     @pytest.mark.parametrize("blank", ["\t", "\n", "\r\n"])
     def test_tabs_and_newlines_in_values_are_not_spaces(self, blank):
@@ -105,18 +105,18 @@ def test_finding_in_macro_notes_macro_calls():
 class TestLibrary:
     def test_library_reads_same_text_once(self):
         library = DescriptionLibrary()
-        assert library.read(GOOD) is library.read(GOOD)
+        assert library.read(VALID_ROBOT) is library.read(VALID_ROBOT)
 
     def test_stored_document_provides_locations(self):
         library = DescriptionLibrary()
-        document = parse("\n\n" + GOOD.replace("fixed", "fixt"), "robot.xacro")
-        library.store(Description("robot.xacro", document, read(document)), GOOD)
-        diagnostic = library.read(GOOD).diagnostics[0]
+        document = parse("\n\n" + VALID_ROBOT.replace("fixed", "fixt"), "robot.xacro")
+        library.store(Description("robot.xacro", document, read(document)), VALID_ROBOT)
+        diagnostic = library.read(VALID_ROBOT).diagnostics[0]
         assert (diagnostic.span.file, diagnostic.span.line) == ("robot.xacro", 3)
 
     def test_stored_description_knows_its_files(self, tmp_path):
         library = DescriptionLibrary()
-        assert library.files(GOOD) == ()
+        assert library.files(VALID_ROBOT) == ()
         (tmp_path / "wheel.xacro").write_text('<robot><link name="a"/></robot>')
         (tmp_path / "robot.xacro").write_text(
             f'<robot name="r" {XACRO_PREFIX}><xacro:include filename="wheel.xacro"/></robot>'
@@ -131,7 +131,7 @@ class TestLibrary:
 
     def test_library_keeps_limited_number_of_texts(self):
         library = DescriptionLibrary()
-        first = library.read(GOOD)
+        first = library.read(VALID_ROBOT)
         for number in range(40):
-            library.read(GOOD.replace('name="r"', f'name="r{number}"'))
-        assert library.read(GOOD) is not first
+            library.read(VALID_ROBOT.replace('name="r"', f'name="r{number}"'))
+        assert library.read(VALID_ROBOT) is not first

@@ -16,7 +16,7 @@ BROKEN = EntryPoint("theirs", "their_broken_module:Theirs", "their-package")
 
 
 @pytest.fixture
-def broken_module(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
+def write_broken_module(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], None]:
     """Return a function that writes the module of the entry point."""
 
     def write(text: str) -> None:
@@ -36,9 +36,9 @@ def broken_module(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> Callable[[s
     ],
 )
 def test_the_error_names_the_package_and_the_problem(
-    broken_module: Callable[[str], None], text: str, problem: str
+    write_broken_module: Callable[[str], None], text: str, problem: str
 ) -> None:
-    broken_module(text)
+    write_broken_module(text)
     with pytest.raises(LinkwrightError) as raised:
         load_extension(BROKEN, "VISION113", phrase("the detector '{name}' cannot be imported", name="theirs"))
     (diagnostic,) = raised.value.diagnostics
@@ -48,8 +48,8 @@ def test_the_error_names_the_package_and_the_problem(
     assert problem in diagnostic.hint
 
 
-def test_an_error_with_a_finding_of_its_own_is_kept(broken_module: Callable[[str], None]) -> None:
-    broken_module(
+def test_an_error_with_a_finding_of_its_own_is_kept(write_broken_module: Callable[[str], None]) -> None:
+    write_broken_module(
         "from linkwright.diagnostics import Diagnostic, LinkwrightError\n"
         "raise LinkwrightError(Diagnostic('OTHER101', 'no camera'))"
     )

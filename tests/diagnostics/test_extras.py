@@ -21,7 +21,7 @@ from tests import toml_files
 
 
 @pytest.fixture
-def without(monkeypatch):
+def hide_library(monkeypatch):
     """Let a library appear not to be installed."""
 
     def hide(module: str) -> None:
@@ -47,8 +47,8 @@ def test_extras_table_matches_pyproject():
         ("mesh", lambda folder: read_parts(small_mesh(folder), resolver=None)),
     ],
 )
-def test_missing_library_is_named_with_install_hint(extra, use, without, tmp_path):
-    without(EXTRAS[extra])
+def test_missing_library_is_named_with_install_hint(extra, use, hide_library, tmp_path):
+    hide_library(EXTRAS[extra])
     with pytest.raises(LinkwrightError, match=f"'{EXTRAS[extra]}' is not installed") as caught:
         use(tmp_path)
     assert caught.value.diagnostics[0].hint == install_hint(extra)
@@ -74,7 +74,7 @@ ROBOT = """<robot name="r"><link name="base"><inertial><mass value="1"/>
 
 
 @pytest.mark.extra("mesh")
-def test_unread_meshes_are_reported_once_per_check(without, tmp_path):
+def test_unread_meshes_are_reported_once_per_check(hide_library, tmp_path):
     def unread_in(folder):
         folder.mkdir()
         mesh = small_mesh(folder)
@@ -83,13 +83,13 @@ def test_unread_meshes_are_reported_once_per_check(without, tmp_path):
         return [diagnostic for diagnostic in examine(folder / "robot.urdf").diagnostics if diagnostic.code == "INR104"]
 
     assert unread_in(tmp_path / "with") == []
-    without("trimesh")
+    hide_library("trimesh")
     unread = unread_in(tmp_path / "without")  # with other content, because meshes that were read are cached
     assert [(diagnostic.severity, diagnostic.hint) for diagnostic in unread] == [(Severity.INFO, install_hint("mesh"))]
 
 
-def test_image_decoder_names_missing_image_extra(without):
-    without("PIL")
+def test_image_decoder_names_missing_image_extra(hide_library):
+    hide_library("PIL")
     with pytest.raises(BadImageError, match=r"\[image\]"):
         decode_file(np.frombuffer(b"\x89PNG\r\n\x1a\n", np.uint8))
 
@@ -114,7 +114,7 @@ def test_missing_module_of_no_extra_is_raised_unchanged():
         missing_extra("BAG107", ModuleNotFoundError("another", name="another.module"))
 
 
-def test_missing_colcon_is_reported_with_install_hint(without, capsys):
-    without("colcon_core")
+def test_missing_colcon_is_reported_with_install_hint(hide_library, capsys):
+    hide_library("colcon_core")
     assert main("colcon", ["build"]) == 1
     assert str(install_hint("colcon")) in capsys.readouterr().err

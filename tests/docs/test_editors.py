@@ -16,7 +16,7 @@ from linkwright.lint.targets import XML_SUFFIXES
 from tests.docs.pages import DOCS, read_blocks
 
 SHOWN = {block.title: block.text for block in read_blocks(DOCS / "howto-editor.md") if block.title}
-ALL = {pattern for patterns in PATTERNS.values() for pattern in patterns}
+ALL_PATTERNS = {pattern for patterns in PATTERNS.values() for pattern in patterns}
 EXTENSION = DOCS.parent / "editors" / "vscode"
 
 
@@ -38,7 +38,7 @@ def test_editor_settings_start_language_server(title):
 
 def test_neovim_attaches_to_all_files():
     patterns = SHOWN["init.lua"].split("pattern = {", 1)[1].split("}", 1)[0]
-    assert quoted_patterns(patterns) == ALL
+    assert quoted_patterns(patterns) == ALL_PATTERNS
 
 
 def test_vim_assigns_file_types_to_server():
@@ -84,7 +84,7 @@ def test_vscode_extension_sends_all_files():
     lists = re.search(r"DESCRIPTION_PATTERN =([^;]*);.*?PACKAGE_PATTERN =([^;]*);", source, re.DOTALL)
     assert lists is not None
     patterns = {name for written in lists.groups() for name in re.sub(r'[*]{2}/|["+\s{}]', "", written).split(",")}
-    assert patterns == {pattern.removeprefix("*/") for pattern in ALL}
+    assert patterns == {pattern.removeprefix("*/") for pattern in ALL_PATTERNS}
 
 
 def test_patterns_match_supported_formats():

@@ -23,7 +23,7 @@ LANGUAGES = pytest.mark.parametrize("docs", [DOCS, DOCS / "zh"], ids=["en", "zh"
 
 
 @pytest.fixture
-def shown_class(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path, str], Any]:
+def load_shown_class(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path, str], Any]:
     """Return a function that returns a class from a page."""
 
     def find(page: Path, name: str) -> Any:
@@ -37,12 +37,12 @@ def shown_class(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path, str], Any]:
 
 
 @LANGUAGES
-def test_the_hardware_approaches_its_commands(shown_class: Callable[[Path, str], Any], docs: Path) -> None:
+def test_the_hardware_approaches_its_commands(load_shown_class: Callable[[Path, str], Any], docs: Path) -> None:
     position = (InterfaceDescription("position"),)
     joint = ComponentDescription("shoulder", "joint", position, position)
     parameters = {"time_constant": "0.5"}
     description = HardwareDescription("arm", "system", "my_hardware/Lag", parameters=parameters, joints=(joint,))
-    hardware = shown_class(docs / "control.md", "Lag")(description, None)
+    hardware = load_shown_class(docs / "control.md", "Lag")(description, None)
     hardware.on_configure()
     hardware.read(0, 0.1)
     assert hardware.states[0].value == 0.0
@@ -52,16 +52,18 @@ def test_the_hardware_approaches_its_commands(shown_class: Callable[[Path, str],
 
 
 @LANGUAGES
-def test_the_filter_keeps_every_second_range(shown_class: Callable[[Path, str], Any], docs: Path) -> None:
+def test_the_filter_keeps_every_second_range(load_shown_class: Callable[[Path, str], Any], docs: Path) -> None:
     ranges = np.array([1.0, 2.0, 3.0, 4.0], np.float32)
     scan = Scan(ranges, np.zeros(0, np.float32), 0.0, 0.3, 0.1, 0.0, 9.0, 0.0, 0, "laser")
-    scan_copy = shown_class(docs / "small-nodes.md", "EveryNth")(n=2).apply(scan, None)
+    scan_copy = load_shown_class(docs / "small-nodes.md", "EveryNth")(n=2).apply(scan, None)
     np.testing.assert_array_equal(scan_copy.ranges, [1.0, np.nan, 3.0, np.nan])
 
 
 @LANGUAGES
-def test_the_detector_finds_the_box_of_the_bright_pixels(shown_class: Callable[[Path, str], Any], docs: Path) -> None:
-    detector = shown_class(docs / "vision.md", "Bright")(DetectorOptions())
+def test_the_detector_finds_the_box_of_the_bright_pixels(
+    load_shown_class: Callable[[Path, str], Any], docs: Path
+) -> None:
+    detector = load_shown_class(docs / "vision.md", "Bright")(DetectorOptions())
     image = np.zeros((50, 100, 3), np.uint8)
     assert len(detector.detect(image, Limits())) == 0
     image[10:20, 30:60] = 255
@@ -71,7 +73,7 @@ def test_the_detector_finds_the_box_of_the_bright_pixels(shown_class: Callable[[
 
 @LANGUAGES
 def test_the_substitution_converts_to_capital_letters(
-    shown_class: Callable[[Path, str], Any], docs: Path, monkeypatch: pytest.MonkeyPatch
+    load_shown_class: Callable[[Path, str], Any], docs: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     activate()
     from launch.substitutions import TextSubstitution
@@ -80,6 +82,6 @@ def test_the_substitution_converts_to_capital_letters(
 
     monkeypatch.setitem(substitution_parse_methods, "upper", None)  # the name is removed again after the test
     del substitution_parse_methods["upper"]
-    substitution = shown_class(docs / "launch.md", "Upper")([TextSubstitution(text="left")])
+    substitution = load_shown_class(docs / "launch.md", "Upper")([TextSubstitution(text="left")])
     assert substitution.perform(LaunchContext()) == "LEFT"
     assert "upper" in substitution_parse_methods

@@ -16,7 +16,7 @@ from linkwright.rviz.displays import catalog
 from tests.docs.pages import DOCS, read_blocks
 from tests.toml_files import read_toml
 from tests.viewer.contents import shown_markers
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 PAGES = (DOCS / "own-displays.md", DOCS / "zh" / "own-displays.md")
 CLASS = "street_displays/TrackedObjects"
@@ -86,7 +86,7 @@ def test_example_display_has_at_most_60_lines():
 
 
 async def test_example_display_draws_and_removes_tracked_objects(installed_display):
-    async with open_world(RvizConfig.parse(CONFIG)) as world, page(world.viewer) as client:
+    async with open_world(RvizConfig.parse(CONFIG)) as world, open_page(world.viewer) as client:
         await client.opened()
         await client.send("request_display_choices")
         choices = (await client.until("display_choices"))["classes"]

@@ -46,7 +46,7 @@ def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def load(package: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+def load_module(package: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """Return a function that imports a module of the package."""
     standins.activate()
     monkeypatch.syspath_prepend(str(package))
@@ -61,39 +61,39 @@ def test_first_node_has_at_most_twenty_lines() -> None:
     assert len(code_lines) <= 20
 
 
-def test_first_node_drives_in_circle(load: Any) -> None:
+def test_first_node_drives_in_circle(load_module: Any) -> None:
     with SteppedSimulation("empty", ROBOT) as test:
         test.init_rclpy()
-        load("first_move").FirstMove()
+        load_module("first_move").FirstMove()
         test.advance(2.0 * math.pi)  # half a turn at 0.5 rad/s
         x, y, *_ = test.robot_pose()
         assert y == pytest.approx(2 * 0.2 / 0.5, abs=0.15), "the opposite side of a circle with a radius of 0.4 m"
         assert abs(x) < 0.2
 
 
-def test_one_meter_node_drives_one_meter(load: Any) -> None:
+def test_one_meter_node_drives_one_meter(load_module: Any) -> None:
     with SteppedSimulation("empty", ROBOT) as test:
         test.init_rclpy()
-        load("one_meter").OneMeter()
+        load_module("one_meter").OneMeter()
         odometry = test.record("/odom")
         test.advance(15.0)
         assert odometry.last.pose.pose.position.x == pytest.approx(1.0, abs=0.01)
         assert abs(odometry.last.twist.twist.linear.x) < 1e-3
 
 
-def test_distance_is_a_parameter(load: Any) -> None:
+def test_distance_is_a_parameter(load_module: Any) -> None:
     with SteppedSimulation("empty", ROBOT) as test:
         test.init_rclpy(["--ros-args", "-p", "distance:=0.5"])
-        load("one_meter").OneMeter()
+        load_module("one_meter").OneMeter()
         odometry = test.record("/odom")
         test.advance(10.0)
         assert odometry.last.pose.pose.position.x == pytest.approx(0.5, abs=0.01)
 
 
-def test_stop_ahead_node_stops_before_block(load: Any) -> None:
+def test_stop_ahead_node_stops_before_block(load_module: Any) -> None:
     with SteppedSimulation("obstacles", ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy()
-        load("stop_ahead").StopAhead()
+        load_module("stop_ahead").StopAhead()
         scans = test.record("/scan")
         test.advance(20.0)
         distances_ahead = [distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) < 30]

@@ -53,7 +53,7 @@ def subscription(node: str, name: str, type_name: str, qos: QoSProfile | None = 
     return endpoint("subscription", node, name, type_name, qos)
 
 
-WELL = Observation(
+HEALTHY = Observation(
     seconds=3.0,
     nodes=(RSP, JSP),
     endpoints=(
@@ -95,7 +95,7 @@ def with_endpoints(observation: Observation, *endpoints: EndpointInfo) -> Observ
 
 
 def test_healthy_graph_has_no_findings():
-    assert examine(WELL) == []
+    assert examine(HEALTHY) == []
 
 
 def test_empty_graph_report_names_domain_and_discovery_range():
@@ -112,15 +112,15 @@ def test_empty_graph_over_zenoh_hints_at_rmw_zenohd():
 
 
 def test_domain_id_above_101_is_reported():
-    assert codes(replace(WELL, environment={"ROS_DOMAIN_ID": "150"})) == ["DOC803"]
-    assert codes(replace(WELL, environment={"ROS_DOMAIN_ID": "101"})) == []
+    assert codes(replace(HEALTHY, environment={"ROS_DOMAIN_ID": "150"})) == ["DOC803"]
+    assert codes(replace(HEALTHY, environment={"ROS_DOMAIN_ID": "101"})) == []
 
 
 # frames
 
 
 def test_missing_transform_publisher_is_reported():
-    observation = replace(WELL, transforms=(), endpoints=())
+    observation = replace(HEALTHY, transforms=(), endpoints=())
     diagnostic = only_diagnostic(observation, "DOC301")
     assert (
         diagnostic.message
@@ -130,9 +130,9 @@ def test_missing_transform_publisher_is_reported():
 
 def test_missing_joint_state_publisher_is_reported():
     observation = replace(
-        without_frames(WELL, "wheel", "copy"),
+        without_frames(HEALTHY, "wheel", "copy"),
         joints=(),
-        endpoints=tuple(endpoint for endpoint in WELL.endpoints if endpoint.name != "/joint_states"),
+        endpoints=tuple(endpoint for endpoint in HEALTHY.endpoints if endpoint.name != "/joint_states"),
     )
     diagnostic = only_diagnostic(observation, "DOC401")
     assert diagnostic.message == "no node publishes joint states, so there is no transform of 2 frames, 'wheel', 'copy'"
@@ -140,12 +140,12 @@ def test_missing_joint_state_publisher_is_reported():
 
 
 def test_silent_joint_state_publisher_is_reported():
-    diagnostic = only_diagnostic(replace(without_frames(WELL, "wheel", "copy"), joints=()), "DOC402")
+    diagnostic = only_diagnostic(replace(without_frames(HEALTHY, "wheel", "copy"), joints=()), "DOC402")
     assert diagnostic.message.startswith("'/joint_state_publisher' did not publish joint states in 3 s")
 
 
 def test_joint_missing_from_joint_states_suggests_misspelled_name():
-    observation = replace(without_frames(WELL, "wheel", "copy"), joints=(ObservedJoint("spinn", (JSP,)),))
+    observation = replace(without_frames(HEALTHY, "wheel", "copy"), joints=(ObservedJoint("spinn", (JSP,)),))
     diagnostics_by_code = {diagnostic.code: diagnostic for diagnostic in examine(observation)}
     assert set(diagnostics_by_code) == {"DOC403", "DOC405"}
     missing = diagnostics_by_code["DOC403"]
@@ -158,16 +158,16 @@ def test_joint_missing_from_joint_states_suggests_misspelled_name():
 
 
 def test_missing_static_transform_is_reported():
-    diagnostic = only_diagnostic(without_frames(WELL, "mast"), "DOC304")
+    diagnostic = only_diagnostic(without_frames(HEALTHY, "mast"), "DOC304")
     assert diagnostic.message == "there is no transform of frame 'mast', because no static transform was published"
     assert "'stand'" in diagnostic.notes[0].message
 
 
 def test_joint_states_on_unread_topic_hint_at_remapping():
     observation = replace(
-        without_frames(WELL, "wheel", "copy"),
+        without_frames(HEALTHY, "wheel", "copy"),
         joints=(ObservedJoint("spin", (JSP,), ("/arm/joint_states",)),),
-        endpoints=(*WELL.endpoints, publisher(JSP, "/arm/joint_states", JOINT_STATE)),
+        endpoints=(*HEALTHY.endpoints, publisher(JSP, "/arm/joint_states", JOINT_STATE)),
     )
     diagnostic = only_diagnostic(observation, "DOC305")
     assert "remap joint_states of robot_state_publisher" in diagnostic.hint
@@ -176,14 +176,14 @@ def test_joint_states_on_unread_topic_hint_at_remapping():
 def test_prefixed_frames_match_robot_links():
     transforms = tuple(
         replace(transform, parent=f"r1/{transform.parent}", child=f"r1/{transform.child}")
-        for transform in WELL.transforms
+        for transform in HEALTHY.transforms
     )
-    assert examine(replace(WELL, transforms=transforms)) == []
+    assert examine(replace(HEALTHY, transforms=transforms)) == []
 
 
 def test_transform_from_two_publishers_is_reported():
-    doubled = replace(WELL.transforms[0], senders=("/driver", RSP))
-    diagnostic = only_diagnostic(replace(WELL, transforms=(doubled, *WELL.transforms[1:])), "DOC302")
+    doubled = replace(HEALTHY.transforms[0], senders=("/driver", RSP))
+    diagnostic = only_diagnostic(replace(HEALTHY, transforms=(doubled, *HEALTHY.transforms[1:])), "DOC302")
     assert diagnostic.message == ("2 nodes publish the transform of frame 'wheel': '/driver', '/robot_state_publisher'")
 
 
@@ -191,7 +191,7 @@ def test_frame_with_two_parents_is_reported():
     other = ObservedTransform("odom", "base", ("/a",)), ObservedTransform("map", "base", ("/b",))
     diagnostics = [
         diagnostic
-        for diagnostic in examine(replace(WELL, transforms=(*WELL.transforms, *other)))
+        for diagnostic in examine(replace(HEALTHY, transforms=(*HEALTHY.transforms, *other)))
         if diagnostic.code == "DOC303"
     ]
     assert diagnostics[0].message == "frame 'base' has 2 parents, 'map', 'odom', and jumps between them"
@@ -199,42 +199,42 @@ def test_frame_with_two_parents_is_reported():
 
 def test_disconnected_frame_tree_is_reported():
     disconnected = ObservedTransform("camera", "lens", ("/camera_driver",))
-    diagnostic = only_diagnostic(replace(WELL, transforms=(*WELL.transforms, disconnected)), "DOC308")
+    diagnostic = only_diagnostic(replace(HEALTHY, transforms=(*HEALTHY.transforms, disconnected)), "DOC308")
     assert "--frame-id base --child-frame-id camera" in diagnostic.hint
 
 
 def test_frame_loop_is_reported():
     circle = ObservedTransform("a", "b", ("/x",)), ObservedTransform("b", "a", ("/y",))
-    assert "DOC307" in codes(replace(WELL, transforms=(*WELL.transforms, *circle)))
+    assert "DOC307" in codes(replace(HEALTHY, transforms=(*HEALTHY.transforms, *circle)))
 
 
 def test_invalid_transform_is_reported():
-    broken = replace(WELL.transforms[0], is_valid=False)
-    assert codes(replace(WELL, transforms=(broken, *WELL.transforms[1:]))) == ["DOC306"]
+    broken = replace(HEALTHY.transforms[0], is_valid=False)
+    assert codes(replace(HEALTHY, transforms=(broken, *HEALTHY.transforms[1:]))) == ["DOC306"]
 
 
 def test_missing_fixed_frame_is_reported():
-    diagnostic = only_diagnostic(replace(WELL, fixed_frames=(FixedFrame("map", "mbot.rviz"),)), "DOC309")
+    diagnostic = only_diagnostic(replace(HEALTHY, fixed_frames=(FixedFrame("map", "mbot.rviz"),)), "DOC309")
     assert diagnostic.message == "the fixed frame 'map' of mbot.rviz does not exist, so nothing is shown"
     assert diagnostic.hint == "choose another Fixed Frame; the root of all frames is 'base'"
-    assert codes(replace(WELL, fixed_frames=(FixedFrame("base", "mbot.rviz"),))) == []
-    mapped = (*WELL.transforms, ObservedTransform("map", "base", ("/localization",), is_static=True))
-    diagnostic = only_diagnostic(replace(WELL, transforms=mapped, fixed_frames=(FixedFrame("odom", "x"),)), "DOC309")
+    assert codes(replace(HEALTHY, fixed_frames=(FixedFrame("base", "mbot.rviz"),))) == []
+    mapped = (*HEALTHY.transforms, ObservedTransform("map", "base", ("/localization",), is_static=True))
+    diagnostic = only_diagnostic(replace(HEALTHY, transforms=mapped, fixed_frames=(FixedFrame("odom", "x"),)), "DOC309")
     assert diagnostic.hint == "choose another Fixed Frame; the root of all frames is 'map'"
-    diagnostic = only_diagnostic(replace(WELL, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
+    diagnostic = only_diagnostic(replace(HEALTHY, fixed_frames=(FixedFrame("bse", "x"),)), "DOC309")
     assert diagnostic.hint == "did you mean 'base'?"
 
 
 def test_message_in_missing_frame_is_reported():
     lost = ObservedFrame("/scan", "/laser", "lazer")
-    diagnostic = only_diagnostic(replace(WELL, frames=(lost,)), "DOC310")
+    diagnostic = only_diagnostic(replace(HEALTHY, frames=(lost,)), "DOC310")
     assert diagnostic.message == "'/laser' publishes '/scan' in frame 'lazer', which does not exist"
     assert "static_transform_publisher" in diagnostic.hint
-    diagnostic = only_diagnostic(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
+    diagnostic = only_diagnostic(replace(HEALTHY, frames=(ObservedFrame("/scan", "/laser", "whel"),)), "DOC310")
     rays = [ObservedFrame(topic, "/laser", "mbot::laser::lidar") for topic in ("/world_rays", "/world_rays/others")]
-    assert not codes(replace(WELL, frames=tuple(rays))), "frames of the simulated world are not reported"
+    assert not codes(replace(HEALTHY, frames=tuple(rays))), "frames of the simulated world are not reported"
     assert diagnostic.hint == "did you mean 'wheel'?"
-    assert codes(replace(WELL, frames=(ObservedFrame("/scan", "/laser", "base"),))) == []
+    assert codes(replace(HEALTHY, frames=(ObservedFrame("/scan", "/laser", "base"),))) == []
 
 
 def test_message_frame_is_not_reported_without_transforms():
@@ -243,7 +243,7 @@ def test_message_frame_is_not_reported_without_transforms():
 
 
 def test_simulation_world_is_accepted_as_fixed_frame():
-    shown = replace(WELL, fixed_frames=(FixedFrame("world", "'/viewer'"),))
+    shown = replace(HEALTHY, fixed_frames=(FixedFrame("world", "'/viewer'"),))
     assert codes(shown) == ["DOC309"]
     simulated = replace(shown, endpoints=(*shown.endpoints, publisher("/gazebo", "/world_poses", TF)))
     assert "DOC309" not in codes(simulated)
@@ -252,14 +252,14 @@ def test_simulation_world_is_accepted_as_fixed_frame():
 def test_root_of_single_link_robot_is_accepted_as_fixed_frame():
     description = ObservedDescription("/robot_description", RSP, '<robot name="r"><link name="only"/></robot>')
     observation = replace(
-        WELL, transforms=(), joints=(), descriptions=(description,), fixed_frames=(FixedFrame("only", "x"),)
+        HEALTHY, transforms=(), joints=(), descriptions=(description,), fixed_frames=(FixedFrame("only", "x"),)
     )
     assert examine(observation) == []
 
 
 def test_missing_fixed_frame_hint_names_all_tree_roots():
-    disconnected = (*WELL.transforms, ObservedTransform("camera", "lens", ("/camera",)))
-    diagnostics = examine(replace(WELL, transforms=disconnected, fixed_frames=(FixedFrame("odom", "x"),)))
+    disconnected = (*HEALTHY.transforms, ObservedTransform("camera", "lens", ("/camera",)))
+    diagnostics = examine(replace(HEALTHY, transforms=disconnected, fixed_frames=(FixedFrame("odom", "x"),)))
     (hint,) = [diagnostic.hint for diagnostic in diagnostics if diagnostic.code == "DOC309"]
     assert hint == "choose another Fixed Frame; the roots of the trees of frames are 'base', 'camera'"
 
@@ -270,7 +270,7 @@ def test_frame_list_has_chinese_quotes_in_chinese():
         for i in range(8)
     )
     robot = ObservedDescription("/robot_description", RSP, f'<robot name="r"><link name="base"/>{joints}</robot>')
-    observation = replace(WELL, descriptions=(robot,), joints=(), endpoints=(publisher(RSP, "/tf", TF),))
+    observation = replace(HEALTHY, descriptions=(robot,), joints=(), endpoints=(publisher(RSP, "/tf", TF),))
     (joints_diagnostic,) = [diagnostic for diagnostic in examine(observation) if diagnostic.code == "DOC401"]
     names = "“l0”、“l1”、“l2”、“l3”、“l4”、“l5”和另外 2 个"
     assert translate(joints_diagnostic, "zh").message == f"没有节点发布关节状态，所以 8 个坐标系（{names}）没有变换"
@@ -281,19 +281,19 @@ def test_frame_list_has_chinese_quotes_in_chinese():
 
 def test_file_name_as_description_is_reported():
     description = ObservedDescription("/robot_description", RSP, "mbot.urdf")
-    diagnostic = only_diagnostic(replace(WELL, descriptions=(description,), joints=()), "DOC501")
+    diagnostic = only_diagnostic(replace(HEALTHY, descriptions=(description,), joints=()), "DOC501")
     assert "not the name of a file" in diagnostic.hint
 
 
 @pytest.mark.parametrize(("text", "severity"), [(ROBOT, Severity.WARNING), (ROBOT + " ", Severity.ERROR)])
 def test_two_descriptions_on_one_topic_are_reported(text, severity):
     second = ObservedDescription("/robot_description", "/other", text)
-    diagnostic = only_diagnostic(replace(WELL, descriptions=(*WELL.descriptions, second)), "DOC502")
+    diagnostic = only_diagnostic(replace(HEALTHY, descriptions=(*HEALTHY.descriptions, second)), "DOC502")
     assert diagnostic.severity is severity
 
 
 def test_joint_from_two_publishers_is_reported():
-    diagnostic = only_diagnostic(replace(WELL, joints=(ObservedJoint("spin", ("/driver", JSP)),)), "DOC404")
+    diagnostic = only_diagnostic(replace(HEALTHY, joints=(ObservedJoint("spin", ("/driver", JSP)),)), "DOC404")
     assert diagnostic.message.startswith("2 nodes publish the state of joint 'spin' on '/joint_states'")
 
 
@@ -301,13 +301,13 @@ def test_joint_from_two_publishers_is_reported():
 
 
 def test_duplicate_node_name_is_reported():
-    diagnostic = only_diagnostic(replace(WELL, nodes=(RSP, RSP, JSP)), "DOC101")
+    diagnostic = only_diagnostic(replace(HEALTHY, nodes=(RSP, RSP, JSP)), "DOC101")
     assert diagnostic.message == "2 nodes have the name '/robot_state_publisher'"
 
 
 def test_topic_with_two_types_is_reported():
     observation = with_endpoints(
-        WELL, publisher("/a", "/chat", "std_msgs/msg/String"), subscription("/b", "/chat", "std_msgs/msg/Int32")
+        HEALTHY, publisher("/a", "/chat", "std_msgs/msg/String"), subscription("/b", "/chat", "std_msgs/msg/Int32")
     )
     diagnostic = only_diagnostic(observation, "DOC201")
     assert [note.message for note in diagnostic.notes] == [
@@ -318,7 +318,7 @@ def test_topic_with_two_types_is_reported():
 
 def test_twist_and_twist_stamped_mismatch_is_reported():
     observation = with_endpoints(
-        WELL,
+        HEALTHY,
         publisher("/teleop", "/cmd_vel", "geometry_msgs/msg/Twist"),
         subscription("/diff_drive", "/cmd_vel", "geometry_msgs/msg/TwistStamped"),
     )
@@ -326,23 +326,25 @@ def test_twist_and_twist_stamped_mismatch_is_reported():
 
 
 TWIST = "geometry_msgs/msg/Twist"
-EITHER = tuple(subscription("/behavior_server", "/cmd_vel_teleop", kind) for kind in (TWIST, f"{TWIST}Stamped"))
+SUBSCRIPTIONS_OF_BOTH_TYPES = tuple(
+    subscription("/behavior_server", "/cmd_vel_teleop", kind) for kind in (TWIST, f"{TWIST}Stamped")
+)
 
 
 @pytest.mark.parametrize("kinds", [(), (TWIST,), (f"{TWIST}Stamped",), (TWIST, f"{TWIST}Stamped")])
 def test_subscriber_to_both_velocity_types_matches_either_type(kinds):
     publishers = [publisher(f"/teleop_{number}", "/cmd_vel_teleop", kind) for number, kind in enumerate(kinds)]
-    assert not {"DOC201", "DOC202"} & set(codes(with_endpoints(WELL, *EITHER, *publishers)))
+    assert not {"DOC201", "DOC202"} & set(codes(with_endpoints(HEALTHY, *SUBSCRIPTIONS_OF_BOTH_TYPES, *publishers)))
 
 
 def test_type_mismatch_is_reported_beside_subscriber_to_both_types():
     stamped_publisher = publisher("/teleop", "/cmd_vel_teleop", TWIST)
     other = subscription("/base", "/cmd_vel_teleop", f"{TWIST}Stamped")
-    assert "DOC202" in codes(with_endpoints(WELL, *EITHER, stamped_publisher, other))
+    assert "DOC202" in codes(with_endpoints(HEALTHY, *SUBSCRIPTIONS_OF_BOTH_TYPES, stamped_publisher, other))
 
 
 def test_velocity_topic_without_subscriber_is_reported():
-    diagnostic = only_diagnostic(with_endpoints(WELL, publisher("/teleop", "/cmd_vel", TWIST)), "DOC207")
+    diagnostic = only_diagnostic(with_endpoints(HEALTHY, publisher("/teleop", "/cmd_vel", TWIST)), "DOC207")
     assert (
         diagnostic.message
         == "'/teleop' publishes velocities on '/cmd_vel', but no node subscribes to it, so nothing moves"
@@ -352,7 +354,7 @@ def test_velocity_topic_without_subscriber_is_reported():
 
 def test_unsubscribed_velocity_topic_suggests_remapping():
     observation = with_endpoints(
-        WELL,
+        HEALTHY,
         publisher("/teleop", "/cmd_vel", TWIST),
         subscription("/drive", "/base/command", "geometry_msgs/msg/TwistStamped"),
     )
@@ -367,19 +369,19 @@ def test_unsubscribed_velocity_topic_suggests_remapping():
     ],
 )
 def test_subscribed_and_measured_velocities_have_no_findings(more_endpoints):
-    assert examine(with_endpoints(WELL, *more_endpoints)) == []
+    assert examine(with_endpoints(HEALTHY, *more_endpoints)) == []
 
 
 def test_misspelled_velocity_topic_is_reported_once():
     observation = with_endpoints(
-        WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/robot/cmd_vel", TWIST)
+        HEALTHY, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/robot/cmd_vel", TWIST)
     )
     assert codes(observation) == ["DOC204"]
 
 
 def test_contradictory_velocity_publishers_are_reported():
     observation = with_endpoints(
-        WELL, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST)
+        HEALTHY, publisher("/teleop", "/cmd_vel", TWIST), subscription("/drive", "/cmd_vel", TWIST)
     )
     diagnostic = only_diagnostic(
         replace(observation, disputed=(ObservedDrivers("/cmd_vel", ("/planner", "/teleop")),)), "DOC208"
@@ -393,7 +395,7 @@ def test_contradictory_velocity_publishers_are_reported():
 
 def test_qos_mismatch_report_names_policy_and_endpoints():
     observation = with_endpoints(
-        WELL,
+        HEALTHY,
         publisher("/lidar", "/scan", "sensor_msgs/msg/LaserScan", QoSProfile(5, ReliabilityPolicy.BEST_EFFORT)),
         subscription(
             "/rviz",
@@ -416,7 +418,7 @@ def test_qos_mismatch_report_names_policy_and_endpoints():
 def test_topic_of_same_node_is_not_suggested():
     text = "std_msgs/msg/String"
     observation = with_endpoints(
-        WELL, subscription("/voice", "/voice/text_input", text), publisher("/voice", "/voice/text", text)
+        HEALTHY, subscription("/voice", "/voice/text_input", text), publisher("/voice", "/voice/text", text)
     )
     assert codes(observation) == []
 
@@ -425,18 +427,18 @@ def test_topic_of_same_node_is_not_suggested():
 def test_unpublished_topic_suggests_remapping_to_similar_topic(published):
     scan = "sensor_msgs/msg/LaserScan"
     diagnostic = only_diagnostic(
-        with_endpoints(WELL, subscription("/slam", "/scan", scan), publisher("/lidar", published, scan)), "DOC204"
+        with_endpoints(HEALTHY, subscription("/slam", "/scan", scan), publisher("/lidar", published, scan)), "DOC204"
     )
     assert f"-r /scan:={published}" in diagnostic.hint
 
 
 def test_unpublished_topic_alone_is_not_reported():
-    assert examine(with_endpoints(WELL, subscription("/slam", "/scan", "sensor_msgs/msg/LaserScan"))) == []
+    assert examine(with_endpoints(HEALTHY, subscription("/slam", "/scan", "sensor_msgs/msg/LaserScan"))) == []
 
 
 def test_missing_service_is_reported():
     observation = with_endpoints(
-        WELL,
+        HEALTHY,
         endpoint("client", "/planner", "/map_server/map", "nav_msgs/srv/GetMap"),
         endpoint("service", "/map_server", "/map", "nav_msgs/srv/GetMap"),
     )
@@ -445,7 +447,7 @@ def test_missing_service_is_reported():
 
 def test_service_type_mismatch_is_reported():
     observation = with_endpoints(
-        WELL,
+        HEALTHY,
         endpoint("client", "/a", "/go", "std_srvs/srv/Trigger"),
         endpoint("service", "/b", "/go", "std_srvs/srv/SetBool"),
     )
@@ -458,7 +460,7 @@ def test_service_type_mismatch_is_reported():
 def test_mixed_use_sim_time_is_reported():
     clock = publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock")
     observation = replace(
-        with_endpoints(WELL, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ObservedClock(9, 1, 9)
+        with_endpoints(HEALTHY, clock), sim_time={RSP: True, JSP: False, "/gazebo": False}, clock=ObservedClock(9, 1, 9)
     )
     diagnostic = only_diagnostic(observation, "DOC601")
     assert diagnostic.message == (
@@ -467,46 +469,46 @@ def test_mixed_use_sim_time_is_reported():
 
 
 def test_hidden_nodes_and_clock_publisher_need_no_use_sim_time():
-    observation = with_endpoints(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
+    observation = with_endpoints(HEALTHY, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
     clock = ObservedClock(9, 5, 6)
     times = {RSP: True, JSP: True, "/gazebo": False, "/_gzclient": False}
     assert codes(replace(observation, sim_time=times, clock=clock)) == []
 
 
 def test_use_sim_time_without_clock_is_reported():
-    assert codes(replace(WELL, sim_time={RSP: True, JSP: True})) == ["DOC602"]
+    assert codes(replace(HEALTHY, sim_time={RSP: True, JSP: True})) == ["DOC602"]
 
 
 @pytest.mark.parametrize("clock", [None, ObservedClock(9, 5, 5)])
 def test_stopped_clock_is_reported(clock):
-    observation = with_endpoints(WELL, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
+    observation = with_endpoints(HEALTHY, publisher("/gazebo", "/clock", "rosgraph_msgs/msg/Clock"))
     assert codes(replace(observation, sim_time={RSP: True, JSP: True}, clock=clock)) == ["DOC603"]
 
 
 def test_two_clock_publishers_are_reported():
     kind = "rosgraph_msgs/msg/Clock"
-    observation = with_endpoints(WELL, publisher("/gazebo", "/clock", kind), publisher("/bag", "/clock", kind))
+    observation = with_endpoints(HEALTHY, publisher("/gazebo", "/clock", kind), publisher("/bag", "/clock", kind))
     assert codes(observation) == ["DOC604"]
 
 
 @pytest.mark.parametrize(("behind_s", "message"), [(3600, "3600.0 s behind"), (-60, "60.0 s ahead of")])
 def test_stamp_far_from_current_time_is_reported(behind_s, message):
     stamp = ObservedStamp("/scan", "/lidar", behind_s * 10**9)
-    assert f"are {message} the clock here" in only_diagnostic(replace(WELL, stamps=(stamp,)), "DOC605").message
+    assert f"are {message} the clock here" in only_diagnostic(replace(HEALTHY, stamps=(stamp,)), "DOC605").message
 
 
 def test_zero_stamp_is_reported():
-    assert codes(replace(WELL, stamps=(ObservedStamp("/joint_states", JSP, 0, is_zero=True),))) == ["DOC606"]
+    assert codes(replace(HEALTHY, stamps=(ObservedStamp("/joint_states", JSP, 0, is_zero=True),))) == ["DOC606"]
 
 
 def test_inactive_managed_node_is_reported():
-    diagnostic = only_diagnostic(replace(WELL, lifecycle={"/camera": "inactive", "/lidar": "active"}), "DOC701")
+    diagnostic = only_diagnostic(replace(HEALTHY, lifecycle={"/camera": "inactive", "/lidar": "active"}), "DOC701")
     assert diagnostic.message == "managed node '/camera' is inactive, so it does nothing yet"
     assert diagnostic.hint == "request the next transition: ros2 lifecycle set /camera activate"
 
 
 def test_errors_come_before_warnings():
     observation = replace(
-        WELL, nodes=(RSP, RSP), transforms=(replace(WELL.transforms[0], is_valid=False), *WELL.transforms[1:])
+        HEALTHY, nodes=(RSP, RSP), transforms=(replace(HEALTHY.transforms[0], is_valid=False), *HEALTHY.transforms[1:])
     )
     assert codes(observation) == ["DOC306", "DOC101"]

@@ -18,7 +18,7 @@ TWIST, TWIST_STAMPED = "geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStampe
 TRANSFORMS = "tf2_msgs/msg/TFMessage"
 Clock, TransformStamped = get_message("rosgraph_msgs/msg/Clock"), get_message("geometry_msgs/msg/TransformStamped")
 TELEOP = EndpointInfo(EndpointKind.PUBLISHER, NodeIdentity("teleop", "/"), "/cmd_vel", TWIST, QoSProfile(10), bytes(16))
-LATE = EndpointInfo(EndpointKind.SUBSCRIPTION, None, "/cmd_vel", TWIST_STAMPED, QoSProfile(10), bytes(16))
+LATE_SUBSCRIPTION = EndpointInfo(EndpointKind.SUBSCRIPTION, None, "/cmd_vel", TWIST_STAMPED, QoSProfile(10), bytes(16))
 
 
 class RemoteTransport(Transport):
@@ -62,10 +62,10 @@ async def observe_graph(graph: Graph, transport: RemoteTransport, seconds: float
 
 
 async def test_late_node_name_identifies_endpoint_of_command(joined: Graph) -> None:
-    transport = RemoteTransport(TELEOP, LATE)
+    transport = RemoteTransport(TELEOP, LATE_SUBSCRIPTION)
 
     def name() -> None:
-        transport.endpoints = [TELEOP, replace(LATE, node=NodeIdentity("_ros2cli_2", "/"))]
+        transport.endpoints = [TELEOP, replace(LATE_SUBSCRIPTION, node=NodeIdentity("_ros2cli_2", "/"))]
 
     asyncio.get_running_loop().call_later(0.2, name)
     observation = await observe_graph(joined, transport)
@@ -74,8 +74,8 @@ async def test_late_node_name_identifies_endpoint_of_command(joined: Graph) -> N
 
 async def test_unnamed_endpoint_is_waited_for_one_second_at_most(joined: Graph) -> None:
     start = time.monotonic()
-    observation = await observe_graph(joined, RemoteTransport(TELEOP, LATE))
-    assert observation.endpoints == (TELEOP, LATE)
+    observation = await observe_graph(joined, RemoteTransport(TELEOP, LATE_SUBSCRIPTION))
+    assert observation.endpoints == (TELEOP, LATE_SUBSCRIPTION)
     assert time.monotonic() - start > 0.9
 
 

@@ -29,13 +29,15 @@ NORMALS = SQUARE.replace(
 PAIRS = '<input semantic="NORMAL" source="#n" offset="1"/><input semantic="VERTEX" source="#v" offset="0"/>'
 
 
-KEPT = '<instance_node url="#kept"/>'
+NODE_INSTANCE = '<instance_node url="#kept"/>'
 
 
 def collada_with_library(parts: str) -> str:
     """Return a file that uses a node of its library twice."""
     library = f'<library_nodes><node id="kept">{parts}</node></library_nodes><library_visual_scenes>'
-    return COLLADA.replace(NODE, f"<node>{KEPT}{KEPT}</node>").replace("<library_visual_scenes>", library)
+    return COLLADA.replace(NODE, f"<node>{NODE_INSTANCE}{NODE_INSTANCE}</node>").replace(
+        "<library_visual_scenes>", library
+    )
 
 
 def triangle_corners(data: bytes, kind: str, *, is_plain: bool) -> np.ndarray:
@@ -121,7 +123,7 @@ def test_collada_triangles_match_trimesh(text: str, tmp_path: Path) -> None:
         COLLADA.replace(NODE, ""),
         COLLADA.replace(' xmlns="http://www.collada.org/2005/11/COLLADASchema"', ""),
         COLLADA.replace("</COLLADA>", ""),
-        collada_with_library(KEPT),
+        collada_with_library(NODE_INSTANCE),
         "",
     ],
     ids=[
@@ -164,7 +166,7 @@ def test_mirrored_solid_is_watertight_without_arrays() -> None:
 
 def test_collada_with_many_instances_is_not_read_as_small_mesh() -> None:
     assert read_small_mesh(COLLADA.replace(NODE, NODE * 19_000).encode(), "dae") is not None
-    often = collada_with_library(NODE * 200).replace(KEPT, KEPT * 70)
+    often = collada_with_library(NODE * 200).replace(NODE_INSTANCE, NODE_INSTANCE * 70)
     assert read_small_mesh(often.encode(), "dae") is None
 
 

@@ -27,7 +27,7 @@ xacro.process_file(path, mappings={{'model': '{model}'}})
 
 
 @pytest.fixture
-def box(tmp_path: Path) -> Path:
+def box_file(tmp_path: Path) -> Path:
     """Write a description with an argument, and launch files that set three values."""
     package = tmp_path / "box_description"
     for folder in ("urdf", "launch"):
@@ -40,7 +40,7 @@ def box(tmp_path: Path) -> Path:
     return path
 
 
-def form_of(path: Path, **arguments: str):
+def read_form(path: Path, **arguments: str):
     finder = PackageFinder(start=[path.parent], environment={})
     call = XacroCall(path, tuple(arguments.items()))
     with pytest.raises(DescriptionError) as caught:
@@ -48,8 +48,8 @@ def form_of(path: Path, **arguments: str):
     return create_argument_form(call, finder, caught.value.diagnostics)
 
 
-def test_argument_form_offers_values_of_launch_files(box: Path) -> None:
-    form = form_of(box)
+def test_argument_form_offers_values_of_launch_files(box_file: Path) -> None:
+    form = read_form(box_file)
     assert form is not None
     assert (form.file, form.names) == ("box.xacro", ["model"])
     assert sorted((choice.label, choice.values["model"]) for choice in form.choices) == [
@@ -59,8 +59,8 @@ def test_argument_form_offers_values_of_launch_files(box: Path) -> None:
     assert form.values == form.choices[0].values
 
 
-def test_argument_form_is_shown_again_after_invalid_value(box: Path) -> None:
-    form = form_of(box, model="huge")
+def test_argument_form_is_shown_again_after_invalid_value(box_file: Path) -> None:
+    form = read_form(box_file, model="huge")
     assert form is not None
     assert {choice.values["model"] for choice in form.choices} == {"small", "large"}
 
@@ -68,11 +68,11 @@ def test_argument_form_is_shown_again_after_invalid_value(box: Path) -> None:
 def test_argument_without_known_value_is_requested_empty(tmp_path: Path) -> None:
     path = tmp_path / "a.xacro"
     path.write_text(_ROBOT)
-    form = form_of(path)
+    form = read_form(path)
     assert form is not None
     assert (form.names, form.values, form.choices) == (["model"], {}, [])
 
 
-def test_malformed_file_shows_no_argument_form(box: Path) -> None:
-    box.write_text(_ROBOT.replace("</robot>", ""))
-    assert form_of(box) is None
+def test_malformed_file_shows_no_argument_form(box_file: Path) -> None:
+    box_file.write_text(_ROBOT.replace("</robot>", ""))
+    assert read_form(box_file) is None

@@ -15,18 +15,18 @@ from linkwright.hosting.launch_log import LaunchLog
 from linkwright.hosting.plans import HostOptions
 from tests.waiting import eventually
 
-GOOD = '<robot name="a"><link name="b"/></robot>'
-BROKEN = '<robot name="a">\n  <link name="b">\n</robot>'
+VALID_ROBOT = '<robot name="a"><link name="b"/></robot>'
+BROKEN_ROBOT = '<robot name="a">\n  <link name="b">\n</robot>'
 
 
 @pytest.fixture(autouse=True)
-def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def _working_directory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "good.urdf").write_text(GOOD, encoding="utf-8")
-    (tmp_path / "broken.urdf").write_text(BROKEN, encoding="utf-8")
+    (tmp_path / "good.urdf").write_text(VALID_ROBOT, encoding="utf-8")
+    (tmp_path / "broken.urdf").write_text(BROKEN_ROBOT, encoding="utf-8")
 
 
 @pytest.mark.parametrize(
@@ -51,7 +51,7 @@ async def test_broken_old_file_is_waited_for_until_fixed(tmp_path):
     view = ComparedView(pair, HostOptions(port=0, open_browser=False, network=False), LaunchLog(out, err))
     running = asyncio.create_task(view.run(None))
     await eventually(lambda: "broken.urdf:3:1" in err.getvalue() and "Viewer: " in out.getvalue(), what=err.getvalue)
-    (tmp_path / "broken.urdf").write_text(GOOD, encoding="utf-8")
+    (tmp_path / "broken.urdf").write_text(VALID_ROBOT, encoding="utf-8")
     await eventually(lambda: "repaired broken.urdf" in err.getvalue(), what=err.getvalue)
     view.interrupt("the test is over")
     assert await running, "the repaired file has no errors"

@@ -55,10 +55,10 @@ MBOT = """<robot name="mbot">
 """The dimensions of the tutorial's first robot: only visuals, without the elements that a simulator needs."""
 
 SECOND_NS = 1_000_000_000
-SHARED = Path(__file__).parents[3] / "shared" / "tutorial" / "my_robot_description" / "urdf" / "mbot_base.urdf"
+PUBLISHED_ROBOT = Path(__file__).parents[3] / "shared" / "tutorial" / "my_robot_description" / "urdf" / "mbot_base.urdf"
 
 
-class Driven:
+class DrivenRobot:
     """A robot in a simulation that only advances in `drive`."""
 
     def __init__(self, graph: Graph, server: SimulationServer) -> None:
@@ -85,7 +85,7 @@ class Driven:
         return self._server.simulation.model_pose("mbot")
 
 
-def drive_of(path: Path) -> SimulatedWorld:
+def infer_drive(path: Path) -> SimulatedWorld:
     """Return the drive that `linkwright drive` infers for a file."""
     description = examine(path)
     assert description.robot is not None
@@ -97,9 +97,9 @@ def drive_of(path: Path) -> SimulatedWorld:
 
 
 @asynccontextmanager
-async def driven(path: Path):
+async def simulate_robot(path: Path):
     """Simulate the robot of a file on a plane; time advances when the test asks for it."""
-    drive = drive_of(path)
+    drive = infer_drive(path)
     loaded = load_world(drive.world)
     graph = Graph(on_log=lambda record: None)
     simulation = Simulation(loaded.world, loaded.finder)
@@ -108,26 +108,26 @@ async def driven(path: Path):
     model = read_entity(drive.text, loaded.finder, DescriptionLibrary()).model
     server.spawn(model, drive.name, (*drive.pose, 1.0))
     try:
-        yield Driven(graph, server)
+        yield DrivenRobot(graph, server)
     finally:
         server.close()
         await graph.close()
 
 
-def files(folder: Path) -> list[Path]:
+def write_robots(folder: Path) -> list[Path]:
     """Return robots without physics: Linkwright's own, and the tutorial's if available."""
     path = folder / "mbot_base.urdf"
     path.write_text(MBOT)
-    return [path, *([SHARED] if SHARED.exists() else [])]
+    return [path, *([PUBLISHED_ROBOT] if PUBLISHED_ROBOT.exists() else [])]
 
 
 async def test_robot_drives_one_meter_straight_and_then_turns(tmp_path):
-    for path in files(tmp_path):
+    for path in write_robots(tmp_path):
         await _assert_drives_one_meter_and_turns(path)
 
 
 async def _assert_drives_one_meter_and_turns(path: Path) -> None:
-    async with driven(path) as mbot:
+    async with simulate_robot(path) as mbot:
         await mbot.drive(0.5, 0.0, 1.5)
         start = mbot.pose
         assert start[2] == pytest.approx(0.11, abs=1e-3)
@@ -144,8 +144,8 @@ async def _assert_drives_one_meter_and_turns(path: Path) -> None:
 
 async def test_drive_ends_after_simulated_seconds(tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
-    path = files(tmp_path)[0]
-    drive = replace(drive_of(path), seconds=0.5, rate=-1.0)
+    path = write_robots(tmp_path)[0]
+    drive = replace(infer_drive(path), seconds=0.5, rate=-1.0)
     out, err = io.StringIO(), io.StringIO()
     options = HostOptions(port=0, open_browser=False, network=False)
     model = SimulatedView(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
@@ -157,10 +157,10 @@ async def test_drive_ends_after_simulated_seconds(tmp_path, monkeypatch):
 
 async def test_missing_world_is_an_error(tmp_path, monkeypatch):
     monkeypatch.setenv("ROS_LOG_DIR", str(tmp_path / "ros_log"))
-    path = files(tmp_path)[0]
+    path = write_robots(tmp_path)[0]
     out, err = io.StringIO(), io.StringIO()
     options = HostOptions(port=0, open_browser=False, network=False)
-    drive = replace(drive_of(path), world="nowhere.world")
+    drive = replace(infer_drive(path), world="nowhere.world")
     model = SimulatedView(drive, PackageFinder(start=path.parent, environment={}), options, LaunchLog(out, err))
     assert not await model.run(None)
     assert "there is no world 'nowhere.world'" in err.getvalue()

@@ -33,7 +33,7 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
 
 
-def mbot(seconds: float) -> SimulatedWorld:
+def simulate_mbot(seconds: float) -> SimulatedWorld:
     """Simulate mbot on a plane without a page, as fast as possible."""
     description = examine(MBOT)
     assert description.robot is not None
@@ -42,12 +42,12 @@ def mbot(seconds: float) -> SimulatedWorld:
     )
 
 
-def view_of(world: SimulatedWorld) -> tuple[SimulatedView, io.StringIO]:
+def make_view(world: SimulatedWorld) -> tuple[SimulatedView, io.StringIO]:
     err = io.StringIO()
     return SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err)), err
 
 
-class Watched(BagWriter):
+class WatchedRecording(BagWriter):
     """A recording that reports the topics of its messages."""
 
     def __init__(self, path: Path) -> None:
@@ -60,7 +60,7 @@ class Watched(BagWriter):
 
 
 async def test_all_topics_are_recorded_with_simulated_time(tmp_path: Path) -> None:
-    view, err = view_of(mbot(2.0))
+    view, err = make_view(simulate_mbot(2.0))
     with BagWriter(tmp_path / "run") as writer:
         assert await view.run(None, writer), err.getvalue()
     with BagReader(tmp_path / "run") as bag:
@@ -75,8 +75,8 @@ async def test_all_topics_are_recorded_with_simulated_time(tmp_path: Path) -> No
 
 
 async def test_recording_is_complete_when_user_ends_simulation(tmp_path: Path) -> None:
-    view, err = view_of(mbot(0.0))
-    with Watched(tmp_path / "run") as writer:
+    view, err = make_view(simulate_mbot(0.0))
+    with WatchedRecording(tmp_path / "run") as writer:
         running = asyncio.create_task(view.run(None, writer))
         await eventually(lambda: {"/odom", "/tf_static"} <= writer.written or running.done(), what=err.getvalue)
         view.interrupt("the test is over")
@@ -93,7 +93,7 @@ async def test_full_disk_ends_recording_but_not_simulation(
     def refuse(*_: object) -> None:
         raise LinkwrightError(Diagnostic("BAG108", phrase("the disk is full")))
 
-    view, err = view_of(mbot(2.0))
+    view, err = make_view(simulate_mbot(2.0))
     clock = Recording(view.host.graph, view.host.graph.create_node("listener"), "/clock")
     with BagWriter(tmp_path / "run") as writer, monkeypatch.context() as patched:
         patched.setattr(BagWriter, refusing, refuse)

@@ -15,7 +15,7 @@ from linkwright.panels.panel_request import PanelRequest
 IMAGE, TF = "rviz_default_plugins/Image", "rviz_default_plugins/TF"
 
 
-async def node_of(program: str, *arguments: str, namespace: str = "/", **parameters: object) -> PanelNode:
+async def make_node(program: str, *arguments: str, namespace: str = "/", **parameters: object) -> PanelNode:
     """Return the node of a program, which its arguments and parameters configure."""
     package = "rqt" if program == "rqt" else program
     graph = Graph()
@@ -51,21 +51,21 @@ async def node_of(program: str, *arguments: str, namespace: str = "/", **paramet
     ],
 )
 async def test_program_opens_panel_with_its_arguments(words: str, request_: PanelRequest | None) -> None:
-    node = await node_of(*words.split())
+    node = await make_node(*words.split())
     assert node.request == request_
     assert node.findings == []
 
 
 async def test_topics_have_the_namespace_of_the_node() -> None:
-    node = await node_of("rqt_image_view", "image_raw", namespace="/front")
+    node = await make_node("rqt_image_view", "image_raw", namespace="/front")
     assert node.request == PanelRequest("image", IMAGE, topic="/front/image_raw")
-    node = await node_of("rqt_plot", "odom/x", namespace="/front")
+    node = await make_node("rqt_plot", "odom/x", namespace="/front")
     assert node.request == PanelRequest("plot", fields=("/front/odom/x",))
 
 
 async def test_parameters_of_rqt_robot_steering_configure_the_panel() -> None:
     limits = {"default_vx_max": 1, "default_vw_max": 1.5, "default_vx_min": -1.0}
-    node = await node_of("rqt_robot_steering", default_topic="drive", default_stamped=True, **limits)
+    node = await make_node("rqt_robot_steering", default_topic="drive", default_stamped=True, **limits)
     assert node.request == PanelRequest("teleop", topic="/drive", stamped=True, linear=1.0, angular=1.5)
 
 
@@ -81,7 +81,7 @@ async def test_parameters_of_rqt_robot_steering_configure_the_panel() -> None:
     ],
 )
 async def test_argument_without_effect_is_named(words: str, message: str) -> None:
-    node = await node_of(*words.split())
+    node = await make_node(*words.split())
     assert node.findings[0].message == message
     assert {finding.code for finding in node.findings} == {"LAUNCH144"}
 

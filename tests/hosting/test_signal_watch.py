@@ -14,7 +14,7 @@ from linkwright.hosting.signals import SignalWatch
 from tests.waiting import TIMEOUT_S
 
 
-class Dropping:
+class SignalsAtDeletion:
     """An object whose destructor sends a signal to this process."""
 
     def __init__(self, number: int) -> None:
@@ -37,7 +37,7 @@ def test_signal_during_destructor_is_not_lost(
 
     def wait() -> None:
         with watch:
-            Dropping(number)
+            SignalsAtDeletion(number)
             time.sleep(20)
 
     with pytest.raises(KeyboardInterrupt):

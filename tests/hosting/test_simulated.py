@@ -30,7 +30,7 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
 
 
-def in_an_empty_world() -> SimulatedWorld:
+def simulate_mbot() -> SimulatedWorld:
     """Simulate mbot in a world without a page for two seconds, as fast as possible."""
     description = examine(MBOT)
     assert description.robot is not None
@@ -41,7 +41,7 @@ def in_an_empty_world() -> SimulatedWorld:
 
 async def test_headless_robot_publishes_odometry_joint_states_and_tf():
     err = io.StringIO()
-    view = SimulatedView(in_an_empty_world(), PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
+    view = SimulatedView(simulate_mbot(), PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
     listener = view.host.graph.create_node("listener")
     recordings = {
         name: Recording(view.host.graph, listener, name) for name in ("/odom", "/joint_states", "/tf", "/clock")
@@ -54,7 +54,7 @@ async def test_headless_robot_publishes_odometry_joint_states_and_tf():
 
 
 async def test_viewer_uses_world_frame_and_simulated_time():
-    world = replace(in_an_empty_world(), headless=False, seconds=0.0)
+    world = replace(simulate_mbot(), headless=False, seconds=0.0)
     err = io.StringIO()
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
     running = asyncio.create_task(view.run(None))
@@ -89,7 +89,7 @@ async def test_robot_without_collisions_is_reported_in_viewers(tmp_path: Path):
 async def test_robot_named_like_world_model_ends_simulation(tmp_path: Path):
     model = '<model name="mbot"><static>true</static><link name="link"/></model>'
     (tmp_path / "a.world").write_text(f'<sdf version="1.7"><world name="w">{model}</world></sdf>')
-    world = replace(in_an_empty_world(), world=str(tmp_path / "a.world"), seconds=0.0)
+    world = replace(simulate_mbot(), world=str(tmp_path / "a.world"), seconds=0.0)
     err = io.StringIO()
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), err))
     assert not await view.run(None)
@@ -127,7 +127,7 @@ async def test_scans_and_first_camera_are_shown():
     camera = "<sensor name='{}' type='camera'><topic>{}</topic></sensor>"
     scan = "<sensor name='a' type='ray'><plugin><ros><remapping>~/out:=scan</remapping></ros></plugin></sensor>"
     text = f"{scan}{camera.format('b', 'left')}{camera.format('c', 'right')}"
-    world = replace(in_an_empty_world(), text=text)
+    world = replace(simulate_mbot(), text=text)
     view = SimulatedView(world, PackageFinder(start=MBOT.parent), OPTIONS, LaunchLog(io.StringIO(), io.StringIO()))
     topics = [
         (display.name, display.section.text("Topic", "Value"), display.checked)

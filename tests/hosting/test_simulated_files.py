@@ -22,14 +22,14 @@ from linkwright.simulation.nodes.simulator import Simulator
 from linkwright.simulation.server.loading import WorldLoader
 from linkwright.simulation.server.server import SimulationServer
 from linkwright.simulation.simulation import Simulation
-from tests.hosting.test_driven import MBOT, drive_of
+from tests.hosting.test_driven import MBOT, infer_drive
 from tests.simulation.worlds import GROUND, box
 from tests.waiting import eventually
 
 ARM = """<robot name="arm"><link name="base"/><link name="tip"><inertial><mass value="1"/>
 <inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="turn" type="continuous"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/></joint>{}</robot>"""
-MORE = '<link name="more"/><joint name="on" type="fixed"><parent link="tip"/><child link="more"/></joint>'
+EXTRA_LINK = '<link name="more"/><joint name="on" type="fixed"><parent link="tip"/><child link="more"/></joint>'
 FALLING = box("falling", "0 0 9 0 0 0")
 
 
@@ -39,7 +39,7 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("LINKWRIGHT_DDS", "0")
 
 
-def world(*parts: str) -> str:
+def world_text(*parts: str) -> str:
     """A world with a ground."""
     return f'<sdf version="1.7"><world name="w">{GROUND}{"".join(parts)}</world></sdf>'
 
@@ -107,9 +107,9 @@ async def running_simulation(simulated: SimulatedWorld) -> AsyncIterator[Running
         await running
 
 
-def with_robot(folder: Path, text: str) -> SimulatedWorld:
+def add_robot(folder: Path, text: str) -> SimulatedWorld:
     """Add a robot to a world, from files in a folder."""
-    (folder / "a.world").write_text(world(FALLING))
+    (folder / "a.world").write_text(world_text(FALLING))
     (folder / "robot.urdf").write_text(text)
     description = examine(folder / "robot.urdf")
     assert description.robot is not None
@@ -128,10 +128,10 @@ def has_models(*names: str) -> Callable[[Simulation], bool]:
 
 
 async def test_saved_world_is_reloaded_and_unchanged_models_keep_pose(tmp_path):
-    (tmp_path / "a.world").write_text(world(FALLING))
+    (tmp_path / "a.world").write_text(world_text(FALLING))
     async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         await running.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
-        (tmp_path / "a.world").write_text(world(FALLING, box("new", "5 5 1 0 0 0")))
+        (tmp_path / "a.world").write_text(world_text(FALLING, box("new", "5 5 1 0 0 0")))
         await running.wait_until(has_models("ground", "falling", "new"))
         assert (await running.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
         assert f"reloaded {tmp_path / 'a.world'}" in running.err.getvalue()
@@ -139,38 +139,38 @@ async def test_saved_world_is_reloaded_and_unchanged_models_keep_pose(tmp_path):
 
 async def test_edited_world_is_not_replaced_by_changed_file(tmp_path):
     file = tmp_path / "a.world"
-    file.write_text(world(FALLING))
+    file.write_text(world_text(FALLING))
     async with running_simulation(SimulatedWorld(str(file), file)) as running:
-        edited = world(FALLING, box("edited", "5 5 1 0 0 0"))
+        edited = world_text(FALLING, box("edited", "5 5 1 0 0 0"))
         await running.look(lambda _: running.worlds.load(str(file), edited))
-        file.write_text(world(box("other", "5 5 1 0 0 0")))
+        file.write_text(world_text(box("other", "5 5 1 0 0 0")))
         await running.until("has changed; the simulation continues with the edited world")
         assert await running.look(has_models("ground", "falling", "edited"))
         before = running.worlds.loaded
         file.write_text(edited)
         await running.until("", lambda: running.worlds.loaded is not before)
-        file.write_text(world(box("other", "5 5 1 0 0 0")))
+        file.write_text(world_text(box("other", "5 5 1 0 0 0")))
         await running.wait_until(has_models("ground", "other"))
 
 
 async def test_broken_world_is_reported_and_simulation_continues(tmp_path):
-    (tmp_path / "a.world").write_text(world(FALLING))
+    (tmp_path / "a.world").write_text(world_text(FALLING))
     async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         (tmp_path / "a.world").write_text("<sdf version='1.7'><world></sdf>")
         await running.until("error[XML")
         assert [finding.code[:3] for finding in running.view.reload.findings()] == ["XML"]
         assert await running.look(has_models("ground", "falling"))
-        (tmp_path / "a.world").write_text(world(box("new", "5 5 1 0 0 0")))
+        (tmp_path / "a.world").write_text(world_text(box("new", "5 5 1 0 0 0")))
         await running.until("repaired")
         await running.wait_until(has_models("ground", "new"))
         assert running.view.reload.findings() == []
 
 
 async def test_world_that_cannot_be_simulated_is_reported(tmp_path):
-    (tmp_path / "a.world").write_text(world(FALLING))
+    (tmp_path / "a.world").write_text(world_text(FALLING))
     async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         invalid_physics = '<physics type="ode"><max_step_size>-1</max_step_size></physics>'
-        (tmp_path / "a.world").write_text(world(FALLING, invalid_physics))
+        (tmp_path / "a.world").write_text(world_text(FALLING, invalid_physics))
         await running.until("; the simulation continues unchanged")
         assert "the changed world was not loaded: " in running.err.getvalue()
         assert "a time step of -1.0 s" in running.err.getvalue()
@@ -179,7 +179,7 @@ async def test_world_that_cannot_be_simulated_is_reported(tmp_path):
 async def test_included_model_is_watched(tmp_path):
     (tmp_path / "crate").mkdir()
     (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{FALLING}</sdf>')
-    (tmp_path / "a.world").write_text(world("<include><uri>model://crate</uri></include>"))
+    (tmp_path / "a.world").write_text(world_text("<include><uri>model://crate</uri></include>"))
     async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         (tmp_path / "crate/model.sdf").write_text(f'<sdf version="1.7">{box("crate", "1 1 1 0 0 0")}</sdf>')
         await running.wait_until(has_models("ground", "crate"))
@@ -190,9 +190,9 @@ async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
         simulation.set_model_pose("arm", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0))
         simulation.set_joint_position("arm::turn", 0.5)
 
-    async with running_simulation(with_robot(tmp_path, ARM.format(""))) as running:
+    async with running_simulation(add_robot(tmp_path, ARM.format(""))) as running:
         await running.look(elsewhere)
-        (tmp_path / "robot.urdf").write_text(ARM.format(MORE))
+        (tmp_path / "robot.urdf").write_text(ARM.format(EXTRA_LINK))
         await running.wait_until(lambda simulation: "arm::more" in simulation.scene.bodies)
         pose = await running.look(lambda simulation: simulation.model_pose("arm"))
         assert pose[:3] == pytest.approx((1.0, 2.0, 3.0))
@@ -204,7 +204,7 @@ async def test_saved_robot_is_reloaded_with_pose_and_joint_positions(tmp_path):
 
 async def test_driven_robot_is_completed_again_after_change(tmp_path):
     (tmp_path / "mbot.urdf").write_text(MBOT)
-    async with running_simulation(drive_of(tmp_path / "mbot.urdf")) as running:
+    async with running_simulation(infer_drive(tmp_path / "mbot.urdf")) as running:
         mast = '<link name="mast"/><joint name="m" type="fixed"><parent link="base_link"/><child link="mast"/></joint>'
         (tmp_path / "mbot.urdf").write_text(MBOT.replace("</robot>", f"{mast}</robot>"))
         await running.wait_until(lambda simulation: "mbot::mast" in simulation.scene.bodies)
@@ -227,26 +227,26 @@ async def test_changed_robot_mesh_is_reloaded(tmp_path):
     (tmp_path / "part.stl").write_text(f"solid part\n{CUBE}endsolid part\n")
     mesh = '<visual><geometry><mesh filename="part.stl"/></geometry></visual>'
     async with running_simulation(
-        with_robot(tmp_path, ARM.format("").replace('<link name="tip">', f'<link name="tip">{mesh}'))
+        add_robot(tmp_path, ARM.format("").replace('<link name="tip">', f'<link name="tip">{mesh}'))
     ) as running:
-        assert await running.look(_extent) < 1.5
+        assert await running.look(_mesh_extent) < 1.5
         (tmp_path / "part.stl").write_text(f"solid part\n{CUBE.replace('1 0 0', '3 0 0')}endsolid part\n")
-        await running.wait_until(lambda simulation: _extent(simulation) > 2.0)
+        await running.wait_until(lambda simulation: _mesh_extent(simulation) > 2.0)
 
 
 async def test_changed_world_mesh_is_reloaded(tmp_path):
     (tmp_path / "part.stl").write_text(f"solid part\n{CUBE}endsolid part\n")
     mesh = '<visual name="v"><geometry><mesh><uri>part.stl</uri></mesh></geometry></visual>'
     part = f'<model name="part"><static>true</static><link name="l">{mesh}</link></model>'
-    (tmp_path / "a.world").write_text(world(FALLING, part))
+    (tmp_path / "a.world").write_text(world_text(FALLING, part))
     async with running_simulation(SimulatedWorld(str(tmp_path / "a.world"), tmp_path / "a.world")) as running:
         await running.look(lambda simulation: simulation.set_model_pose("falling", (1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0)))
-        assert await running.look(_extent) < 1.5
+        assert await running.look(_mesh_extent) < 1.5
         (tmp_path / "part.stl").write_text(f"solid part\n{CUBE.replace('1 0 0', '3 0 0')}endsolid part\n")
-        await running.wait_until(lambda simulation: _extent(simulation) > 2.0)
+        await running.wait_until(lambda simulation: _mesh_extent(simulation) > 2.0)
         assert (await running.look(lambda simulation: simulation.model_pose("falling")))[:3] == (1.0, 2.0, 3.0)
 
 
-def _extent(simulation: Simulation) -> float:
+def _mesh_extent(simulation: Simulation) -> float:
     """Return the greatest extent of all meshes in m."""
     return float(np.ptp(simulation.model.mesh_vert, axis=0).max())

@@ -23,8 +23,8 @@ from linkwright.page.protocol.description import NO_ARGUMENT_FORM, ArgumentForm,
 from linkwright.panels.description import ArgumentsFeature
 from tests.waiting import eventually
 
-GOOD = '<robot name="a"><link name="b"/></robot>'
-BROKEN = '<robot name="a">\n  <link name="b">\n</robot>'
+VALID_ROBOT = '<robot name="a"><link name="b"/></robot>'
+BROKEN_ROBOT = '<robot name="a">\n  <link name="b">\n</robot>'
 
 
 @pytest.fixture(autouse=True)
@@ -34,7 +34,7 @@ def _logs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @asynccontextmanager
-async def opened_view(
+async def open_view(
     path: Path, foxglove: int | None = None
 ) -> AsyncIterator[tuple[ModelView, Callable[[str], object]]]:
     """Start a view, and return a function that waits for a printed text.
@@ -60,20 +60,20 @@ async def opened_view(
     assert succeeded
 
 
-def names_started(printed: str) -> list[str]:
+def started_names(printed: str) -> list[str]:
     return re.findall(r"^\[INFO\] \[(\S+)\]: started in the launcher's process", printed, re.MULTILINE)
 
 
 async def test_viewer_starts_before_nodes(tmp_path: Path) -> None:
-    (tmp_path / "m.urdf").write_text(GOOD)
-    async with opened_view(tmp_path / "m.urdf") as (_, wait_until_printed):
+    (tmp_path / "m.urdf").write_text(VALID_ROBOT)
+    async with open_view(tmp_path / "m.urdf") as (_, wait_until_printed):
         await wait_until_printed("Robot initialized")
         printed = await wait_until_printed("joint_state_publisher_gui-2]: started")
-        assert names_started(printed) == ["viewer-3", "robot_state_publisher-1", "joint_state_publisher_gui-2"]
+        assert started_names(printed) == ["viewer-3", "robot_state_publisher-1", "joint_state_publisher_gui-2"]
 
 
 async def test_server_is_closed_when_viewer_cannot_be_created(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "m.urdf").write_text(GOOD)
+    (tmp_path / "m.urdf").write_text(VALID_ROBOT)
     printed = io.StringIO()
     options = HostOptions(port=0, open_browser=False, network=False)
     finder = PackageFinder(start=tmp_path, environment={})
@@ -92,7 +92,7 @@ async def test_server_is_closed_when_viewer_cannot_be_created(tmp_path: Path, mo
 
 
 async def test_address_is_printed_before_viewer_is_loaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "m.urdf").write_text(GOOD)
+    (tmp_path / "m.urdf").write_text(VALID_ROBOT)
     out, received = io.StringIO(), []
     monkeypatch.setattr("linkwright.hosting.node_host.load_viewer", lambda: received.append(out.getvalue()))
     options = HostOptions(port=0, open_browser=False, network=False)
@@ -107,7 +107,7 @@ async def test_address_is_printed_before_viewer_is_loaded(tmp_path: Path, monkey
 
 
 async def test_interrupt_while_viewer_loads_starts_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "m.urdf").write_text(GOOD)
+    (tmp_path / "m.urdf").write_text(VALID_ROBOT)
     loop = asyncio.get_running_loop()
     ended = threading.Event()
 
@@ -124,42 +124,42 @@ async def test_interrupt_while_viewer_loads_starts_nothing(tmp_path: Path, monke
     finder = PackageFinder(start=tmp_path, environment={})
     view = ModelView(XacroCall(tmp_path / "m.urdf"), finder, options, LaunchLog(out := io.StringIO(), io.StringIO()))
     assert await view.run(None)
-    assert names_started(out.getvalue()) == []
+    assert started_names(out.getvalue()) == []
     port = int(re.search(r":(\d+)/", out.getvalue())[1])
     with socket.socket() as free:
         free.bind(("127.0.0.1", port))
 
 
 async def test_foxglove_option_starts_bridge(tmp_path: Path) -> None:
-    (tmp_path / "m.urdf").write_text(GOOD)
-    async with opened_view(tmp_path / "m.urdf", foxglove=0) as (_, wait_until_printed):
-        assert names_started(await wait_until_printed("foxglove_bridge-4]: started"))[-1] == "foxglove_bridge-4"
+    (tmp_path / "m.urdf").write_text(VALID_ROBOT)
+    async with open_view(tmp_path / "m.urdf", foxglove=0) as (_, wait_until_printed):
+        assert started_names(await wait_until_printed("foxglove_bridge-4]: started"))[-1] == "foxglove_bridge-4"
 
 
 async def test_broken_model_is_published_once_fixed(tmp_path: Path) -> None:
     path = tmp_path / "m.urdf"
-    path.write_text(BROKEN)
-    async with opened_view(path) as (view, wait_until_printed):
+    path.write_text(BROKEN_ROBOT)
+    async with open_view(path) as (view, wait_until_printed):
         printed = await wait_until_printed("joint_state_publisher_gui-1]: started")
         assert "error[XML" in printed
-        assert names_started(printed) == ["viewer-2", "joint_state_publisher_gui-1"]
-        path.write_text(GOOD)
+        assert started_names(printed) == ["viewer-2", "joint_state_publisher_gui-1"]
+        path.write_text(VALID_ROBOT)
         printed = await wait_until_printed("Robot initialized")
         assert f"repaired {path}" in printed
-        assert names_started(printed)[-1] == "robot_state_publisher-3"
+        assert started_names(printed)[-1] == "robot_state_publisher-3"
         assert view.reload.findings() == []
 
 
 async def test_errors_are_not_repeated_when_other_files_change(tmp_path: Path) -> None:
     path = tmp_path / "m.urdf"
-    path.write_text(BROKEN)
-    async with opened_view(path) as (view, wait_until_printed):
+    path.write_text(BROKEN_ROBOT)
+    async with open_view(path) as (view, wait_until_printed):
         await wait_until_printed("joint_state_publisher_gui-1]: started")
         for changed, times in ((tmp_path / "log.txt", 1), (path, 2)):
             view.reload._on_change({changed})
             await eventually(lambda: not view.reload._running)
             assert (await wait_until_printed("error[XML")).count("error[XML") == times
-        path.write_text(GOOD)
+        path.write_text(VALID_ROBOT)
         await wait_until_printed("Robot initialized")
 
 
@@ -172,7 +172,7 @@ def test_missing_model_is_one_error(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 
 def test_used_port_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    (tmp_path / "m.urdf").write_text(GOOD)
+    (tmp_path / "m.urdf").write_text(VALID_ROBOT)
     with socket.socket() as server:
         server.bind(("127.0.0.1", 0))
         server.listen()
@@ -187,7 +187,7 @@ async def test_sdf_model_is_shown(tmp_path: Path) -> None:
     box = "<geometry><box><size>1 1 1</size></box></geometry>"
     link = f'<link name="base"><visual name="v">{box}</visual></link>'
     (tmp_path / "crate.sdf").write_text(f'<sdf version="1.9"><model name="crate">{link}</model></sdf>')
-    async with opened_view(tmp_path / "crate.sdf") as (view, wait_until_printed):
+    async with open_view(tmp_path / "crate.sdf") as (view, wait_until_printed):
         assert "Unable to initialize" not in await wait_until_printed("Robot initialized")
         expansion = view.descriptions.expand(XacroCall(tmp_path / "crate.sdf"))
         robot = view.descriptions.library.read(expansion).robot
@@ -200,7 +200,7 @@ async def test_arguments_from_page_complete_the_robot(tmp_path: Path) -> None:
     path.write_text(
         '<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="a"><link name="$(arg side)_link"/></robot>'
     )
-    async with opened_view(path) as (view, wait_until_printed):
+    async with open_view(path) as (view, wait_until_printed):
         await wait_until_printed("the argument 'side' is not declared")
         await wait_until_printed("[viewer-2]: started")
         viewer = view._viewer

@@ -27,7 +27,7 @@ pytestmark = [
 CONE = trimesh.creation.cone(0.3, 1.0)
 
 
-def write(folder, kind):
+def write_cone(folder, kind):
     """Write a cone to a file of a format."""
     data = CONE.export(file_type=kind)
     path = folder / f"cone.{kind.partition('_')[0]}"
@@ -43,20 +43,20 @@ def write(folder, kind):
 @pytest.mark.parametrize("kind", ["stl", "obj", "glb"])
 def test_reading_mesh_releases_memory_of_file(kind, tmp_path):
     """The garbage collector is off, because it rarely runs for a few large objects."""
-    path = write(tmp_path, kind)
+    path = write_cone(tmp_path, kind)
     read_mesh(path)
     gc.collect()
-    before = _bytes_of_meshes()
+    before = _count_mesh_objects()
     gc.disable()
     try:
         for _ in range(3):
             read_mesh(path)
-        assert _bytes_of_meshes() == before
+        assert _count_mesh_objects() == before
     finally:
         gc.enable()
 
 
-def _bytes_of_meshes():
+def _count_mesh_objects():
     """Return the number of objects with corners, triangles or the bytes of a file."""
     kinds = (trimesh.caching.TrackedArray, trimesh.caching.DataStore, trimesh.parent.LoadSource)
     return sum(isinstance(candidate, kinds) for candidate in gc.get_objects())
@@ -64,7 +64,7 @@ def _bytes_of_meshes():
 
 @pytest.mark.parametrize("kind", ["stl", "stl_ascii", "obj", "dae", "glb", "gltf"])
 def test_all_mesh_formats_give_same_solid(kind, tmp_path):
-    mesh = read_mesh(write(tmp_path, kind))
+    mesh = read_mesh(write_cone(tmp_path, kind))
     assert mesh.is_watertight
     assert mesh.solid.mass == pytest.approx(CONE.volume, rel=1e-5)
     assert np.allclose(mesh.solid.center, CONE.center_mass, atol=1e-5)
@@ -73,12 +73,12 @@ def test_all_mesh_formats_give_same_solid(kind, tmp_path):
 
 
 def test_uppercase_file_extension_is_recognized(tmp_path):
-    write(tmp_path, "stl").rename(tmp_path / "CONE.STL")
+    write_cone(tmp_path, "stl").rename(tmp_path / "CONE.STL")
     assert len(read_mesh(tmp_path / "CONE.STL").faces) == len(CONE.faces)
 
 
 def test_collada_unit_is_applied_and_up_axis_is_ignored(tmp_path):
-    path = write(tmp_path, "dae")
+    path = write_cone(tmp_path, "dae")
     text = path.read_text(encoding="utf-8")
     assert "<up_axis>Y_UP</up_axis>" in text
     changed = text.replace("<asset>", '<asset><unit name="millimeter" meter="0.001"/>', 1)
@@ -107,7 +107,7 @@ def test_scene_nodes_transform_their_meshes(tmp_path):
 
 @pytest.mark.parametrize("scale", [(2, 2, 2), (0.001, 0.001, 0.001), (1, -1, 1), (-1, -2, -3)])
 def test_mesh_scale_scales_solid(scale, tmp_path):
-    mesh = read_mesh(write(tmp_path, "stl")).scaled(scale)
+    mesh = read_mesh(write_cone(tmp_path, "stl")).scaled(scale)
     assert mesh.is_watertight
     assert mesh.solid.mass == pytest.approx(CONE.volume * abs(np.prod(scale)), rel=1e-5)
     assert np.allclose(mesh.solid.center, CONE.center_mass * scale, atol=1e-5)
@@ -159,7 +159,7 @@ def test_unreadable_mesh_error_names_cause(name, data, code, tmp_path):
 def test_gltf_reads_no_file_outside_its_folder(tmp_path):
     inner_folder = tmp_path / "inner"
     inner_folder.mkdir()
-    path = write(inner_folder, "gltf")
+    path = write_cone(inner_folder, "gltf")
     buffer = next(inner_folder.glob("*.bin"))
     buffer.rename(tmp_path / "secret.bin")
     path.write_text(path.read_text().replace(buffer.name, "../secret.bin"))
@@ -170,7 +170,7 @@ def test_gltf_reads_no_file_outside_its_folder(tmp_path):
 def test_mesh_library_reads_file_once_and_resolves_relative_path(tmp_path):
     (tmp_path / "meshes").mkdir()
     (tmp_path / "urdf").mkdir()
-    write(tmp_path / "meshes", "stl")
+    write_cone(tmp_path / "meshes", "stl")
     document = parse('<mesh filename="../meshes/cone.stl"/>', str(tmp_path / "urdf" / "part.xacro"))
     library = MeshLibrary(PackageFinder(start=tmp_path), tmp_path)
     first = library.load(Mesh("../meshes/cone.stl"), document.root)
@@ -186,7 +186,7 @@ def test_mesh_library_reads_file_once_and_resolves_relative_path(tmp_path):
 
 
 def test_mesh_library_rereads_changed_mesh_only(tmp_path):
-    path = write(tmp_path, "stl")
+    path = write_cone(tmp_path, "stl")
     finder = PackageFinder(start=tmp_path)
     first = MeshLibrary(finder, tmp_path).read(path)
     assert MeshLibrary(finder, tmp_path).read(path) is first
@@ -199,7 +199,7 @@ def test_equal_gltf_files_with_other_buffers_are_different_meshes(tmp_path):
     paths = []
     for name in ("old", "new"):
         (tmp_path / name).mkdir()
-        paths.append(write(tmp_path / name, "gltf"))
+        paths.append(write_cone(tmp_path / name, "gltf"))
     corners = tmp_path / "new" / "gltf_buffer_1.bin"
     corners.write_bytes((2 * np.frombuffer(corners.read_bytes(), np.float32)).tobytes())
     library = MeshLibrary(PackageFinder(start=tmp_path), tmp_path)

@@ -25,7 +25,7 @@ def verdict_on(tmp_path, inertial, shapes=BALL, content=""):
     return assess(robot.links["a"], inertia_estimate, Bodies(robot))
 
 
-def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
+def inertial_text(mass=4.0, moment=0.016, origin="0 0 0"):
     return (
         f'<inertial><origin xyz="{origin}"/><mass value="{mass}"/>'
         f'<inertia ixx="{moment}" ixy="0" ixz="0" iyy="{moment}" iyz="0" izz="{moment}"/></inertial>'
@@ -35,33 +35,33 @@ def inertial(mass=4.0, moment=0.016, origin="0 0 0"):
 @pytest.mark.parametrize(
     ("block", "grade", "words"),
     [
-        (inertial(), Grade.FITS, "it matches its shapes"),
-        (inertial(mass=-1), Grade.IMPOSSIBLE, "the mass is not positive"),
-        (inertial(moment=-1), Grade.IMPOSSIBLE, "the inertia tensor is not positive definite"),
-        (inertial(mass=1e40), Grade.IMPOSSIBLE, "its numbers are out of range"),
+        (inertial_text(), Grade.FITS, "it matches its shapes"),
+        (inertial_text(mass=-1), Grade.IMPOSSIBLE, "the mass is not positive"),
+        (inertial_text(moment=-1), Grade.IMPOSSIBLE, "the inertia tensor is not positive definite"),
+        (inertial_text(mass=1e40), Grade.IMPOSSIBLE, "its numbers are out of range"),
         (
-            inertial(mass=400, moment=1.6),
+            inertial_text(mass=400, moment=1.6),
             Grade.IMPOSSIBLE,
             "it is denser than any solid: osmium has 22 600 kg/m3",
         ),
-        (inertial(mass=0.004, moment=0.000016), Grade.DOUBTFUL, "it is lighter than air"),
+        (inertial_text(mass=0.004, moment=0.000016), Grade.DOUBTFUL, "it is lighter than air"),
         (
-            inertial(moment=16),
+            inertial_text(moment=16),
             Grade.DOUBTFUL,
             "its moments are 1 000 times the moments of a solid with its shapes",
         ),
         (
-            inertial(moment=0.00016),
+            inertial_text(moment=0.00016),
             Grade.DOUBTFUL,
             "its moments are 1/100 of the moments of a solid with its shapes",
         ),
         (
-            inertial(moment=0.064),
+            inertial_text(moment=0.064),
             Grade.ROUGH,
             "its moments are 4 times the moments of a solid with its shapes",
         ),
-        (inertial(origin="0 0.5 0"), Grade.DOUBTFUL, "its center of mass is 500 mm from the center of its shapes"),
-        (inertial(origin="0 0.05 0"), Grade.ROUGH, "its center of mass is 50 mm from the center of its shapes"),
+        (inertial_text(origin="0 0.5 0"), Grade.DOUBTFUL, "its center of mass is 500 mm from the center of its shapes"),
+        (inertial_text(origin="0 0.05 0"), Grade.ROUGH, "its center of mass is 50 mm from the center of its shapes"),
         ("", Grade.MISSING, "it has no <inertial>"),
     ],
 )
@@ -71,11 +71,11 @@ def test_inertial_of_ball_is_graded(tmp_path, block, grade, words):
 
 
 def test_worst_grade_is_reported_and_sorts_first(tmp_path):
-    verdict = verdict_on(tmp_path, inertial(mass=-1, moment=16))
+    verdict = verdict_on(tmp_path, inertial_text(mass=-1, moment=16))
     assert verdict.grade is Grade.IMPOSSIBLE
-    worse = verdict_on(tmp_path, inertial(moment=16))
-    bad_verdict = verdict_on(tmp_path, inertial(moment=1.6))
-    good_verdict = verdict_on(tmp_path, inertial())
+    worse = verdict_on(tmp_path, inertial_text(moment=16))
+    bad_verdict = verdict_on(tmp_path, inertial_text(moment=1.6))
+    good_verdict = verdict_on(tmp_path, inertial_text())
     assert sorted([good_verdict, bad_verdict, worse, verdict], key=lambda verdict: verdict.sort_key) == [
         verdict,
         worse,
@@ -86,14 +86,14 @@ def test_worst_grade_is_reported_and_sorts_first(tmp_path):
 
 def test_tiny_mass_in_large_shape_has_zero_density(tmp_path):
     large = BALL.replace("0.1", "1e5")
-    verdict = verdict_on(tmp_path, inertial(mass=1e-320, moment=1.0), large)
+    verdict = verdict_on(tmp_path, inertial_text(mass=1e-320, moment=1.0), large)
     assert (verdict.grade, verdict.density) == (Grade.DOUBTFUL, 0.0)
     assert verdict.reason.startswith("it is lighter than air")
 
 
 def test_mass_is_unjudged_if_mesh_is_missing(tmp_path):
     shapes = BALL + '<visual><geometry><mesh filename="package://nowhere/a.stl"/></geometry></visual>'
-    verdict = verdict_on(tmp_path, inertial(mass=400), shapes)
+    verdict = verdict_on(tmp_path, inertial_text(mass=400), shapes)
     assert (verdict.grade, verdict.density) == (Grade.UNJUDGED, None)
 
 
@@ -102,12 +102,12 @@ def test_mass_is_unjudged_if_fixed_neighbor_has_no_mass(tmp_path):
     through_a_frame = joint.format("a", "frame", "frame", "") + joint.format("frame", "cover", "cover", BALL).replace(
         '"f"', '"g"'
     )
-    assert verdict_on(tmp_path, inertial(mass=400), content=through_a_frame).grade is Grade.UNJUDGED
-    robot_text = joint.format("a", "cover", "cover", BALL + inertial())
-    assert verdict_on(tmp_path, inertial(mass=400), content=robot_text).grade is Grade.IMPOSSIBLE
+    assert verdict_on(tmp_path, inertial_text(mass=400), content=through_a_frame).grade is Grade.UNJUDGED
+    robot_text = joint.format("a", "cover", "cover", BALL + inertial_text())
+    assert verdict_on(tmp_path, inertial_text(mass=400), content=robot_text).grade is Grade.IMPOSSIBLE
 
 
 def test_link_fixed_to_link_with_mass_needs_no_inertial(tmp_path):
     joint = '<joint name="f" type="fixed"><parent link="a"/><child link="b"/></joint><link name="b">{}</link>'
-    verdict = verdict_on(tmp_path, "", content=joint.format(inertial()))
+    verdict = verdict_on(tmp_path, "", content=joint.format(inertial_text()))
     assert verdict.reason == "it is fixed to 'b', which has a mass"

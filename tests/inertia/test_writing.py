@@ -23,7 +23,7 @@ XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 
 @pytest.fixture
-def write(tmp_path):
+def write_inertia(tmp_path):
     """Write the inertia of the cube to links of a description.
 
     Return the result and the new text.
@@ -55,8 +55,8 @@ def test_rounding_errors_are_written_as_zero():
     assert "-0" not in inertial_block(MassProperties(1.0))
 
 
-def test_new_inertial_has_indentation_of_link(write):
-    _, text = write(
+def test_new_inertial_has_indentation_of_link(write_inertia):
+    _, text = write_inertia(
         '<robot name="r">\n    <link name="a"> <!-- the body -->\n        <visual/>\n    </link>\n</robot>\n'
     )
     assert text == (
@@ -70,20 +70,22 @@ def test_new_inertial_has_indentation_of_link(write):
     )
 
 
-def test_single_line_link_is_expanded(write):
-    _, text = write('<robot name="r">\n  <link name="a"><visual/></link>\n</robot>\n')
+def test_single_line_link_is_expanded(write_inertia):
+    _, text = write_inertia('<robot name="r">\n  <link name="a"><visual/></link>\n</robot>\n')
     assert '<link name="a">\n    <inertial>\n      <origin' in text
     assert "    </inertial>\n    <visual/></link>" in text
 
 
-def test_windows_line_endings_and_byte_order_mark_are_kept(write):
-    _, text = write(b'\xef\xbb\xbf<robot name="r">\r\n  <link name="a">\r\n    <visual/>\r\n  </link>\r\n</robot>\r\n')
+def test_windows_line_endings_and_byte_order_mark_are_kept(write_inertia):
+    _, text = write_inertia(
+        b'\xef\xbb\xbf<robot name="r">\r\n  <link name="a">\r\n    <visual/>\r\n  </link>\r\n</robot>\r\n'
+    )
     assert text.startswith("\ufeff<robot")
     assert text.count("\n") == text.count("\r\n") == 10
 
 
-def test_existing_inertial_keeps_format_and_comments(write):
-    _, text = write(
+def test_existing_inertial_keeps_format_and_comments(write_inertia):
+    _, text = write_inertia(
         '<robot name="r">\n<link name="a">\n'
         "  <inertial> <!-- from CAD -->\n"
         "    <mass   value='3' /><!-- weighed -->\n"
@@ -101,18 +103,18 @@ def test_existing_inertial_keeps_format_and_comments(write):
     )
 
 
-def test_missing_elements_of_inertial_are_added(write):
-    _, text = write(
+def test_missing_elements_of_inertial_are_added(write_inertia):
+    _, text = write_inertia(
         '<robot name="r">\n<link name="a">\n  <inertial>\n    <mass value="3"/>\n    <inertia/>\n  </inertial>\n'
         "</link>\n</robot>\n"
     )
     assert '  <inertial>\n    <origin xyz="0 0 0" rpy="0 0 0"/>\n    <mass value="1"/>\n    <inertia ixx=' in text
-    _, text = write('<robot name="r">\n<link name="a">\n  <inertial/>\n</link>\n</robot>\n')
+    _, text = write_inertia('<robot name="r">\n<link name="a">\n  <inertial/>\n</link>\n</robot>\n')
     assert '  <inertial>\n    <origin xyz="0 0 0" rpy="0 0 0"/>\n' in text
 
 
-def test_equal_numbers_keep_their_notation(write):
-    _, text = write(
+def test_equal_numbers_keep_their_notation(write_inertia):
+    _, text = write_inertia(
         '<robot name="r"><link name="a"><inertial><origin xyz="0.0 0.0 0.0"/><mass value="1.000e+00"/>'
         '<inertia ixx="6.666667e-3" ixy="-0.0" ixz="0" iyy="0.5" iyz="0" izz="1"/></inertial></link></robot>'
     )
@@ -120,25 +122,25 @@ def test_equal_numbers_keep_their_notation(write):
     assert '<inertia ixx="6.666667e-3" ixy="-0.0" ixz="0" iyy="0.00666667" iyz="0" izz="0.00666667"/>' in text
 
 
-def test_quaternion_of_inertial_origin_is_removed(write):
-    _, text = write(
+def test_quaternion_of_inertial_origin_is_removed(write_inertia):
+    _, text = write_inertia(
         '<robot name="r" version="1.1"><link name="a"><inertial><origin xyz="1 0 0" quat_xyzw="1 0 0 0"/>'
         '<mass value="3"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link></robot>'
     )
     assert '<origin xyz="0 0 0" />' in text
 
 
-def test_several_links_of_one_file_are_written(write):
+def test_several_links_of_one_file_are_written(write_inertia):
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     links = [f'<link name="{name}">\n  <visual/>\n</link>\n' for name in "ab"]
     text = f'<robot name="r">\n{joint.join(links)}</robot>'
-    result, text = write(text, "b", "a")
+    result, text = write_inertia(text, "b", "a")
     assert text.count("<inertial>") == 2
     assert sorted(result.links) == ["a", "b"]
 
 
-def test_plain_link_of_xacro_file_is_written(write):
-    result, text = write(
+def test_plain_link_of_xacro_file_is_written(write_inertia):
+    result, text = write_inertia(
         f'{XACRO}\n  <xacro:arg name="p" default="/"/>\n  <link name="a">\n'
         '    <visual><geometry><box size="1 1 1"/></geometry></visual>\n  </link>\n</robot>',
         name="r.xacro",
@@ -147,7 +149,7 @@ def test_plain_link_of_xacro_file_is_written(write):
     assert "<inertial>" in text
 
 
-ONES = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+UNIT_INERTIA = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
 REFUSED = {
     "the macro 'part' generates it": """
       <xacro:macro name="part" params="n"><link name="${n}"/></xacro:macro>
@@ -156,37 +158,37 @@ REFUSED = {
       <xacro:property name="s" value="1"/>
       <link name="a"><visual><geometry><box size="${s} 1 1"/></geometry></visual></link>""",
     "its <inertial> is written with expressions": f"""
-      <link name="a"><inertial><mass value="${{1 + 1}}"/>{ONES}</inertial></link>""",
+      <link name="a"><inertial><mass value="${{1 + 1}}"/>{UNIT_INERTIA}</inertial></link>""",
     "<xacro:heavy> generates a part of it": f"""
-      <xacro:macro name="heavy"><inertial><mass value="1"/>{ONES}</inertial></xacro:macro>
+      <xacro:macro name="heavy"><inertial><mass value="1"/>{UNIT_INERTIA}</inertial></xacro:macro>
       <link name="a"><xacro:heavy/></link>""",
 }
 
 
 @pytest.mark.parametrize("reason", REFUSED, ids=["macro", "shape", "inertial", "part"])
-def test_link_generated_by_xacro_is_refused(write, reason):
+def test_link_generated_by_xacro_is_refused(write_inertia, reason):
     before = f"{XACRO}{REFUSED[reason]}</robot>"
-    result, text = write(before, name="r.xacro")
+    result, text = write_inertia(before, name="r.xacro")
     assert result.refusals == {"a": reason}
     assert result.links == ()
     assert text == before
 
 
-def test_included_file_is_written(write, tmp_path):
+def test_included_file_is_written(write_inertia, tmp_path):
     part = tmp_path / "part.xacro"
     part.write_text(f'{XACRO}\n  <link name="a">\n    <visual/>\n  </link>\n</robot>\n')
-    result, text = write(f'{XACRO}<xacro:include filename="part.xacro"/></robot>', name="r.xacro")
+    result, text = write_inertia(f'{XACRO}<xacro:include filename="part.xacro"/></robot>', name="r.xacro")
     assert result.files == (part,)
     assert "<inertial>" in part.read_text()
     assert "<inertial>" not in text
 
 
-def test_element_that_expands_to_two_links_is_refused(write, tmp_path):
+def test_element_that_expands_to_two_links_is_refused(write_inertia, tmp_path):
     part = tmp_path / "part.xacro"
     part.write_text(f'{XACRO}<link name="$(eval n)"/></robot>'.replace("$(eval n)", "${n}"))
     joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     include = '<xacro:property name="n" value="{}"/><xacro:include filename="part.xacro"/>'
-    result, _ = write(f"{XACRO}{include.format('a')}{include.format('b')}{joint}</robot>", name="r.xacro")
+    result, _ = write_inertia(f"{XACRO}{include.format('a')}{include.format('b')}{joint}</robot>", name="r.xacro")
     assert result.refusals == {"a": "its text in the file defines several links"}
 
 

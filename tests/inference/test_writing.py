@@ -20,7 +20,7 @@ XACRO = '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">'
 
 
 @pytest.fixture
-def write(tmp_path):
+def write_inferred(tmp_path):
     """Infer and write, and return the result, the completed robot and the new text."""
 
     def run(text, name="r.urdf"):
@@ -35,8 +35,8 @@ def write(tmp_path):
 
 
 @pytest.mark.parametrize("robot", [case[1] for case in CASES], ids=[case[0] for case in CASES])
-def test_written_file_describes_completed_robot(write, tmp_path, robot):
-    result, expected, text = write(robot)
+def test_written_file_describes_completed_robot(write_inferred, tmp_path, robot):
+    result, expected, text = write_inferred(robot)
     assert not result.refused
     reloaded = load(tmp_path / "r.urdf")
     assert dict(reloaded.links) == dict(expected.links)
@@ -48,8 +48,8 @@ def test_written_file_describes_completed_robot(write, tmp_path, robot):
             assert line in written_lines, "the lines and their order are unchanged"
 
 
-def test_new_elements_have_indentation_and_line_endings_of_file(write):
-    _, _, text = write(
+def test_new_elements_have_indentation_and_line_endings_of_file(write_inferred):
+    _, _, text = write_inferred(
         '<robot name="r">\r\n   <link name="base_link">\r\n'
         '      <visual><geometry><sphere radius="0.1"/></geometry></visual>\r\n'
         "   </link>\r\n</robot>\r\n"
@@ -59,15 +59,15 @@ def test_new_elements_have_indentation_and_line_endings_of_file(write):
     assert text.endswith("      </collision>\r\n   </link>\r\n</robot>\r\n")
 
 
-def test_empty_link_element_is_expanded(write):
-    _, _, text = write('<robot name="r">\n  <link name="a" />\n</robot>\n')
+def test_empty_link_element_is_expanded(write_inferred):
+    _, _, text = write_inferred('<robot name="r">\n  <link name="a" />\n</robot>\n')
     assert '  <link name="a">\n    <inertial>\n' in text
     assert "    </inertial>\n  </link>\n</robot>\n" in text
 
 
-def test_link_of_macro_is_refused_and_other_links_are_written(write):
+def test_link_of_macro_is_refused_and_other_links_are_written(write_inferred):
     visual = '<visual><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
-    result, _, text = write(
+    result, _, text = write_inferred(
         f'{XACRO}\n<xacro:macro name="part" params="name"><link name="${{name}}">{visual}</link></xacro:macro>\n'
         f'<xacro:part name="b"/>\n<link name="a">{visual}</link>\n'
         '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>\n</robot>\n',
@@ -80,14 +80,14 @@ def test_link_of_macro_is_refused_and_other_links_are_written(write):
     assert result.refused[0].span is not None
 
 
-def test_drive_with_joint_names_from_expressions_is_refused(write):
+def test_drive_with_joint_names_from_expressions_is_refused(write_inferred):
     wheel = (
         '<link name="{side}"><collision><origin rpy="1.5708 0 0"/>'
         '<geometry><cylinder radius="0.1" length="0.05"/></geometry></collision></link>'
         '<joint name="${{prefix}}_{side}" type="continuous"><origin xyz="0 {y} 0"/>'
         '<parent link="base_link"/><child link="{side}"/><axis xyz="0 1 0"/></joint>\n'
     )
-    result, _, text = write(
+    result, _, text = write_inferred(
         f'{XACRO}\n<xacro:property name="prefix" value="p"/>\n<link name="base_link"/>\n'
         + wheel.format(side="l", y="0.2")
         + wheel.format(side="r", y="-0.2")

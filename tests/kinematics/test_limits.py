@@ -11,24 +11,24 @@ from hypothesis import strategies as some
 from linkwright.kinematics.limits import SpeedLimiter
 
 STEP_S = 0.01
-WANTED = some.lists(some.floats(-5.0, 5.0), min_size=1, max_size=60)
+TARGETS = some.lists(some.floats(-5.0, 5.0), min_size=1, max_size=60)
 
 
-def limited_speeds(limiter: SpeedLimiter, targets: list[float]) -> list[float]:
+def limit_speeds(limiter: SpeedLimiter, targets: list[float]) -> list[float]:
     return [limiter.approach(speed, STEP_S) for speed in targets]
 
 
-@given(WANTED)
+@given(TARGETS)
 def test_speed_and_acceleration_stay_within_limits(commands):
-    speeds = [0.0, *limited_speeds(SpeedLimiter((-1.0, 2.0), (-4.0, 3.0)), commands)]
+    speeds = [0.0, *limit_speeds(SpeedLimiter((-1.0, 2.0), (-4.0, 3.0)), commands)]
     assert all(-1.0 <= speed <= 2.0 for speed in speeds)
     changes = [(after - before) / STEP_S for before, after in pairwise(speeds)]
     assert all(-4.0 - 1e-9 <= change <= 3.0 + 1e-9 for change in changes)
 
 
-@given(WANTED)
+@given(TARGETS)
 def test_jerk_stays_within_limits(commands):
-    speeds = [0.0, 0.0, *limited_speeds(SpeedLimiter(jerk=(-50.0, 40.0)), commands)]
+    speeds = [0.0, 0.0, *limit_speeds(SpeedLimiter(jerk=(-50.0, 40.0)), commands)]
     changes = [(after - before) / STEP_S for before, after in pairwise(speeds)]
     jerks = [(after - before) / STEP_S for before, after in pairwise(changes)]
     assert all(-50.0 - 1e-6 <= jerk <= 40.0 + 1e-6 for jerk in jerks)
@@ -58,6 +58,6 @@ def test_braking_can_ignore_jerk_limit():
 
 def test_velocity_is_reached_at_once_without_limits():
     limiter = SpeedLimiter()
-    assert limited_speeds(limiter, [3.0, -7.0]) == [3.0, -7.0]
+    assert limit_speeds(limiter, [3.0, -7.0]) == [3.0, -7.0]
     limiter.restart()
     assert limiter.speed == 0.0

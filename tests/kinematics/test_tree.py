@@ -18,7 +18,7 @@ from tests.geometry.rotations import quaternion_about
 from tests.urdf.robots import chain_of_links, robot_text, robots
 
 
-def frame_of(robot: Robot, link: str, values: dict[str, float]) -> np.ndarray:
+def expected_frame(robot: Robot, link: str, values: dict[str, float]) -> np.ndarray:
     """Return the frame of a link in the root, by the definition.
 
     It is the product of all frames up to the root.
@@ -30,24 +30,24 @@ def frame_of(robot: Robot, link: str, values: dict[str, float]) -> np.ndarray:
     motion = np.eye(4)
     length = np.linalg.norm(joint.axis)
     if joint.type in ("revolute", "continuous"):
-        turn = quaternion_about(joint.axis, value_of(robot, joint.name, values))
+        turn = quaternion_about(joint.axis, joint_value(robot, joint.name, values))
         motion = matrix_from_pose([0, 0, 0, *turn])
     elif joint.type == "prismatic" and length > 0:
-        motion[:3, 3] = np.array(joint.axis) / length * value_of(robot, joint.name, values)
-    return frame_of(robot, joint.parent, values) @ origin @ motion
+        motion[:3, 3] = np.array(joint.axis) / length * joint_value(robot, joint.name, values)
+    return expected_frame(robot, joint.parent, values) @ origin @ motion
 
 
-def value_of(robot: Robot, joint: str, values: dict[str, float]) -> float:
+def joint_value(robot: Robot, joint: str, values: dict[str, float]) -> float:
     mimic = robot.joints[joint].mimic
     if mimic is None:
         return values.get(joint, 0.0)
-    return mimic.multiplier * value_of(robot, mimic.joint, values) + mimic.offset
+    return mimic.multiplier * joint_value(robot, mimic.joint, values) + mimic.offset
 
 
 def assert_frames(found, robot, tree, values):
-    expected = np.array([frame_of(robot, link, values) for link in tree.link_names])
+    expected = np.array([expected_frame(robot, link, values) for link in tree.link_names])
     # Each mimic joint multiplies by up to 1e6, so angles and lengths may be huge: the tolerance is relative to them.
-    size = 1 + np.abs(expected).max() + max([abs(value_of(robot, name, values)) for name in robot.joints], default=0)
+    size = 1 + np.abs(expected).max() + max([abs(joint_value(robot, name, values)) for name in robot.joints], default=0)
     np.testing.assert_allclose(found, expected, atol=1e-9 * size)
 
 

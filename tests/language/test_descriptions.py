@@ -69,7 +69,7 @@ def package(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def offered(package: Path):
+def complete_labels(package: Path):
     """Return the labels that match the typed text after a replacement.
 
     The bar marks the cursor.
@@ -89,98 +89,107 @@ def offered(package: Path):
     return labels
 
 
-def test_completion_offers_expanded_link_and_joint_names(offered):
-    assert offered("<!-- here -->", '<joint name="a" type="fixed"><parent link="|"/></joint>') == ["base", "left_wheel"]
-    assert offered("<!-- here -->", '<gazebo reference="left|"/>') == ["left_wheel", "left_wheel_joint"]
+def test_completion_offers_expanded_link_and_joint_names(complete_labels):
+    assert complete_labels("<!-- here -->", '<joint name="a" type="fixed"><parent link="|"/></joint>') == [
+        "base",
+        "left_wheel",
+    ]
+    assert complete_labels("<!-- here -->", '<gazebo reference="left|"/>') == ["left_wheel", "left_wheel_joint"]
     motors = '<ros2_control name="a" type="system"><joint name="|"/></ros2_control>'
-    assert offered("<!-- here -->", motors) == ["left_wheel_joint"]
+    assert complete_labels("<!-- here -->", motors) == ["left_wheel_joint"]
 
 
-def test_completion_uses_saved_file_if_text_cannot_be_expanded(offered):
-    assert "left_wheel" in offered("<!-- here -->", '<joint name="a" type="fixed"><child link="|')
+def test_completion_uses_saved_file_if_text_cannot_be_expanded(complete_labels):
+    assert "left_wheel" in complete_labels("<!-- here -->", '<joint name="a" type="fixed"><child link="|')
 
 
-def test_completion_in_macro_offers_unexpanded_names(offered):
+def test_completion_in_macro_offers_unexpanded_names(complete_labels):
     joint = '<joint name="a" type="fixed"><parent link="|"/></joint>'
-    assert offered("<!-- in macro -->", joint)[0] == "${side}_wheel"
+    assert complete_labels("<!-- in macro -->", joint)[0] == "${side}_wheel"
 
 
-def test_expression_completion_offers_parameters_then_properties(offered):
+def test_expression_completion_offers_parameters_then_properties(complete_labels):
     place = '<origin xyz="${|}"/>'
-    assert offered("<!-- in macro -->", place)[:4] == ["side", "width", "inner", "radius"]
-    outside = offered("<!-- here -->", place)
+    assert complete_labels("<!-- in macro -->", place)[:4] == ["side", "width", "inner", "radius"]
+    outside = complete_labels("<!-- here -->", place)
     assert "inner" not in outside
     assert "side" not in outside
     assert outside[0] == "radius"
 
 
-def test_expression_completion_offers_xacro_functions(offered):
-    assert offered("<!-- here -->", '<origin xyz="${xacro.lo|}"/>') == ["xacro.load_yaml"]
+def test_expression_completion_offers_xacro_functions(complete_labels):
+    assert complete_labels("<!-- here -->", '<origin xyz="${xacro.lo|}"/>') == ["xacro.load_yaml"]
     names = global_names(Inputs("a.xacro", {}).create_session())
     assert {*FUNCTIONS} <= {*names}
     assert {name.removeprefix("xacro.") for name in XACRO_FUNCTIONS} == {*names["xacro"].values}
 
 
-def test_expression_completion_offers_yaml_keys(offered):
-    assert offered("<!-- here -->", "<origin xyz=\"${sizes['|']}\"/>") == ["base", "wheel"]
-    assert offered("<!-- here -->", "<origin xyz=\"${sizes['base']['m|']}\"/>") == ["mass", "mesh"]
-    assert offered("<!-- here -->", '<origin xyz="${sizes.base.|}"/>') == ["mass", "mesh"]
+def test_expression_completion_offers_yaml_keys(complete_labels):
+    assert complete_labels("<!-- here -->", "<origin xyz=\"${sizes['|']}\"/>") == ["base", "wheel"]
+    assert complete_labels("<!-- here -->", "<origin xyz=\"${sizes['base']['m|']}\"/>") == ["mass", "mesh"]
+    assert complete_labels("<!-- here -->", '<origin xyz="${sizes.base.|}"/>') == ["mass", "mesh"]
 
 
-def test_insert_block_completion_offers_block_parameters(offered):
-    assert offered('<xacro:insert_block name="place"/>', '<xacro:insert_block name="|"/>') == ["place", "more"]
+def test_insert_block_completion_offers_block_parameters(complete_labels):
+    assert complete_labels('<xacro:insert_block name="place"/>', '<xacro:insert_block name="|"/>') == ["place", "more"]
 
 
-def test_required_macro_parameters_come_first(offered):
-    assert offered('<xacro:wheel side="left">', "<xacro:wheel |>") == ["side", "width"]
+def test_required_macro_parameters_come_first(complete_labels):
+    assert complete_labels('<xacro:wheel side="left">', "<xacro:wheel |>") == ["side", "width"]
 
 
-def test_single_occurrence_elements_are_offered_once(offered):
+def test_single_occurrence_elements_are_offered_once(complete_labels):
     joint = '<joint name="a" type="fixed"><parent link="base"/><|</joint>'
-    assert offered("<!-- here -->", joint)[0] == "child"
-    assert "parent" not in offered("<!-- here -->", joint)
+    assert complete_labels("<!-- here -->", joint)[0] == "child"
+    assert "parent" not in complete_labels("<!-- here -->", joint)
 
 
-def test_required_attributes_come_first(offered):
+def test_required_attributes_come_first(complete_labels):
     place = '<joint name="a" type="revolute"><limit |/></joint>'
-    assert offered("<!-- here -->", place)[:2] == ["effort", "velocity"]
+    assert complete_labels("<!-- here -->", place)[:2] == ["effort", "velocity"]
 
 
-def test_mesh_files_come_first(offered):
+def test_mesh_files_come_first(complete_labels):
     place = '<link name="b"><visual><geometry><mesh filename="package://arm/meshes/|"/>'
-    assert offered("<!-- here -->", place) == ["base.stl", "about.txt"]
+    assert complete_labels("<!-- here -->", place) == ["base.stl", "about.txt"]
 
 
-def test_hardware_completion_offers_workspace_plugins_and_parameters(offered):
+def test_hardware_completion_offers_workspace_plugins_and_parameters(complete_labels):
     place = '<ros2_control name="a" type="system"><hardware><plugin>{}</plugin>{}</hardware></ros2_control>'
-    assert offered("<!-- here -->", place.format("|", ""))[:2] == ["arm/Motors", "mock_components/GenericSystem"]
-    assert offered("<!-- here -->", place.format("arm/Motors", '<param name="|">1</param>')) == ["serial_port", "baud"]
+    assert complete_labels("<!-- here -->", place.format("|", ""))[:2] == [
+        "arm/Motors",
+        "mock_components/GenericSystem",
+    ]
+    assert complete_labels("<!-- here -->", place.format("arm/Motors", '<param name="|">1</param>')) == [
+        "serial_port",
+        "baud",
+    ]
     mock = place.format("mock_components/GenericSystem", '<param name="calc|">true</param>')
-    assert offered("<!-- here -->", mock) == ["calculate_dynamics"]
+    assert complete_labels("<!-- here -->", mock) == ["calculate_dynamics"]
 
 
-def test_existing_joint_interfaces_are_not_offered(offered):
+def test_existing_joint_interfaces_are_not_offered(complete_labels):
     place = (
         '<ros2_control name="a" type="|"><joint name="b"><state_interface name="position"/>'
         '<state_interface name=""/></joint></ros2_control>'
     )
-    assert offered("<!-- here -->", place) == ["system", "actuator", "sensor"]
+    assert complete_labels("<!-- here -->", place) == ["system", "actuator", "sensor"]
     place = place.replace("|", "").replace('name=""', 'name="|"')
-    assert offered("<!-- here -->", place)[:2] == ["velocity", "effort"]
+    assert complete_labels("<!-- here -->", place)[:2] == ["velocity", "effort"]
 
 
-def test_simulator_plugin_parameters_are_completed(offered):
+def test_simulator_plugin_parameters_are_completed(complete_labels):
     place = "<gazebo><plugin filename='libgazebo_ros_diff_drive.so' name='drive'>{}</plugin></gazebo>"
-    assert offered("<!-- here -->", place.format("<wheel_|")) == ["wheel_separation", "wheel_diameter"]
-    assert offered("<!-- here -->", place.format("<left_joint>|</left_joint>")) == ["left_wheel_joint"]
-    assert offered("<!-- here -->", place.format("<publish_odom>|</publish_odom>")) == ["true", "false"]
+    assert complete_labels("<!-- here -->", place.format("<wheel_|")) == ["wheel_separation", "wheel_diameter"]
+    assert complete_labels("<!-- here -->", place.format("<left_joint>|</left_joint>")) == ["left_wheel_joint"]
+    assert complete_labels("<!-- here -->", place.format("<publish_odom>|</publish_odom>")) == ["true", "false"]
 
 
-def test_gz_plugin_library_and_class_are_completed(offered):
+def test_gz_plugin_library_and_class_are_completed(complete_labels):
     world = '<sdf version="1.9"><world name="w"><plugin {}></plugin></world></sdf>'
 
     def in_world(attributes: str) -> list[str]:
-        return offered("", "", "worlds/a.sdf", world.format(attributes))
+        return complete_labels("", "", "worlds/a.sdf", world.format(attributes))
 
     assert in_world('filename="gz-sim-diff|"') == ["gz-sim-diff-drive-system"]
     assert in_world('filename="gz-sim-imu-system" name="|"')[0] == "gz::sim::systems::Imu"
@@ -188,14 +197,14 @@ def test_gz_plugin_library_and_class_are_completed(offered):
     assert in_world('filename="ignition-gazebo-im|"') == ["ignition-gazebo-imu-system"]
 
 
-def test_world_sensor_types_and_choices_are_completed(offered):
+def test_world_sensor_types_and_choices_are_completed(complete_labels):
     world = '<sdf version="1.9"><world name="w"><model name="m"><link name="l">{}</link></model></world></sdf>'
-    assert offered("", "", "a.sdf", world.format('<sensor name="s" type="gpu_l|">')) == ["gpu_lidar"]
-    assert "directional" in offered("", "", "a.sdf", world.format('<light name="s" type="|">'))
+    assert complete_labels("", "", "a.sdf", world.format('<sensor name="s" type="gpu_l|">')) == ["gpu_lidar"]
+    assert "directional" in complete_labels("", "", "a.sdf", world.format('<light name="s" type="|">'))
 
 
 @pytest.fixture
-def explained(package: Path):
+def hover_text(package: Path):
     """Return the hover after a replacement; the bar marks the position of the mouse."""
 
     def hover(old: str, new: str, name: str = "urdf/arm.urdf.xacro", text: str = ROBOT) -> str:
@@ -212,41 +221,41 @@ def explained(package: Path):
     return hover
 
 
-def test_hover_explains_simulator_plugin_and_parameters(explained):
+def test_hover_explains_simulator_plugin_and_parameters(hover_text):
     place = "<gazebo><plugin filename='libgazebo_ros_diff_drive.so' name='drive'>{}</plugin></gazebo>"
-    assert "drives a robot" in explained("<!-- here -->", place.format("").replace("_drive.so", "_dr|ive.so"))
-    assert "number in m" in explained("<!-- here -->", place.format("<wheel_sep|aration>0.3</wheel_separation>"))
-    assert "number in m" in explained("<!-- here -->", place.format("<wheel_separation>0.|3</wheel_separation>"))
+    assert "drives a robot" in hover_text("<!-- here -->", place.format("").replace("_drive.so", "_dr|ive.so"))
+    assert "number in m" in hover_text("<!-- here -->", place.format("<wheel_sep|aration>0.3</wheel_separation>"))
+    assert "number in m" in hover_text("<!-- here -->", place.format("<wheel_separation>0.|3</wheel_separation>"))
 
 
-def test_hover_explains_hardware_and_parameters(explained):
+def test_hover_explains_hardware_and_parameters(hover_text):
     place = '<ros2_control name="a" type="system"><hardware><plugin>{}</plugin>{}</hardware></ros2_control>'
-    motors = explained("<!-- here -->", place.format("arm/Mo|tors", ""))
+    motors = hover_text("<!-- here -->", place.format("arm/Mo|tors", ""))
     assert "The motors." in motors
     assert "`serial_port`" in motors
-    assert "motors.cpp" in explained("<!-- here -->", place.format("arm/Motors", '<param name="ba|ud">1</param>'))
-    assert "rad/s" in explained(
+    assert "motors.cpp" in hover_text("<!-- here -->", place.format("arm/Motors", '<param name="ba|ud">1</param>'))
+    assert "rad/s" in hover_text(
         "<!-- here -->", '<ros2_control><joint name="j"><command_interface name="velo|city"/></joint></ros2_control>'
     )
 
 
-def test_hover_explains_macro_parameters_and_functions(explained):
-    assert "**side** (required)" in explained('<xacro:wheel side="left">', '<xacro:wheel si|de="left">')
-    assert "= `0.02`" in explained('<xacro:wheel side="left">', '<xacro:wheel side="left" wid|th="1">')
-    assert "**parameter side**" in explained('name="${side}_wheel"', 'name="${si|de}_wheel"')
-    assert "square root" in explained("${radius / 2}", "${sq|rt(radius)}")
+def test_hover_explains_macro_parameters_and_functions(hover_text):
+    assert "**side** (required)" in hover_text('<xacro:wheel side="left">', '<xacro:wheel si|de="left">')
+    assert "= `0.02`" in hover_text('<xacro:wheel side="left">', '<xacro:wheel side="left" wid|th="1">')
+    assert "**parameter side**" in hover_text('name="${side}_wheel"', 'name="${si|de}_wheel"')
+    assert "square root" in hover_text("${radius / 2}", "${sq|rt(radius)}")
 
 
-def test_hover_explains_element_in_macro_call(explained):
-    assert "rad" in explained("<origin/><a/>", '<origin rp|y="0 0 0"/><a/>')
+def test_hover_explains_element_in_macro_call(hover_text):
+    assert "rad" in hover_text("<origin/><a/>", '<origin rp|y="0 0 0"/><a/>')
 
 
-def test_hover_shows_angle_in_degrees(explained):
+def test_hover_shows_angle_in_degrees(hover_text):
     joint = '<joint name="j" type="{}"><limit lower="{}"/><origin rpy="0 {} 1.5708"/></joint>'
-    assert "-1.5708 rad = -90°" in explained("<!-- here -->", joint.format("revolute", "-1.57|08", "0"))
-    assert "°" not in explained("<!-- here -->", joint.format("prismatic", "-1.57|08", "0"))
-    assert "0 -0.7854 1.5708 rad = 0° -45° 90°" in explained("<!-- here -->", joint.format("fixed", "0", "-0.78|54"))
-    assert "°" not in explained("<!-- here -->", joint.format("fixed", "0", "${p|i}"))
+    assert "-1.5708 rad = -90°" in hover_text("<!-- here -->", joint.format("revolute", "-1.57|08", "0"))
+    assert "°" not in hover_text("<!-- here -->", joint.format("prismatic", "-1.57|08", "0"))
+    assert "0 -0.7854 1.5708 rad = 0° -45° 90°" in hover_text("<!-- here -->", joint.format("fixed", "0", "-0.78|54"))
+    assert "°" not in hover_text("<!-- here -->", joint.format("fixed", "0", "${p|i}"))
 
 
 def test_completion_tables_cover_rules():

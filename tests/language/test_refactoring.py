@@ -18,7 +18,7 @@ class Description:
     """A xacro file in a workspace.
 
     Args:
-        folder: the folder.
+        folder: the root of the workspace.
         body: the content of its root.
     """
 

@@ -96,7 +96,7 @@ class Files:
     """A workspace with some files.
 
     Args:
-        folder: the folder.
+        folder: the root of the workspace.
         files: path -> text.
     """
 
@@ -131,12 +131,12 @@ Make = Callable[[Mapping[str, str]], Files]
 
 
 @pytest.fixture
-def make(tmp_path: Path) -> Make:
+def make_files(tmp_path: Path) -> Make:
     return lambda files: Files(tmp_path, files)
 
 
-def test_computed_joint_is_renamed_from_yaml_by_its_literal_part(make: Make):
-    files = make(ROBOT_FILES)
+def test_computed_joint_is_renamed_from_yaml_by_its_literal_part(make_files: Make):
+    files = make_files(ROBOT_FILES)
     renaming, texts = files.rename("bringup/config/rover.yaml", '["left', "left_tire_joint")
     assert renaming.names == {"left_wheel_joint": "left_tire_joint", "right_wheel_joint": "right_tire_joint"}
     assert '<joint name="${prefix}${side}_tire_joint" type' in texts["description/urdf/wheel.xacro"]
@@ -146,8 +146,8 @@ def test_computed_joint_is_renamed_from_yaml_by_its_literal_part(make: Make):
     assert "'right_wheel_joint'" in str(renaming.notes[0])
 
 
-def test_computed_link_is_renamed_in_the_call_that_passes_its_name(make: Make):
-    renaming, texts = make(ROBOT_FILES).rename("bringup/config/rover.rviz", "        camera", "lidar_link")
+def test_computed_link_is_renamed_in_the_call_that_passes_its_name(make_files: Make):
+    renaming, texts = make_files(ROBOT_FILES).rename("bringup/config/rover.rviz", "        camera", "lidar_link")
     assert renaming.names == {"camera_link": "lidar_link", "camera_joint": "lidar_joint"}
     assert texts["description/urdf/rover.urdf.xacro"] == ROBOT.replace('name="camera"', 'name="lidar"')
     assert texts["bringup/config/rover.rviz"] == RVIZ.replace("camera_link", "lidar_link")
@@ -156,8 +156,8 @@ def test_computed_link_is_renamed_in_the_call_that_passes_its_name(make: Make):
     assert "description/urdf/wheel.xacro" not in texts
 
 
-def test_link_rename_updates_dependent_packages(make: Make):
-    renaming, texts = make(ROBOT_FILES).rename("bringup/config/rover.yaml", "base_frame_id: ", "trunk")
+def test_link_rename_updates_dependent_packages(make_files: Make):
+    renaming, texts = make_files(ROBOT_FILES).rename("bringup/config/rover.yaml", "base_frame_id: ", "trunk")
     assert renaming.names == {"base": "trunk"}
     assert texts["description/urdf/rover.urdf.xacro"] == ROBOT.replace("prefix)base", "prefix)trunk")
     assert '<parent link="${prefix}trunk"/>' in texts["description/urdf/wheel.xacro"]
@@ -166,31 +166,31 @@ def test_link_rename_updates_dependent_packages(make: Make):
     assert [mention.file.name for mention in renaming.unchanged] == ["wheel.xacro"]  # a default that no call uses
 
 
-def test_rename_at_use_in_macro_changes_definition(make: Make):
-    _, texts = make(ROBOT_FILES).rename(
+def test_rename_at_use_in_macro_changes_definition(make_files: Make):
+    _, texts = make_files(ROBOT_FILES).rename(
         "description/urdf/wheel.xacro", '<child link="${prefix}${side}_wh', "${prefix}${side}_tire"
     )
     assert texts["description/urdf/wheel.xacro"] == WHEEL.replace('_wheel"', '_tire"')
 
 
-def test_uncalled_macro_is_checked_with_generated_call(make: Make):
-    renaming, texts = make(ROBOT_FILES).rename(
+def test_uncalled_macro_is_checked_with_generated_call(make_files: Make):
+    renaming, texts = make_files(ROBOT_FILES).rename(
         "description/urdf/wheel.xacro", '<link name="${name}_sp', "${name}_extra"
     )
     assert texts == {"description/urdf/wheel.xacro": WHEEL.replace('{name}_spare"', '{name}_extra"')}
     assert any("generated calls" in str(note) for note in renaming.notes)
 
 
-def test_rename_is_rejected_if_another_robot_would_lose_the_name(make: Make):
+def test_rename_is_rejected_if_another_robot_would_lose_the_name(make_files: Make):
     other = ROBOT.replace('name="prefix" default=""', 'name="prefix" default="other_"')
-    files = make({**ROBOT_FILES, "description/urdf/other.urdf.xacro": other})
+    files = make_files({**ROBOT_FILES, "description/urdf/other.urdf.xacro": other})
     with pytest.raises(LinkwrightError, match=r"'other_left_wheel_joint' of 'other\.urdf\.xacro'"):
         files.rename("bringup/config/rover.yaml", '["left', "left_tire_joint")
 
 
-def test_file_belongs_to_robot_named_in_same_launch_file(make: Make):
+def test_file_belongs_to_robot_named_in_same_launch_file(make_files: Make):
     launch = "ROBOT = 'rover.urdf.xacro'\nPARAMETERS = 'rover.yaml'\n"
-    files = make(
+    files = make_files(
         {
             **ROBOT_FILES,
             "description/urdf/other.urdf": '<robot name="other"><link name="camera_link"/></robot>',
@@ -204,24 +204,24 @@ def test_file_belongs_to_robot_named_in_same_launch_file(make: Make):
     assert "rover.rviz" in {mention.file.name for mention in renaming.unchanged}
 
 
-def test_robot_with_missing_package_is_compared_without_its_elements(make: Make):
+def test_robot_with_missing_package_is_compared_without_its_elements(make_files: Make):
     robot = ROBOT.replace(
         "  <link", '  <xacro:include filename="$(find missing)/x.xacro"/>\n  <xacro:missing_part/>\n  <link', 1
     )
-    files = make({**ROBOT_FILES, "description/urdf/rover.urdf.xacro": robot})
+    files = make_files({**ROBOT_FILES, "description/urdf/rover.urdf.xacro": robot})
     renaming, texts = files.rename("description/urdf/wheel.xacro", 'macro name="whe', "roller")
     assert "<xacro:roller side" in texts["description/urdf/rover.urdf.xacro"]
     assert any("package 'missing' not found" in str(note) for note in renaming.notes)
 
 
-def test_forwarded_macro_parameter_is_renamed_in_inner_macros(make: Make):
+def test_forwarded_macro_parameter_is_renamed_in_inner_macros(make_files: Make):
     text = """<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
   <xacro:macro name="inner" params="size:=^"><link name="l_${size}"/></xacro:macro>
   <xacro:macro name="outer" params="size"><xacro:inner/></xacro:macro>
   <xacro:outer size="3"/>
 </robot>
 """
-    files = make({"p/package.xml": "<package format='3'><name>p</name></package>", "p/r.urdf.xacro": text})
+    files = make_files({"p/package.xml": "<package format='3'><name>p</name></package>", "p/r.urdf.xacro": text})
     before = str(expand(files.folder / "p/r.urdf.xacro"))
     _, texts = files.rename("p/r.urdf.xacro", 'name="outer" params="si', "width")
     assert texts["p/r.urdf.xacro"] == text.replace("size", "width")
@@ -268,8 +268,8 @@ LAUNCH_FILES = {
 }
 
 
-def test_launch_argument_rename_updates_callers(make: Make):
-    _, texts = make(LAUNCH_FILES).rename("p/launch/part.launch.xml", '<arg name="sp', "pace")
+def test_launch_argument_rename_updates_callers(make_files: Make):
+    _, texts = make_files(LAUNCH_FILES).rename("p/launch/part.launch.xml", '<arg name="sp', "pace")
     assert texts == {
         "p/launch/main.launch.py": MAIN_PY.replace("{'speed'", "{'pace'"),
         "p/launch/part.launch.xml": PART_XML.replace('<arg name="speed" default', '<arg name="pace" default').replace(
@@ -278,8 +278,8 @@ def test_launch_argument_rename_updates_callers(make: Make):
     }
 
 
-def test_inherited_launch_argument_is_renamed_in_included_files(make: Make):
-    renaming, texts = make(LAUNCH_FILES).rename("p/launch/main.launch.py", "DeclareLaunchArgument('mo", "style")
+def test_inherited_launch_argument_is_renamed_in_included_files(make_files: Make):
+    renaming, texts = make_files(LAUNCH_FILES).rename("p/launch/main.launch.py", "DeclareLaunchArgument('mo", "style")
     assert texts == {
         "p/launch/main.launch.py": MAIN_PY.replace("'mode'", "'style'"),
         "p/launch/part.launch.xml": PART_XML.replace("mode", "style"),
@@ -288,15 +288,15 @@ def test_inherited_launch_argument_is_renamed_in_included_files(make: Make):
     assert renaming.unchanged == ()
 
 
-def test_launch_configuration_passed_as_value_is_renamed_only_in_its_file(make: Make):
-    _, texts = make(LAUNCH_FILES).rename("p/launch/main.launch.py", "LaunchConfiguration('sp", "pace")
+def test_launch_configuration_passed_as_value_is_renamed_only_in_its_file(make_files: Make):
+    _, texts = make_files(LAUNCH_FILES).rename("p/launch/main.launch.py", "LaunchConfiguration('sp", "pace")
     edited_text = MAIN_PY.replace("'speed'", "'pace'").replace("{'pace'", "{'speed'")
     assert texts == {"p/launch/main.launch.py": edited_text}
 
 
-def test_launch_argument_rename_to_existing_name_is_rejected(make: Make):
+def test_launch_argument_rename_to_existing_name_is_rejected(make_files: Make):
     with pytest.raises(LinkwrightError, match="already uses 'mode'"):
-        make(LAUNCH_FILES).rename("p/launch/part.launch.xml", '<arg name="sp', "mode")
+        make_files(LAUNCH_FILES).rename("p/launch/part.launch.xml", '<arg name="sp', "mode")
 
 
 # --- SDF --------------------------------------------------------------------------------------------------------------
@@ -326,8 +326,8 @@ SDF_FILES = {
 }
 
 
-def test_sdf_link_is_renamed_in_its_scope_and_in_including_worlds(make: Make):
-    _, texts = make(SDF_FILES).rename("p/models/cart/model.sdf", '  <link name="bo', "base")
+def test_sdf_link_is_renamed_in_its_scope_and_in_including_worlds(make_files: Make):
+    _, texts = make_files(SDF_FILES).rename("p/models/cart/model.sdf", '  <link name="bo', "base")
     nested = MODEL.index('  <model name="arm">'), MODEL.index('  <joint name="hold"')
     inner = MODEL[slice(*nested)]
     edited_text = MODEL.replace("body", "base").replace("<topic>base", "<topic>body").replace("arm::base", "arm::body")
@@ -338,30 +338,30 @@ def test_sdf_link_is_renamed_in_its_scope_and_in_including_worlds(make: Make):
     }
 
 
-def test_nested_sdf_model_and_world_state_are_renamed(make: Make):
-    files = make(SDF_FILES)
+def test_nested_sdf_model_and_world_state_are_renamed(make_files: Make):
+    files = make_files(SDF_FILES)
     _, texts = files.rename("p/models/cart/model.sdf", '<model name="ar', "limb")
     assert texts == {"p/models/cart/model.sdf": MODEL.replace('"arm"', '"limb"').replace("arm::", "limb::")}
     _, texts = files.rename("p/worlds/w.world", '<model name="bo', "crate")
     assert texts == {"p/worlds/w.world": WORLD.replace('"box"', '"crate"')}
 
 
-def test_sdf_rename_to_existing_name_is_rejected(make: Make):
+def test_sdf_rename_to_existing_name_is_rejected(make_files: Make):
     with pytest.raises(LinkwrightError, match="already exists"):
-        make(SDF_FILES).rename("p/models/cart/model.sdf", '  <link name="bo', "wheel")
+        make_files(SDF_FILES).rename("p/models/cart/model.sdf", '  <link name="bo', "wheel")
 
 
 # --- files ------------------------------------------------------------------------------------------------------------
 
 
-def test_renamed_file_is_updated_in_launch_yaml_and_build_files(make: Make):
+def test_renamed_file_is_updated_in_launch_yaml_and_build_files(make_files: Make):
     launch = (
         "import os\n"
         "from ament_index_python.packages import get_package_share_directory\n"
         "FILE = os.path.join(get_package_share_directory('rover_description'), 'urdf', 'wheel.xacro')\n"
         "NAME = 'wheel.xacro'\n"
     )
-    files = make(
+    files = make_files(
         {
             **ROBOT_FILES,
             "description/CMakeLists.txt": "install(FILES urdf/wheel.xacro DESTINATION share/x)\n",
@@ -379,10 +379,10 @@ def test_renamed_file_is_updated_in_launch_yaml_and_build_files(make: Make):
     ]
 
 
-def test_unnamed_included_model_is_renamed_and_launch_use_is_listed(make: Make):
+def test_unnamed_included_model_is_renamed_and_launch_use_is_listed(make_files: Make):
     world = WORLD.replace("<name>one</name>", "").replace("one::", "cart::")
     launch = "arguments = ['-name', 'cart']\n"
-    files = make({**SDF_FILES, "p/worlds/w.world": world, "p/launch/a.launch.py": launch})
+    files = make_files({**SDF_FILES, "p/worlds/w.world": world, "p/launch/a.launch.py": launch})
     renaming, texts = files.rename("p/models/cart/model.sdf", '<model name="ca', "wagon")
     assert texts == {
         "p/models/cart/model.sdf": MODEL.replace('"cart"', '"wagon"'),
@@ -391,22 +391,22 @@ def test_unnamed_included_model_is_renamed_and_launch_use_is_listed(make: Make):
     assert [mention.file.name for mention in renaming.unchanged] == ["a.launch.py"]
 
 
-def test_computed_sdf_reference_is_rejected_and_its_argument_is_renamed(make: Make):
+def test_computed_sdf_reference_is_rejected_and_its_argument_is_renamed(make_files: Make):
     text = """<sdf version="1.9" xmlns:xacro="http://www.ros.org/wiki/xacro"><xacro:arg name="part" default="whe"/>
 <model name="m"><link name="body"/><link name="wheel"/>
 <joint name="j" type="fixed"><parent>body</parent><child>$(arg part)el</child></joint></model></sdf>
 """
-    files = make({"p/package.xml": "<package format='3'><name>p</name></package>", "p/m.sdf.xacro": text})
+    files = make_files({"p/package.xml": "<package format='3'><name>p</name></package>", "p/m.sdf.xacro": text})
     with pytest.raises(LinkwrightError, match="some references keep the old name"):
         files.rename("p/m.sdf.xacro", '<link name="whe', "tire")
     assert files.rename("p/m.sdf.xacro", '<link name="bo', "base")[1] == {"p/m.sdf.xacro": text.replace("body", "base")}
     assert files.rename("p/m.sdf.xacro", "$(arg pa", "side")[1] == {"p/m.sdf.xacro": text.replace("part", "side")}
 
 
-def test_joint_interface_is_renamed_and_other_path_is_listed(make: Make):
+def test_joint_interface_is_renamed_and_other_path_is_listed(make_files: Make):
     lists = "    inputs: [left_wheel_joint/velocity, pid/left_wheel_joint]\n    dof_names: [left_wheel_joint]\n"
     yaml = f"filter:\n  ros__parameters:\n{lists}"
-    files = make({**ROBOT_FILES, "bringup/config/filter.yaml": yaml})
+    files = make_files({**ROBOT_FILES, "bringup/config/filter.yaml": yaml})
     renaming, texts = files.rename("bringup/config/filter.yaml", "dof_names: [left", "left_tire_joint")
     assert texts["bringup/config/filter.yaml"] == yaml.replace("left_wheel", "left_tire").replace(
         "pid/left_tire", "pid/left_wheel"

@@ -36,7 +36,7 @@ from launch_ros.actions import *
 
 
 @pytest.fixture
-def file(write: Any) -> Any:
+def write_bot_file(write: Any) -> Any:
     """Write a launch file of package ``bot``."""
     write("src/bot/package.xml", MANIFEST.format("bot"))
 
@@ -48,7 +48,7 @@ def file(write: Any) -> Any:
 
 
 @pytest.fixture
-def messages(launch: Any, tmp_path: Path) -> Any:
+def launch_messages(launch: Any, tmp_path: Path) -> Any:
     """Return the messages of the LogInfo actions in a launch file."""
 
     async def run(path: Path, **configurations: str) -> list[str]:
@@ -79,46 +79,54 @@ class TestWorkspaceModules:
     """
     GREET = "def greet(who):\n    return ['hello ', who]\n"
 
-    async def test_module_of_source_package_is_imported(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_module_of_source_package_is_imported(
+        self, write: Any, write_bot_file: Any, launch_messages: Any
+    ) -> None:
         write("src/bot_tools/package.xml", MANIFEST.format("bot_tools"))
         write("src/bot_tools/setup.py", "")
         write("src/bot_tools/bot_tools/__init__.py", "")
         write("src/bot_tools/bot_tools/words.py", self.GREET)
-        assert await messages(file(self.USES.format(module="bot_tools.words")), who="you") == ["hello you"]
+        assert await launch_messages(write_bot_file(self.USES.format(module="bot_tools.words")), who="you") == [
+            "hello you"
+        ]
 
-    async def test_module_of_own_package_without_init_is_imported(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_module_of_own_package_without_init_is_imported(
+        self, write: Any, write_bot_file: Any, launch_messages: Any
+    ) -> None:
         write("src/bot/bot/words.py", self.GREET)
-        assert await messages(file(self.USES.format(module="bot.words")), who="me") == ["hello me"]
+        assert await launch_messages(write_bot_file(self.USES.format(module="bot.words")), who="me") == ["hello me"]
 
-    async def test_module_named_unlike_its_package_is_imported(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_module_named_unlike_its_package_is_imported(
+        self, write: Any, write_bot_file: Any, launch_messages: Any
+    ) -> None:
         write("src/bot_tools/package.xml", MANIFEST.format("bot_tools"))
         write("src/bot_tools/CMakeLists.txt", "ament_python_install_package(bot_parts)")
         write("src/bot_tools/bot_parts/__init__.py", self.GREET)
-        assert await messages(file(self.USES.format(module="bot_parts")), who="all") == ["hello all"]
+        assert await launch_messages(write_bot_file(self.USES.format(module="bot_parts")), who="all") == ["hello all"]
 
     @pytest.mark.parametrize("folder", ["lib/python3.10/site-packages", "local/lib/python3.10/dist-packages"])
     async def test_module_of_unsourced_install_folder_is_imported(
-        self, write: Any, file: Any, messages: Any, folder: str
+        self, write: Any, write_bot_file: Any, launch_messages: Any, folder: str
     ) -> None:
         write("install/.colcon_install_layout", "isolated")
         write("install/bot_tools/share/bot_tools/package.xml", MANIFEST.format("bot_tools"))
         write(f"install/bot_tools/{folder}/bot_tools/__init__.py", self.GREET)
-        assert await messages(file(self.USES.format(module="bot_tools")), who="it") == ["hello it"]
+        assert await launch_messages(write_bot_file(self.USES.format(module="bot_tools")), who="it") == ["hello it"]
 
-    def test_workspace_modules_are_hidden_from_libraries(self, write: Any, file: Any, tmp_path: Path) -> None:
+    def test_workspace_modules_are_hidden_from_libraries(self, write: Any, write_bot_file: Any, tmp_path: Path) -> None:
         write("src/bot_tools/package.xml", MANIFEST.format("bot_tools"))
         write("src/bot_tools/bot_tools/__init__.py", self.GREET)
         with use_finder(PackageFinder(start=tmp_path, environment={})), pytest.raises(ModuleNotFoundError):
             exec(compile("import bot_tools", os.__file__, "exec"), {})
 
-    def test_missing_module_has_hint_about_provider(self, file: Any) -> None:
+    def test_missing_module_has_hint_about_provider(self, write_bot_file: Any) -> None:
         for module, hint in (
             ("webots_ros2_driver.webots_launcher", "it is part of webots_ros2"),
             ("serial.nothing", package_hint("pyserial")),
             ("my_arm_bringup", "put the ROS package 'my_arm_bringup' into the workspace's src folder"),
             ("nobody_has_this", "install the Python package that provides 'nobody_has_this'"),
         ):
-            path = file(f"import {module}\ndef generate_launch_description(): pass")
+            path = write_bot_file(f"import {module}\ndef generate_launch_description(): pass")
             with pytest.raises(LinkwrightError) as caught:
                 load_launch_file(path)
             (diagnostic,) = caught.value.diagnostics
@@ -127,7 +135,9 @@ class TestWorkspaceModules:
 
 
 class TestSubmoduleImports:
-    async def test_submodules_are_available_after_importing_launch(self, file: Any, messages: Any) -> None:
+    async def test_submodules_are_available_after_importing_launch(
+        self, write_bot_file: Any, launch_messages: Any
+    ) -> None:
         text = """
         def said(context):
             words = launch.utilities.normalize_to_list_of_substitutions(['a', LaunchConfiguration('x')])
@@ -138,7 +148,7 @@ class TestSubmoduleImports:
         def generate_launch_description():
             return LaunchDescription([OpaqueFunction(function=said)])
         """
-        assert await messages(file(text), x="b") == ["ab"]
+        assert await launch_messages(write_bot_file(text), x="b") == ["ab"]
 
     def test_names_imported_by_ros_modules_are_available(self) -> None:
         from launch.actions import ExecuteProcess
@@ -170,7 +180,9 @@ class TestSubmoduleImports:
         with pytest.raises(AttributeError):
             launch.logging.handlers.Nothing  # noqa: B018
 
-    async def test_condition_predicate_can_be_evaluated_by_user_class(self, file: Any, messages: Any) -> None:
+    async def test_condition_predicate_can_be_evaluated_by_user_class(
+        self, write_bot_file: Any, launch_messages: Any
+    ) -> None:
         text = """
         from launch.conditions import IfCondition, LaunchConfigurationEquals, UnlessCondition
         class Text(launch.Substitution):
@@ -187,9 +199,11 @@ class TestSubmoduleImports:
         def generate_launch_description():
             return LaunchDescription([OpaqueFunction(function=said)])
         """
-        assert await messages(file(text), x="true") == ["[True, False, True]", "yes"]
+        assert await launch_messages(write_bot_file(text), x="true") == ["[True, False, True]", "yes"]
 
-    async def test_group_action_can_replace_its_actions_at_runtime(self, file: Any, messages: Any) -> None:
+    async def test_group_action_can_replace_its_actions_at_runtime(
+        self, write_bot_file: Any, launch_messages: Any
+    ) -> None:
         text = """
         class Chosen(launch.actions.GroupAction):
             def __init__(self, name, **kwargs):
@@ -206,11 +220,11 @@ class TestSubmoduleImports:
         def generate_launch_description():
             return LaunchDescription([Chosen('q')])
         """
-        path = file(text)
+        path = write_bot_file(text)
         assert "'q'" in format_arguments(load_launch_file(path))
-        assert await messages(path, q="two") == ["chosen two"]
+        assert await launch_messages(path, q="two") == ["chosen two"]
 
-    async def test_description_can_grow_while_visited(self, file: Any, messages: Any) -> None:
+    async def test_description_can_grow_while_visited(self, write_bot_file: Any, launch_messages: Any) -> None:
         text = """
         def grow(context, description):
             description.add_action(LogInfo(msg=['grown by ', LaunchConfiguration('x')]))
@@ -219,9 +233,11 @@ class TestSubmoduleImports:
             description.add_action(OpaqueFunction(function=grow, args=[description]))
             return description
         """
-        assert await messages(file(text)) == ["grown by one"]
+        assert await launch_messages(write_bot_file(text)) == ["grown by one"]
 
-    async def test_module_beside_launch_file_is_imported(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_module_beside_launch_file_is_imported(
+        self, write: Any, write_bot_file: Any, launch_messages: Any
+    ) -> None:
         write("src/bot/launch/shared_parts.py", "PARAMETERS = [{'name': 'a', 'default': '1'}]\n")
         text = """
         import pathlib, sys
@@ -234,7 +250,7 @@ class TestSubmoduleImports:
         """
         saved = list(sys.path)
         try:
-            assert await messages(file(text)) == ["1"]
+            assert await launch_messages(write_bot_file(text)) == ["1"]
         finally:
             sys.path[:] = saved
 
@@ -271,20 +287,22 @@ class TestNamesUpToFoxy:
 
 
 class TestMarkup:
-    async def test_quoted_parameter_value_is_parsed(self, file: Any, launch: Any) -> None:
+    async def test_quoted_parameter_value_is_parsed(self, write_bot_file: Any, launch: Any) -> None:
         text = """
         launch:
         - set_parameter: {name: use_sim_time, value: "true"}
         - set_parameter: {name: rate, value: 2.5}
         """
-        result = await launch(load_launch_file(file(text, "a.launch.yaml")))
+        result = await launch(load_launch_file(write_bot_file(text, "a.launch.yaml")))
         assert result.session.context.launch_configurations["global_params"] == [("use_sim_time", True), ("rate", 2.5)]
 
-    async def test_launch_version_attribute_is_accepted(self, file: Any, messages: Any) -> None:
+    async def test_launch_version_attribute_is_accepted(self, write_bot_file: Any, launch_messages: Any) -> None:
         text = '<launch version="0.1.1"><log_info message="$(var x)"/></launch>'
-        assert await messages(file(text, "a.launch.xml"), x="fine") == ["fine"]
+        assert await launch_messages(write_bot_file(text, "a.launch.xml"), x="fine") == ["fine"]
 
-    async def test_included_file_sets_launch_configurations(self, write: Any, file: Any, messages: Any) -> None:
+    async def test_included_file_sets_launch_configurations(
+        self, write: Any, write_bot_file: Any, launch_messages: Any
+    ) -> None:
         write("src/bot/config/default_preset.yaml", "launch:\n- arg: {name: mode, default: mpc}\n")
         text = """
         <launch>
@@ -296,7 +314,7 @@ class TestMarkup:
           <log_info message="$(var mode) is $(var speed) $(env NOBODY_SETS_THIS never)"/>
         </launch>
         """
-        assert await messages(file(text, "a.launch.xml"), package="bot") == ["mpc is fast never"]
+        assert await launch_messages(write_bot_file(text, "a.launch.xml"), package="bot") == ["mpc is fast never"]
 
 
 class TestResources:
@@ -323,7 +341,7 @@ class TestResources:
 
 
 class TestPrograms:
-    async def test_ros2_and_related_programs_are_on_path(self, file: Any, launch: Any) -> None:
+    async def test_ros2_and_related_programs_are_on_path(self, write_bot_file: Any, launch: Any) -> None:
         text = """
         def generate_launch_description():
             return LaunchDescription([
@@ -337,7 +355,7 @@ class TestPrograms:
         assert environment["PATH"].split(os.pathsep).count(str(folder)) == 1
         assert all(shutil.which(name, path=str(folder)) for name in PROGRAMS)
         os.environ["PATH"] = environment["PATH"]
-        path = file(text)
+        path = write_bot_file(text)
         os.environ["LINKWRIGHT_START"] = str(path.parent)
         result = await launch(load_launch_file(path))
         assert result.succeeded, result.err
@@ -403,10 +421,10 @@ def test_launch_utils_create_controller_spawners() -> None:
 
 
 class TestLaunchVerbApi:
-    def test_launch_file_paths_of_package_are_found(self, write: Any, file: Any, tmp_path: Path) -> None:
+    def test_launch_file_paths_of_package_are_found(self, write: Any, write_bot_file: Any, tmp_path: Path) -> None:
         from ros2launch.api import MultipleLaunchFilesError, get_launch_file_paths, get_share_file_path_from_package
 
-        path = file("def generate_launch_description():\n    return LaunchDescription()")
+        path = write_bot_file("def generate_launch_description():\n    return LaunchDescription()")
         with use_finder(PackageFinder(start=tmp_path, environment={})):
             assert get_share_file_path_from_package(package_name="bot", file_name="a.launch.py") == str(path)
             with pytest.raises(FileNotFoundError, match=r"'b\.launch\.py' was not found"):
@@ -424,19 +442,23 @@ class TestLaunchVerbApi:
         with pytest.raises(RuntimeError, match="malformed launch argument 'a='"):
             parse_launch_arguments(["a="])
 
-    def test_arguments_and_launch_file_are_printed(self, file: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    def test_arguments_and_launch_file_are_printed(
+        self, write_bot_file: Any, capsys: pytest.CaptureFixture[str]
+    ) -> None:
         from ros2launch import api
 
-        path = str(file("<launch><arg name='x' default='1'/></launch>", "a.launch.xml"))
+        path = str(write_bot_file("<launch><arg name='x' default='1'/></launch>", "a.launch.xml"))
         api.print_arguments_of_launch_file(launch_file_path=path)
         api.print_a_launch_file(launch_file_path=path)
         printed = capsys.readouterr().out
         assert "(default: '1')" in printed
         assert "DeclareLaunchArgument('x'" in printed
 
-    def test_launch_a_launch_file_runs_it(self, file: Any, capfd: pytest.CaptureFixture[str]) -> None:
+    def test_launch_a_launch_file_runs_it(self, write_bot_file: Any, capfd: pytest.CaptureFixture[str]) -> None:
         from ros2launch.api import launch_a_launch_file
 
-        path = str(file("<launch><arg name='x'/><log_info message='x is $(var x)'/></launch>", "a.launch.xml"))
+        path = str(
+            write_bot_file("<launch><arg name='x'/><log_info message='x is $(var x)'/></launch>", "a.launch.xml")
+        )
         assert launch_a_launch_file(launch_file_path=path, launch_file_arguments=["x:=5"]) == 0
         assert "x is 5" in capfd.readouterr().err

@@ -19,7 +19,7 @@ from linkwright.learning.page.exercise_guide import ExerciseGuide
 from linkwright.learning.page.feature import CourseFeature
 from linkwright.messages import String
 from tests.learning.simulator import FakeSimulator
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 STATE = {
     "figure": 23.42,
@@ -36,7 +36,7 @@ async def open_exercise_page(program: Path, name: str = "follow_line") -> AsyncI
         context = world.viewer.context
         guide = ExerciseGuide(find_exercise(name), program, context.pages.publish, context.node)
         world.viewer.add_feature(CourseFeature).show(guide)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             yield world, client
 
 

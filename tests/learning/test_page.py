@@ -22,10 +22,10 @@ from linkwright.learning.page.course_guide import CourseGuide
 from linkwright.learning.page.feature import CourseFeature
 from linkwright.learning.page.step_html import render_html
 from linkwright.page.program_pages import ProgramPages
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 ROBOT = find_course("example") / "01-one-link/solution/one-link/robot.urdf"
-WRONG = '<robot name="r"><link name="bux"/></robot>'
+WRONG_ROBOT = '<robot name="r"><link name="bux"/></robot>'
 
 
 class ShownFiles:
@@ -49,7 +49,7 @@ async def classroom(workspace: Path, shown: ShownFiles | None = None) -> AsyncIt
     async with open_world() as world:
         room = open_classroom(workspace, "example")
         show_course(world, room, (shown or ShownFiles()).paths.append)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             yield client
 
 
@@ -88,9 +88,9 @@ async def test_opened_page_receives_course_step_and_last_results(tmp_path):
         workspace.mkdir()
         room = open_classroom(workspace, "example")
         show_course(world, room, lambda _: None)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await wait_for_results(client)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             opened = await client.opened()
     assert opened["course"]["folder"] == str(workspace)
     assert opened["course_step"]["title"] == {"en": "A box", "zh": "一个方块"}
@@ -101,7 +101,7 @@ async def test_opened_page_receives_course_step_and_last_results(tmp_path):
 async def test_newest_check_result_is_shown(tmp_path):
     async with classroom(tmp_path / "ws") as client:
         await client.send("check_step")
-        (tmp_path / "ws" / "robot.urdf").write_text(WRONG)
+        (tmp_path / "ws" / "robot.urdf").write_text(WRONG_ROBOT)
         shutil.copy(ROBOT, tmp_path / "ws")
         await wait_until_passed(client)
 
@@ -130,7 +130,7 @@ async def test_slow_checks_pause_worlds_and_quick_checks_do_not(tmp_path, monkey
     monkeypatch.setattr(programs, "resume_worlds", lambda: paused.append(False))
     async with open_world() as world:
         show_course(world, open_classroom(workspace, str(course)), lambda _: None, programs)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             while not (await wait_for_results(client))["checks"]:
                 pass
         while_open = list(paused)
@@ -140,7 +140,7 @@ async def test_slow_checks_pause_worlds_and_quick_checks_do_not(tmp_path, monkey
 async def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(tmp_path):
     workspace = tmp_path / "ws"
     async with classroom(workspace) as client:
-        (workspace / "robot.urdf").write_text(WRONG)
+        (workspace / "robot.urdf").write_text(WRONG_ROBOT)
         for count in (1, 2):
             await client.send("take_hint")
             while len((await client.until("course_step"))["hints"]) < count:
@@ -150,7 +150,7 @@ async def test_hints_are_shown_in_order_and_solution_keeps_replaced_file(tmp_pat
         await client.send("take_solution")
         await wait_until_passed(client)
     (backup,) = (workspace / "replaced").rglob("robot.urdf")
-    assert backup.read_text() == WRONG
+    assert backup.read_text() == WRONG_ROBOT
     assert "solution: true" in (workspace / "learn.yaml").read_text()
 
 

@@ -13,7 +13,7 @@ BOX = '<visual><geometry><box size="{0} {0} {0}"/></geometry></visual>'
 
 
 @pytest.fixture
-def codes_of(tmp_path):
+def find_codes(tmp_path):
     """Return the codes of the findings about a robot's text, with other files in its folder."""
 
     def check(text, *selectors, name="r.urdf", **files):
@@ -41,53 +41,53 @@ def inertial_text(mass, moment, origin='<origin xyz="0 0 0"/>'):
 
 
 @pytest.mark.parametrize(("inside", "codes"), [("", ["LW102"]), (inertial_text(1, 1), [])])
-def test_model_with_inertials_needs_no_shapes(codes_of, inside, codes):
-    assert codes_of(robot_text(f'<link name="base"/>{moving_link("a", inside)}'), "LW102") == codes
+def test_model_with_inertials_needs_no_shapes(find_codes, inside, codes):
+    assert find_codes(robot_text(f'<link name="base"/>{moving_link("a", inside)}'), "LW102") == codes
 
 
 @pytest.mark.parametrize(
     ("axis", "codes"), [("1.2e-16 0 -1", []), ("1.2e-7 0 -1.0000002", []), ("0.0001 0 -1", ["LW224"])]
 )
-def test_axis_tilted_by_rounding_is_accepted(codes_of, axis, codes):
-    assert codes_of(robot_text(f'<link name="base"/>{moving_link("a", "", axis=axis)}'), "LW224") == codes
+def test_axis_tilted_by_rounding_is_accepted(find_codes, axis, codes):
+    assert find_codes(robot_text(f'<link name="base"/>{moving_link("a", "", axis=axis)}'), "LW224") == codes
 
 
 @pytest.mark.parametrize(("mass", "codes"), [(0.1, []), (300, ["LW320"])])
-def test_small_mass_on_small_frame_is_accepted(codes_of, mass, codes):
+def test_small_mass_on_small_frame_is_accepted(find_codes, mass, codes):
     shape = BOX.format(0.0063) + '<collision><geometry><box size="0.0063 0.0063 0.0063"/></geometry></collision>'
     assert (
-        codes_of(robot_text(f'<link name="base"/>{moving_link("tool", shape + inertial_text(mass, 1e-6))}'), "LW320")
+        find_codes(robot_text(f'<link name="base"/>{moving_link("tool", shape + inertial_text(mass, 1e-6))}'), "LW320")
         == codes
     )
 
 
 @pytest.mark.parametrize(("origin", "codes"), [("", ["LW323"]), ('<origin xyz="0 0 0"/>', ["LW322"])])
-def test_center_of_mass_far_from_shapes_is_reported_once(codes_of, origin, codes):
+def test_center_of_mass_far_from_shapes_is_reported_once(find_codes, origin, codes):
     shape = '<visual><origin xyz="0 0 0.5"/><geometry><box size="0.1 0.1 0.1"/></geometry></visual>'
     inside = shape + inertial_text(1, 0.002, origin)
-    assert codes_of(robot_text(f'<link name="base"/>{moving_link("a", inside)}'), "LW322", "LW323") == codes
+    assert find_codes(robot_text(f'<link name="base"/>{moving_link("a", inside)}'), "LW322", "LW323") == codes
 
 
 @pytest.mark.parametrize(("moment", "codes"), [("0.002", ["LW315"]), ("0.00{}", ["LW322"] * 3)])
-def test_center_of_mass_is_not_reported_beside_copied_inertia(codes_of, moment, codes):
+def test_center_of_mass_is_not_reported_beside_copied_inertia(find_codes, moment, codes):
     shape = '<visual><origin xyz="0 0 0.{0}"/><geometry><box size="0.1 0.1 0.{0}"/></geometry></visual>'
     links = (moving_link(f"l{n}", shape.format(n) + inertial_text(1, moment.format(n))) for n in (4, 5, 6))
-    assert codes_of(robot_text(f'<link name="base"/>{"".join(links)}'), "LW315", "LW322") == codes
+    assert find_codes(robot_text(f'<link name="base"/>{"".join(links)}'), "LW315", "LW322") == codes
 
 
 @pytest.mark.parametrize(("root", "codes"), [("world", []), ("floor", ["LW325"])])
-def test_inertia_of_link_fixed_to_world_is_accepted(codes_of, root, codes):
+def test_inertia_of_link_fixed_to_world_is_accepted(find_codes, root, codes):
     stand = f'<link name="stand">{BOX.format(1)}{inertial_text(1000, 0.01)}</link>'
     joint = f'<joint name="j" type="fixed"><parent link="{root}"/><child link="stand"/></joint>'
-    assert codes_of(robot_text(f'<link name="{root}"/>{stand}{joint}'), "LW325") == codes
+    assert find_codes(robot_text(f'<link name="{root}"/>{stand}{joint}'), "LW325") == codes
 
 
 @pytest.mark.parametrize(("ignored", "codes"), [("*.obj", ["LW424"]), ("meshes/", []), ("*.stl\n!wheel.stl", [])])
-def test_missing_mesh_that_git_ignores_is_accepted(codes_of, ignored, codes):
+def test_missing_mesh_that_git_ignores_is_accepted(find_codes, ignored, codes):
     manifest = "<package format='3'><name>p</name></package>"
     mesh = '<visual><geometry><mesh filename="package://p/meshes/body.stl"/></geometry></visual>'
     files = {"package_dot_xml": manifest, "_dot_gitignore": ignored}
-    assert codes_of(robot_text(f'<link name="base">{mesh}</link>'), "LW424", **files) == codes
+    assert find_codes(robot_text(f'<link name="base">{mesh}</link>'), "LW424", **files) == codes
 
 
 _HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
@@ -102,9 +102,9 @@ _HARDWARE = "<hardware><plugin>p/P</plugin></hardware>"
         ("", ["LW124"]),
     ],
 )
-def test_conditional_hardware_plugin_is_accepted(codes_of, inside, codes):
+def test_conditional_hardware_plugin_is_accepted(find_codes, inside, codes):
     control = f'<ros2_control name="c" type="system">{inside}</ros2_control>'
-    assert codes_of(robot_text(f'<link name="base"/>{control}', PREFIX), "LW124", name="r.urdf.xacro") == codes
+    assert find_codes(robot_text(f'<link name="base"/>{control}', PREFIX), "LW124", name="r.urdf.xacro") == codes
 
 
 _TRANSMISSION = f'<link name="base"/>{moving_link("a", "")}<transmission name="t"><joint name="j_a"/></transmission>'
@@ -114,12 +114,12 @@ _PACKAGE = "<package format='3'><name>arm</name><version>0.1.0</version></packag
 @pytest.mark.parametrize(
     ("control", "codes"), [("", ["LW127"]), (f'<ros2_control name="c" type="system">{_HARDWARE}</ros2_control>', [])]
 )
-def test_transmissions_beside_ros2_control_are_accepted(codes_of, control, codes):
-    assert codes_of(robot_text(_TRANSMISSION + control), "LW127", package_dot_xml=_PACKAGE) == codes
+def test_transmissions_beside_ros2_control_are_accepted(find_codes, control, codes):
+    assert find_codes(robot_text(_TRANSMISSION + control), "LW127", package_dot_xml=_PACKAGE) == codes
 
 
-def test_transmissions_outside_package_are_accepted(codes_of):
-    assert codes_of(robot_text(_TRANSMISSION), "LW127") == []
+def test_transmissions_outside_package_are_accepted(find_codes):
+    assert find_codes(robot_text(_TRANSMISSION), "LW127") == []
 
 
 @pytest.mark.parametrize(("files", "severity"), [({}, "info"), ({"package.xml": _PACKAGE}, "warning")])
@@ -135,16 +135,16 @@ def test_relative_mesh_path_is_a_warning_in_package(tmp_path, files, severity):
 @pytest.mark.parametrize(
     ("included", "codes"), [("", []), ('<xacro:macro name="laser"><link name="laser"/></xacro:macro>', ["LW704"])]
 )
-def test_include_of_empty_file_is_accepted(codes_of, included, codes):
+def test_include_of_empty_file_is_accepted(find_codes, included, codes):
     text = robot_text('<xacro:include filename="more.xacro"/><link name="base"/>', PREFIX)
     files = {"more_dot_xacro": f"<robot {PREFIX}>{included}</robot>"}
-    assert codes_of(text, "LW704", name="r.urdf.xacro", **files) == codes
+    assert find_codes(text, "LW704", name="r.urdf.xacro", **files) == codes
 
 
 @pytest.mark.parametrize(("name", "codes"), [("map", ["LW624"]), ("$(arg parent)", [])])
-def test_fixed_frame_from_argument_is_accepted(codes_of, name, codes):
+def test_fixed_frame_from_argument_is_accepted(find_codes, name, codes):
     text = robot_text(f'<xacro:arg name="parent" default="map"/><link name="{name}"/>', PREFIX)
-    assert codes_of(text, "LW624", name="r.urdf.xacro") == codes
+    assert find_codes(text, "LW624", name="r.urdf.xacro") == codes
 
 
 _WHEEL = '<xacro:macro name="wheel" params="name prefix"><link name="${name}"/></xacro:macro>'
@@ -152,9 +152,9 @@ _ARM = '<xacro:macro name="arm" params="prefix"><link name="${prefix}arm"/></xac
 
 
 @pytest.mark.parametrize(("extra_text", "codes"), [("", ["LW705"]), (_ARM + '<xacro:arm prefix="l_"/>', [])])
-def test_unused_parameter_shared_with_other_macros_is_accepted(codes_of, extra_text, codes):
+def test_unused_parameter_shared_with_other_macros_is_accepted(find_codes, extra_text, codes):
     text = robot_text(f'{_WHEEL}<xacro:wheel name="w" prefix=""/>{extra_text}', PREFIX)
-    assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
+    assert find_codes(text, "LW705", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(
@@ -178,12 +178,12 @@ def test_fixed_frame_of_another_robot_is_accepted(tmp_path, frame, codes):
 
 
 @pytest.mark.parametrize(("shape", "codes"), [("", []), ("c", ["LW410"])])
-def test_link_between_colliding_links_needs_no_collision(codes_of, shape, codes):
+def test_link_between_colliding_links_needs_no_collision(find_codes, shape, codes):
     body = BOX.format(0.2) + '<collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision>'
     leg = moving_link("hip", BOX.format(0.1)) + (
         moving_link("thigh", body, "hip") if not shape else moving_link("thigh", body)
     )
-    assert codes_of(robot_text(f'<link name="base">{body}</link>{leg}'), "LW410") == codes
+    assert find_codes(robot_text(f'<link name="base">{body}</link>{leg}'), "LW410") == codes
 
 
 def test_visual_with_zero_size_is_an_info(tmp_path):
@@ -193,41 +193,41 @@ def test_visual_with_zero_size_is_an_info(tmp_path):
     assert [finding.severity.name for finding in findings if finding.code == "LW401"] == ["INFO", "WARNING"]
 
 
-def test_dont_collapse_attribute_of_isaac_gym_is_recognized(codes_of):
+def test_dont_collapse_attribute_of_isaac_gym_is_recognized(find_codes):
     joint = (
         '<joint name="j" type="fixed" dont_collapse="true" origin="0 0 0"><parent link="a"/><child link="b"/></joint>'
     )
-    assert codes_of(robot_text(f'<link name="a"/><link name="b"/>{joint}'), "LW108") == ["LW108"]
+    assert find_codes(robot_text(f'<link name="a"/><link name="b"/>{joint}'), "LW108") == ["LW108"]
 
 
 @pytest.mark.parametrize(("kind", "codes"), [("fixed", ["LW230"]), ("$(arg kind)", [])])
-def test_mimic_on_joint_with_type_from_argument_is_accepted(codes_of, kind, codes):
+def test_mimic_on_joint_with_type_from_argument_is_accepted(find_codes, kind, codes):
     joint = f'<joint name="r" type="{kind}"><parent link="a"/><child link="c"/><mimic joint="j_b"/></joint>'
     text = f'<xacro:arg name="kind" default="fixed"/><link name="a"/>{moving_link("b", "", "a")}<link name="c"/>{joint}'
-    assert codes_of(robot_text(text, PREFIX), "LW230", name="r.urdf.xacro") == codes
+    assert find_codes(robot_text(text, PREFIX), "LW230", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(("size", "codes"), [(0.2, []), (8, ["LW321"])])
-def test_density_follows_collision_beside_large_visual(codes_of, size, codes):
+def test_density_follows_collision_beside_large_visual(find_codes, size, codes):
     shape = BOX.format(8) + f'<collision><geometry><box size="{size} {size} {size}"/></geometry></collision>'
     assert (
-        codes_of(robot_text(f'<link name="base"/>{moving_link("a", shape + inertial_text(1, 0.0067))}'), "LW321")
+        find_codes(robot_text(f'<link name="base"/>{moving_link("a", shape + inertial_text(1, 0.0067))}'), "LW321")
         == codes
     )
 
 
 @pytest.mark.parametrize(("upper", "codes"), [("0", ["LW202"]), ("1", ["LW205", "LW206", "LW222"])])
-def test_joint_without_range_is_reported_once(codes_of, upper, codes):
+def test_joint_without_range_is_reported_once(find_codes, upper, codes):
     joint = '<joint name="j" type="revolute"><parent link="a"/><child link="b"/>'
     joint += f'<limit lower="0" upper="{upper}" effort="0" velocity="0"/></joint><gazebo/>'
-    assert sorted(codes_of(robot_text(f'<link name="a"/><link name="b"/>{joint}'), "LW2")) == codes
+    assert sorted(find_codes(robot_text(f'<link name="a"/><link name="b"/>{joint}'), "LW2")) == codes
 
 
 @pytest.mark.parametrize(("tag", "codes"), [("insert_block", ["LW720"]), ("visual", ["LW705"])])
-def test_parameter_of_tag_without_prefix_is_not_reported_as_unused(codes_of, tag, codes):
+def test_parameter_of_tag_without_prefix_is_not_reported_as_unused(find_codes, tag, codes):
     inside = f'<xacro:macro name="m" params="*origin"><link name="l"/><{tag} name="origin"/></xacro:macro>'
     call = '<xacro:m><origin xyz="0 0 1"/></xacro:m>'
-    assert codes_of(robot_text(inside + call, PREFIX), "LW705", "LW720", name="r.urdf.xacro") == codes
+    assert find_codes(robot_text(inside + call, PREFIX), "LW705", "LW720", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(("extra_text", "severity"), [("", "WARNING"), ("<exec_depend>far</exec_depend>", "INFO")])
@@ -243,27 +243,27 @@ def test_mesh_of_declared_missing_package_is_an_info(tmp_path, extra_text, sever
     ("value", "codes"),
     [("3.14159265", []), ("${pi/2}", []), ("1.5708", []), ("0.0174533", []), ("57.29578", []), ("3.2", ["LW701"])],
 )
-def test_unused_mathematical_constant_is_accepted(codes_of, value, codes):
+def test_unused_mathematical_constant_is_accepted(find_codes, value, codes):
     text = robot_text(f'<xacro:property name="constant" value="{value}"/><link name="a"/>', PREFIX)
-    assert codes_of(text, "LW701", name="r.urdf.xacro") == codes
+    assert find_codes(text, "LW701", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(("default", "codes"), [("^|false", []), ("^", []), ("false", ["LW705"])])
-def test_unused_parameter_with_outer_default_is_accepted(codes_of, default, codes):
+def test_unused_parameter_with_outer_default_is_accepted(find_codes, default, codes):
     macro = f'<xacro:macro name="m" params="use_sim:={default}"><link name="m"/></xacro:macro>'
     outer_default = '<xacro:property name="use_sim" value="1"/><joint name="${use_sim}"/>'
     text = robot_text(f'{outer_default}<link name="base"/>{macro}<xacro:m/>', PREFIX)
-    assert codes_of(text, "LW705", name="r.urdf.xacro") == codes
+    assert find_codes(text, "LW705", name="r.urdf.xacro") == codes
 
 
-def test_bare_call_beside_namespaced_call_is_accepted(codes_of):
+def test_bare_call_beside_namespaced_call_is_accepted(find_codes):
     chosen = (
         '<xacro:property name="a" value="${xacro.load_yaml(f)}"/><xacro:property name="b" value="${load_yaml(f)}"/>'
     )
     macro_text = f'<xacro:macro name="m" params="f">{chosen}<link name="${{a}}${{b}}"/></xacro:macro>'
-    assert codes_of(robot_text(f'<link name="base"/>{macro_text}', PREFIX), "LW714", name="r.urdf.xacro") == []
+    assert find_codes(robot_text(f'<link name="base"/>{macro_text}', PREFIX), "LW714", name="r.urdf.xacro") == []
     without_namespaced_call = macro_text.replace("xacro.load_yaml", "xacro.abs_filename")
-    assert codes_of(
+    assert find_codes(
         robot_text(f'<link name="base"/>{without_namespaced_call}', PREFIX), "LW714", name="r.urdf.xacro"
     ) == ["LW714"]
 
@@ -297,19 +297,19 @@ def test_circular_dependency_is_not_requested(tmp_path, needs, codes):
         ("<visual acme_layer='2'><geometry><sphere radius='1'/></geometry></visual>", []),
     ],
 )
-def test_vendor_elements_and_attributes_are_accepted(codes_of, inside, codes):
-    assert codes_of(robot_text(f'<link name="base">{inside}</link>'), "LW107", "LW108") == codes
+def test_vendor_elements_and_attributes_are_accepted(find_codes, inside, codes):
+    assert find_codes(robot_text(f'<link name="base">{inside}</link>'), "LW107", "LW108") == codes
 
 
 @pytest.mark.parametrize(
     ("lower", "upper", "codes"),
     [(-0.01, 0.088, []), (-0.01, 0.1, ["LW240", "LW240"]), (-0.01, 0.09, ["LW240"]), (-0.05, 0.088, ["LW240"])],
 )
-def test_small_soft_limit_overrun_of_gripper_is_accepted(codes_of, lower, upper, codes):
+def test_small_soft_limit_overrun_of_gripper_is_accepted(find_codes, lower, upper, codes):
     soft = f'soft_lower_limit="{lower}" soft_upper_limit="{upper}"'
     limits = f'<limit lower="0" upper="0.09" effort="1" velocity="1"/><safety_controller k_velocity="1" {soft}/>'
     joint = f'<joint name="j" type="prismatic"><parent link="base"/><child link="a"/>{limits}</joint>'
-    assert codes_of(robot_text(f'<link name="base"/><link name="a"/>{joint}'), "LW240") == codes
+    assert find_codes(robot_text(f'<link name="base"/><link name="a"/>{joint}'), "LW240") == codes
 
 
 @pytest.mark.parametrize(
@@ -330,28 +330,28 @@ def test_collision_apart_hint_names_center_of_offset_mesh(tmp_path, origin, hint
 
 
 @pytest.mark.parametrize(("size", "codes"), [(60, ["LW433"]), (40, ["LW412", "LW413"])])
-def test_mesh_in_millimeters_is_reported_once(codes_of, size, codes):
+def test_mesh_in_millimeters_is_reported_once(find_codes, size, codes):
     facet = f"facet normal 0 0 1\nouter loop\nvertex 5 0 0\nvertex {5 + size} 0 0\nvertex 5 {size} 0\nendloop\nendfacet"
     visual = '<visual><geometry><mesh filename="a.stl"/></geometry></visual>'
     collision = '<collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision>'
     text = robot_text(f'<link name="a">{visual}{collision}</link>')
-    finding_codes = codes_of(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
+    finding_codes = find_codes(text, "LW412", "LW413", "LW433", a_dot_stl=f"solid a\n{facet}\nendsolid a\n")
     assert sorted(finding_codes) == codes
 
 
 @pytest.mark.parametrize(("far_shape", "codes"), [(25, ["LW405"]), (2.5, ["LW412"])])
-def test_far_shape_is_reported_once(codes_of, far_shape, codes):
+def test_far_shape_is_reported_once(find_codes, far_shape, codes):
     visual = f'<visual><origin xyz="{far_shape} 0 0"/><geometry><box size="1 1 1"/></geometry></visual>'
     collision = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
-    assert codes_of(robot_text(f'<link name="a">{visual}{collision}</link>'), "LW405", "LW412") == codes
+    assert find_codes(robot_text(f'<link name="a">{visual}{collision}</link>'), "LW405", "LW412") == codes
 
 
 @pytest.mark.parametrize(
     ("part", "codes"),
     [('<ros2_control name="c" type="system"/>', ["LINT302"]), ('<gazebo reference="a"/>', ["URDF106"])],
 )
-def test_separate_ros2_control_file_is_not_missing_links(codes_of, part, codes):
-    assert codes_of(robot_text(part, PREFIX), "LINT302", "URDF106", name="r.urdf.xacro") == codes
+def test_separate_ros2_control_file_is_not_missing_links(find_codes, part, codes):
+    assert find_codes(robot_text(part, PREFIX), "LINT302", "URDF106", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(
@@ -370,9 +370,9 @@ def test_mesh_path_in_ros_installation_is_reported_once(tmp_path, address, hint)
 
 
 @pytest.mark.parametrize("large_shape", ["a", "b"])
-def test_disconnected_parts_are_reported_once(codes_of, large_shape):
+def test_disconnected_parts_are_reported_once(find_codes, large_shape):
     text = robot_text(f'<link name="a"/><link name="b"/>{moving_link("c", "", parent=large_shape)}')
-    assert codes_of(text, "LW103", "URDF152") == ["URDF152"]
+    assert find_codes(text, "LW103", "URDF152") == ["URDF152"]
 
 
 @pytest.mark.parametrize(
@@ -439,22 +439,22 @@ def test_mesh_package_declared_by_sibling_package_is_an_info(tmp_path, declaring
     assert [finding.severity.name for finding in findings if finding.code == "LW423"] == ["INFO", "WARNING"]
 
 
-def test_material_is_not_reported_beside_missing_include(codes_of):
+def test_material_is_not_reported_beside_missing_include(find_codes):
     colored = '<visual><geometry><box size="1 1 1"/></geometry><material name="dark"/></visual>'
     include = '<xacro:include filename="$(find far_description)/colors.xacro"/>'
     link = f'<link name="a">{colored}</link>'
-    assert codes_of(robot_text(link), "URDF160") == ["URDF160"]
-    assert codes_of(robot_text(include + link, PREFIX), "URDF160") == []
+    assert find_codes(robot_text(link), "URDF160") == ["URDF160"]
+    assert find_codes(robot_text(include + link, PREFIX), "URDF160") == []
 
 
 @pytest.mark.parametrize(("extra_text", "codes"), [("", ["LW102"]), ('<ros2_control name="c" type="system"/>', [])])
-def test_robot_with_ros2_control_needs_no_shapes(codes_of, extra_text, codes):
-    assert codes_of(robot_text(f'<link name="base"/>{moving_link("a", "")}{extra_text}'), "LW102") == codes
+def test_robot_with_ros2_control_needs_no_shapes(find_codes, extra_text, codes):
+    assert find_codes(robot_text(f'<link name="base"/>{moving_link("a", "")}{extra_text}'), "LW102") == codes
 
 
 @pytest.mark.parametrize(("xyz", "codes"), [("0 0 0", []), ("0 0 1", ["LW105"])])
-def test_misplaced_zero_origin_is_accepted(codes_of, xyz, codes):
-    assert codes_of(robot_text(f'<link name="base"><origin xyz="{xyz}" rpy="0 0 0"/></link>'), "LW105") == codes
+def test_misplaced_zero_origin_is_accepted(find_codes, xyz, codes):
+    assert find_codes(robot_text(f'<link name="base"><origin xyz="{xyz}" rpy="0 0 0"/></link>'), "LW105") == codes
 
 
 def test_misplaced_material_hint_names_visual(tmp_path):
@@ -471,29 +471,29 @@ def test_misplaced_material_hint_names_visual(tmp_path):
         (f'<link name="base"/>{moving_link("rock", BOX.format(1) + inertial_text(0, 0))}', ["LW302"]),
     ],
 )
-def test_zero_mass_of_single_link_is_accepted(codes_of, text, codes):
-    assert codes_of(robot_text(text), "LW302") == codes
+def test_zero_mass_of_single_link_is_accepted(find_codes, text, codes):
+    assert find_codes(robot_text(text), "LW302") == codes
 
 
 @pytest.mark.parametrize(("second", "count"), [(1.0, 1), (2.0, 2)])
-def test_equal_too_large_inertias_are_reported_once(codes_of, second, count):
+def test_equal_too_large_inertias_are_reported_once(find_codes, second, count):
     fingers = moving_link("a", BOX.format(0.01) + inertial_text(0.01, 1.0)) + moving_link(
         "b", BOX.format(0.02) + inertial_text(0.01, second)
     )
-    assert codes_of(robot_text(f'<link name="base">{BOX.format(1)}</link>{fingers}'), "LW324") == ["LW324"] * count
+    assert find_codes(robot_text(f'<link name="base">{BOX.format(1)}</link>{fingers}'), "LW324") == ["LW324"] * count
 
 
 @pytest.mark.parametrize(("call", "codes"), [("<!-- <xacro:m/> -->", []), ("<!-- <xacro:n/> -->", ["LW704"])])
-def test_include_with_commented_out_call_is_accepted(codes_of, call, codes):
+def test_include_with_commented_out_call_is_accepted(find_codes, call, codes):
     part = f'<robot {PREFIX}><xacro:macro name="m"><link name="m"/></xacro:macro></robot>'
     text = robot_text(f'<link name="base"/><xacro:include filename="part.xacro"/>{call}', PREFIX)
-    assert codes_of(text, "LW704", name="r.urdf.xacro", part_dot_xacro=part) == codes
+    assert find_codes(text, "LW704", name="r.urdf.xacro", part_dot_xacro=part) == codes
 
 
 @pytest.mark.parametrize(("body", "codes"), [("", []), ('<link name="m"/>', ["LW705"])])
-def test_unused_parameter_of_empty_macro_is_accepted(codes_of, body, codes):
+def test_unused_parameter_of_empty_macro_is_accepted(find_codes, body, codes):
     macro = f'<xacro:macro name="m" params="sim">{body}</xacro:macro><xacro:m sim="1"/>'
-    assert codes_of(robot_text(f'<link name="base"/>{macro}', PREFIX), "LW705", name="r.urdf.xacro") == codes
+    assert find_codes(robot_text(f'<link name="base"/>{macro}', PREFIX), "LW705", name="r.urdf.xacro") == codes
 
 
 @pytest.mark.parametrize(
@@ -507,9 +507,9 @@ def test_shipped_package_is_suggested_only_for_misspelled_name(tmp_path, name, h
 
 
 @pytest.mark.parametrize(("izz", "codes"), [(1, ["LW324"]), (3, ["LW314"])])
-def test_impossible_inertia_is_not_reported_as_too_large(codes_of, izz, codes):
+def test_impossible_inertia_is_not_reported_as_too_large(find_codes, izz, codes):
     part = moving_link("a", BOX.format(0.1) + inertial_text(0.1, 1).replace('izz="1"', f'izz="{izz}"'))
-    assert codes_of(robot_text(f'<link name="base"/>{part}'), "LW314", "LW324") == codes
+    assert find_codes(robot_text(f'<link name="base"/>{part}'), "LW314", "LW324") == codes
 
 
 @pytest.mark.parametrize(
@@ -520,20 +520,22 @@ def test_impossible_inertia_is_not_reported_as_too_large(codes_of, izz, codes):
         ("base", "prismatic", ["LW324"]),
     ],
 )
-def test_inertia_of_link_that_slides_on_world_is_accepted(codes_of, root, kind, codes):
+def test_inertia_of_link_that_slides_on_world_is_accepted(find_codes, root, kind, codes):
     part = moving_link("cart", BOX.format(0.1) + inertial_text(0.1, 1), parent=root).replace("continuous", kind)
     part = part.replace("</joint>", '<limit lower="0" upper="1" effort="1" velocity="1"/></joint>')
-    assert codes_of(robot_text(f'<link name="{root}"/>{part}'), "LW322", "LW324") == codes
+    assert find_codes(robot_text(f'<link name="{root}"/>{part}'), "LW322", "LW324") == codes
 
 
 @pytest.mark.parametrize(
     ("lower", "upper", "count"),
     [("-100", "100", 0), ("-1000.0", "1e3", 0), ("0", "100", 1), ("-120", "120", 2), ("-100", "1000", 2)],
 )
-def test_symmetric_round_limits_of_prismatic_joint_are_accepted(codes_of, lower, upper, count):
+def test_symmetric_round_limits_of_prismatic_joint_are_accepted(find_codes, lower, upper, count):
     slide = moving_link("cart", "").replace("continuous", "prismatic")
     limit = f'<limit lower="{lower}" upper="{upper}" effort="1" velocity="1"/></joint>'
-    assert codes_of(robot_text(f'<link name="base"/>{slide.replace("</joint>", limit)}'), "LW213") == ["LW213"] * count
+    assert (
+        find_codes(robot_text(f'<link name="base"/>{slide.replace("</joint>", limit)}'), "LW213") == ["LW213"] * count
+    )
 
 
 ROVER_LINKS = """<link name="rocker"><visual><geometry><box size="0.4 0.02 0.02"/></geometry></visual></link>
@@ -546,31 +548,31 @@ WHEEL_LINK = """<link name="{0}_wheel"><visual><origin rpy="1.5707963 0 0"/>
 
 
 @pytest.mark.parametrize(("axis", "codes"), [("0 1 0", []), ("0 0 1", ["LW390"])])
-def test_wheels_on_rocker_need_not_be_level(codes_of, axis, codes):
+def test_wheels_on_rocker_need_not_be_level(find_codes, axis, codes):
     wheels = WHEEL_LINK.format("front", "rocker", 0.2, 0) + WHEEL_LINK.format("rear", "base", -0.2, 0.05)
     rocker = ROVER_LINKS.format(rocker="rocker", axis=axis)
-    assert codes_of(robot_text(f'<link name="base"/>{rocker}{wheels}'), "LW390") == codes
+    assert find_codes(robot_text(f'<link name="base"/>{rocker}{wheels}'), "LW390") == codes
 
 
 @pytest.mark.parametrize(("intermediate", "codes"), [(False, ["LW641"]), (True, [])])
-def test_link_that_carries_wheel_is_not_a_wheel(codes_of, intermediate, codes):
+def test_link_that_carries_wheel_is_not_a_wheel(find_codes, intermediate, codes):
     carrier = ROVER_LINKS.replace('name="rocker"', 'name="left_wheel_connector"').format(
         rocker="left_wheel_connector", axis="0 1 0"
     )
     ends = '<parent link="left_wheel_connector"/><child link="leg"/>'
     leg = f'<link name="leg"/><joint name="leg" type="fixed">{ends}</joint>'
     wheel = WHEEL_LINK.format("front", "leg" if intermediate else "base", 0.2, 0)
-    assert codes_of(robot_text(f'<link name="base"/>{carrier}{leg}{wheel}'), "LW641") == codes
+    assert find_codes(robot_text(f'<link name="base"/>{carrier}{leg}{wheel}'), "LW641") == codes
 
 
 @pytest.mark.parametrize(("parent", "codes"), [("world", []), ("base", ["LW226"])])
-def test_far_origin_of_joint_from_world_is_accepted(codes_of, parent, codes):
+def test_far_origin_of_joint_from_world_is_accepted(find_codes, parent, codes):
     joint = f'<joint name="j" type="fixed"><origin xyz="33 17 2"/><parent link="{parent}"/><child link="a"/></joint>'
-    assert codes_of(robot_text(f'<link name="{parent}"/><link name="a"/>{joint}'), "LW226") == codes
+    assert find_codes(robot_text(f'<link name="{parent}"/><link name="a"/>{joint}'), "LW226") == codes
 
 
-def test_duplicate_joint_name_hides_second_parent_finding(codes_of):
+def test_duplicate_joint_name_hides_second_parent_finding(find_codes):
     joint = '<joint name="{}" type="fixed"><parent link="base"/><child link="a"/></joint>'
     links = '<link name="base"/><link name="a"/>'
-    assert codes_of(robot_text(links + joint.format("j") + joint.format("j")), "URDF1") == ["URDF110"]
-    assert codes_of(robot_text(links + joint.format("j") + joint.format("k")), "URDF1") == ["URDF151"]
+    assert find_codes(robot_text(links + joint.format("j") + joint.format("j")), "URDF1") == ["URDF110"]
+    assert find_codes(robot_text(links + joint.format("j") + joint.format("k")), "URDF1") == ["URDF151"]

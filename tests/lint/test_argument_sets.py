@@ -73,7 +73,7 @@ def test_failure_without_arguments_is_one_info(check):
     assert findings[0]["notes"][0]["file"].endswith("view.launch.py")
 
 
-PLAIN = f'<robot name="r"><link name="base_link">{CAN_VISUAL}</link></robot>'
+PLAIN_ROBOT = f'<robot name="r"><link name="base_link">{CAN_VISUAL}</link></robot>'
 EXPANDING_LAUNCH = """
 import os
 import xacro
@@ -91,7 +91,7 @@ def generate_launch_description():
     [(EXPANDING_LAUNCH, []), (EXPANDING_LAUNCH.replace("xacro", "document"), [("error", "LW114")])],
 )
 def test_urdf_file_expanded_by_launch_file_may_contain_xacro(check, launch, expected):
-    findings = check({"arm/urdf/arm.urdf": PLAIN, "arm/urdf/can.stl": "", "arm/launch/view.launch.py": launch})
+    findings = check({"arm/urdf/arm.urdf": PLAIN_ROBOT, "arm/urdf/can.stl": "", "arm/launch/view.launch.py": launch})
     assert [code for code in finding_codes(findings) if code[1] == "LW114"] == expected
 
 

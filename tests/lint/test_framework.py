@@ -15,7 +15,7 @@ from tests.imports import loaded_by, rooms_of
 from tests.lint.cases import FOLDER, load_cases
 
 ROBOTS = sorted((Path(__file__).parents[2] / "robots" / "my_robot_description" / "urdf").glob("*.*"))
-ALL = Settings(select=("ALL",))
+ALL_RULES = Settings(select=("ALL",))
 
 
 def test_rule_codes_and_names_are_unique_and_sorted():
@@ -64,7 +64,7 @@ def test_no_rule_raises_on_any_case(case, tmp_path, monkeypatch):
     for name, text in case.files.items():
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
-    examine(tmp_path / next(iter(case.files)), settings=ALL)
+    examine(tmp_path / next(iter(case.files)), settings=ALL_RULES)
 
 
 @pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.name)
@@ -88,7 +88,7 @@ def test_tutorial_robots_have_no_findings(path):
 def test_no_rule_raises_on_odd_descriptions(tmp_path, text):
     path = tmp_path / "robot.urdf"
     path.write_text(text)
-    examine(path, settings=ALL)
+    examine(path, settings=ALL_RULES)
 
 
 def test_findings_are_in_order_of_text(tmp_path):

@@ -26,7 +26,7 @@ PLUGIN_ELEMENT = """<gazebo><plugin name="drive" filename="libgazebo_ros_diff_dr
 
 
 @pytest.fixture
-def severity_of(tmp_path):
+def find_severity(tmp_path):
     """Return the severity of a rule's only finding about a robot.
 
     The robot has a link ``base`` and other elements.
@@ -65,8 +65,8 @@ def surface_text(name, inside="<mu1>1</mu1>"):
         ),
     ],
 )
-def test_gazebo_surface_of_unknown_link_is_an_info(severity_of, gazebo, severity):
-    assert severity_of("LW120", ARM.replace("arm", "arm_link") + ARM + gazebo) == severity
+def test_gazebo_surface_of_unknown_link_is_an_info(find_severity, gazebo, severity):
+    assert find_severity("LW120", ARM.replace("arm", "arm_link") + ARM + gazebo) == severity
 
 
 def moving_link(mass):
@@ -76,47 +76,47 @@ def moving_link(mass):
 
 
 @pytest.mark.parametrize(("mass", "severity"), [("3", "INFO"), ("3.2", "WARNING"), ("20", "WARNING")])
-def test_round_mass_of_small_part_is_an_info(severity_of, mass, severity):
-    assert severity_of("LW320", moving_link(mass)) == severity
+def test_round_mass_of_small_part_is_an_info(find_severity, mass, severity):
+    assert find_severity("LW320", moving_link(mass)) == severity
 
 
 @pytest.mark.parametrize(("mass", "severity"), [("20.5", "INFO"), ("205", "WARNING")])
-def test_high_density_of_fixed_part_is_an_info(severity_of, mass, severity):
-    assert severity_of("LW320", moving_link(mass).replace("continuous", "fixed")) == severity
+def test_high_density_of_fixed_part_is_an_info(find_severity, mass, severity):
+    assert find_severity("LW320", moving_link(mass).replace("continuous", "fixed")) == severity
 
 
 @pytest.mark.parametrize(
     ("extra_text", "severity"),
     [("", "INFO"), (STATE_INTERFACES_ONLY, "INFO"), (DRIVEN, "WARNING"), (PLUGIN_ELEMENT, "WARNING")],
 )
-def test_opposing_wheels_are_warning_only_if_driven(severity_of, extra_text, severity):
-    assert severity_of("LW643", WHEELS + extra_text) == severity
+def test_opposing_wheels_are_warning_only_if_driven(find_severity, extra_text, severity):
+    assert find_severity("LW643", WHEELS + extra_text) == severity
 
 
 @pytest.mark.parametrize(("triangles", "severity"), [(40_000, "INFO"), (40_001, "WARNING")])
-def test_collision_mesh_above_40000_triangles_is_a_warning(severity_of, tmp_path, triangles, severity):
+def test_collision_mesh_above_40000_triangles_is_a_warning(find_severity, tmp_path, triangles, severity):
     triangle = struct.pack("<12fH", *([0.0] * 3), 0, 0, 0, 1, 0, 0, 0, 1, 1, 0)
     (tmp_path / "a.stl").write_bytes(bytes(80) + struct.pack("<I", triangles) + triangle * triangles)
     mesh = '<link name="a"><collision><geometry><mesh filename="a.stl"/></geometry></collision></link>'
     joint = '<joint name="j" type="fixed"><parent link="base"/><child link="a"/></joint>'
-    assert severity_of("LW435", mesh + joint) == severity
+    assert find_severity("LW435", mesh + joint) == severity
 
 
 @pytest.mark.parametrize(
     ("name", "end", "severity"),
     [("imu", 0, "INFO"), ("ft_sensor", 0, "INFO"), ("imu", 1, "WARNING"), ("limuzin", 0, "WARNING")],
 )
-def test_locked_sensor_joint_is_an_info(severity_of, name, end, severity):
+def test_locked_sensor_joint_is_an_info(find_severity, name, end, severity):
     joint = f'<joint name="{name}_joint" type="revolute"><parent link="base"/><child link="{name}_link"/>'
     limit = f'<axis xyz="0 0 1"/><limit lower="{end}" upper="{end}" effort="1" velocity="1"/></joint>'
-    assert severity_of("LW202", f'<link name="{name}_link"/>{joint}{limit}') == severity
+    assert find_severity("LW202", f'<link name="{name}_link"/>{joint}{limit}') == severity
 
 
 @pytest.mark.parametrize(("extra_text", "severity"), [("", "WARNING"), (f"<visual>{BOX}</visual>", "INFO")])
-def test_footprint_that_is_whole_body_is_an_info(severity_of, extra_text, severity):
+def test_footprint_that_is_whole_body_is_an_info(find_severity, extra_text, severity):
     joint = '<joint name="j" type="fixed"><parent link="base"/><child link="base_footprint"/></joint>'
     link = f'<link name="base_footprint"><collision>{BOX.replace("0.01", "1")}</collision>{extra_text}</link>'
-    assert severity_of("LW623", joint + link) == severity
+    assert find_severity("LW623", joint + link) == severity
 
 
 @pytest.mark.parametrize(
@@ -133,21 +133,21 @@ def test_malformed_xml_comment_in_world_is_an_info(tmp_path, name, text, severit
 
 
 @pytest.mark.parametrize(("second", "severity"), [("0.8 0.8 0.8 1", "INFO"), ("0.7 0.7 0.9 1", "WARNING")])
-def test_similar_color_of_same_material_is_an_info(severity_of, second, severity):
+def test_similar_color_of_same_material_is_an_info(find_severity, second, severity):
     gray = '<visual>{}<material name="grey"><color rgba="{}"/></material></visual>'
     visuals = "".join(gray.format(BOX, color) for color in ("0.7 0.7 0.7 1", second))
-    assert severity_of("LW501", moving_link("3").replace("<inertial>", visuals + "<inertial>")) == severity
+    assert find_severity("LW501", moving_link("3").replace("<inertial>", visuals + "<inertial>")) == severity
 
 
 @pytest.mark.parametrize(("kind", "severity"), [("fixed", "INFO"), ("continuous", "WARNING")])
-def test_missing_shapes_of_fixed_frames_are_an_info(severity_of, kind, severity):
-    assert severity_of("LW102", ARM.replace("fixed", kind)) == severity
+def test_missing_shapes_of_fixed_frames_are_an_info(find_severity, kind, severity):
+    assert find_severity("LW102", ARM.replace("fixed", kind)) == severity
 
 
 @pytest.mark.parametrize(("name", "severity"), [("叶片", "INFO"), ("left arm", "WARNING")])
-def test_non_ascii_mesh_name_is_an_info_and_blank_is_a_warning(severity_of, name, severity):
+def test_non_ascii_mesh_name_is_an_info_and_blank_is_a_warning(find_severity, name, severity):
     mesh = f'<visual><geometry><mesh filename="package://p/{name}.stl"/></geometry></visual>'
-    assert severity_of("LW427", f'{ARM}<link name="b">{mesh}</link>') == severity
+    assert find_severity("LW427", f'{ARM}<link name="b">{mesh}</link>') == severity
 
 
 @pytest.mark.parametrize(
@@ -181,18 +181,18 @@ def test_world_named_world_is_an_info_for_gazebo_classic(tmp_path, depends, seve
 
 
 @pytest.mark.parametrize(("beside", "severity"), [('<mujoco model="r"/>', "INFO"), ("<launch/>", "WARNING")])
-def test_relative_mesh_path_beside_mujoco_model_is_an_info(severity_of, tmp_path, beside, severity):
+def test_relative_mesh_path_beside_mujoco_model_is_an_info(find_severity, tmp_path, beside, severity):
     (tmp_path / "package.xml").write_text("<package><name>p</name></package>")
     (tmp_path / "r.xml").write_text(f"<!-- made by hand -->\n{beside}")
     mesh = '<visual><geometry><mesh filename="assets/a.stl"/></geometry></visual>'
-    assert severity_of("LW421", f'{ARM}<link name="b">{mesh}</link>') == severity
+    assert find_severity("LW421", f'{ARM}<link name="b">{mesh}</link>') == severity
 
 
 @pytest.mark.parametrize(
     ("extra_text", "shape", "severity"),
     [("", "", "INFO"), ("<gazebo/>", "", "WARNING"), ("", f"<visual>{BOX}</visual>", "WARNING")],
 )
-def test_missing_inertial_without_shape_and_simulator_is_an_info(severity_of, extra_text, shape, severity):
+def test_missing_inertial_without_shape_and_simulator_is_an_info(find_severity, extra_text, shape, severity):
     robot = moving_link("3") + f'<link name="command">{shape}</link>'
     joint = '<joint name="k" type="continuous"><parent link="base"/><child link="command"/></joint>'
-    assert severity_of("LW301", robot + joint + extra_text) == severity
+    assert find_severity("LW301", robot + joint + extra_text) == severity

@@ -33,7 +33,7 @@ class Nameless(Rule):
 
 
 @pytest.fixture
-def installed(tmp_path, monkeypatch):
+def install_rules(tmp_path, monkeypatch):
     """Install a package with the given rules."""
 
     def install(text: str) -> None:
@@ -63,13 +63,13 @@ def robot(tmp_path):
     return path
 
 
-def test_plugin_rules_run_beside_built_in_rules(installed, robot):
-    installed(RULES)
+def test_plugin_rules_run_beside_built_in_rules(install_rules, robot):
+    install_rules(RULES)
     assert [finding.code for finding in check(robot)] == ["TEAM001"]
 
 
-def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
-    installed(RULES)
+def test_plugin_rules_are_selected_suppressed_and_explained(install_rules, robot):
+    install_rules(RULES)
     (robot.parent / "linkwright.toml").write_text('ignore = ["robot-of-no-team"]')
     assert find_settings(robot)[1] == ()
     assert check(robot) == []
@@ -87,8 +87,8 @@ def test_plugin_rules_are_selected_suppressed_and_explained(installed, robot):
         (RULES.replace("robot-of-no-team", "limit-inverted"), "'TEAM001' or 'limit-inverted' is taken"),
     ],
 )
-def test_unusable_plugin_rules_are_one_warning(installed, robot, text, reason):
-    installed(text)
+def test_unusable_plugin_rules_are_one_warning(install_rules, robot, text, reason):
+    install_rules(text)
     (finding,) = check(robot)
     assert (finding.code, finding.severity.value) == ("LINT301", "warning")
     assert finding.message.startswith("the rules of 'team_rules' cannot be used: ")
@@ -110,8 +110,8 @@ class Broken(Rule):
 
 
 @pytest.mark.parametrize("fault", ["subject.nothing", "raise KeyError(1)", "yield None"])
-def test_failing_plugin_rule_is_reported_and_other_rules_run(installed, robot, fault):
-    installed(RULES + BROKEN.format(fault=fault))
+def test_failing_plugin_rule_is_reported_and_other_rules_run(install_rules, robot, fault):
+    install_rules(RULES + BROKEN.format(fault=fault))
     finding_of_rule, failed = sorted(check(robot), key=lambda finding: finding.code, reverse=True)
     assert (finding_of_rule.code, failed.code, failed.severity.value) == ("TEAM001", "LINT304", "error")
     assert failed.message.startswith("rule TEAM003 of the module 'team_rules' failed: ")
@@ -138,8 +138,8 @@ class NoReadme(Rule):
 """
 
 
-def test_a_rule_about_packages_runs_only_for_a_description_in_a_package(installed, robot):
-    installed(RULES + OF_PACKAGES)
+def test_a_rule_about_packages_runs_only_for_a_description_in_a_package(install_rules, robot):
+    install_rules(RULES + OF_PACKAGES)
     assert [finding.code for finding in check(robot)] == ["TEAM001"]
     (robot.parent / "package.xml").write_text("<package format='3'><name>robot</name></package>")
     assert {"TEAM001", "TEAM004"} <= {finding.code for finding in check(robot)}

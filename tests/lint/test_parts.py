@@ -16,7 +16,7 @@ def joint_text(name: str, limit: str = INVALID_LIMITS) -> str:
 
 
 @pytest.fixture
-def codes(tmp_path):
+def find_codes(tmp_path):
     def check_body(body: str) -> list[str]:
         path = tmp_path / "robot.xacro"
         path.write_text(f'<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">\n{body}\n</robot>')
@@ -25,23 +25,25 @@ def codes(tmp_path):
     return check_body
 
 
-def test_rule_findings_are_reported_beside_xacro_error(codes):
-    assert codes(f'{joint_text("a")}\n<xacro:whel/>\n<link name="${{x}}"/>') == ["LW201", "XAC401", "XAC201"]
+def test_rule_findings_are_reported_beside_xacro_error(find_codes):
+    assert find_codes(f'{joint_text("a")}\n<xacro:whel/>\n<link name="${{x}}"/>') == ["LW201", "XAC401", "XAC201"]
 
 
-def test_urdf_errors_are_reported_beside_xacro_error(codes):
-    assert codes('<link name="a"><visual/></link>\n<xacro:whel/>') == ["URDF130", "XAC401"]
+def test_urdf_errors_are_reported_beside_xacro_error(find_codes):
+    assert find_codes('<link name="a"><visual/></link>\n<xacro:whel/>') == ["URDF130", "XAC401"]
 
 
-def test_consequences_of_missing_part_are_not_reported(codes):
+def test_consequences_of_missing_part_are_not_reported(find_codes):
     # Without the missing part, there are two root links, a joint of missing links, and an unused property and macro.
     unused = '<xacro:property name="p" value="1"/><xacro:macro name="m"/>'
-    assert codes(f'{unused}<link name="a"/><link name="b"/>{joint_text("c", VALID_LIMITS)}<xacro:whel/>') == ["XAC401"]
+    assert find_codes(f'{unused}<link name="a"/><link name="b"/>{joint_text("c", VALID_LIMITS)}<xacro:whel/>') == [
+        "XAC401"
+    ]
 
 
-def test_element_with_failed_attribute_is_not_checked(codes):
+def test_element_with_failed_attribute_is_not_checked(find_codes):
     limit = '<axis xyz="0 0 1"/><limit lower="1" upper="-1" effort="${x}" velocity="1"/>'
-    assert codes(joint_text("a", limit)) == ["XAC201"]
+    assert find_codes(joint_text("a", limit)) == ["XAC201"]
 
 
 def test_suppression_is_not_reported_as_unused_beside_xacro_error(tmp_path):

@@ -17,7 +17,7 @@ VALID_INERTIAL = "<inertial><mass>1</mass><inertia><ixx>1</ixx><iyy>1</iyy><izz>
 
 
 @pytest.fixture
-def findings_of(tmp_path, monkeypatch):
+def check_models(tmp_path, monkeypatch):
     """Return the code, line, location and message of the findings about models in a world."""
     monkeypatch.setenv("HOME", str(tmp_path))
 
@@ -49,19 +49,19 @@ def inertia_text(ixx, iyy, izz, products=""):
         (inertia_text(1, "nan", 1), "SDF122", "the mass or inertia of link 'l' is not a finite number"),
     ],
 )
-def test_impossible_inertials_are_reported_unless_static(findings_of, inertial, code, message):
-    assert findings_of(link_text(inertial)) == [(code, 2, message)]
-    assert findings_of(link_text(inertial, "<static>true</static>")) == []
+def test_impossible_inertials_are_reported_unless_static(check_models, inertial, code, message):
+    assert check_models(link_text(inertial)) == [(code, 2, message)]
+    assert check_models(link_text(inertial, "<static>true</static>")) == []
 
 
-def test_automatic_inertial_is_not_checked(findings_of):
-    assert findings_of(link_text('<inertial auto="true"><mass>0</mass></inertial>')) == []
+def test_automatic_inertial_is_not_checked(check_models):
+    assert check_models(link_text('<inertial auto="true"><mass>0</mass></inertial>')) == []
 
 
-def test_models_in_static_models_are_not_checked(findings_of):
+def test_models_in_static_models_are_not_checked(check_models):
     inner = link_text("<inertial><mass>-2</mass></inertial>")
-    assert findings_of(f'<model name="o"><static>1</static>{inner}</model>') == []
-    assert len(findings_of(f'<model name="o"><link name="a"/>{inner}</model>')) == 1
+    assert check_models(f'<model name="o"><static>1</static>{inner}</model>') == []
+    assert len(check_models(f'<model name="o"><link name="a"/>{inner}</model>')) == 1
 
 
 @pytest.mark.parametrize(
@@ -73,44 +73,44 @@ def test_models_in_static_models_are_not_checked(findings_of):
         "<ellipsoid><radii>1 1 0</radii></ellipsoid>",
     ],
 )
-def test_nonpositive_shape_sizes_are_reported(findings_of, shape):
+def test_nonpositive_shape_sizes_are_reported(check_models, shape):
     collision = f'<collision name="c"><geometry>{shape}</geometry></collision>'
-    assert findings_of(link_text(VALID_INERTIAL + collision)) == [
+    assert check_models(link_text(VALID_INERTIAL + collision)) == [
         ("SDF122", 2, "collision 'c' has a size that is not positive")
     ]
 
 
-def test_zero_axis_and_zero_step_are_reported(findings_of):
+def test_zero_axis_and_zero_step_are_reported(check_models):
     joint = '<joint name="j" type="revolute"><parent>l</parent><child>k</child><axis><xyz>0 0 0</xyz></axis></joint>'
     model = f'<model name="m"><link name="l"/><link name="k"/>{joint}</model>'
-    assert findings_of(model) == [("SDF122", 2, "the axis of joint 'j' has no direction")]
+    assert check_models(model) == [("SDF122", 2, "the axis of joint 'j' has no direction")]
     fixed = [joint.replace('"j"', f'"{name}"').replace("revolute", "fixed") for name in ("f", "g", "h")]
     model = f'<model name="m"><link name="l"/><link name="k"/>{joint}{"".join(fixed)}</model>'
-    assert findings_of(model) == [
+    assert check_models(model) == [
         ("SDF122", 2, "the axis of joint 'j' has no direction"),
         ("SDF122", 2, "the axis of joint 'f' has no direction (and 2 more)"),
     ]
     step = '<physics type="ode"><max_step_size>0</max_step_size></physics>'
-    assert findings_of(step + link_text(VALID_INERTIAL)) == [("SDF122", 2, "the time step is not positive: 0 s")]
+    assert check_models(step + link_text(VALID_INERTIAL)) == [("SDF122", 2, "the time step is not positive: 0 s")]
 
 
-def test_shapes_without_size_are_one_finding_per_model(findings_of):
+def test_shapes_without_size_are_one_finding_per_model(check_models):
     box = '<{0} name="{1}"><geometry>\n<box><size>0 1 2</size></box></geometry></{0}>'
     walls = "".join(box.format(kind, f"{kind}{number}") for number in range(2) for kind in ("visual", "collision"))
-    assert findings_of(link_text(VALID_INERTIAL + walls)) == [
+    assert check_models(link_text(VALID_INERTIAL + walls)) == [
         ("SDF122", 3, "visual 'visual0' has a size that is not positive (and 3 more)")
     ]
 
 
-def test_missing_mesh_is_reported_once(findings_of, tmp_path):
+def test_missing_mesh_is_reported_once(check_models, tmp_path):
     visual = '<visual name="v{}"><geometry><mesh>\n<uri>meshes/a.stl</uri></mesh></geometry></visual>'
     model = link_text(VALID_INERTIAL + visual.format(1) + visual.format(2))
-    findings = findings_of(model)
+    findings = check_models(model)
     assert [finding[:2] for finding in findings] == [("SDF162", 3)]
     assert findings[0][2].startswith("'meshes/a.stl' of visual 'v1' is left out: ")
     (tmp_path / "meshes").mkdir()
     (tmp_path / "meshes/a.stl").touch()
-    assert findings_of(model) == []
+    assert check_models(model) == []
 
 
 def test_missing_models_and_meshes_are_one_finding_each(tmp_path, monkeypatch):

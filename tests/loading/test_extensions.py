@@ -11,7 +11,7 @@ from linkwright.loading import extensions
 
 
 @pytest.fixture
-def installed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def install_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """Install packages with entry points of one group, in the given order."""
 
     def install(**packages: list[str]) -> None:
@@ -31,8 +31,8 @@ def names() -> list[str]:
     return list(extensions.extensions("linkwright.things"))
 
 
-def test_linkwright_extensions_come_first_then_sorted_by_name(installed) -> None:
-    installed(
+def test_linkwright_extensions_come_first_then_sorted_by_name(install_packages) -> None:
+    install_packages(
         brought=["b = brought:b", "a = brought:a"],
         linkwright=["z = linkwright.z:z", "y = linkwright.y:y"],
         other=["ab = other:ab"],
@@ -40,8 +40,8 @@ def test_linkwright_extensions_come_first_then_sorted_by_name(installed) -> None
     assert names() == ["y", "z", "a", "ab", "b"]
 
 
-def test_duplicate_extension_names_keep_first(installed) -> None:
-    installed(
+def test_duplicate_extension_names_keep_first(install_packages) -> None:
+    install_packages(
         brought=["y = brought:y", "a = brought:a"],
         linkwright=["y = linkwright.y:y"],
         other=["a = other:a"],

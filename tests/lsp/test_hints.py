@@ -15,7 +15,7 @@ from linkwright.language.highlighting import HighlightKind
 from tests.lsp.conftest import MAIN, PARTS
 
 FILE, PARTS_FILE = "urdf/arm.urdf.xacro", "urdf/parts.xacro"
-ALL = types.Range(types.Position(0, 0), types.Position(1000, 0))
+WHOLE_TEXT = types.Range(types.Position(0, 0), types.Position(1000, 0))
 
 
 def position_after(text: str, place: str) -> types.Position:
@@ -28,9 +28,11 @@ async def test_inlay_hints_show_expression_values(editor):
     text = MAIN.replace("</robot>", '  <xacro:bar name="lower" length="${0.2 + 0.1}"/>\n</robot>')
     editor.open(FILE, text)
     editor.open(PARTS_FILE)
-    hints = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
+    hints = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), WHOLE_TEXT))
     assert [hint.label for hint in hints] == ["= 0.30000000000000004"]
-    hints = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(PARTS_FILE), ALL))
+    hints = await editor.client.text_document_inlay_hint_async(
+        types.InlayHintParams(editor.document(PARTS_FILE), WHOLE_TEXT)
+    )
     expected = [(2, "= upper | lower"), (3, "= upper_joint | lower_joint"), (5, "= upper | lower")]
     assert [(hint.position.line, hint.label) for hint in hints] == expected
 
@@ -52,7 +54,7 @@ async def test_inlay_hints_name_block_parameters_of_macro_call(editor):
         1,
     )
     editor.open(FILE, text)
-    hints = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
+    hints = await editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), WHOLE_TEXT))
     assert [hint.label for hint in hints if hint.kind is types.InlayHintKind.Parameter] == ["*pose:", "**rest:"]
 
 
@@ -185,7 +187,7 @@ async def test_macro_calls_have_hierarchy(editor):
 async def test_request_for_changing_text_is_rejected(editor):
     calls = "".join(f'<xacro:bar name="b{number}" length="${{{number} + 1}}"/>\n' for number in range(3000))
     editor.open(FILE, MAIN.replace("</robot>", calls + "</robot>"))
-    parameters = editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), ALL))
+    parameters = editor.client.text_document_inlay_hint_async(types.InlayHintParams(editor.document(FILE), WHOLE_TEXT))
     task = asyncio.ensure_future(parameters)
     await asyncio.sleep(0)  # the request is sent, then the change; the expansion takes much longer
     editor.change(FILE, MAIN)

@@ -22,7 +22,7 @@ from linkwright.messages import (
 )
 from tests.messages.random_messages import random_message
 
-ALL = interface_names("msg")
+ALL_MESSAGE_NAMES = interface_names("msg")
 OPTIONS = ({}, {"truncate_length": 2}, {"no_arr": True}, {"no_str": True}, {"truncate_length": 0, "no_str": True})
 
 
@@ -43,7 +43,7 @@ def dump_yaml(data, flow_style=False):
     return yaml.dump(data, Dumper=Dumper, allow_unicode=True, width=sys.maxsize, default_flow_style=flow_style)
 
 
-@pytest.mark.parametrize("name", ALL)
+@pytest.mark.parametrize("name", ALL_MESSAGE_NAMES)
 def test_to_yaml_matches_pyyaml(name):
     for seed, options in enumerate(OPTIONS):
         message = random_message(get_message(name), seed)

@@ -16,7 +16,7 @@ def rules(text: str, package: Path | None = None) -> CMakeFile:
     return read_cmake(SourceText("CMakeLists.txt", HEAD + text + "\nament_package()\n"), package)
 
 
-def copied(text: str, package: Path) -> dict[str, str]:
+def copied_paths(text: str, package: Path) -> dict[str, str]:
     """Return the source and destination of all copied files; nothing may be unknown."""
     install_rules = rules(text, package)
     assert install_rules.is_complete, install_rules.unknown
@@ -33,7 +33,7 @@ def package(tmp_path: Path) -> Path:
 
 
 def test_install_directory_keeps_folder_name(package: Path) -> None:
-    assert copied("install(DIRECTORY urdf launch DESTINATION share/${PROJECT_NAME})", package) == {
+    assert copied_paths("install(DIRECTORY urdf launch DESTINATION share/${PROJECT_NAME})", package) == {
         "urdf/arm.urdf": "share/arm/urdf/arm.urdf",
         "urdf/notes.txt": "share/arm/urdf/notes.txt",
         "urdf/parts/hand.xacro": "share/arm/urdf/parts/hand.xacro",
@@ -42,15 +42,15 @@ def test_install_directory_keeps_folder_name(package: Path) -> None:
 
 
 def test_trailing_slash_installs_folder_content(package: Path) -> None:
-    copies = copied('install(DIRECTORY "launch/" DESTINATION share/arm/start)', package)
+    copies = copied_paths('install(DIRECTORY "launch/" DESTINATION share/arm/start)', package)
     assert copies == {"launch/show.launch.py": "share/arm/start/show.launch.py"}
 
 
 def test_install_patterns_select_files(package: Path) -> None:
     matching = 'install(DIRECTORY urdf DESTINATION share/arm FILES_MATCHING PATTERN "*.urdf" PATTERN "*.xacro")'
-    assert set(copied(matching, package)) == {"urdf/arm.urdf", "urdf/parts/hand.xacro"}
+    assert set(copied_paths(matching, package)) == {"urdf/arm.urdf", "urdf/parts/hand.xacro"}
     excluding = 'install(DIRECTORY urdf DESTINATION share/arm PATTERN "parts" EXCLUDE)'
-    assert set(copied(excluding, package)) == {"urdf/arm.urdf", "urdf/notes.txt"}
+    assert set(copied_paths(excluding, package)) == {"urdf/arm.urdf", "urdf/notes.txt"}
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_install_programs_and_rename(package: Path) -> None:
         "install(PROGRAMS scripts/run.py DESTINATION lib/${PROJECT_NAME})\n"
         "install(FILES urdf/arm.urdf DESTINATION share/${PROJECT_NAME} RENAME robot.urdf)"
     )
-    assert copied(text, package) == {"scripts/run.py": "lib/arm/run.py", "urdf/arm.urdf": "share/arm/robot.urdf"}
+    assert copied_paths(text, package) == {"scripts/run.py": "lib/arm/run.py", "urdf/arm.urdf": "share/arm/robot.urdf"}
     assert rules(text).programs == {"run.py": "scripts/run.py"}
 
 
@@ -123,14 +123,14 @@ def test_auto_package_installs_to_share(package: Path) -> None:
     ],
 )
 def test_loops_functions_and_variables_are_followed(package: Path, text: str) -> None:
-    assert copied(text, package) == copied("install(DIRECTORY urdf launch DESTINATION share/arm)", package)
+    assert copied_paths(text, package) == copied_paths("install(DIRECTORY urdf launch DESTINATION share/arm)", package)
 
 
 def test_file_glob_is_expanded(package: Path) -> None:
     text = 'file(GLOB_RECURSE found "urdf/*.xacro")\ninstall(FILES ${found} DESTINATION share/arm/xacro)'
-    assert copied(text, package) == {"urdf/parts/hand.xacro": "share/arm/xacro/hand.xacro"}
+    assert copied_paths(text, package) == {"urdf/parts/hand.xacro": "share/arm/xacro/hand.xacro"}
     text = "file(GLOB found RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} urdf/*.urdf)\ninstall(FILES ${found} DESTINATION x)"
-    assert copied(text, package) == {"urdf/arm.urdf": "x/arm.urdf"}
+    assert copied_paths(text, package) == {"urdf/arm.urdf": "x/arm.urdf"}
 
 
 @pytest.mark.parametrize(
@@ -144,7 +144,7 @@ def test_file_glob_is_expanded(package: Path) -> None:
 )
 def test_file_glob_supports_options_folders_and_double_stars(package: Path, words: str) -> None:
     text = f"project(arm)\nfile({words})\ninstall(FILES ${{found}} DESTINATION share/arm)"
-    assert copied(text, package) == {"urdf/arm.urdf": "share/arm/arm.urdf"}
+    assert copied_paths(text, package) == {"urdf/arm.urdf": "share/arm/arm.urdf"}
 
 
 def test_subdirectories_and_included_files_are_read(package: Path) -> None:
@@ -154,7 +154,7 @@ def test_subdirectories_and_included_files_are_read(package: Path) -> None:
     )
     (package / "more.cmake").write_text("install(FILES launch/show.launch.py DESTINATION share/arm)\n")
     text = "include(GNUInstallDirs)\ninclude(more.cmake)\nadd_subdirectory(urdf)"
-    assert copied(text, package) == {
+    assert copied_paths(text, package) == {
         "launch/show.launch.py": "share/arm/show.launch.py",
         "urdf/arm.urdf": "share/arm/robots/arm.urdf",
         "urdf/parts/hand.xacro": "share/arm/parts/hand.xacro",
@@ -212,7 +212,7 @@ def test_missing_files_are_reported_unless_optional(package: Path) -> None:
     with pytest.raises(FileNotFoundError, match="meshes"):
         list(rules("install(DIRECTORY meshes DESTINATION share/arm)").installed_files(package))
     for text in ("install(FILES none DESTINATION x OPTIONAL)", "if(A)\ninstall(FILES none DESTINATION x)\nendif()"):
-        assert copied(text, package) == {}
+        assert copied_paths(text, package) == {}
 
 
 _DONE_BY_CMAKE = [
@@ -422,7 +422,7 @@ def test_undecidable_condition_reads_all_branches(package: Path, condition: str)
           install(FILES none DESTINATION b)
         endif()
     """
-    assert copied(text, package) == {"urdf/arm.urdf": "a/arm.urdf"}
+    assert copied_paths(text, package) == {"urdf/arm.urdf": "a/arm.urdf"}
 
 
 def test_files_generated_by_build_are_installed(package: Path) -> None:

@@ -21,7 +21,7 @@ def make_source(folder: Path, name: str) -> Path:
     return folder
 
 
-def install(prefix: Path, name: str, *, marker: bool = True) -> Path:
+def install_package(prefix: Path, name: str, *, marker: bool = True) -> Path:
     share = prefix / "share" / name
     make_source(share, name)
     if marker:
@@ -31,33 +31,33 @@ def install(prefix: Path, name: str, *, marker: bool = True) -> Path:
     return share
 
 
-def finder(start: Path, *prefixes: Path, **extra: Path) -> PackageFinder:
+def make_finder(start: Path, *prefixes: Path, **extra: Path) -> PackageFinder:
     environment = {"AMENT_PREFIX_PATH": os.pathsep.join(map(str, prefixes))} if prefixes else {}
     return PackageFinder(start=start, environment=environment, extra=extra)
 
 
 def test_extra_packages_take_precedence(tmp_path: Path) -> None:
-    install(tmp_path / "ros", "arm")
-    assert finder(tmp_path, tmp_path / "ros", arm=tmp_path / "mine").share("arm") == tmp_path / "mine"
+    install_package(tmp_path / "ros", "arm")
+    assert make_finder(tmp_path, tmp_path / "ros", arm=tmp_path / "mine").share("arm") == tmp_path / "mine"
 
 
 def test_prefixes_are_searched_in_order(tmp_path: Path) -> None:
-    overlay = install(tmp_path / "overlay", "arm")
-    install(tmp_path / "ros", "arm")
-    underlay = install(tmp_path / "ros", "gripper")
-    package_finder = finder(tmp_path, tmp_path / "overlay", tmp_path / "ros")
+    overlay = install_package(tmp_path / "overlay", "arm")
+    install_package(tmp_path / "ros", "arm")
+    underlay = install_package(tmp_path / "ros", "gripper")
+    package_finder = make_finder(tmp_path, tmp_path / "overlay", tmp_path / "ros")
     assert package_finder.share("arm") == overlay
     assert package_finder.share("gripper") == underlay
 
 
 def test_installed_package_without_index_marker_is_found(tmp_path: Path) -> None:
-    share = install(tmp_path / "ros", "arm", marker=False)
-    assert finder(tmp_path, tmp_path / "ros").share("arm") == share
+    share = install_package(tmp_path / "ros", "arm", marker=False)
+    assert make_finder(tmp_path, tmp_path / "ros").share("arm") == share
 
 
 def test_prefix_lookup_does_not_scan_sources(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    install(tmp_path / "ros", "arm")
-    package_finder = finder(tmp_path, tmp_path / "ros")
+    install_package(tmp_path / "ros", "arm")
+    package_finder = make_finder(tmp_path, tmp_path / "ros")
 
     def forbidden(*_: object) -> None:
         raise AssertionError("the source tree is scanned")
@@ -69,20 +69,20 @@ def test_prefix_lookup_does_not_scan_sources(tmp_path: Path, monkeypatch: pytest
 @pytest.mark.parametrize("merged", [True, False])
 def test_colcon_install_folder_is_found_from_inside_workspace(tmp_path: Path, merged: bool) -> None:
     folder = tmp_path / "ws" / "install"
-    share = install(folder if merged else folder / "arm", "arm")
+    share = install_package(folder if merged else folder / "arm", "arm")
     (folder / ".colcon_install_layout").write_text("merged\n" if merged else "isolated\n")
     inside = tmp_path / "ws" / "src" / "deep"
     inside.mkdir(parents=True)
-    assert finder(inside).share("arm") == share
-    assert finder(inside).packages()["arm"] == share
+    assert make_finder(inside).share("arm") == share
+    assert make_finder(inside).packages()["arm"] == share
 
 
 def test_packages_of_current_prefix_are_found_by_markers(tmp_path: Path) -> None:
-    share = install(tmp_path / "ros", "arm-data")
+    share = install_package(tmp_path / "ros", "arm-data")
     make_source(share, "arm_descriptions")  # URIs use the name of the marker
     (share / "urdf").mkdir()
-    other = install(tmp_path / "ros", "meshes")
-    package_finder = finder(share / "urdf")
+    other = install_package(tmp_path / "ros", "meshes")
+    package_finder = make_finder(share / "urdf")
     assert package_finder.share("arm-data") == share
     assert package_finder.share("meshes") == other
     assert package_finder.packages()["arm-data"] == share
@@ -96,42 +96,42 @@ def test_share_folder_without_index_is_not_a_prefix(tmp_path: Path) -> None:
     inside.mkdir(parents=True)
     (tmp_path / "share" / "elsewhere").mkdir()
     make_source(tmp_path / "share" / "elsewhere", "other_name")
-    assert finder(inside).find("elsewhere") is None
+    assert make_finder(inside).find("elsewhere") is None
 
 
 def test_install_folder_without_colcon_layout_is_not_a_prefix(tmp_path: Path) -> None:
-    install(tmp_path / "install", "arm")
-    assert finder(tmp_path).find("arm") is None
+    install_package(tmp_path / "install", "arm")
+    assert make_finder(tmp_path).find("arm") is None
 
 
 def test_symlink_install_returns_share_path(tmp_path: Path) -> None:
     source = make_source(tmp_path / "src" / "arm", "arm")
-    share = install(tmp_path / "install" / "arm", "arm")
+    share = install_package(tmp_path / "install" / "arm", "arm")
     (share / "package.xml").unlink()
     (share / "package.xml").symlink_to(source / "package.xml")
     (tmp_path / "install" / ".colcon_install_layout").write_text("isolated\n")
-    assert finder(tmp_path).share("arm") == share
+    assert make_finder(tmp_path).share("arm") == share
 
 
 def test_installed_copy_takes_precedence_over_source(tmp_path: Path) -> None:
     make_source(tmp_path / "src" / "arm", "arm")
-    share = install(tmp_path / "install" / "arm", "arm")
+    share = install_package(tmp_path / "install" / "arm", "arm")
     (tmp_path / "install" / "local_setup.sh").touch()
-    assert finder(tmp_path).share("arm") == share
+    assert make_finder(tmp_path).share("arm") == share
 
 
 def test_sources_are_found_below_src_of_parent_folders(tmp_path: Path) -> None:
     arm = make_source(tmp_path / "ws" / "src" / "group" / "arm", "arm")
     unrelated_folder = tmp_path / "ws" / "notes" / "today"
     unrelated_folder.mkdir(parents=True)
-    assert finder(unrelated_folder).share("arm") == arm
+    assert make_finder(unrelated_folder).share("arm") == arm
 
 
 def test_current_package_and_its_siblings_are_found(tmp_path: Path) -> None:
     arm = make_source(tmp_path / "repo" / "arm", "arm")
     gripper = make_source(tmp_path / "repo" / "gripper", "gripper")
     (arm / "urdf").mkdir()
-    package_finder = finder(arm / "urdf")
+    package_finder = make_finder(arm / "urdf")
     assert package_finder.share("arm") == arm
     assert package_finder.share("gripper") == gripper
 
@@ -163,16 +163,16 @@ def test_starting_at_reuses_scanned_source_trees(tmp_path: Path, monkeypatch: py
 def test_shipped_packages_are_found_anywhere(tmp_path: Path) -> None:
     shipped = shipped_folder()
     assert shipped is not None
-    assert finder(tmp_path).share("my_robot_description") == shipped / "my_robot_description"
+    assert make_finder(tmp_path).share("my_robot_description") == shipped / "my_robot_description"
 
 
 def test_unknown_package_error_lists_searched_folders_and_similar_names(tmp_path: Path) -> None:
-    install(tmp_path / "ros", "turtlebot4_description")
+    install_package(tmp_path / "ros", "turtlebot4_description")
     make_source(tmp_path / "ws" / "src" / "arm", "arm")
     nameless = tmp_path / "ws" / "src" / "broken"
     nameless.mkdir()
     (nameless / "package.xml").write_text("<package/>")
-    package_finder = finder(tmp_path / "ws", tmp_path / "ros")
+    package_finder = make_finder(tmp_path / "ws", tmp_path / "ros")
     with pytest.raises(PackageNotFoundError) as caught:
         package_finder.share("turtlebot_description")
     (diagnostic,) = caught.value.diagnostics
@@ -187,20 +187,20 @@ def test_unknown_package_error_lists_searched_folders_and_similar_names(tmp_path
 
 
 def test_package_sharing_only_common_words_is_not_suggested(tmp_path: Path) -> None:
-    install(tmp_path / "ros", "kuka_robot_description")
+    install_package(tmp_path / "ros", "kuka_robot_description")
     with pytest.raises(PackageNotFoundError) as caught:
-        finder(tmp_path, tmp_path / "ros").share("abb_robot_description")
+        make_finder(tmp_path, tmp_path / "ros").share("abb_robot_description")
     assert "did you mean" not in (caught.value.diagnostics[0].hint or "")
 
 
 def test_error_is_key_error_as_in_ament_index_python(tmp_path: Path) -> None:
     with pytest.raises(KeyError) as caught:
-        finder(tmp_path).share("no_such_package_at_all")
+        make_finder(tmp_path).share("no_such_package_at_all")
     assert "package 'no_such_package_at_all' not found" in str(caught.value)
 
 
 def test_use_finder_sets_current_finder(tmp_path: Path) -> None:
-    own_finder = finder(tmp_path)
+    own_finder = make_finder(tmp_path)
     with use_finder(own_finder):
         assert current_finder() is own_finder
     assert current_finder() is not own_finder
@@ -261,7 +261,7 @@ class TestSourceScan:
 class TestResolve:
     @pytest.fixture
     def packages(self, tmp_path: Path) -> PackageFinder:
-        return finder(tmp_path, arm=tmp_path / "arm")
+        return make_finder(tmp_path, arm=tmp_path / "arm")
 
     @pytest.mark.parametrize(
         ("address", "path"),
@@ -306,18 +306,18 @@ class TestResolve:
 
 @pytest.mark.parametrize("name", ["launch_ros", "rclpy", "std_msgs", "robot_state_publisher", "rviz2", "xacro"])
 def test_stand_in_packages_have_share_folder_unless_installed(tmp_path: Path, name: str) -> None:
-    package_finder = finder(tmp_path)
+    package_finder = make_finder(tmp_path)
     share = package_finder.share(name)
     assert is_substitute(share)
     assert share.name == name
     assert name not in package_finder.packages()
-    installed_folder = install(tmp_path / "ros", name)
-    assert finder(tmp_path, tmp_path / "ros").share(name) == installed_folder
+    installed_folder = install_package(tmp_path / "ros", name)
+    assert make_finder(tmp_path, tmp_path / "ros").share(name) == installed_folder
 
 
 def test_entry_points_provide_substitutes_for_packages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     module = tmp_path / "site" / "my_sea_substitutes"
-    install(module, "sea_ros")
+    install_package(module, "sea_ros")
     (module / "__init__.py").touch()
     metadata = tmp_path / "site" / "my_sea-1.0.dist-info"
     metadata.mkdir()
@@ -327,7 +327,7 @@ def test_entry_points_provide_substitutes_for_packages(tmp_path: Path, monkeypat
     monkeypatch.syspath_prepend(tmp_path / "site")
     extensions._read_all_groups.cache_clear()
     try:
-        package_finder = finder(tmp_path / "ws")
+        package_finder = make_finder(tmp_path / "ws")
         assert package_finder.share("sea_ros") == module / "share" / "sea_ros"
         assert is_substitute(package_finder.share("sea_ros"))
         assert not is_substitute(tmp_path / "share" / "sea_ros")
@@ -340,7 +340,7 @@ def test_entry_points_provide_substitutes_for_packages(tmp_path: Path, monkeypat
 def test_searched_locations_are_described_once_for_a_missing_package(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    package_finder = finder(tmp_path)
+    package_finder = make_finder(tmp_path)
     calls = []
     describe = package_finder._searched_locations
     monkeypatch.setattr(package_finder, "_searched_locations", lambda: (calls.append(1), describe())[1])

@@ -156,7 +156,7 @@ def package(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def read(text: str, package: Path) -> set[tuple[str, str]]:
+def read_files(text: str, package: Path) -> set[tuple[str, str]]:
     facts = read_setup(SourceText(str(package / "setup.py"), text))
     return {(file.source, file.destination) for file in facts.installed_files(package)}
 
@@ -181,7 +181,7 @@ def run_by_python(text: str, package: Path, monkeypatch: pytest.MonkeyPatch) -> 
 
 @pytest.mark.parametrize("style", STYLES)
 def test_data_files_match_python_run(style: str, package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = read(HEAD + STYLES[style], package)
+    found = read_files(HEAD + STYLES[style], package)
     assert found
     assert found == run_by_python(HEAD + STYLES[style], package, monkeypatch)
 
@@ -207,7 +207,7 @@ for folder in ['a']:
     data = [('share/arm', ['package.xml']), ('share/arm/x', {files})]
 setup(data_files=data)
 """
-    assert read(text, package) == {("package.xml", "share/arm/package.xml")}
+    assert read_files(text, package) == {("package.xml", "share/arm/package.xml")}
 
 
 @pytest.mark.parametrize(
@@ -228,4 +228,4 @@ setup(data_files=data)
 )
 def test_expensive_statements_are_abandoned(statements: str, package: Path) -> None:
     text = HEAD + f"{statements}\nsetup(data_files=[('share/arm', ['package.xml']), *more])\n"
-    assert read(text, package) <= {("package.xml", "share/arm/package.xml")}
+    assert read_files(text, package) <= {("package.xml", "share/arm/package.xml")}

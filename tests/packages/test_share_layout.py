@@ -64,7 +64,7 @@ def write(tmp_path: Path) -> Callable[..., Path]:
 
 
 @pytest.fixture
-def moved(write: Callable[..., Path]) -> Path:
+def moved_package(write: Callable[..., Path]) -> Path:
     return write(
         {
             "CMakeLists.txt": CMAKE,
@@ -80,11 +80,11 @@ def moved(write: Callable[..., Path]) -> Path:
     )
 
 
-def finder_of(package: Path) -> PackageFinder:
+def make_finder(package: Path) -> PackageFinder:
     return PackageFinder(start=package.parents[1], environment={})
 
 
-def files_below(folder: Path) -> set[str]:
+def list_files(folder: Path) -> set[str]:
     return {
         Path(subfolder, name).relative_to(folder).as_posix()
         for subfolder, _, names in os.walk(folder, followlinks=True)
@@ -92,18 +92,18 @@ def files_below(folder: Path) -> set[str]:
     }
 
 
-def test_layout_places_files_moved_by_cmake(moved: Path) -> None:
-    share = finder_of(moved).share("arm")
-    assert os.path.realpath(share / "urdf" / "arm.xacro") == str(moved / "description" / "urdf" / "arm.xacro")
-    cmake = read_cmake(SourceText("CMakeLists.txt", CMAKE), moved)
-    installed = {file.destination.removeprefix("share/arm/") for file in cmake.installed_files(moved)}
+def test_layout_places_files_moved_by_cmake(moved_package: Path) -> None:
+    share = make_finder(moved_package).share("arm")
+    assert os.path.realpath(share / "urdf" / "arm.xacro") == str(moved_package / "description" / "urdf" / "arm.xacro")
+    cmake = read_cmake(SourceText("CMakeLists.txt", CMAKE), moved_package)
+    installed = {file.destination.removeprefix("share/arm/") for file in cmake.installed_files(moved_package)}
     assert installed == {
         *("urdf/arm.xacro", "meshes/base.stl", "launch/show.launch.py", "config/arm.rviz", "config/limits.yaml"),
         "rviz/arm.rviz",
     }
-    assert installed <= files_below(share)
+    assert installed <= list_files(share)
     assert (share / "config" / "limits.yaml").read_text() == "robot: arm\n"
-    assert {"package.xml", "README.md", "description/urdf/arm.xacro"} <= files_below(share)
+    assert {"package.xml", "README.md", "description/urdf/arm.xacro"} <= list_files(share)
 
 
 STAYING = """
@@ -137,39 +137,41 @@ def test_layout_places_files_moved_by_setup_py(write: Callable[..., Path]) -> No
     package = write(
         {"setup.py": SETUP, "cfg/a.yaml": "a", "description/parts/hand.xacro": ROBOT, "config/kept.txt": ""}
     )
-    share = finder_of(package).share("arm")
+    share = make_finder(package).share("arm")
     assert (share / "config" / "a.yaml").read_text() == "a"
     assert (share / "urdf" / "hand.xacro").read_text() == ROBOT
     assert (share / "config" / "kept.txt").is_file(), "files that are not installed stay"
 
 
-def by_address(finder: PackageFinder) -> str:
+def find_by_address(finder: PackageFinder) -> str:
     return str(finder.resolve("package://arm/urdf/arm.xacro"))
 
 
-def by_launch(finder: PackageFinder) -> str:
+def find_by_launch(finder: PackageFinder) -> str:
     with use_finder(finder):
         return FindPackageShare("arm").perform(LaunchContext()) + "/urdf/arm.xacro"
 
 
-def by_ament(finder: PackageFinder) -> str:
+def find_by_ament(finder: PackageFinder) -> str:
     with use_finder(finder):
         return get_package_share_directory("arm") + "/urdf/arm.xacro"
 
 
-@pytest.mark.parametrize("find", [by_address, by_launch, by_ament])
-def test_lookups_return_same_file(moved: Path, find: Callable[[PackageFinder], str]) -> None:
-    assert os.path.realpath(find(finder_of(moved))) == str(moved / "description" / "urdf" / "arm.xacro")
+@pytest.mark.parametrize("find", [find_by_address, find_by_launch, find_by_ament])
+def test_lookups_return_same_file(moved_package: Path, find: Callable[[PackageFinder], str]) -> None:
+    assert os.path.realpath(find(make_finder(moved_package))) == str(
+        moved_package / "description" / "urdf" / "arm.xacro"
+    )
 
 
-def test_xacro_finds_moved_file_and_errors_name_source(moved: Path, tmp_path: Path) -> None:
+def test_xacro_finds_moved_file_and_errors_name_source(moved_package: Path, tmp_path: Path) -> None:
     main = tmp_path / "main.xacro"
     main.write_text(ROBOT.replace('<link name="base"/>', '<xacro:include filename="$(find arm)/urdf/arm.xacro"/>'))
-    assert "base" in str(expand(main, packages=finder_of(moved)))
-    source = moved / "description" / "urdf" / "arm.xacro"
+    assert "base" in str(expand(main, packages=make_finder(moved_package)))
+    source = moved_package / "description" / "urdf" / "arm.xacro"
     source.write_text(ROBOT.replace("base", "${none}"))
     with pytest.raises(LinkwrightError) as caught:
-        expand(main, packages=finder_of(moved))
+        expand(main, packages=make_finder(moved_package))
     span = caught.value.diagnostics[0].span
     assert span is not None
     assert span.file == str(source)
@@ -178,15 +180,15 @@ def test_xacro_finds_moved_file_and_errors_name_source(moved: Path, tmp_path: Pa
 def test_package_without_moved_files_is_its_own_share_folder(write: Callable[..., Path], cache: Path) -> None:
     cmake = "project(arm)\ninstall(DIRECTORY urdf launch/ DESTINATION share/arm)\n".replace("launch/", "launch")
     package = write({"CMakeLists.txt": cmake, "urdf/arm.xacro": ROBOT, "launch/a.launch.py": ""})
-    assert finder_of(package).share("arm") == package
+    assert make_finder(package).share("arm") == package
     assert not cache.exists()
 
 
-def test_layout_is_updated_for_new_file_and_old_layout_removed(moved: Path, cache: Path) -> None:
-    finder = finder_of(moved)
+def test_layout_is_updated_for_new_file_and_old_layout_removed(moved_package: Path, cache: Path) -> None:
+    finder = make_finder(moved_package)
     before = finder.share("arm")
-    assert finder_of(moved).share("arm") == before, "an existing layout is reused"
-    (moved / "bringup" / "config" / "more.yaml").write_text("")
+    assert make_finder(moved_package).share("arm") == before, "an existing layout is reused"
+    (moved_package / "bringup" / "config" / "more.yaml").write_text("")
     month_ago = time.time() - 30 * 86400
     os.utime(before.parent, (month_ago, month_ago))
     finder.clear_cache()
@@ -196,17 +198,17 @@ def test_layout_is_updated_for_new_file_and_old_layout_removed(moved: Path, cach
     assert len(list(next(cache.iterdir()).iterdir())) == 1
 
 
-def test_package_is_found_from_inside_layout(moved: Path) -> None:
-    share = finder_of(moved).share("arm")
+def test_package_is_found_from_inside_layout(moved_package: Path) -> None:
+    share = make_finder(moved_package).share("arm")
     assert PackageFinder(start=share / "launch", environment={}).share("arm") == share
 
 
-def test_sources_are_used_if_symlinks_fail(moved: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_sources_are_used_if_symlinks_fail(moved_package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise OSError("no links here")
 
     monkeypatch.setattr(Path, "symlink_to", refuse)
-    assert finder_of(moved).share("arm") == moved
+    assert make_finder(moved_package).share("arm") == moved_package
 
 
 def test_source_of_other_path_is_that_path(tmp_path: Path) -> None:

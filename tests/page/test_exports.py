@@ -8,7 +8,7 @@ import pytest
 
 from tests.page.test_files import write_file, write_package
 from tests.page.test_security import MESHED, send_raw_request
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ async def wait_for_export(client, kind: str = "glb") -> dict:
 async def test_export_is_fetched_once_from_secret_url(served):
     served.describe('<robot name="../../evil name"><link name="base"/></robot>')
     await served.settle()
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         ready = await wait_for_export(client)
         assert ready["name"] == "evil_name.glb"
         key = ready["url"].split("/")[2]
@@ -50,7 +50,7 @@ async def test_export_is_fetched_once_from_secret_url(served):
 async def test_unfetched_exports_expire(served):
     served.describe('<robot name="arm"><link name="base"/></robot>')
     await served.settle()
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         ready = [await wait_for_export(client) for _ in range(6)]
         assert [(await send_raw_request(served.viewer, export["url"]))[0] for export in ready] == [
             404,
@@ -65,7 +65,7 @@ async def test_unfetched_exports_expire(served):
 async def test_failed_export_reports_reason(served):
     served.describe(MESHED)
     await served.settle()
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         failed = await wait_for_export(client)
         assert failed["type"] == "export_failed"
         assert "arm.stl" in failed["message"]

@@ -17,7 +17,7 @@ from linkwright.page.protocol.configuration import SetProperty
 from linkwright.page.protocol.message import PageMessage, Received
 from linkwright.rviz import RvizConfig
 from tests.viewer.configured import TEXT
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 DISPLAYS = "".join(
     f"    - {{Class: rviz_default_plugins/{name}, Enabled: true, Name: {name}}}\n"
@@ -63,7 +63,7 @@ def generate_value(kind: Any, name: str, rng: random.Random) -> Any:
 async def test_viewer_survives_random_page_messages(seed, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     rng = random.Random(seed)
-    async with open_world(RvizConfig.parse(CONFIGURATION)) as world, page(world.viewer) as client:
+    async with open_world(RvizConfig.parse(CONFIGURATION)) as world, open_page(world.viewer) as client:
         await client.opened()
         world.move_arm()
         for _ in range(30):

@@ -17,7 +17,7 @@ from linkwright.page.access import PROGRAM_PAGES_VARIABLE as VARIABLE
 from linkwright.page.page_server import PageServer
 from linkwright.page.program_pages import Embedder
 from linkwright.panels.terminal.feature import TerminalFeature
-from tests.viewer.scene import World, page
+from tests.viewer.scene import World, open_page
 from tests.waiting import TIMEOUT_S, eventually
 
 FRAMES = "frame-src http://127.0.0.1:* http://localhost:*"
@@ -64,7 +64,7 @@ async def post_line(address: str, line: bytes, **headers: str) -> int:
 
 
 async def test_program_page_is_shown_until_program_ends(tmp_path):
-    async with open_classroom(tmp_path) as world, page(world.viewer) as client, start_program_server() as server:
+    async with open_classroom(tmp_path) as world, open_page(world.viewer) as client, start_program_server() as server:
         await client.send("watch_program_pages")
         assert (await client.until("program_pages"))["pages"] == []
         assert "frame-ancestors 'none'" in await content_security_policy(server)
@@ -87,7 +87,7 @@ async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
 
     async with (
         open_classroom(tmp_path) as world,
-        page(world.viewer),
+        open_page(world.viewer),
         start_program_server() as server,
         start_program_server() as other,
     ):
@@ -111,7 +111,7 @@ async def test_a_program_pauses_its_world_until_it_may_resume(tmp_path):
 async def test_a_world_resumes_when_the_page_that_paused_it_is_gone(tmp_path):
     pause_requests = []
     async with start_program_server() as server:
-        async with open_classroom(tmp_path) as world, page(world.viewer):
+        async with open_classroom(tmp_path) as world, open_page(world.viewer):
             assert await server.embed(program_environment(world), "a world")
             server.on_pause(lambda must_pause: pause_requests.append(must_pause) or must_pause)
             world.viewer._server.program_pages.pause_worlds()
@@ -121,14 +121,14 @@ async def test_a_world_resumes_when_the_page_that_paused_it_is_gone(tmp_path):
 
 async def test_terminal_has_variable_with_page_address(tmp_path):
     command = ("/bin/sh", "-c", f"echo ${VARIABLE}")
-    async with open_classroom(tmp_path, command) as world, page(world.viewer) as client:
+    async with open_classroom(tmp_path, command) as world, open_page(world.viewer) as client:
         await client.send("open_terminal", columns=200, rows=24)
         output = await client.until("terminal_output", is_replay=False)
         assert output["text"].strip() == program_environment(world)[VARIABLE]
 
 
 async def test_wrong_key_and_foreign_origin_are_rejected(tmp_path):
-    async with open_classroom(tmp_path) as world, page(world.viewer), start_program_server() as server:
+    async with open_classroom(tmp_path) as world, open_page(world.viewer), start_program_server() as server:
         address = program_environment(world)[VARIABLE]
         line = json.dumps({"title": "", "url": server.url}).encode() + b"\n"
         assert await post_line(address[:-1], line) == 401
@@ -143,7 +143,7 @@ async def test_wrong_key_and_foreign_origin_are_rejected(tmp_path):
 
 async def test_page_without_terminals_receives_no_program_pages(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.page.server.may_be_own_user", lambda _: False)
-    async with open_classroom(tmp_path) as world, page(world.viewer) as client, start_program_server() as server:
+    async with open_classroom(tmp_path) as world, open_page(world.viewer) as client, start_program_server() as server:
         await client.send("watch_program_pages")
         assert "browser of the user" in (await client.until("terminals", folder=""))["refusal_reason"]
         assert not await server.embed(program_environment(world), "")
@@ -160,7 +160,7 @@ async def test_program_is_not_embedded_without_open_page(tmp_path):
 
 
 async def test_page_with_terminals_is_never_embedded(tmp_path):
-    async with open_classroom(tmp_path) as world, page(world.viewer), open_classroom(tmp_path) as other:
+    async with open_classroom(tmp_path) as world, open_page(world.viewer), open_classroom(tmp_path) as other:
         assert not await other.viewer._server.embed(program_environment(world), "")
         assert "frame-ancestors 'none'" in await content_security_policy(other.viewer._server)
 
@@ -191,7 +191,7 @@ def test_embedder_has_origin_and_path_of_address():
 async def test_closing_server_does_not_wait_for_programs(tmp_path, monkeypatch):
     monkeypatch.setattr("linkwright.page.server._CLOSE_TIMEOUT_S", 600.0)
     async with open_classroom(tmp_path) as world, start_program_server() as server:
-        async with page(world.viewer):
+        async with open_page(world.viewer):
             assert await server.embed(program_environment(world), "")
         await asyncio.wait_for(world.viewer._server.close(), TIMEOUT_S)
         assert world.viewer._server.program_pages.pages == []

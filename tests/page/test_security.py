@@ -20,7 +20,7 @@ from linkwright.page.protocol.configuration import DisplayStatus, StatusRow
 from linkwright.page.server import MAX_MESSAGE_SIZE
 from tests.leaving import UPGRADE, request_and_reset
 from tests.page.test_files import write_file, write_package
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 from tests.waiting import TIMEOUT_S, eventually
 
 MESHED = """\
@@ -248,19 +248,19 @@ async def wait_for_close_code(client) -> int:
 
 
 async def test_oversized_message_closes_connection(served):
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         await client.socket.send_str("x" * (MAX_MESSAGE_SIZE + 1))
         assert await wait_for_close_code(client) == 1009
 
 
 async def test_binary_message_closes_connection(served):
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         await client.socket.send_bytes(b"\0")
         assert await wait_for_close_code(client) == 1003
 
 
 async def test_invalid_messages_are_logged_and_finally_close_connection(served):
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         await client.socket.send_str('{"type": "set_joint", "name": 1}')
         await client.set("global/Fixed Frame", "tip")
         assert (await client.until("property_changed", id="global/Fixed Frame"))["value"] == "tip"
@@ -307,7 +307,7 @@ async def expect_response(client) -> None:
 
 
 async def test_thousand_idle_connections_do_not_disturb_pages(served):
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         await client.opened()
         before = resident_memory()
         knocking = [await open_raw_connection(served.viewer) for _ in range(1000)]
@@ -325,7 +325,10 @@ async def test_web_sockets_beyond_maximum_are_rejected(served):
     address = served.viewer.url.replace("/?", "/ws?")
     statuses: list[int] = []
     sockets: list[aiohttp.ClientWebSocketResponse | None] = []
-    async with page(served.viewer) as client, aiohttp.ClientSession(connector=aiohttp.TCPConnector(limit=0)) as session:
+    async with (
+        open_page(served.viewer) as client,
+        aiohttp.ClientSession(connector=aiohttp.TCPConnector(limit=0)) as session,
+    ):
 
         async def connect() -> aiohttp.ClientWebSocketResponse | None:
             try:
@@ -361,7 +364,7 @@ async def test_incomplete_request_times_out(served, monkeypatch):
 
 async def test_connected_page_does_not_time_out(served, monkeypatch):
     monkeypatch.setattr("linkwright.page.access.FIRST_REQUEST_TIMEOUT_S", 0.1)
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         await client.opened()
         address = urlsplit(served.viewer.url)
         silent, writer = await asyncio.open_connection(address.hostname, address.port)
@@ -384,7 +387,7 @@ async def test_clients_that_read_nothing_use_little_memory(served, tmp_path, mon
     monkeypatch.setattr("linkwright.page.server._HEARTBEAT_PERIOD_S", 600.0)
     address = urlsplit(served.viewer.url)
     asking = f"GET /assets/index-abc.js HTTP/1.1\r\nHost: {address.netloc}\r\n\r\n".encode()
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         await client.opened()
         readers = [await asyncio.open_connection(address.hostname, address.port) for _ in range(MAX_CONNECTIONS)]
         for _, writer in readers:
@@ -518,7 +521,7 @@ async def test_disconnected_client_is_not_logged(served, target, caplog):
 
 
 async def test_message_flood_slows_only_its_sender(served):
-    async with page(served.viewer) as flooding, page(served.viewer) as client:
+    async with open_page(served.viewer) as flooding, open_page(served.viewer) as client:
         await client.opened()
 
         sent = 0
@@ -570,7 +573,7 @@ async def test_pages_can_write_configurations_only(served, tmp_path, name):
     (tmp_path / ".bashrc").write_text("mine")
     (tmp_path / "link.rviz").symlink_to(tmp_path / "notes.txt")
     (tmp_path / "dir.rviz").mkdir()
-    async with page(served.viewer) as client:
+    async with open_page(served.viewer) as client:
         await client.send("save_configuration", path=f"{tmp_path}/{name}", replace=True)
         assert (await client.until("configuration_refused"))["question"] is None
     assert (tmp_path / "notes.txt").read_text() == (tmp_path / ".bashrc").read_text() == "mine"

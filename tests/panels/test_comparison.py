@@ -16,7 +16,7 @@ from linkwright.messages import Header, JointState
 from linkwright.page.protocol.comparison import ComparedDescriptions
 from linkwright.panels.comparison.feature import add_old_robot, without_paths
 from linkwright.rviz import RvizConfig
-from tests.viewer.scene import Client, World, open_world, page
+from tests.viewer.scene import Client, World, open_page, open_world
 from tests.waiting import eventually
 
 OLD = """\
@@ -104,7 +104,7 @@ async def open_comparison(
     add_old_robot(config, "old.urdf")
     async with open_world(config) as world:
         comparison = ComparisonViewer(world, folder, old, new)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             yield comparison, client
 
 

@@ -7,12 +7,12 @@ import yaml
 
 from linkwright.graph import QoSProfile, ReliabilityPolicy
 from linkwright.rviz import RvizConfig
-from tests.viewer.configured import TEXT, PointStamped, edit, names, opened
+from tests.viewer.configured import TEXT, PointStamped, display_names, open_configured, perform_edit
 
 
 async def test_configuration_is_saved_and_reopened(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (_, client):
+    async with open_configured(path=path) as (_, client):
         assert client.first["configuration"]["path"] == str(path)
         await client.set("display-1/Alpha", 0.25)
         await client.until("configuration", unsaved=True)
@@ -38,7 +38,7 @@ async def test_configuration_is_saved_and_reopened(tmp_path):
 async def test_unsaved_changes_are_not_discarded_without_confirmation(tmp_path):
     path = tmp_path / "a.rviz"
     path.write_text(TEXT, encoding="utf-8")
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         await client.set("display-1/Alpha", 0.25)
         await client.until("configuration", unsaved=True)
         for kind, fields in (
@@ -56,7 +56,7 @@ async def test_unsaved_changes_are_not_discarded_without_confirmation(tmp_path):
 async def test_existing_file_is_not_replaced_without_confirmation(tmp_path):
     path, other = tmp_path / "a.rviz", tmp_path / "b.rviz"
     other.write_text("precious", encoding="utf-8")
-    async with opened(path=path) as (world, client):
+    async with open_configured(path=path) as (world, client):
         await client.send("save_configuration", path=str(other), replace=False)
         assert (await client.until("configuration_refused"))["question"] == "exists"
         assert other.read_text() == "precious"
@@ -77,7 +77,7 @@ async def test_existing_file_is_not_replaced_without_confirmation(tmp_path):
 async def test_only_rviz_files_are_opened_and_saved(tmp_path, name):
     (tmp_path / "secret.txt").write_text("secret", encoding="utf-8")
     (tmp_path / "link.rviz").symlink_to(tmp_path / "secret.txt")
-    async with opened(path=tmp_path / "a.rviz") as (_, client):
+    async with open_configured(path=tmp_path / "a.rviz") as (_, client):
         for kind, fields in (("save_configuration", {"replace": True}), ("open_configuration", {"discard": True})):
             await client.send(kind, path=name, **fields)
             refusal = await client.until("configuration_refused")
@@ -87,16 +87,16 @@ async def test_only_rviz_files_are_opened_and_saved(tmp_path, name):
 
 async def test_unreadable_configuration_is_reported_and_changes_nothing(tmp_path):
     (tmp_path / "bad.rviz").write_text("a: [1\n", encoding="utf-8")
-    async with opened(path=tmp_path / "a.rviz") as (world, client):
+    async with open_configured(path=tmp_path / "a.rviz") as (world, client):
         await client.send("open_configuration", path="bad.rviz", discard=True)
         assert "bad.rviz:2" in (await client.until("configuration_refused"))["message"]
         await client.send("load_configuration", name="mine.rviz", text="- 1\n", discard=True)
         assert "mine.rviz" in (await client.until("configuration_refused"))["message"]
-        assert (world.viewer.manager.opened, len(names(world))) == (1, 4)
+        assert (world.viewer.manager.opened, len(display_names(world))) == (1, 4)
 
 
 async def test_configuration_is_loaded_from_text():
-    async with opened() as (_, client):
+    async with open_configured() as (_, client):
         await client.send("load_configuration", name="mine.rviz", text="\ufeff" + TEXT, discard=False)
         await client.until("configuration", opened=2)
         await client.send("request_configuration_text")
@@ -105,11 +105,11 @@ async def test_configuration_is_loaded_from_text():
 
 
 async def test_configuration_is_reverted(tmp_path):
-    async with opened(path=tmp_path / "a.rviz") as (world, client):
-        await edit(client, "remove_displays", displays=["display-1"])
+    async with open_configured(path=tmp_path / "a.rviz") as (world, client):
+        await perform_edit(client, "remove_displays", displays=["display-1"])
         await client.send("revert_configuration")
         state = await client.until("configuration", opened=2)
-        assert (state["unsaved"], names(world)) == (False, ["Grid", "Marks", "Clicks", "Radar"])
+        assert (state["unsaved"], display_names(world)) == (False, ["Grid", "Marks", "Clicks", "Radar"])
 
 
 async def test_folders_are_listed(tmp_path):
@@ -117,7 +117,7 @@ async def test_folders_are_listed(tmp_path):
     (tmp_path / ".hidden").mkdir()
     (tmp_path / "b.rviz").touch()
     (tmp_path / "notes.txt").touch()
-    async with opened(path=tmp_path / "a.rviz") as (_, client):
+    async with open_configured(path=tmp_path / "a.rviz") as (_, client):
         await client.send("request_folder", path=None)
         folder = await client.until("folder")
         assert (folder["path"], folder["parent"]) == (str(tmp_path), str(tmp_path.parent))
@@ -209,7 +209,7 @@ Window Geometry:
 
 
 async def test_rviz1_configuration_keeps_its_format():
-    async with opened(ROS_1) as (world, client):
+    async with open_configured(ROS_1) as (world, client):
         displays = client.first["tree"]["displays"]
         assert [display["cls"] for display in displays][:5] == [
             "rviz_default_plugins/Grid",

@@ -10,7 +10,7 @@ import pytest
 from linkwright.descriptions import examine
 from linkwright.diagnostics import LinkwrightError
 from linkwright.rviz import RvizConfig
-from tests.viewer.scene import ARM, open_world, page
+from tests.viewer.scene import ARM, open_page, open_world
 
 WHEELED = """\
 <robot name="wheeled" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -79,7 +79,7 @@ def text_of_range(text: str, written: dict) -> str:
 
 
 async def test_description_has_links_and_joints_with_locations(files):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         text = describe(world, files)
         message = await request(client, "request_description", "description", display=DISPLAY)
     assert (message["name"], message["root"]) == ("wheeled", "base")
@@ -107,7 +107,7 @@ async def test_description_has_links_and_joints_with_locations(files):
 
 
 async def test_inertia_is_shown_as_equivalent_box(files):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, files)
         message = await request(client, "request_description", "description", display=DISPLAY)
     base, left, _ = (link["inertia"] for link in message["links"])
@@ -118,7 +118,7 @@ async def test_inertia_is_shown_as_equivalent_box(files):
 
 
 async def test_implausible_inertias_are_reported_for_each_link_of_macro(files):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, files)
         message = await request(client, "request_inertia", "inertia_findings", display=DISPLAY)
     broken = [finding["link"] for finding in message["findings"] if finding["code"] == "LW314"]
@@ -128,7 +128,7 @@ async def test_implausible_inertias_are_reported_for_each_link_of_macro(files):
 
 async def test_texts_are_sent_only_for_files_of_description(files):
     (files / "secret.txt").write_text("secret")
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         text = describe(world, files)
         message = await request(client, "request_description", "description", display=DISPLAY)
         assert [Path(name).name for name in message["files"]] == ["robot.xacro", "wheel.xacro", "sizes.yaml"]
@@ -150,7 +150,7 @@ async def test_texts_are_sent_only_for_files_of_description(files):
 
 
 async def test_edit_is_reported_with_changed_links_and_joints(files):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, files)
         first = await client.until("description_changed")
         assert (first["links"], first["joints"]) == ([], [])
@@ -171,7 +171,7 @@ async def test_opened_page_is_notified_of_description():
     async with open_world() as world:
         world.describe(ARM)
         await world.settle()
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             message = await client.until("description_changed", display=DISPLAY)
             assert (message["links"], message["joints"]) == ([], [])
             details = await request(client, "request_description", "description", display=DISPLAY)
@@ -183,7 +183,7 @@ async def test_opened_page_is_notified_of_description():
 
 
 async def test_text_with_errors_is_sent_instead_of_shown_robot(files):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, files)
         (files / "robot.xacro").write_text(WHEELED.replace('side="left"', 'sid="left"'))
         with pytest.raises(LinkwrightError) as caught:
@@ -200,7 +200,7 @@ async def test_text_with_errors_is_sent_instead_of_shown_robot(files):
 async def test_robot_with_all_meshes_missing_is_reported(files):
     box = '<visual><geometry><box size="1 1 1"/></geometry></visual>'
     mesh = f'<visual><geometry><mesh filename="file://{files}/gone.stl"/></geometry></visual>'
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         assert (await client.until("diagnostics"))["items"] == []
         for shapes, codes in ((mesh, ["VIEW207"]), (box + mesh, []), (mesh, ["VIEW207"])):
             world.describe(f'<robot name="r"><link name="base">{shapes}</link></robot>')
@@ -211,7 +211,7 @@ async def test_robot_with_all_meshes_missing_is_reported(files):
 
 
 async def test_requests_for_unknown_display_are_ignored():
-    async with open_world(RvizConfig.for_model("base")) as world, page(world.viewer) as client:
+    async with open_world(RvizConfig.for_model("base")) as world, open_page(world.viewer) as client:
         response = await request(
             client, "request_description_text", "description_text", display="display-99", file="/etc/passwd"
         )
@@ -225,10 +225,10 @@ async def test_requests_for_unknown_display_are_ignored():
 
 
 async def test_page_with_own_displays_receives_only_their_descriptions(files):
-    async with open_world() as world, page(world.viewer) as shared:
+    async with open_world() as world, open_page(world.viewer) as shared:
         describe(world, files)
         response = await shared.until("description_changed")
-        async with page(SimpleNamespace(url=f"{world.viewer.url}&own=of-my-own")) as own_client:
+        async with open_page(SimpleNamespace(url=f"{world.viewer.url}&own=of-my-own")) as own_client:
             own_description = await own_client.until("description_changed")
             assert own_description["display"] != response["display"]
             await own_client.send(

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.descriptions import examine
 from linkwright.page.audience import Page
-from tests.viewer.scene import ARM, open_world, page
+from tests.viewer.scene import ARM, open_page, open_world
 
 ROBOT = """\
 <robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -78,7 +78,7 @@ async def request_preview(client: Any, number: int, part: str, name: str, **fiel
 
 
 async def test_link_parts_have_numbers_and_locations(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
         response = await request_parts(client, "mast")
@@ -109,7 +109,7 @@ async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
     file.write_text(
         f'<sdf version="1.9"><model name="crate"><link name="base"><visual name="v">{box}</visual></link></model></sdf>'
     )
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
         response = await request_parts(client, "base")
@@ -120,7 +120,7 @@ async def test_sdf_robot_cannot_be_edited(tmp_path: Path) -> None:
 
 
 async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
         shown = await request_preview(client, 7, "joint", "turn", xyz=[0, 0, 0.3])
@@ -144,7 +144,7 @@ async def test_edit_is_previewed_written_and_undone(file: Path) -> None:
 
 
 async def test_only_previewed_edit_is_written(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
         await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
@@ -153,7 +153,7 @@ async def test_only_previewed_edit_is_written(file: Path) -> None:
 
 
 async def test_edit_with_side_effects_requires_together_option(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
         refused = await request_preview(client, 1, "joint", "left_joint", xyz=[0, 0, 0.2])
@@ -166,7 +166,7 @@ async def test_edit_with_side_effects_requires_together_option(file: Path) -> No
 
 
 async def test_file_changed_after_preview_is_not_overwritten(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
         await request_preview(client, 1, "joint", "turn", xyz=[0, 0, 0.3])
@@ -176,7 +176,7 @@ async def test_file_changed_after_preview_is_not_overwritten(file: Path) -> None
 
 
 async def test_malformed_or_missing_file_is_reported_and_editing_continues(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
         write_file(file, "<robot")
@@ -189,7 +189,7 @@ async def test_malformed_or_missing_file_is_reported_and_editing_continues(file:
 
 
 async def test_description_without_file_cannot_be_edited(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         world.describe(ARM)
         await client.until("description_changed")
         response = await request_parts(client, "base")
@@ -205,7 +205,7 @@ async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pyte
         initialize(self, *words, is_local=False, **named)
 
     monkeypatch.setattr(Page, "__init__", elsewhere)
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         describe(world, file)
         await client.until("description_changed")
         assert "open on the machine with the files" in (await request_parts(client, "mast"))["refusal_reason"]

@@ -8,7 +8,7 @@ from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String, TFMessage, deserialize
 from tests.panels.test_time import arrived, config
 from tests.skipping import skipping
-from tests.viewer.scene import World, open_world, page
+from tests.viewer.scene import World, open_page, open_world
 
 MAX_HISTORY_BYTES = 10_000_000
 
@@ -35,7 +35,7 @@ async def publish_positions(world: World) -> list[float]:
 
 @skipping
 async def test_live_view_pauses_seeks_and_returns_to_live():
-    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, open_page(world.viewer) as client:
         timeline = await client.until("timeline")
         assert timeline["live"]
         await client.until("playhead", live=True)
@@ -61,7 +61,7 @@ async def test_live_view_pauses_seeks_and_returns_to_live():
 
 @skipping
 async def test_playback_of_history_reaches_live():
-    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, open_page(world.viewer) as client:
         await client.until("playhead", live=True)
         times_between = await publish_positions(world)
         await client.send("seek_time", position=times_between[0])
@@ -74,7 +74,7 @@ async def test_playback_of_history_reaches_live():
 
 @skipping
 async def test_subscription_during_pause_receives_past_latched_message():
-    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, open_page(world.viewer) as client:
         world.describe("<robot name='early'/>")
         texts: list[str] = []
         node = world.viewer.context.node
@@ -133,6 +133,6 @@ async def test_unserializable_message_is_reported_and_others_are_stored():
 
 @skipping
 async def test_viewer_without_history_stores_nothing():
-    async with open_world(config()) as world, page(world.viewer) as client:
+    async with open_world(config()) as world, open_page(world.viewer) as client:
         assert "timeline" not in await client.opened()
         assert world.viewer.context.node.handle.message_filter is None

@@ -9,8 +9,8 @@ import pytest
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.config.panels import is_shown, set_dock_shown
 from tests.panels.panels import RVIZ_PANELS, window_state
-from tests.viewer.configured import opened
-from tests.viewer.scene import page
+from tests.viewer.configured import open_configured
+from tests.viewer.scene import open_page
 
 DISPLAYS = "Visualization Manager:\n  Displays: []\n"
 FIRST_OF_RVIZ = {"Selection": False, "Tool Properties": False}
@@ -135,7 +135,7 @@ def test_first_of_duplicate_docks_applies():
 async def test_pages_open_with_panels_of_file_and_last_change_is_saved(tmp_path):
     path = tmp_path / "a.rviz"
     text = RVIZ_PANELS + DISPLAYS + window_state(**FIRST_OF_RVIZ)
-    async with opened(text, path) as (world, client):
+    async with open_configured(text, path) as (world, client):
         assert client.first["panels"]["shown"] == ["displays", "views"]
         assert client.first["panels"]["opened"] == client.first["configuration"]["opened"] == 1
         await client.send("show_panels", shown=["displays", "views"])
@@ -153,17 +153,17 @@ async def test_pages_open_with_panels_of_file_and_last_change_is_saved(tmp_path)
 
 async def test_panel_changes_do_not_affect_other_pages(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(RVIZ_PANELS + DISPLAYS, path) as (world, client), page(world.viewer) as other:
+    async with open_configured(RVIZ_PANELS + DISPLAYS, path) as (world, client), open_page(world.viewer) as other:
         await other.opened()
         await client.send("show_panels", shown=[])
         await other.until("configuration", unsaved=True)
         assert "panels" not in [message["type"] for message in await other.drain() if isinstance(message, dict)]
-        async with page(world.viewer) as late_client:
+        async with open_page(world.viewer) as late_client:
             assert (await late_client.opened())["panels"]["shown"] == []
 
 
 async def test_panel_changes_without_file_are_not_unsaved_edits(tmp_path):
-    async with opened(RVIZ_PANELS + DISPLAYS) as (world, client):
+    async with open_configured(RVIZ_PANELS + DISPLAYS) as (world, client):
         await client.send("show_panels", shown=["time"])
         await client.drain(0.03)
         assert not world.viewer.manager.history.has_unsaved_edits

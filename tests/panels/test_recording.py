@@ -21,7 +21,7 @@ from tests.panels.test_time import config
 from tests.panels.test_timeline import open_recording
 from tests.recordings import needs_rosbags
 from tests.skipping import skipping
-from tests.viewer.scene import Client, World, open_world, page
+from tests.viewer.scene import Client, World, open_page, open_world
 
 pytestmark = needs_rosbags
 
@@ -74,7 +74,7 @@ async def saved(client: Client, start: float | None = None, end: float | None = 
 
 @skipping
 async def test_all_topics_are_recorded_and_file_can_be_opened(folder: Path):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         assert not (await client.until("recording_state"))["path"]
         state = await start_recording(client)
         await world.settle()
@@ -95,7 +95,7 @@ async def test_all_topics_are_recorded_and_file_can_be_opened(folder: Path):
 
 @skipping
 async def test_only_selected_topics_are_recorded():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await start_recording(client, TF)
         await world.settle()
         world.move_arm(1.0)
@@ -110,8 +110,8 @@ async def test_only_selected_topics_are_recorded():
 @skipping
 async def test_pages_share_recording_that_outlives_its_page():
     async with open_world() as world:
-        async with page(world.viewer) as other:
-            async with page(world.viewer) as client:
+        async with open_page(world.viewer) as other:
+            async with open_page(world.viewer) as client:
                 state = await start_recording(client)
                 while (recording_state := await other.until("recording_state"))["path"] != state["path"]:
                     pass
@@ -120,7 +120,7 @@ async def test_pages_share_recording_that_outlives_its_page():
             await world.settle()
             await asyncio.sleep(2.0)
             assert (await other.until("recording_state"))["path"] == recording_state["path"]
-        async with page(world.viewer) as late_client:
+        async with open_page(world.viewer) as late_client:
             assert (await late_client.until("recording_state"))["path"] == state["path"]
             world.move_arm(2.0)
             await world.settle()
@@ -130,7 +130,7 @@ async def test_pages_share_recording_that_outlives_its_page():
 
 @skipping
 async def test_program_exit_finishes_recording():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         state = await start_recording(client, TF)
         await world.settle()
         world.move_arm(1.0)
@@ -142,7 +142,7 @@ async def test_program_exit_finishes_recording():
 
 @skipping
 async def test_recordings_within_one_second_get_unique_names(folder: Path):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         paths = set()
         for _ in range(3):
             state = await start_recording(client, TF)
@@ -158,7 +158,7 @@ async def test_recordings_within_one_second_get_unique_names(folder: Path):
 
 @skipping
 async def test_empty_recording_is_deleted(folder: Path):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await start_recording(client, "/nobody")
         await client.send("stop_recording")
         state = await wait_for_end(client)
@@ -170,7 +170,7 @@ async def test_empty_recording_is_deleted(folder: Path):
 @skipping
 @needs_limits
 async def test_full_disk_stops_recording_and_keeps_messages():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await start_recording(client, "/long")
         node = world.graph.create_node("talker")
         publisher = node.create_publisher(STRING, "/long", 10)
@@ -201,7 +201,7 @@ class Usage(NamedTuple):
 
 @skipping
 async def test_recording_stops_when_little_disk_space_is_left(monkeypatch: pytest.MonkeyPatch, folder: Path):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         state = await start_recording(client, TF)
         await world.settle()
         world.move_arm(1.0)
@@ -220,7 +220,7 @@ async def test_recording_stops_when_little_disk_space_is_left(monkeypatch: pytes
 
 @skipping
 async def test_unwritable_folder_is_reported(folder: Path):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         feature(world).folder = folder / "gone" / "away"
         (folder / "gone").write_text("a file in its place")
         await client.send("record_topics", topics=[])
@@ -231,7 +231,7 @@ async def test_unwritable_folder_is_reported(folder: Path):
 
 @skipping
 async def test_simulated_time_reset_stops_recording():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         world.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
         clock = world.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
         state = await start_recording(client, TF)
@@ -251,7 +251,7 @@ async def test_simulated_time_reset_stops_recording():
 
 @skipping
 async def test_history_and_part_of_history_are_saved():
-    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, open_page(world.viewer) as client:
         await client.until("recording_state")
         world.move({("tip", "mark"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
         times_between = await publish_positions(world)
@@ -272,7 +272,7 @@ async def test_history_and_part_of_history_are_saved():
 
 @skipping
 async def test_saved_simulation_history_starts_at_last_time_reset():
-    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, open_page(world.viewer) as client:
         await client.until("recording_state")
         world.viewer.context.node.set_parameters([Parameter("use_sim_time", value=True)])
         clock = world.graph.create_node("simulator").create_publisher("rosgraph_msgs/msg/Clock", "/clock", 10)
@@ -295,7 +295,7 @@ async def test_saved_simulation_history_starts_at_last_time_reset():
 
 @skipping
 async def test_recording_can_be_downloaded_completely_and_repeatedly():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await start_recording(client, TF)
         await world.settle()
         for x in range(2000):
@@ -318,7 +318,7 @@ async def test_recording_can_be_downloaded_completely_and_repeatedly():
 
 @skipping
 async def test_recording_is_disabled_during_playback(folder: Path):
-    async with open_recording(folder) as world, page(world.viewer) as client:
+    async with open_recording(folder) as world, open_page(world.viewer) as client:
         assert not (await client.until("recording_state"))["possible"]
         await client.send("record_topics", topics=[])
         await client.send("play", playing=False)

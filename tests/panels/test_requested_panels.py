@@ -9,7 +9,7 @@ from linkwright.panels.panel_request import PanelRequest
 from linkwright.panels.plotted_fields import numeric_fields, split_fields, split_topic
 from linkwright.panels.requested_panels import RequestedPanelsFeature
 from linkwright.rviz import RvizConfig
-from tests.viewer.scene import World, open_world, page
+from tests.viewer.scene import World, open_page, open_world
 
 IMAGE, TF = "rviz_default_plugins/Image", "rviz_default_plugins/TF"
 ODOMETRY, FLOAT = get_message("nav_msgs/msg/Odometry"), get_message("std_msgs/msg/Float64")
@@ -61,7 +61,7 @@ async def test_fields_are_plotted_as_soon_as_their_topics_exist():
         node = world.graph.create_node("base")
         node.create_publisher(FLOAT, "/current", 10)
         requested(world, PanelRequest("plot", fields=("/current/data", "/odom/twist/twist/linear/x:y")))
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             (panel,) = (await client.until("requested_panels"))["panels"]
             assert (panel["panel"], panel["series"]) == ("plot", [{"topic": "/current", "path": "data"}])
             node.create_publisher(ODOMETRY, "/odom", 10)
@@ -77,7 +77,7 @@ async def test_image_display_receives_from_every_publisher():
         assert display.properties.text("Topic") == "/camera/image_raw"
         assert display.properties.text("Topic", "Reliability Policy") == "Best Effort"
         assert not world.viewer.manager.history.has_unsaved_edits
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             (panel,) = (await client.until("requested_panels"))["panels"]
             assert (panel["panel"], panel["display"]) == ("image", display.id)
 
@@ -100,14 +100,14 @@ async def test_tree_of_frames_uses_the_tf_display_of_the_file():
 
 
 async def test_panels_open_after_those_of_the_file_and_in_open_pages():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         velocities = {"topic": "/drive", "stamped": True, "linear": 1.0, "angular": None}
         requested(world, PanelRequest("teleop", topic="/drive", stamped=True, linear=1.0))
         (teleop,) = (await client.until("requested_panels"))["panels"]
         requested(world, PanelRequest("parameters", node="/arm"))
         assert (teleop["panel"], teleop["velocities"]) == ("teleop", velocities)
-        async with page(world.viewer) as later:
+        async with open_page(world.viewer) as later:
             kinds = list(await later.opened())
             assert kinds.index("configuration") < kinds.index("requested_panels")
             panels = next(message for message in later.messages if message["type"] == "requested_panels")["panels"]

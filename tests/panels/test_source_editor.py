@@ -15,7 +15,7 @@ from linkwright.diagnostics import extras
 from linkwright.page.audience import Page
 from linkwright.panels.source_editor.feature import SourceEditorFeature
 from linkwright.panels.source_editor.files import SourceFiles, with_line_ends
-from tests.viewer.scene import ARM, open_world, page
+from tests.viewer.scene import ARM, open_page, open_world
 
 ROBOT = '<robot name="r">\n  <link name="base"/>\n</robot>\n'
 
@@ -61,7 +61,7 @@ async def save(client: Any, path: Path, version: int, text: str) -> dict[str, An
 
 
 async def test_source_file_is_read_written_and_undone(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         response = await open_file(world, client, file)
         assert (response["folder"], response["refusal_reason"]) == (str(file.parents[3]), "")
         shown = await request(client, "request_source_file", "source_file", path=str(file))
@@ -77,7 +77,7 @@ async def test_source_file_is_read_written_and_undone(file: Path) -> None:
 
 
 async def test_external_change_is_sent_and_not_overwritten(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await open_file(world, client, file)
         await request(client, "request_source_file", "source_file", path=str(file))
         write(file, ROBOT + "<!-- theirs -->")
@@ -95,7 +95,7 @@ async def test_folder_is_listed_and_file_is_created(file: Path) -> None:
     (folder / "build").mkdir()
     (folder / ".git").mkdir()
     (folder / "arm.stl").write_bytes(b"")
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await open_file(world, client, file)
         listed = await request(client, "request_source_folder", "source_folder", path=str(folder))
         assert (listed["folders"], listed["files"]) == (["urdf"], ["package.xml"])
@@ -109,7 +109,7 @@ async def test_folder_is_listed_and_file_is_created(file: Path) -> None:
 
 async def test_missing_file_is_created_with_first_text(file: Path) -> None:
     new, other = (file.parents[1] / "launch" / name for name in ("new.launch.py", "other.launch.py"))
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await open_file(world, client, file)
         first_text = await request(client, "request_source_file", "source_file", path=str(new))
         assert (first_text["text"], first_text["is_new"]) == (None, True)
@@ -131,7 +131,7 @@ async def test_files_outside_sources_are_neither_read_nor_created(file: Path, pa
     (workspace / ".git").mkdir()
     (workspace / ".git" / "config").write_text("secret")
     path = path.format(ws=workspace)
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await open_file(world, client, file)
         shown = await request(client, "request_source_file", "source_file", path=path)
         assert shown["text"] is None
@@ -150,7 +150,7 @@ def test_symlink_out_of_workspace_is_not_followed(file: Path, tmp_path: Path) ->
 
 
 async def test_workspace_can_be_edited_without_description(tmp_path: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         world.viewer.add_feature(SourceEditorFeature).edit_workspace(tmp_path)
         response = await request(client, "open_editor", "editor_opened", file=str(tmp_path))
         assert (response["folder"], response["refusal_reason"]) == (real_path(tmp_path), "")
@@ -164,20 +164,20 @@ async def test_workspace_can_be_edited_without_description(tmp_path: Path) -> No
 async def test_page_on_another_machine_cannot_edit(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Page, "is_local", False, raising=False)
     monkeypatch.setattr("linkwright.page.server.is_local_connection", lambda _: False)
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         response = await open_file(world, client, file)
         assert "only in pages that are open on the machine" in response["refusal_reason"]
 
 
 async def test_missing_lsp_extra_is_reported(file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(extras.EXTRAS, "lsp", "no_such_module")
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         response = await open_file(world, client, file)
         assert response["refusal_reason"].startswith("the editor needs the language server: run ")
 
 
 async def test_description_without_file_cannot_be_edited() -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         world.describe(ARM)
         await client.until("description_changed")
         response = await request(client, "open_editor", "editor_opened", file="<robot_description>")
@@ -185,7 +185,7 @@ async def test_description_without_file_cannot_be_edited() -> None:
 
 
 async def test_language_server_answers_through_page(file: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         response = await open_file(world, client, file)
         request = {"jsonrpc": "2.0", "id": 1, "method": "initialize"}
         params = {"processId": None, "rootUri": response["uri"], "capabilities": {}}

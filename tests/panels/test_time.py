@@ -12,7 +12,7 @@ from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.frames.stream import TimeControl
 from tests.skipping import skipping
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 POINT = "geometry_msgs/msg/PointStamped"
 CONFIG = {
@@ -97,7 +97,7 @@ def test_displayed_time_stops_while_paused():
 
 
 async def test_pause_stops_frames_and_messages_for_all_pages():
-    async with open_world(config()) as world, page(world.viewer) as first, page(world.viewer) as second:
+    async with open_world(config()) as world, open_page(world.viewer) as first, open_page(world.viewer) as second:
         node = world.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
         await first.opened()
@@ -113,7 +113,7 @@ async def test_pause_stops_frames_and_messages_for_all_pages():
         await world.settle()
         drained = await first.drain()
         assert all(isinstance(message, dict) for message in drained)  # no transforms and no data
-        async with page(world.viewer) as late_client:
+        async with open_page(world.viewer) as late_client:
             assert (await late_client.opened())["time_state"]["paused"] is True
             await arrived(late_client, "tip", 1.0)
         await first.send("set_time", paused=False, mode="Off", source="")
@@ -137,7 +137,7 @@ Visualization Manager:
 async def test_rviz1_time_panel_is_read_and_keeps_its_format():
     text = PANEL.replace("    Experimental: true\n", "").replace("rviz_common", "rviz")
     file = RvizConfig.parse(text)
-    async with open_world(file) as world, page(world.viewer) as client:
+    async with open_world(file) as world, open_page(world.viewer) as client:
         state = (await client.opened())["time_state"]
         assert (state["mode"], state["source"]) == ("Exact", "Clicks")
         await client.send("set_time", paused=False, mode="Approximate", source="Clicks")
@@ -147,7 +147,7 @@ async def test_rviz1_time_panel_is_read_and_keeps_its_format():
 
 async def test_time_panel_of_file_is_read_and_written():
     file = RvizConfig.parse(PANEL)
-    async with open_world(file) as world, page(world.viewer) as client:
+    async with open_world(file) as world, open_page(world.viewer) as client:
         state = (await client.opened())["time_state"]
         assert (state["mode"], state["source"], state["paused"]) == ("Exact", "Clicks", False)
         assert file.text() == PANEL
@@ -158,7 +158,7 @@ async def test_time_panel_of_file_is_read_and_written():
 
 @skipping
 async def test_exact_synchronization_shows_frames_at_message_times():
-    async with open_world(config()) as world, page(world.viewer) as client:
+    async with open_world(config()) as world, open_page(world.viewer) as client:
         node = world.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
         await client.opened()
@@ -184,7 +184,7 @@ async def test_exact_synchronization_shows_frames_at_message_times():
 
 
 async def test_reset_clears_displays_and_dynamic_frames():
-    async with open_world(config()) as world, page(world.viewer) as client:
+    async with open_world(config()) as world, open_page(world.viewer) as client:
         node = world.graph.create_node("clicker")
         points = node.create_publisher(POINT, "/p", 10)
         await client.opened()
@@ -201,7 +201,7 @@ async def test_reset_clears_displays_and_dynamic_frames():
 
 
 async def test_clock_is_sent_only_to_watching_pages():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         assert not [
             message for message in await client.drain() if isinstance(message, dict) and message["type"] == "clock"
@@ -219,7 +219,7 @@ async def test_clock_is_sent_only_to_watching_pages():
 
 
 async def test_simulated_time_is_followed_and_resets_when_jumping_back():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         await client.send("watch_clock", watching=True)
         await client.until("clock")

@@ -14,7 +14,7 @@ from linkwright.graph import DEFAULT_QOS, Parameter
 from linkwright.messages import TFMessage, TransformBatch, serialize
 from tests.panels.test_time import POINT, arrived, config, point
 from tests.skipping import skipping
-from tests.viewer.scene import World, open_world, page
+from tests.viewer.scene import World, open_page, open_world
 
 START_S = 1_700_000_000
 SECOND_NS = 1_000_000_000
@@ -61,7 +61,7 @@ async def open_recording(folder: Path, **other: str) -> AsyncIterator[World]:
 
 @skipping
 async def test_page_receives_timeline_and_playback_starts(tmp_path):
-    async with open_recording(tmp_path) as world, page(world.viewer) as client:
+    async with open_recording(tmp_path) as world, open_page(world.viewer) as client:
         timeline = await client.until("timeline")
         assert (timeline["name"], timeline["start"], timeline["end"]) == ("drive", START_S, START_S + 10)
         assert {topic["name"]: sum(topic["counts"]) for topic in timeline["topics"]} == {"/p": 11, "/tf": 11}
@@ -72,7 +72,7 @@ async def test_page_receives_timeline_and_playback_starts(tmp_path):
 
 @skipping
 async def test_seek_shows_data_of_that_time(tmp_path):
-    async with open_recording(tmp_path) as world, page(world.viewer) as client:
+    async with open_recording(tmp_path) as world, open_page(world.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("play", playing=False)
         await client.until("playhead", playing=False)
@@ -87,7 +87,7 @@ async def test_seek_shows_data_of_that_time(tmp_path):
 
 @skipping
 async def test_playback_speed_and_loop_are_set(tmp_path):
-    async with open_recording(tmp_path) as world, page(world.viewer) as client:
+    async with open_recording(tmp_path) as world, open_page(world.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("set_playback", speed=5, loop=True)
         await client.until("playhead", speed=5, loop=True)
@@ -102,7 +102,7 @@ async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
     async with open_recording(tmp_path) as world:
         node = world.graph.create_node("recorded_simulation")
         state = node.create_publisher("simulation_interfaces/msg/SimulationState", "/simulation_state", 1)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             assert (await client.until("simulation_status"))["present"] is False
             state.publish(state.msg_type(state=1))
             await client.until("playhead", playing=False, position=START_S + 10)
@@ -117,7 +117,7 @@ async def test_recorded_simulation_has_no_simulation_bar(tmp_path):
 @skipping
 async def test_topics_of_unknown_type_are_reported(tmp_path):
     # The recording's definition of the unknown type is invalid too.
-    async with open_recording(tmp_path, Point="Paint", float64="flaot64") as world, page(world.viewer) as client:
+    async with open_recording(tmp_path, Point="Paint", float64="flaot64") as world, open_page(world.viewer) as client:
         message = await client.until("playhead", playing=True)
         assert message["problem"] == (
             "topics of 'drive' are left out because the definitions of their types are missing or invalid: "
@@ -128,7 +128,7 @@ async def test_topics_of_unknown_type_are_reported(tmp_path):
 
 @skipping
 async def test_viewer_without_recording_has_no_timeline():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         assert "timeline" not in await client.opened()
         await client.send("play", playing=True)
         await client.send("seek_time", position=1)

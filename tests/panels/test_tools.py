@@ -11,7 +11,7 @@ from linkwright.graph import ActionServer
 from linkwright.messages import get_action
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.config.tools import DEFAULT_TOOLS, TOOL_KINDS, get_tool_name
-from tests.viewer.scene import open_world, page, rows_by_id
+from tests.viewer.scene import open_page, open_world, rows_by_id
 from tests.waiting import eventually
 
 FILE = """\
@@ -99,7 +99,7 @@ def listen(world, kind: str, topic: str) -> list:
 
 
 async def test_tools_publish_poses_and_points_in_fixed_frame(config):
-    async with open_world(config) as world, page(world.viewer) as client:
+    async with open_world(config) as world, open_page(world.viewer) as client:
         point, goal, unknown, pose = (await client.opened())["tools"]["tools"]
         assert [tool["supported"] for tool in (point, goal, unknown, pose)] == [True, True, False, True]
         poses = listen(world, "geometry_msgs/msg/PoseWithCovarianceStamped", "/first")
@@ -126,7 +126,7 @@ async def test_tools_publish_poses_and_points_in_fixed_frame(config):
 
 
 async def test_tool_topic_can_be_changed_and_invalid_topic_is_rejected(config):
-    async with open_world(config) as world, page(world.viewer) as first, page(world.viewer) as second:
+    async with open_world(config) as world, open_page(world.viewer) as first, open_page(world.viewer) as second:
         goal = (await first.opened())["tools"]["tools"][1]
         await second.opened()
         topic = f"{goal['id']}/Topic"
@@ -144,7 +144,7 @@ async def test_tool_topic_can_be_changed_and_invalid_topic_is_rejected(config):
 
 
 async def test_tools_are_added_and_removed_on_all_pages(config):
-    async with open_world(config) as world, page(world.viewer) as first, page(world.viewer) as second:
+    async with open_world(config) as world, open_page(world.viewer) as first, open_page(world.viewer) as second:
         tools = (await first.opened())["tools"]["tools"]
         await second.opened()
         await first.send("add_tool", cls="rviz_default_plugins/Measure")
@@ -171,7 +171,7 @@ Visualization Manager:
 
 async def test_nav2_goal_uses_action_and_logs_missing_server():
     config = RvizConfig.parse(NAV2)
-    async with open_world(config) as world, page(world.viewer) as opened:
+    async with open_world(config) as world, open_page(world.viewer) as opened:
         (tool,) = (await opened.opened())["tools"]["tools"]
         assert (tool["name"], tool["supported"], tool["properties"]) == ("Nav2 Goal", True, [])
         await opened.send("pose_chosen", tool=tool["id"], x=1.0, y=2.0, yaw=0.0)

@@ -8,7 +8,7 @@ import yaml
 from linkwright.page.protocol.views_and_tools import View
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.config.views import CURRENT_NAME, ORBIT, PITCH_LIMIT, VIEW_SCHEMAS, make_view_classes
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 FLYING = """\
 Visualization Manager:
@@ -191,7 +191,7 @@ def test_view_can_be_saved_to_file_without_saved_views():
 
 
 async def test_pages_share_saved_views():
-    async with open_world() as world, page(world.viewer) as first, page(world.viewer) as second:
+    async with open_world() as world, open_page(world.viewer) as first, open_page(world.viewer) as second:
         opening = await first.opened()
         await second.opened()
         assert opening["saved_views"]["views"] == []

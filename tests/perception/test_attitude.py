@@ -33,7 +33,7 @@ def acceleration_at_rest(orientation, world=WorldFrame.ENU):
     return rotate(quaternion_inverse(orientation), (0.0, 0.0, GRAVITY * world.up))
 
 
-def field(orientation, world=WorldFrame.ENU):
+def magnetic_field_reading(orientation, world=WorldFrame.ENU):
     """Return the reading of a magnetometer."""
     level, vertical = cos(MAGNETIC_DIP_RAD), -sin(MAGNETIC_DIP_RAD) * world.up
     return rotate(
@@ -53,7 +53,9 @@ def test_attitude_at_rest_matches_orientation(roll, pitch, yaw, world):
     orientation = quaternion_from_rpy((roll, pitch, yaw))
     assert (
         angle_between(
-            compute_attitude_at_rest(acceleration_at_rest(orientation, world), field(orientation, world), world),
+            compute_attitude_at_rest(
+                acceleration_at_rest(orientation, world), magnetic_field_reading(orientation, world), world
+            ),
             orientation,
         )
         < 1e-6
@@ -76,7 +78,7 @@ def test_madgwick_converges_from_large_error(world):
     attitude_filter = MadgwickFilter(gain=0.5, world=world)
     for _ in range(1000):
         attitude_filter.update(
-            (0.0, 0.0, 0.0), acceleration_at_rest(orientation, world), field(orientation, world), 0.01
+            (0.0, 0.0, 0.0), acceleration_at_rest(orientation, world), magnetic_field_reading(orientation, world), 0.01
         )
     assert angle_between(attitude_filter.orientation, orientation) < 0.01
 
@@ -113,7 +115,10 @@ def test_complementary_filter_finds_attitude_and_north():
     attitude_filter = ComplementaryFilter(gain_acc=0.05, gain_mag=0.05)
     for _ in range(500):
         attitude_filter.update(
-            (0.0, 0.0, 0.0), acceleration_at_rest(orientation, WorldFrame.NWU), field(orientation, WorldFrame.NWU), 0.01
+            (0.0, 0.0, 0.0),
+            acceleration_at_rest(orientation, WorldFrame.NWU),
+            magnetic_field_reading(orientation, WorldFrame.NWU),
+            0.01,
         )
     assert angle_between(attitude_filter.orientation, orientation) < 0.01
 

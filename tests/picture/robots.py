@@ -39,18 +39,18 @@ def urdf(*parts: str) -> str:
     return f'<robot name="r">{"".join(parts)}</robot>'
 
 
-def scene(text: str, positions: Mapping[str, float] | None = None, **options: Any) -> Scene:
+def make_scene(text: str, positions: Mapping[str, float] | None = None, **options: Any) -> Scene:
     """Return the scene of a robot."""
     finder = PackageFinder(start=[Path.cwd()])
     return robot_scene(load(text, packages=finder), finder, positions, **options)
 
 
-def image(text: str, view: str = "front", size: tuple[int, int] = (120, 90), **style: Any) -> Image:
+def render_image(text: str, view: str = "front", size: tuple[int, int] = (120, 90), **style: Any) -> Image:
     """Return the image of a robot."""
-    return render(scene(text), VIEWS[view], size, Style(**style))
+    return render(make_scene(text), VIEWS[view], size, Style(**style))
 
 
-def mostly(pixel: np.ndarray) -> str:
+def strongest_channel(pixel: np.ndarray) -> str:
     """Return the channel that is by far the strongest, or ``gray`` if there is none."""
     red, green, blue = (int(value) for value in pixel[:3])
     for name, value, other_channels in (

@@ -11,14 +11,14 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.geometry.collada_colors import read_colored_meshes
 from linkwright.picture.materials import DEFAULT_COLOR, SurfaceLibrary, choose_surface_color
 from tests.browser.golden import GOLDEN, golden_links, robot_of
-from tests.picture.robots import image, joint, link, mostly, scene, urdf
+from tests.picture.robots import joint, link, make_scene, render_image, strongest_channel, urdf
 from tests.places import REPOSITORY
 
 KINECT = REPOSITORY / "robots" / "my_robot_description" / "meshes" / "kinect.dae"
 TRIANGLE = b"facet normal 0 0 1\nouter loop\nvertex 0 -1 -1\nvertex 0 1 -1\nvertex 0 0 1\nendloop\nendfacet\n"
 
 
-def stl(folder: Path, count: int = 1) -> Path:
+def write_stl(folder: Path, count: int = 1) -> Path:
     path = folder / "a.stl"
     path.write_bytes(b"solid a\n" + count * TRIANGLE + b"endsolid a\n")
     return path
@@ -76,16 +76,16 @@ def test_file_color_precedes_description_color() -> None:
 
 
 def test_mesh_uses_color_and_scale_of_description(tmp_path: Path) -> None:
-    mesh = f'<mesh filename="{stl(tmp_path).as_uri()}" scale="1 2 0.5"/>'
+    mesh = f'<mesh filename="{write_stl(tmp_path).as_uri()}" scale="1 2 0.5"/>'
     text = urdf(link("base", mesh, "0.1 0.8 0.1 1"))
-    assert mostly(image(text)[50, 60]) == "green"
-    np.testing.assert_allclose(np.ptp(scene(text).points, axis=0), (0, 4, 1), atol=1e-8)
+    assert strongest_channel(render_image(text)[50, 60]) == "green"
+    np.testing.assert_allclose(np.ptp(make_scene(text).points, axis=0), (0, 4, 1), atol=1e-8)
 
 
 def test_mirrored_mesh_is_lit_from_same_side(tmp_path: Path) -> None:
-    path = stl(tmp_path).as_uri()
+    path = write_stl(tmp_path).as_uri()
     plain, mirrored = (
-        image(urdf(link("base", f'<mesh filename="{path}" scale="{scale}"/>', "0.8 0.8 0.8 1")))
+        render_image(urdf(link("base", f'<mesh filename="{path}" scale="{scale}"/>', "0.8 0.8 0.8 1")))
         for scale in ("1 1 1", "1 -1 1")
     )
     assert np.abs(plain[60, 60].astype(int) - mirrored[60, 60]).max() <= 2
@@ -93,10 +93,10 @@ def test_mirrored_mesh_is_lit_from_same_side(tmp_path: Path) -> None:
 
 def test_mesh_file_is_read_again_only_after_change(tmp_path: Path) -> None:
     library = SurfaceLibrary()
-    path = stl(tmp_path)
+    path = write_stl(tmp_path)
     first = library.read(path)
     assert library.read(path) is first
-    stl(tmp_path, 2)
+    write_stl(tmp_path, 2)
     assert library.read(path) is not first
 
 
@@ -116,7 +116,7 @@ def test_unreadable_mesh_is_reported_once(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.extra("mesh")
 def test_mesh_sizes_and_colors_match_page(tmp_path: Path) -> None:
-    shown = scene(robot_of(golden_links(tmp_path)))
+    shown = make_scene(robot_of(golden_links(tmp_path)))
     assert shown.problems == ()
     drawn = {body.name: surface for body, surface in zip(shown.mesh.bodies, shown.mesh.surfaces, strict=True)}
     mismatches = {}
@@ -132,10 +132,10 @@ def test_mesh_sizes_and_colors_match_page(tmp_path: Path) -> None:
 
 def test_robots_share_read_meshes(tmp_path: Path) -> None:
     text = urdf(
-        link("base", f'<mesh filename="{stl(tmp_path).as_uri()}"/>', "1 0 0 1"),
+        link("base", f'<mesh filename="{write_stl(tmp_path).as_uri()}"/>', "1 0 0 1"),
         link("other", '<sphere radius="1"/>', "1 0 0 1"),
         joint("j", "base", "other"),
     )
     library = SurfaceLibrary()
-    first, second = scene(text, library=library), scene(text, library=library)
+    first, second = make_scene(text, library=library), make_scene(text, library=library)
     assert first.mesh.surfaces[0].points is second.mesh.surfaces[0].points

@@ -7,7 +7,7 @@ import numpy as np
 from linkwright.picture.rasterizer import DepthBuffer, ScreenTriangles, rasterize
 
 
-def triangles(points: list[tuple[float, float, float]]) -> ScreenTriangles:
+def make_triangles(points: list[tuple[float, float, float]]) -> ScreenTriangles:
     x, y, nearness = np.array(points, float).T
     return ScreenTriangles.from_faces(x, y, nearness, np.arange(len(points)).reshape(-1, 3))
 
@@ -24,7 +24,7 @@ def test_adjacent_triangles_cover_each_sample_once() -> None:
         for point in ((*middle, 0.0), (*first, 0.0), (*second, 0.0))
     ]
     counts = np.zeros(40 * 40, int)
-    for part in rasterize(triangles(fan), np.arange(9), 40, 0, 40):
+    for part in rasterize(make_triangles(fan), np.arange(9), 40, 0, 40):
         np.add.at(counts, part.samples, 1)
     assert counts.max() == 1
     grid = counts.reshape(40, 40)
@@ -35,7 +35,7 @@ def test_adjacent_triangles_cover_each_sample_once() -> None:
 
 
 def test_nearest_triangle_is_kept_at_each_sample() -> None:
-    crossing = triangles([(0, 0, 0.0), (20, 0, 1.0), (0, 20, 0.0), (0, 0, 0.5), (20, 0, 0.5), (0, 20, 0.5)])
+    crossing = make_triangles([(0, 0, 0.0), (20, 0, 1.0), (0, 20, 0.0), (0, 0, 0.5), (20, 0, 0.5), (0, 20, 0.5)])
     for order in ([0, 1], [1, 0]):
         buffer = DepthBuffer(20, 0, 20, 1.0, 0.0)
         for index in order:
@@ -48,7 +48,7 @@ def test_nearest_triangle_is_kept_at_each_sample() -> None:
 
 def test_triangles_are_clipped_at_borders() -> None:
     buffer = DepthBuffer(10, 5, 8, 1.0, 0.0)
-    buffer.add(triangles([(-1e6, -1e6, 0.5), (1e6, -1e6, 0.5), (0, 1e6, 0.5)]), np.array([0]))
+    buffer.add(make_triangles([(-1e6, -1e6, 0.5), (1e6, -1e6, 0.5), (0, 1e6, 0.5)]), np.array([0]))
     visible = buffer.visible_triangles(1)
     assert visible is not None
     assert visible.mask.all()
@@ -57,5 +57,5 @@ def test_triangles_are_clipped_at_borders() -> None:
 
 def test_triangle_seen_edge_on_has_no_samples() -> None:
     buffer = DepthBuffer(10, 0, 10, 1.0, 0.0)
-    buffer.add(triangles([(1, 1, 0.0), (9, 9, 1.0), (5, 5, 0.5)]), np.array([0]))
+    buffer.add(make_triangles([(1, 1, 0.0), (9, 9, 1.0), (5, 5, 0.5)]), np.array([0]))
     assert buffer.visible_triangles(1) is None

@@ -20,7 +20,7 @@ import pytest
 from linkwright.picture.camera import VIEWS
 from linkwright.picture.rendering import Style, render
 from linkwright.picture.robots import GHOST_COLOR, OUTLINE_COLOR
-from tests.picture.robots import BLUE, GREEN, RED, joint, link, scene, urdf
+from tests.picture.robots import BLUE, GREEN, RED, joint, link, make_scene, urdf
 from tests.places import REPOSITORY
 
 SLIDE = '<mimic joint="bend" multiplier="0.1"/><limit lower="0" upper="1" effort="1" velocity="1"/>'
@@ -52,7 +52,7 @@ DIGESTS = {
 }
 
 
-def digests() -> dict[str, str]:
+def compute_digests() -> dict[str, str]:
     """Return the digests of the pixels of all images."""
     from linkwright.descriptions import load
     from linkwright.packages import PackageFinder
@@ -60,11 +60,11 @@ def digests() -> dict[str, str]:
     from linkwright.picture.robots import robot_scene
 
     size = (200, 150)
-    arm = scene(ARM, {"turn": 0.7})
+    arm = make_scene(ARM, {"turn": 0.7})
     finder = PackageFinder(start=[MBOT.parent])
     mbot = robot_scene(load(MBOT, packages=finder), finder, {})
-    old = scene(ARM, {"turn": -0.4, "bend": 1.9}, ghost=GHOST_COLOR)
-    new = scene(ARM, {"turn": 0.7}, outlined={"fore": OUTLINE_COLOR})
+    old = make_scene(ARM, {"turn": -0.4, "bend": 1.9}, ghost=GHOST_COLOR)
+    new = make_scene(ARM, {"turn": 0.7}, outlined={"fore": OUTLINE_COLOR})
     images = {
         "arm iso": render(arm, VIEWS["iso"], size, Style(transparent=True, labels="links")),
         "arm front": render(arm, VIEWS["front"], size, Style(labels="joints")),
@@ -77,10 +77,10 @@ def digests() -> dict[str, str]:
 
 
 def test_pixels_match_recorded_digests() -> None:
-    assert digests() == DIGESTS
+    assert compute_digests() == DIGESTS
 
 
-def switchable() -> list[str]:
+def find_switchable_features() -> list[str]:
     """Return the features of this processor that numpy can disable."""
     from numpy._core import _multiarray_umath as core  # type: ignore[attr-defined]
 
@@ -89,9 +89,9 @@ def switchable() -> list[str]:
 
 @pytest.mark.parametrize("count", [1, 2, 99], ids=["without one", "without two", "without all"])
 def test_pixels_do_not_depend_on_processor_features(count: int) -> None:
-    names = switchable()[-count:]
+    names = find_switchable_features()[-count:]
     paths = [str(REPOSITORY), *filter(None, [os.environ.get("PYTHONPATH")])]
-    program = "import json; from tests.picture.test_same_pixels import digests; print(json.dumps(digests()))"
+    program = "import json; from tests.picture import test_same_pixels as t; print(json.dumps(t.compute_digests()))"
     environment = {**os.environ, "NPY_DISABLE_CPU_FEATURES": " ".join(names), "PYTHONPATH": os.pathsep.join(paths)}
     environment["OPENBLAS_CORETYPE"] = "Prescott"
     printed = subprocess.run(
@@ -101,5 +101,5 @@ def test_pixels_do_not_depend_on_processor_features(count: int) -> None:
 
 
 def test_repeated_rendering_gives_same_pixels() -> None:
-    first, second = (render(scene(ARM), VIEWS["iso"], (120, 90)) for _ in range(2))
+    first, second = (render(make_scene(ARM), VIEWS["iso"], (120, 90)) for _ in range(2))
     assert (first == second).all()

@@ -10,7 +10,7 @@ import pytest
 from linkwright.picture.camera import VIEWS
 from linkwright.picture.rendering import Style, render
 from linkwright.picture.turntable import iterate_turning_cameras, render_turntable
-from tests.picture.robots import BLUE, RED, joint, link, scene, urdf
+from tests.picture.robots import BLUE, RED, joint, link, make_scene, urdf
 
 LONG = urdf(
     link("base", '<box size="2 0.3 0.3"/>', RED, "1 0 0"),
@@ -20,7 +20,7 @@ LONG = urdf(
 
 
 def test_robot_stays_within_image_at_constant_scale() -> None:
-    shown = scene(LONG)
+    shown = make_scene(LONG)
     scales = set()
     for camera in iterate_turning_cameras(VIEWS["iso"], (160, 120), shown.points, 24):
         x, y, _ = camera.project(shown.points)
@@ -33,7 +33,7 @@ def test_robot_stays_within_image_at_constant_scale() -> None:
 
 
 def test_rotation_axis_stays_in_place() -> None:
-    shown = scene(LONG)
+    shown = make_scene(LONG)
     low, high = shown.points.min(axis=0), shown.points.max(axis=0)
     middle = (low + high)[None, :] / 2
     places = [
@@ -44,7 +44,7 @@ def test_rotation_axis_stays_in_place() -> None:
 
 
 def test_images_match_their_cameras_across_threads() -> None:
-    shown = scene(LONG)
+    shown = make_scene(LONG)
     finished: list[int] = []
     images = render_turntable(shown, VIEWS["iso"], (64, 48), Style(), 4, finished.append)
     assert finished == [1, 2, 3, 4]
@@ -67,5 +67,5 @@ def test_interruption_does_not_wait_for_remaining_images(monkeypatch: pytest.Mon
 
     monkeypatch.setattr("linkwright.picture.turntable.render", slow)
     with pytest.raises(KeyboardInterrupt):
-        render_turntable(scene(LONG), VIEWS["iso"], (64, 48), Style(), 200, interrupt)
+        render_turntable(make_scene(LONG), VIEWS["iso"], (64, 48), Style(), 200, interrupt)
     assert len(drawn) < 50

@@ -17,7 +17,7 @@ from tests.places import REPOSITORY
 WORLDS = REPOSITORY / "robots" / "my_robot_gazebo" / "worlds"
 
 
-def world(path: Path) -> Scene:
+def load_scene(path: Path) -> Scene:
     finder = PackageFinder(start=[path.parent])
     sdf = examine_world(path, packages=finder).sdf
     assert sdf is not None
@@ -30,12 +30,12 @@ def world_with_visual(folder: Path, visual: str, pose: str = "1 2 3 0 0 1.570796
         f'<sdf version="1.9"><world name="w"><model name="m"><pose>{pose}</pose>'
         f'<link name="l"><visual name="v">{visual}</visual></link></model></world></sdf>'
     )
-    return world(path)
+    return load_scene(path)
 
 
 @pytest.mark.parametrize("name", ["house.world", "playground.world"])
 def test_course_worlds_are_drawn_completely(name: str) -> None:
-    scene = world(WORLDS / name)
+    scene = load_scene(WORLDS / name)
     assert scene.problems == ()
     assert len(scene.mesh.faces) > 100
 

@@ -29,14 +29,14 @@ from tests.wire.ros_peer import as_bytes, make_type, read_text
 ROUND_COUNT = 40
 HEADER = b"\0\1\0\0"
 RELIABLE = Qos(Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(10))
-LASTING = RELIABLE + Qos(Policy.Durability.TransientLocal)
+TRANSIENT_LOCAL = RELIABLE + Qos(Policy.Durability.TransientLocal)
 
 
-def writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> DataWriter:
+def make_writer(participant: DomainParticipant, topic: str, kind: type, qos: Qos) -> DataWriter:
     return DataWriter(participant, Topic(participant, topic, kind), qos)
 
 
-def bodies(lottery: random.Random) -> list[bytes]:
+def make_random_bodies(lottery: random.Random) -> list[bytes]:
     """Return bytes that are rarely a valid message.
 
     Each has an encapsulation header that Cyclone accepts.
@@ -48,7 +48,7 @@ def bodies(lottery: random.Random) -> list[bytes]:
     return packets
 
 
-def announcements(participant: bytes) -> list[bytes]:
+def make_announcements(participant: bytes) -> list[bytes]:
     """Return possible announcements of a participant in the layout of Humble.
 
     The node names are impossible.
@@ -91,9 +91,9 @@ def main() -> None:
     info = as_bytes(make_type(prefix + "ParticipantEntitiesInfo_", members))
     lottery = random.Random(7)
     writers = {
-        "rt/words": writer(participant, "rt/words", string, RELIABLE),
-        "rq/flipRequest": writer(participant, "rq/flipRequest", request, RELIABLE),
-        "ros_discovery_info": writer(participant, "ros_discovery_info", info, LASTING),
+        "rt/words": make_writer(participant, "rt/words", string, RELIABLE),
+        "rq/flipRequest": make_writer(participant, "rq/flipRequest", request, RELIABLE),
+        "ros_discovery_info": make_writer(participant, "ros_discovery_info", info, TRANSIENT_LOCAL),
     }
     limit = time.monotonic() + 60
     while time.monotonic() < limit and not all(writer.get_matched_subscriptions() for writer in writers.values()):
@@ -102,7 +102,7 @@ def main() -> None:
     send_datagrams(lottery, 7400 + 250 * number + 10)
     for name, data_writer in writers.items():
         written = 0
-        for body in bodies(lottery) + announcements(participant.guid.bytes):
+        for body in make_random_bodies(lottery) + make_announcements(participant.guid.bytes):
             with suppress(DDSException):  # Cyclone rejects some by itself
                 data_writer.write(data_writer.data_type(body))
                 written += 1

@@ -52,17 +52,17 @@ finally:
         node.destroy_node()
     rclpy.try_shutdown()
 """
-MARK = "LINKWRIGHT_RELIABILITY"
+PROCESS_MARK = "LINKWRIGHT_RELIABILITY"
 
 
-class Running:
+class RunningProcess:
     """A process and the lines that it has written, standard output and errors together."""
 
     def __init__(self, command: list[str], variables: Mapping[str, str], folder: Path) -> None:
         self.mark = f"{os.getpid()}-{time.monotonic_ns()}"
         self.process = subprocess.Popen(
             command,
-            env={**os.environ, **variables, MARK: self.mark},
+            env={**os.environ, **variables, PROCESS_MARK: self.mark},
             cwd=folder,
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
@@ -131,7 +131,7 @@ class Running:
 
 def _is_marked(process: psutil.Process, mark: str) -> bool:
     try:
-        return process.status() != psutil.STATUS_ZOMBIE and process.environ().get(MARK) == mark
+        return process.status() != psutil.STATUS_ZOMBIE and process.environ().get(PROCESS_MARK) == mark
     except psutil.Error:
         return False
 
@@ -147,15 +147,15 @@ class Machine:
             "XDG_CACHE_HOME": str(folder / "cache"),
             "PYTHONUNBUFFERED": "1",
         }
-        self._started: list[Running] = []
+        self._started: list[RunningProcess] = []
         self.before: tuple[str, ...] = ()
         """The words before each command, such as a shell that executes the command after a preparation."""
 
-    def command(self, *words: object, **variables: str) -> Running:
+    def command(self, *words: object, **variables: str) -> RunningProcess:
         """Start ``linkwright WORDS``."""
         return self._start([LINKWRIGHT, *map(str, words)], variables)
 
-    def start_handling_interrupts(self, *words: object, module: str = "linkwright") -> Running:
+    def start_handling_interrupts(self, *words: object, module: str = "linkwright") -> RunningProcess:
         """Start ``python -m MODULE WORDS``, and wait until it handles Ctrl-C."""
         running = self._start(command_that_reports(module, *map(str, words)), {})
         running.wait_for(BEGUN)
@@ -169,16 +169,16 @@ class Machine:
         assert status == 0, running.text
         return running.text
 
-    def launch(self, path: Path, *words: object, **variables: str) -> Running:
+    def launch(self, path: Path, *words: object, **variables: str) -> RunningProcess:
         """Start a launch."""
         return self.command("launch", path, *words, "--no-open", **variables)
 
-    def program(self, text: str, *words: object, **variables: str) -> Running:
+    def program(self, text: str, *words: object, **variables: str) -> RunningProcess:
         """Start a user's program: a class ``Program`` derived from ``Node``."""
-        path = self.write(f"program_{len(self._started)}.py", program(text))
+        path = self.write(f"program_{len(self._started)}.py", program_text(text))
         return self._start([sys.executable, str(path), *map(str, words)], {**create_environment({}), **variables})
 
-    def python(self, *words: object) -> Running:
+    def python(self, *words: object) -> RunningProcess:
         """Start a module or script of the tests."""
         return self._start([sys.executable, *map(str, words)], {"PYTHONPATH": str(Path(__file__).parents[2])})
 
@@ -188,8 +188,8 @@ class Machine:
         path.write_text(textwrap.dedent(text), encoding="utf-8")
         return path
 
-    def _start(self, command: list[str], variables: Mapping[str, str]) -> Running:
-        self._started.append(Running([*self.before, *command], {**self.variables, **variables}, self.folder))
+    def _start(self, command: list[str], variables: Mapping[str, str]) -> RunningProcess:
+        self._started.append(RunningProcess([*self.before, *command], {**self.variables, **variables}, self.folder))
         return self._started[-1]
 
     def clean_up(self) -> None:
@@ -197,12 +197,12 @@ class Machine:
             running.clean_up()
 
 
-def program(text: str) -> str:
+def program_text(text: str) -> str:
     """Return the text of a program around its class ``Program``."""
     return PROGRAM.replace("{program}", textwrap.dedent(text).strip())
 
 
-def launch_file(*actions: str) -> str:
+def launch_file_text(*actions: str) -> str:
     """Return a launch file with actions.
 
     ``rclpy_node(name, path)`` runs a program with respawn.

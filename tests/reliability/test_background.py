@@ -14,7 +14,7 @@ import pytest
 from linkwright.bag import BagWriter
 from linkwright.messages import String, serialize
 from tests.domains import own_domain
-from tests.reliability.running import Machine, Running, launch_file, program
+from tests.reliability.running import Machine, RunningProcess, launch_file_text, program_text
 from tests.waiting import wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the signal handlers of processes are read in /proc")
@@ -54,7 +54,7 @@ def catches_interrupts(process: int) -> bool:
     return bool(int(caught.split()[1], 16) & 1 << (signal.SIGINT - 1))
 
 
-def interrupt_when_ready(running: Running, text: str) -> int:
+def interrupt_when_ready(running: RunningProcess, text: str) -> int:
     """Wait until a process handles SIGINT and has printed a text.
 
     Interrupt it, and return its exit status.
@@ -91,9 +91,9 @@ def test_process_in_background_launch_can_be_interrupted_alone(background: Machi
 
     It has the system's default for SIGINT, as in a terminal, however the launch was started.
     """
-    path = background.write("speaker.py", program(SPEAKING))
+    path = background.write("speaker.py", program_text(SPEAKING))
     action = f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], output='screen')"
-    running = background.launch(background.write("a.launch.py", launch_file(action)))
+    running = background.launch(background.write("a.launch.py", launch_file_text(action)))
     running.wait_for("speaks")
     (child,) = [process for process in running.left_behind() if "speaker.py" in " ".join(process.cmdline())]
     child.send_signal(signal.SIGINT)

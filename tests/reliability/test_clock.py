@@ -73,14 +73,14 @@ def test_clock_jump_back_keeps_timers_and_clears_tf_buffer(machine: Machine) -> 
     follower.wait_for("tf 1 1")
     conductor.wait_for("back")
     wait_until(lambda: 10_000 <= follower.last_number("tick") < 20_000, what=lambda: follower.text)
-    wait_until(lambda: "tf 0 0" in _after_jump(follower.lines), what=lambda: follower.text)
+    wait_until(lambda: "tf 0 0" in _output_after_jump(follower.lines), what=lambda: follower.text)
     before = follower.last_number("tick")
     wait_until(lambda: follower.last_number("tick") > before + 1000, what=lambda: follower.text)
     assert follower.interrupt() == 0
     assert "Traceback" not in follower.text
 
 
-def _after_jump(lines: list[str]) -> str:
+def _output_after_jump(lines: list[str]) -> str:
     """Return the output since the clock jumped back."""
     lines = list(lines)
     ticks = [number for number, line in enumerate(lines) if line.startswith("tick") and int(line.split()[1]) >= 100_000]

@@ -29,7 +29,7 @@ class Program(Node):
         self.number += 1
         self.calm.publish(Int32(data=self.number))
 """
-BOTH = """
+TWO_TOPIC_LISTENER = """
 class Program(Node):
     def __init__(self):
         super().__init__("both")
@@ -45,7 +45,7 @@ class Program(Node):
 
 
 def test_flooded_topic_does_not_starve_another(machine: Machine) -> None:
-    listener = machine.program(BOTH)
+    listener = machine.program(TWO_TOPIC_LISTENER)
     flood = machine.program(FLOOD)
     listener.wait_for("flooded")
     before = listener.count("calm")
@@ -112,7 +112,7 @@ def test_blocking_subscriber_does_not_delay_others(machine: Machine) -> None:
 
 @pytest.mark.parametrize("size", [10, 20_000])
 def test_reliable_messages_are_not_lost_with_slow_subscriber(machine: Machine, size: int) -> None:
-    """Reliable messages are not lost without a limit of the queue.
+    """Reliable messages are not lost if the queue is unlimited.
 
     The flood ends long before the subscriber has read all messages.
     """

@@ -1,4 +1,4 @@
-"""Navigation in another process instead of ours, as with real nav2.
+"""Navigation in another process instead of Linkwright's, as with real nav2.
 
 It receives the simulation's data over the wire, and serves clients of nav2's topics and actions.
 """

@@ -20,7 +20,7 @@ import psutil
 import pytest
 
 from tests.begun import BEGUN, command_that_reports
-from tests.reliability.running import MARK, Machine, launch_file, program
+from tests.reliability.running import PROCESS_MARK, Machine, launch_file_text, program_text
 from tests.waiting import TIMEOUT_S, wait_until
 
 TALKER = """
@@ -48,16 +48,16 @@ os.execv(sys.argv[1], sys.argv[1:])
 """
 
 
-def traceback_in(text: str) -> bool:
+def find_traceback(text: str) -> bool:
     return re.search(r"^(\[\S+\] )?Traceback", text, re.MULTILINE) is not None
 
 
 @pytest.mark.slow
 def test_launch_interrupted_at_random_startup_moments_ends_cleanly(machine: Machine) -> None:
-    path = machine.write("talker.py", program(TALKER))
+    path = machine.write("talker.py", program_text(TALKER))
     launch = machine.write(
         "a.launch.py",
-        launch_file(
+        launch_file_text(
             "Node(package='demo_nodes_cpp', executable='talker')",
             "Node(package='rviz2', executable='rviz2')",
             f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], respawn=True, output='screen')",
@@ -80,7 +80,7 @@ def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) ->
 
     It is typed in the terminal of a launch, and in the terminal of a recording, which reads keys.
     """
-    path = machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
+    path = machine.write("a.launch.py", launch_file_text("Node(package='demo_nodes_cpp', executable='talker')"))
     bag = machine.folder / f"bag_{delay}"
     for words in (["launch", str(path)], ["bag", "record", "-a", "-o", str(bag)]):
         main, terminal = pty.openpty()
@@ -90,7 +90,7 @@ def test_interrupt_restores_terminal_settings(machine: Machine, delay: float) ->
             stdin=terminal,
             stdout=terminal,
             stderr=terminal,
-            env={**os.environ, **machine.variables, MARK: "terminal"},
+            env={**os.environ, **machine.variables, PROCESS_MARK: "terminal"},
             cwd=machine.folder,
             start_new_session=True,
         )
@@ -155,14 +155,14 @@ def test_few_modules_are_imported_before_sigint_handler(machine: Machine, words:
 
 @pytest.mark.parametrize("words", COMMANDS)
 def test_interrupt_during_imports_prints_no_traceback(machine: Machine, words: tuple[str, ...]) -> None:
-    machine.write("a.launch.py", launch_file("Node(package='demo_nodes_cpp', executable='talker')"))
+    machine.write("a.launch.py", launch_file_text("Node(package='demo_nodes_cpp', executable='talker')"))
     for delay in (0.0, 0.01, 0.025, 0.04, 0.06, 0.09, 0.13, 0.18, 0.25):
         running = machine.start_handling_interrupts(*words[1:], module=words[0])
         time.sleep(delay)
         status = running.interrupt()
         # A running node ends with status 0, as all nodes do.
         assert status in ((0, 130) if "talker" in words else (130,)), running.text
-        assert not traceback_in(running.text), running.text
+        assert not find_traceback(running.text), running.text
 
 
 def _drain(main: int, chunks: list[bytes]) -> None:
@@ -191,7 +191,7 @@ def test_running_command_ends_on_interrupt(machine: Machine, words: tuple[str, .
         wait_until(lambda: psutil.Process(running.process.pid).net_connections("udp"))
     status = running.interrupt()
     assert status in (0, 130), running.text
-    assert not traceback_in(running.text), running.text
+    assert not find_traceback(running.text), running.text
 
 
 @pytest.mark.slow
@@ -204,7 +204,7 @@ def test_topic_echo_interrupted_during_startup_exits_with_130(machine: Machine) 
         status = running.interrupt()
         failure_text = f"interrupted after {delay:.3f} s, status {status}:\n{running.text}"
         assert status == 130, failure_text
-        assert not traceback_in(running.text), failure_text
+        assert not find_traceback(running.text), failure_text
 
 
 def test_interrupted_recording_is_complete(machine: Machine) -> None:
@@ -255,7 +255,7 @@ def test_interrupt_during_service_call_ends_client_and_server(machine: Machine) 
     client = machine.command("service", "call", "/slow", "std_srvs/srv/Trigger")
     server.wait_for("asked")
     assert client.interrupt() == 130, client.text
-    assert not traceback_in(client.text), client.text
+    assert not find_traceback(client.text), client.text
     leave.touch()
     server.wait_for("answered")
     assert "response" in machine.verb("service", "call", "/slow", "std_srvs/srv/Trigger")
@@ -263,5 +263,5 @@ def test_interrupt_during_service_call_ends_client_and_server(machine: Machine) 
     second = machine.command("service", "call", "/slow", "std_srvs/srv/Trigger")
     server.wait_for("asked", times=3)
     server.interrupt()
-    assert not traceback_in(server.text), server.text
+    assert not find_traceback(server.text), server.text
     second.interrupt()

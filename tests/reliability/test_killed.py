@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import psutil
 
-from tests.reliability.running import Machine, launch_file, program
+from tests.reliability.running import Machine, launch_file_text, program_text
 from tests.waiting import wait_until
 
 TALKER = """
@@ -34,11 +34,11 @@ class Program(Node):
 
 
 def test_killed_node_is_respawned_and_heard_again(machine: Machine) -> None:
-    path = machine.write("talker.py", program(TALKER))
+    path = machine.write("talker.py", program_text(TALKER))
     launch = machine.launch(
         machine.write(
             "a.launch.py",
-            launch_file(f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], name='talker', respawn=True)"),
+            launch_file_text(f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], name='talker', respawn=True)"),
         )
     )
     listener = machine.program(LISTENER)
@@ -91,11 +91,11 @@ def test_publisher_survives_killed_subscriber(machine: Machine) -> None:
 
 
 def test_killed_launch_leaves_no_processes_or_nodes(machine: Machine) -> None:
-    path = machine.write("talker.py", program(TALKER))
+    path = machine.write("talker.py", program_text(TALKER))
     launch = machine.launch(
         machine.write(
             "a.launch.py",
-            launch_file(
+            launch_file_text(
                 f"ExecuteProcess(cmd=[sys.executable, {str(path)!r}], respawn=True, output='screen')",
                 "Node(package='demo_nodes_cpp', executable='listener')",
             ),

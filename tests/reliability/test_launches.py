@@ -7,7 +7,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from tests.reliability.running import Machine, launch_file
+from tests.reliability.running import Machine, launch_file_text
 from tests.waiting import wait_until
 
 ROBOT = Path(__file__).parents[2] / "robots" / "my_robot_description"
@@ -19,7 +19,7 @@ def test_two_equal_launches_warn_and_both_work(machine: Machine) -> None:
         "Node(package='demo_nodes_cpp', executable='talker')",
         "Node(package='demo_nodes_cpp', executable='listener')",
     )
-    path = machine.write("a.launch.py", launch_file(*actions))
+    path = machine.write("a.launch.py", launch_file_text(*actions))
     launches = [machine.launch(path), machine.launch(path)]
     for launch in launches:
         launch.wait_for("has nodes with the same names")
@@ -111,7 +111,7 @@ def test_process_without_dds_works_in_isolation(machine: Machine) -> None:
     """
     path = machine.write(
         "a.launch.py",
-        launch_file(
+        launch_file_text(
             "Node(package='demo_nodes_cpp', executable='talker')",
             "Node(package='demo_nodes_cpp', executable='listener')",
         ),
@@ -137,7 +137,7 @@ def test_launch_leaves_no_threads_or_processes(machine: Machine) -> None:
     program = machine.write("p.py", "import time\nprint('up', flush=True)\ntime.sleep(60)\n")
     path = machine.write(
         "a.launch.py",
-        launch_file(
+        launch_file_text(
             "Node(package='demo_nodes_cpp', executable='talker')",
             "Node(package='rviz2', executable='rviz2')",
             f"ExecuteProcess(cmd=[sys.executable, {str(program)!r}], output='screen')",

@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.bag import BagReader
 from tests.recordings import needs_rosbags
-from tests.reliability.running import Machine, launch_file
+from tests.reliability.running import Machine, launch_file_text
 from tests.waiting import wait_until
 
 pytestmark = needs_rosbags
@@ -52,7 +52,7 @@ class Program(Node):
 """
 
 
-def count(path) -> int:
+def count_messages(path) -> int:
     """Return the number of messages in a complete recording."""
     with BagReader(path) as bag:
         message_count = sum(1 for _ in bag.messages())
@@ -67,7 +67,7 @@ def test_recording_is_complete_if_event_loop_hangs(machine: Machine, storage: st
     running.wait_for("writing")
     running.process.send_signal(number)
     assert running.wait() == 128 + number, running.text
-    assert count(machine.folder / "bag") >= 1000
+    assert count_messages(machine.folder / "bag") >= 1000
 
 
 @pytest.mark.slow
@@ -86,16 +86,16 @@ def test_bag_record_is_complete_after_any_signal(machine: Machine, storage: str,
             break
     recording.wait()
     assert "Traceback" not in recording.text
-    assert count(folder) > 100
+    assert count_messages(folder) > 100
 
 
 @pytest.mark.slow
 def test_recording_started_by_launch_is_complete(machine: Machine) -> None:
     machine.program(FLOOD)
     record = "ExecuteProcess(cmd=['ros2', 'bag', 'record', '-a', '-o', 'bag'], output='screen')"
-    launch = machine.launch(machine.write("a.launch.py", launch_file(record)))
+    launch = machine.launch(machine.write("a.launch.py", launch_file_text(record)))
     launch.wait_for("Subscribed to topic '/chatter'")
     folder = machine.folder / "bag"
     wait_until(lambda: sum(path.stat().st_size for path in folder.iterdir()) > 1_000_000, what=lambda: launch.text)
     launch.interrupt()
-    assert count(folder) > 100
+    assert count_messages(folder) > 100

@@ -55,7 +55,7 @@ def breaking(result: Review) -> list[str]:
 
 
 @pytest.fixture
-def changes_of(repository, compare):
+def review_changes(repository, compare):
     """Review a replacement in a launch file.
 
     Return the sentences of all changes and of the breaking ones.

@@ -49,7 +49,7 @@ def compare_scenario(package):
 
 
 @pytest.fixture
-def compared(package, compare_scenario):
+def compare_default_scenario(package, compare_scenario):
     def run(old: dict[str, str], new: dict[str, str], seeds: int | None = None):
         package.commit({"tests/drive.py": scenario_text(**old)})
         package.commit({"tests/drive.py": scenario_text(**new)})
@@ -58,42 +58,42 @@ def compared(package, compare_scenario):
     return run
 
 
-def test_equal_results_are_not_reported(compared):
-    assert compared({}, {"MODE": "'a' + ''"}).is_empty
+def test_equal_results_are_not_reported(compare_default_scenario):
+    assert compare_default_scenario({}, {"MODE": "'a' + ''"}).is_empty
 
 
-def test_difference_beyond_noise_is_reported(compared):
-    comparison = compared({"NOISE": "0.1"}, {"NOISE": "0.1", "OFFSET": "0.5"})
+def test_difference_beyond_noise_is_reported(compare_default_scenario):
+    comparison = compare_default_scenario({"NOISE": "0.1"}, {"NOISE": "0.1", "OFFSET": "0.5"})
     (sentence,) = sentences(comparison)
     assert sentence == "lap: mean 7.548 -> 8.048, difference 0.5 to 0.5"
 
 
-def test_difference_within_noise_is_marked(compared):
-    comparison = compared({"NOISE": "0.1"}, {"NOISE": "(random.random(), random.random(), 0.1)[2]"})
+def test_difference_within_noise_is_marked(compare_default_scenario):
+    comparison = compare_default_scenario({"NOISE": "0.1"}, {"NOISE": "(random.random(), random.random(), 0.1)[2]"})
     (sentence,) = sentences(comparison)
     assert sentence.endswith(", within the noise")
 
 
-def test_violated_bound_is_breaking(compared):
-    (change,) = compared({}, {"BOUND": "8"}).changes
+def test_violated_bound_is_breaking(compare_default_scenario):
+    (change,) = compare_default_scenario({}, {"BOUND": "8"}).changes
     assert str(change.sentence) == "arrived: true in 20 -> 16 of 20 runs"
     assert str(change.reason) == "it was true in all runs of the old version"
-    (change,) = compared({"BOUND": "8"}, {"BOUND": "5"}).changes
+    (change,) = compare_default_scenario({"BOUND": "8"}, {"BOUND": "5"}).changes
     assert change.reason is None
 
 
-def test_runs_that_fail_are_breaking(compared):
-    comparison = compared({}, {"FAILS": "True"})
+def test_runs_that_fail_are_breaking(compare_default_scenario):
+    comparison = compare_default_scenario({}, {"FAILS": "True"})
     assert str(comparison.changes[0].sentence) == "0 -> 4 of 20 runs failed"
     assert comparison.changes[0].reason is not None
 
 
-def test_changed_texts_are_counted_over_seeds(compared):
-    assert sentences(compared({}, {"MODE": "'b'"}, seeds=3)) == ["mode: 6 of 6 values differ"]
+def test_changed_texts_are_counted_over_seeds(compare_default_scenario):
+    assert sentences(compare_default_scenario({}, {"MODE": "'b'"}, seeds=3)) == ["mode: 6 of 6 values differ"]
 
 
-def test_scenario_that_cannot_run_is_a_problem(compared):
-    (problem,) = compared({}, {"FAILS": "}"}).problems
+def test_scenario_that_cannot_run_is_a_problem(compare_default_scenario):
+    (problem,) = compare_default_scenario({}, {"FAILS": "}"}).problems
     assert str(problem.text).startswith("the scenario cannot run in the new version: ")
 
 

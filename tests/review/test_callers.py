@@ -31,7 +31,7 @@ CALLER = "from arm.plans import load, walk\nfrom . import plans\n\n\ndef main():
 
 
 @pytest.fixture
-def calls(repository, compare):
+def review_calls(repository, compare):
     """Review a replacement in the module.
 
     Return the breaking lines of the caller with their places.
@@ -66,8 +66,8 @@ OLD_CALL = "calls '{}' of 'arm/arm/plans.py' with the old arguments; the new one
          [("calls 'walk', which 'arm/arm/plans.py' no longer has", 2)]),
     ],
 )  # fmt: skip
-def test_a_caller_whose_calls_no_longer_fit_is_breaking(calls, old, new, caller, expected):
-    assert calls(old, new, caller) == expected
+def test_a_caller_whose_calls_no_longer_fit_is_breaking(review_calls, old, new, caller, expected):
+    assert review_calls(old, new, caller) == expected
 
 
 @pytest.mark.parametrize(
@@ -84,15 +84,17 @@ def test_a_caller_whose_calls_no_longer_fit_is_breaking(calls, old, new, caller,
         ("def walk():", "def go():", "try:\n    from arm.plans import walk\nexcept ImportError:\n    walk = None\n"),
     ],
 )
-def test_calls_that_fit_and_modules_that_are_not_certain_are_not_told(calls, old, new, caller):
-    assert calls(old, new, caller) == []
+def test_calls_that_fit_and_modules_that_are_not_certain_are_not_told(review_calls, old, new, caller):
+    assert review_calls(old, new, caller) == []
 
 
-def test_a_module_beside_a_script_is_found(calls):
+def test_a_module_beside_a_script_is_found(review_calls):
     caller = "from plans import load\nload('a', log)\n"
-    found = calls("load(path, log)", "load(path, color, log)", caller, "arm/scripts/n.py", "arm/scripts/plans.py")
+    found = review_calls(
+        "load(path, log)", "load(path, color, log)", caller, "arm/scripts/n.py", "arm/scripts/plans.py"
+    )
     assert [line for _, line in found] == [2]
-    assert calls("load(path, log)", "load(log)", caller, "arm/scripts/n.py", "arm/other/plans.py") == []
+    assert review_calls("load(path, log)", "load(log)", caller, "arm/scripts/n.py", "arm/other/plans.py") == []
 
 
 def test_an_import_of_a_module_that_is_gone_is_breaking(repository, compare):

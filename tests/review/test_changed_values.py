@@ -63,7 +63,7 @@ void Light::handle(double value) {
 
 
 @pytest.fixture
-def lines(repository, compare):
+def review_lines(repository, compare):
     """Review a replacement in a source, and return the sentences."""
 
     def run(path, text, old, new):
@@ -95,8 +95,8 @@ def lines(repository, compare):
         ("sleep(1.5)", "sleep(2)", "values in Rover.drive: time.sleep(1.5 -> 2)"),
     ],
 )
-def test_a_literal_that_changes_in_python_is_told_with_its_place(lines, old, new, expected):
-    assert lines("rover/scripts/drive.py", PYTHON, old, new) == [expected]
+def test_a_literal_that_changes_in_python_is_told_with_its_place(review_lines, old, new, expected):
+    assert review_lines("rover/scripts/drive.py", PYTHON, old, new) == [expected]
 
 
 @pytest.mark.parametrize(
@@ -108,8 +108,8 @@ def test_a_literal_that_changes_in_python_is_told_with_its_place(lines, old, new
         ("0.30, name='drill'", '.3, name="drill"'),
     ],
 )
-def test_texts_for_people_are_not_told(lines, old, new):
-    assert lines("rover/scripts/drive.py", PYTHON, old, new) == []
+def test_texts_for_people_are_not_told(review_lines, old, new):
+    assert review_lines("rover/scripts/drive.py", PYTHON, old, new) == []
 
 
 @pytest.mark.parametrize(
@@ -121,8 +121,8 @@ def test_texts_for_people_are_not_told(lines, old, new):
         ("1.5", "PAUSE", "Rover.drive"),
     ],
 )
-def test_of_statements_without_a_counterpart_the_function_is_told(lines, old, new, function):
-    assert lines("rover/scripts/drive.py", PYTHON, old, new) == [f"code changed in '{function}()'"]
+def test_of_statements_without_a_counterpart_the_function_is_told(review_lines, old, new, function):
+    assert review_lines("rover/scripts/drive.py", PYTHON, old, new) == [f"code changed in '{function}()'"]
 
 
 @pytest.mark.parametrize(
@@ -144,43 +144,43 @@ def test_of_statements_without_a_counterpart_the_function_is_told(lines, old, ne
         ("{1, 2, 3}", "{1, 2, 4}", 'values in Light::handle: map_["near"] {1, 2, 3} -> {1, 2, 4}'),
     ],
 )  # fmt: skip
-def test_a_literal_that_changes_in_cpp_is_told_with_its_place(lines, old, new, expected):
-    assert lines("rover/src/light.cpp", CPP, old, new) == [expected]
+def test_a_literal_that_changes_in_cpp_is_told_with_its_place(review_lines, old, new, expected):
+    assert review_lines("rover/src/light.cpp", CPP, old, new) == [expected]
 
 
 @pytest.mark.parametrize(("old", "new"), [("level 9", "level 8"), ("at most 12", "at most 13"), ("0.5f", "0.50")])
-def test_logs_comments_and_equal_numbers_in_cpp_are_not_told(lines, old, new):
-    assert lines("rover/src/light.cpp", CPP, old, new) == []
+def test_logs_comments_and_equal_numbers_in_cpp_are_not_told(review_lines, old, new):
+    assert review_lines("rover/src/light.cpp", CPP, old, new) == []
 
 
-def test_a_long_list_is_told_by_its_items(lines):
+def test_a_long_list_is_told_by_its_items(review_lines):
     keys = ", ".join(f"'key_{number}'" for number in range(20))
     text = f"KEYS = [{keys}]\n"
-    assert lines("rover/keys.py", text, ", 'key_3'", ", 'key_x'") == [
+    assert review_lines("rover/keys.py", text, ", 'key_3'", ", 'key_x'") == [
         "values: KEYS [...]: 'key_x' added, 'key_3' removed"
     ]
 
 
-def test_a_long_text_is_read_once_and_shown_in_part(lines):
+def test_a_long_text_is_read_once_and_shown_in_part(review_lines):
     image = "Z" * 300_000
-    (line,) = lines("rover/panel.py", f"IMAGE = '{image}'\n", "ZZZ'", "ZZY'")
+    (line,) = review_lines("rover/panel.py", f"IMAGE = '{image}'\n", "ZZZ'", "ZZY'")
     assert len(line) < 200
 
 
-def test_a_constant_of_the_source_with_another_name_is_not_a_value(lines):
+def test_a_constant_of_the_source_with_another_name_is_not_a_value(review_lines):
     text = "STEP = 1\n\ndef f():\n    return STEP\n"
-    assert lines("rover/step.py", text, "STEP", "STEP_SIZE") == ["code changed in 'f()'"]
+    assert review_lines("rover/step.py", text, "STEP", "STEP_SIZE") == ["code changed in 'f()'"]
 
 
-def test_texts_that_only_change_their_order_are_not_told(lines):
+def test_texts_that_only_change_their_order_are_not_told(review_lines):
     text = "layout = [button('Start', size=4, key=1), button('Stop', size=4, key=1)]\n"
     old, new = "'Start', size=4, key=1), button('Stop'", "'Stop', size=4, key=1), button('Start'"
-    assert lines("rover/panel.py", text, old, new) == ["code changed outside of functions"]
+    assert review_lines("rover/panel.py", text, old, new) == ["code changed outside of functions"]
 
 
-def test_values_that_other_lines_tell_are_not_told_again(lines):
+def test_values_that_other_lines_tell_are_not_told_again(review_lines):
     text = 'import rospy\nRATE = 10\nloop = rospy.Rate(RATE)\nrate = rospy.get_param("~rate", 5)\n'
-    assert lines("rover/loop.py", text, "RATE = 10", "RATE = 20") == ["rate or period: Rate(10) -> Rate(20)"]
+    assert review_lines("rover/loop.py", text, "RATE = 10", "RATE = 20") == ["rate or period: Rate(10) -> Rate(20)"]
 
 
 @pytest.mark.parametrize(("is_new", "expected"), [(True, "new"), (False, "old")])
@@ -207,5 +207,5 @@ def test_a_source_with_a_syntax_error_loses_no_names(repository, compare, is_new
         ("add_tool(z_offset=0.30, name='drill')", "drop(0.5)", "code changed in 'Rover.drive()'"),
     ],
 )
-def test_the_only_number_that_changes_with_the_form_of_a_statement_is_told(lines, old, new, expected):
-    assert lines("rover/scripts/drive.py", PYTHON, old, new) == [expected]
+def test_the_only_number_that_changes_with_the_form_of_a_statement_is_told(review_lines, old, new, expected):
+    assert review_lines("rover/scripts/drive.py", PYTHON, old, new) == [expected]

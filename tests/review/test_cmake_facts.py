@@ -57,7 +57,7 @@ rosbuild_add_library(core src/core.cpp)
 rosbuild_add_executable(driver src/driver.cpp)
 target_link_libraries(driver core)
 """
-OTHERS = {
+OTHER_FILES = {
     **dict.fromkeys(("a/config/a.yaml", "a/config/c.yaml", "a/config/d.yaml"), "rate: 10\n"),
     **{f"a/msg/{name}.msg": "int32 value\n" for name in ("State", "Load")},
     "a/services/Home.srv": "---\n",
@@ -114,7 +114,7 @@ OTHERS = {
 )  # fmt: skip
 def test_facts_of_cmake_files_are_compared(repository, compare, text, old, new, expected, is_breaking):
     assert text.count(old) == 1
-    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": text})
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": text})
     repository.write({"a/CMakeLists.txt": text.replace(old, new)})
     result = compare(repository)
     assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
@@ -123,7 +123,7 @@ def test_facts_of_cmake_files_are_compared(repository, compare, text, old, new, 
 
 def test_moved_source_of_a_test_is_named(repository, compare):
     source = "TEST(Core, IsThere) {\n  EXPECT_TRUE(true);\n}\n"
-    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": AMENT, "a/test/core.cpp": source})
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": AMENT, "a/test/core.cpp": source})
     text = AMENT.replace("test/core.cpp", "test/src/core.cpp")
     repository.commit({"a/CMakeLists.txt": text, "a/test/core.cpp": None, "a/test/src/core.cpp": source})
     found = subject(compare(repository, "HEAD~1..HEAD"), "a/CMakeLists.txt")
@@ -162,7 +162,7 @@ def test_new_executable_under_a_condition_is_shown_with_it(repository, compare):
     ],
 )
 def test_new_target_under_a_condition_that_does_not_hold_is_shown(repository, compare, text, command, expected):
-    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": text})
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": text})
     repository.write({"a/CMakeLists.txt": f"{text}if(ROS_DISTRO STREQUAL x)\n  {command}\nendif()\n"})
     result = compare(repository)
     assert [sentence for found in result.subjects for sentence in sentences(found)] == expected
@@ -170,7 +170,7 @@ def test_new_target_under_a_condition_that_does_not_hold_is_shown(repository, co
 
 
 def test_package_that_moves_from_rosbuild_to_catkin_keeps_its_programs(repository, compare):
-    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": ROSBUILD})
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": ROSBUILD})
     repository.write({"a/CMakeLists.txt": CATKIN})
     found = breaking(compare(repository))
     assert [sentence for sentence in found if "executables" in sentence or "interfaces" in sentence] == []
@@ -246,7 +246,7 @@ def test_interface_of_ros1_that_moves_to_another_folder_keeps_its_type(repositor
 
 
 def test_built_interface_without_a_file_is_named(repository, compare):
-    repository.commit({**MANIFEST, **OTHERS, "a/CMakeLists.txt": CATKIN})
+    repository.commit({**MANIFEST, **OTHER_FILES, "a/CMakeLists.txt": CATKIN})
     repository.write({"a/CMakeLists.txt": CATKIN.replace("Load.msg", "Load.msg Lost.msg")})
     found = subject(compare(repository), "a/CMakeLists.txt")
     assert sentences(found) == ["built interfaces added: 'msg/Lost.msg'"]

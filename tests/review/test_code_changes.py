@@ -65,7 +65,7 @@ void Rover::onTimer() {
 
 
 @pytest.fixture
-def lines(repository, compare):
+def review_lines(repository, compare):
     """Review another text of a source, and return the sentences."""
 
     def run(path, old, new):
@@ -97,9 +97,9 @@ def lines(repository, compare):
         ("class Driver", "setup()\n\n\nclass Driver", "code changed outside of functions"),
     ],
 )  # fmt: skip
-def test_functions_of_python_with_other_code_are_named(lines, old, new, expected):
+def test_functions_of_python_with_other_code_are_named(review_lines, old, new, expected):
     assert old in PYTHON
-    assert lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == [expected]
+    assert review_lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == [expected]
 
 
 @pytest.mark.parametrize(
@@ -113,9 +113,9 @@ def test_functions_of_python_with_other_code_are_named(lines, old, new, expected
         ("max(value, low)", "max(\n        value,\n        low,\n    )  # the larger one"),
     ],
 )
-def test_layout_comments_annotations_and_outputs_of_python_are_not_named(lines, old, new):
+def test_layout_comments_annotations_and_outputs_of_python_are_not_named(review_lines, old, new):
     assert old in PYTHON
-    assert lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == []
+    assert review_lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == []
 
 
 @pytest.mark.parametrize(
@@ -128,9 +128,9 @@ def test_layout_comments_annotations_and_outputs_of_python_are_not_named(lines, 
         ("DRIVER_MACRO(Rover)\n", "int size = half(3);\nDRIVER_MACRO(Rover)\n", "code changed outside of functions"),
     ],
 )
-def test_functions_of_cpp_with_other_code_are_named(lines, old, new, expected):
+def test_functions_of_cpp_with_other_code_are_named(review_lines, old, new, expected):
     assert old in CPP
-    assert lines("arm/src/rover.cpp", CPP, CPP.replace(old, new, 1)) == [expected]
+    assert review_lines("arm/src/rover.cpp", CPP, CPP.replace(old, new, 1)) == [expected]
 
 
 @pytest.mark.parametrize(
@@ -143,14 +143,14 @@ def test_functions_of_cpp_with_other_code_are_named(lines, old, new, expected):
         ("#include <rover.hpp>", "#include <rover.hpp>\n#include <vector>"),
     ],
 )
-def test_layout_comments_and_outputs_of_cpp_are_not_named(lines, old, new):
+def test_layout_comments_and_outputs_of_cpp_are_not_named(review_lines, old, new):
     assert old in CPP
-    assert lines("arm/src/rover.cpp", CPP, CPP.replace(old, new, 1)) == []
+    assert review_lines("arm/src/rover.cpp", CPP, CPP.replace(old, new, 1)) == []
 
 
-def test_nothing_is_told_of_cpp_whose_braces_do_not_match(lines):
+def test_nothing_is_told_of_cpp_whose_braces_do_not_match(review_lines):
     text = "void f() {\n#ifdef A\n  if (a) {\n#else\n  if (b) {\n#endif\n    c();\n  }\n}\nvoid g() { d(); }\n"
-    assert lines("arm/src/rover.cpp", text, text.replace("d()", "e()")) == []
+    assert review_lines("arm/src/rover.cpp", text, text.replace("d()", "e()")) == []
 
 
 @pytest.mark.parametrize(
@@ -161,15 +161,15 @@ def test_nothing_is_told_of_cpp_whose_braces_do_not_match(lines):
         ("self.mode = ", "self.level = 4\n        self.mode = ", None),
     ],
 )
-def test_a_function_that_other_lines_tell_of_is_not_named_again(lines, old, new, expected):
+def test_a_function_that_other_lines_tell_of_is_not_named_again(review_lines, old, new, expected):
     line = expected or "code changed in 'Driver.on_mode()' (callback of subscription 'mode')"
-    assert lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == [line]
+    assert review_lines("arm/scripts/driver.py", PYTHON, PYTHON.replace(old, new, 1)) == [line]
 
 
-def test_a_function_is_named_for_what_other_lines_do_not_tell(lines):
+def test_a_function_is_named_for_what_other_lines_do_not_tell(review_lines):
     new = PYTHON.replace("create_timer(0.1", "create_timer(0.2").replace('super().__init__("driver")', "f(4)")
     new = new.replace("f(4)", 'super().__init__("driver")\n        self.reset()')
-    assert lines("arm/scripts/driver.py", PYTHON, new) == [
+    assert review_lines("arm/scripts/driver.py", PYTHON, new) == [
         "rate or period: create_timer(0.1) -> create_timer(0.2)",
         "code changed in 'Driver.__init__()'",
     ]
@@ -191,9 +191,9 @@ def test_the_line_is_that_of_the_first_statement_that_differs(repository, compar
     assert found.changes[0].location.line == PYTHON[: PYTHON.index("= msg.data")].count("\n") + 1
 
 
-def test_a_class_in_cpp_may_have_a_macro_before_or_behind_its_name(lines):
+def test_a_class_in_cpp_may_have_a_macro_before_or_behind_its_name(review_lines):
     text = "class ARM_PUBLIC Tool ARM_FINAL : public Base {\n  int size() { return 1 + x; }\n};\n"
-    assert lines("arm/src/tool.hpp", text, text.replace("+ x", "+ y")) == ["code changed in 'Tool::size()'"]
+    assert review_lines("arm/src/tool.hpp", text, text.replace("+ x", "+ y")) == ["code changed in 'Tool::size()'"]
 
 
 USER = """import math
@@ -243,6 +243,8 @@ def test_a_name_that_may_be_defined_is_not_breaking(repository, compare, old, ne
     assert breaking(compare(repository)) == []
 
 
-def test_code_of_python_2_that_prints_a_list_is_read(lines):
+def test_code_of_python_2_that_prints_a_list_is_read(review_lines):
     text = "def plan(run):\n    print 'plan'\n    print [item for item in run.line]\n    run.go(run.line)\n"
-    assert lines("arm/scripts/plan.py", text, text.replace("go(run.line)", "go()")) == ["code changed in 'plan()'"]
+    assert review_lines("arm/scripts/plan.py", text, text.replace("go(run.line)", "go()")) == [
+        "code changed in 'plan()'"
+    ]

@@ -26,7 +26,7 @@ TURNED = (
 
 
 @pytest.fixture
-def images_of(package):
+def render_images(package):
     def run(files: dict[str, str]):
         package.write(files)
         versions = open_versions(package.root, "HEAD")
@@ -54,8 +54,8 @@ def share_of_differing_pixels(first: bytes, second: bytes) -> float:
     return float((pixels != other_pixels).any(axis=-1).mean())
 
 
-def test_moved_link_is_outlined_in_both_versions(images_of):
-    result, images = images_of({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")})
+def test_moved_link_is_outlined_in_both_versions(render_images):
+    result, images = render_images({SEGMENT: MACRO.replace("length:=0.5", "length:=0.6")})
     assert [view.name for view in images] == ["iso", "front", "left", "top"]
     assert all(count_orange_pixels(image) > 50 for view in images[:3] for image in (view.old, view.new))
     assert images[1].old != images[1].new
@@ -64,29 +64,29 @@ def test_moved_link_is_outlined_in_both_versions(images_of):
     assert page.count("type='range'") == 4
 
 
-def test_robot_with_same_appearance_has_no_images(images_of):
-    assert images_of({SEGMENT: MACRO.replace('mass value="2"', 'mass value="3"')})[1] == []
+def test_robot_with_same_appearance_has_no_images(render_images):
+    assert render_images({SEGMENT: MACRO.replace('mass value="2"', 'mass value="3"')})[1] == []
 
 
-def test_frame_rotated_together_with_visual_has_no_images(images_of):
-    assert images_of({SEGMENT: TURNED})[1] == []
+def test_frame_rotated_together_with_visual_has_no_images(render_images):
+    assert render_images({SEGMENT: TURNED})[1] == []
 
 
-def test_added_link_is_outlined_only_in_new_version(images_of):
+def test_added_link_is_outlined_only_in_new_version(render_images):
     sensor = """<link name="sensor"><visual><geometry><sphere radius="0.2"/></geometry></visual></link>
   <joint name="sensor_joint" type="fixed"><parent link="lower"/><child link="sensor"/></joint></robot>"""
-    _, images = images_of({PATH: ARM.replace("</robot>", sensor)})
+    _, images = render_images({PATH: ARM.replace("</robot>", sensor)})
     assert (count_orange_pixels(images[1].old), count_orange_pixels(images[1].new) > 50) == (0, True)
 
 
-def test_new_root_link_has_no_images(images_of):
+def test_new_root_link_has_no_images(render_images):
     new_root = """<link name="foot"/><joint name="foot_joint" type="fixed">
     <parent link="foot"/><child link="base_link"/><origin xyz="0 0 0.3"/></joint><link name="base_link"/>"""
-    assert images_of({PATH: ARM.replace('<link name="base_link"/>', new_root)})[1] == []
+    assert render_images({PATH: ARM.replace('<link name="base_link"/>', new_root)})[1] == []
 
 
 @pytest.mark.parametrize("is_added", [True, False])
-def test_robots_with_other_root_links_are_in_the_same_place(images_of, package, is_added):
+def test_robots_with_other_root_links_are_in_the_same_place(render_images, package, is_added):
     foot = """<link name="foot"/><joint name="foot_joint" type="fixed"><parent link="foot"/>
     <child link="base_link"/><origin xyz="0.2 0 0.3" rpy="0 0 0.5"/></joint><link name="base_link"/>"""
     with_foot = ARM.replace('<link name="base_link"/>', foot)
@@ -94,14 +94,14 @@ def test_robots_with_other_root_links_are_in_the_same_place(images_of, package, 
     ball = """<link name="ball"><visual><geometry><sphere radius="0.01"/></geometry></visual></link>
   <joint name="ball_joint" type="fixed"><parent link="base_link"/><child link="ball"/><origin xyz="0 0.1 1"/>
   </joint></robot>"""
-    _, images = images_of({PATH: (with_foot if is_added else ARM).replace("</robot>", ball)})
+    _, images = render_images({PATH: (with_foot if is_added else ARM).replace("</robot>", ball)})
     assert [count_orange_pixels(view.old) for view in images] == [0, 0, 0, 0]
     for view in images:
         assert 0.0 < share_of_differing_pixels(view.old, view.new) < 0.05
 
 
-def test_joint_limits_that_exclude_zero_move_link(images_of):
-    _, images = images_of({SEGMENT: MACRO.replace('lower="-1.5"', 'lower="0.5"')})
+def test_joint_limits_that_exclude_zero_move_link(render_images):
+    _, images = render_images({SEGMENT: MACRO.replace('lower="-1.5"', 'lower="0.5"')})
     assert count_orange_pixels(images[2].old) > 50
     assert images[2].old != images[2].new
 

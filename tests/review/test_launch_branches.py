@@ -25,15 +25,15 @@ def launch_text(*lines: str) -> str:
 
 
 CHECK = "'nav2' in get_packages_with_prefixes()"
-PLAIN = launch_text("actions.append(driver)")
+WITHOUT_CONDITION = launch_text("actions.append(driver)")
 launch_in_condition = launch_text(f"if {CHECK}:", "    actions.append(driver)")
 
 
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        (PLAIN, launch_in_condition, [f"node 'arm/driver': condition if `{CHECK}` added"]),
-        (launch_in_condition, PLAIN, [f"node 'arm/driver': condition if `{CHECK}` removed"]),
+        (WITHOUT_CONDITION, launch_in_condition, [f"node 'arm/driver': condition if `{CHECK}` added"]),
+        (launch_in_condition, WITHOUT_CONDITION, [f"node 'arm/driver': condition if `{CHECK}` removed"]),
         (launch_in_condition, launch_in_condition.replace("'nav2'", "'nav3'"),
          [f"node 'arm/driver': condition if `{CHECK}` -> if `'nav3' in get_packages_with_prefixes()`"]),
         (launch_text("actions += [Node(package='arm', executable='camera')]"),
@@ -45,8 +45,8 @@ launch_in_condition = launch_text(f"if {CHECK}:", "    actions.append(driver)")
          ["other code added: print('ready')"]),
     ],
 )  # fmt: skip
-def test_if_statement_is_a_condition_of_the_actions_in_it(changes_of, old, new, expected):
-    found, _ = changes_of("arm.launch.py", old, old, new)
+def test_if_statement_is_a_condition_of_the_actions_in_it(review_changes, old, new, expected):
+    found, _ = review_changes("arm.launch.py", old, old, new)
     assert found == expected
 
 
@@ -62,9 +62,9 @@ def test_if_statement_is_a_condition_of_the_actions_in_it(changes_of, old, new, 
         ("actions.append(driver)", f"if {CHECK}:", "    check(driver)"),
     ],
 )
-def test_actions_outside_of_an_if_statement_have_no_condition(changes_of, lines):
+def test_actions_outside_of_an_if_statement_have_no_condition(review_changes, lines):
     new = launch_text(*lines)
     old = new.replace(f"if {CHECK}:", "if True:")
-    found, breaking = changes_of("arm.launch.py", old, old, new)
+    found, breaking = review_changes("arm.launch.py", old, old, new)
     assert not [sentence for sentence in found if "arm/driver" in sentence]
     assert not breaking

@@ -37,7 +37,7 @@ def generate_launch_description():
 
 
 @pytest.fixture
-def changes_with_reasons(repository, compare):
+def review_changes_with_reasons(repository, compare):
     """Review new texts of two launch files, of which one includes the other.
 
     Return sentences with their reasons.
@@ -53,28 +53,28 @@ def changes_with_reasons(repository, compare):
     return run
 
 
-def test_argument_without_default_that_is_not_declared_is_breaking(changes_with_reasons):
+def test_argument_without_default_that_is_not_declared_is_breaking(review_changes_with_reasons):
     new = READING.replace('executable="hand"', 'executable="hand", name=LaunchConfiguration("n")')
     text = "node 'arm/hand' uses argument 'n', which is not declared"
-    assert changes_with_reasons(new)[text] == "the launch file fails if no other file declares 'n'"
+    assert review_changes_with_reasons(new)[text] == "the launch file fails if no other file declares 'n'"
 
 
-def test_argument_of_included_file_is_declared(changes_with_reasons):
+def test_argument_of_included_file_is_declared(review_changes_with_reasons):
     new = READING.replace('executable="hand"', 'executable="hand", respawn=LaunchConfiguration("speed")')
-    assert changes_with_reasons(new) == {"node 'arm/hand': respawn $(var speed) added": None}
+    assert review_changes_with_reasons(new) == {"node 'arm/hand': respawn $(var speed) added": None}
 
 
-def test_removed_argument_that_is_still_used_fails(changes_with_reasons):
+def test_removed_argument_that_is_still_used_fails(review_changes_with_reasons):
     new = READING.replace('        DeclareLaunchArgument("rate", default_value="1"),\n', "")
-    assert changes_with_reasons(new) == {
+    assert review_changes_with_reasons(new) == {
         "argument 'rate' removed": "the launch file still uses 'rate', and fails if no other file declares it"
     }
 
 
-def test_node_that_moves_into_included_file_is_moved(changes_with_reasons):
+def test_node_that_moves_into_included_file_is_moved(review_changes_with_reasons):
     line = '        Node(package="arm", executable="hand"),\n'
     part = PART.replace("LaunchDescription([", 'LaunchDescription([Node(package="arm", executable="hand"), ')
-    assert changes_with_reasons(READING.replace(line, ""), part) == {
+    assert review_changes_with_reasons(READING.replace(line, ""), part) == {
         "node 'arm/hand' moved to arm/launch/part.launch.py": None
     }
 
@@ -94,15 +94,15 @@ def test_node_that_moves_into_included_file_is_moved(changes_with_reasons):
          "argument 'side' added: default l", None),
     ],
 )  # fmt: skip
-def test_environment_variables_and_required_arguments(changes_with_reasons, old, new, expected, reason):
-    assert changes_with_reasons(READING.replace(old, new))[expected] == reason
+def test_environment_variables_and_required_arguments(review_changes_with_reasons, old, new, expected, reason):
+    assert review_changes_with_reasons(READING.replace(old, new))[expected] == reason
 
 
-def test_removed_remappings_and_added_parameters_of_a_node_are_one_change_each(changes_with_reasons):
+def test_removed_remappings_and_added_parameters_of_a_node_are_one_change_each(review_changes_with_reasons):
     node = 'Node(package="arm", executable="hand"'
     old = READING.replace(node, f'{node}, remappings=[("a", "arm/a"), ("b", "arm/b"), ("c", "arm/c")]')
     new = READING.replace(node, f'{node}, parameters=[{{"x": 1, "y": 2, "z": 3}}]')
-    assert changes_with_reasons(new, old=old) == {
+    assert review_changes_with_reasons(new, old=old) == {
         "node 'arm/hand': parameters added: x 1, y 2, z 3": None,
         "node 'arm/hand': remappings removed: a -> arm/a, b -> arm/b, c -> arm/c": (
             "if the node publishes or serves 'arm/a, arm/b, arm/c', programs that use it do not find it"
@@ -110,14 +110,16 @@ def test_removed_remappings_and_added_parameters_of_a_node_are_one_change_each(c
     }
 
 
-def test_other_name_of_a_parameter_of_a_function_is_no_change(changes_with_reasons):
+def test_other_name_of_a_parameter_of_a_function_is_no_change(review_changes_with_reasons):
     text = READING + "\n\ndef talk(word, count):\n    print(word * count)\n"
-    assert changes_with_reasons(text.replace("word", "text"), old=text) == {}
+    assert review_changes_with_reasons(text.replace("word", "text"), old=text) == {}
 
 
-def test_added_code_is_one_line(changes_with_reasons):
+def test_added_code_is_one_line(review_changes_with_reasons):
     new = READING.replace("    return", "    for word in ('a', 'b'):\n        print(word)\n    print('c')\n    return")
-    assert changes_with_reasons(new) == {"other code added: for word in ('a', 'b'): ... and 2 more statements": None}
+    assert review_changes_with_reasons(new) == {
+        "other code added: for word in ('a', 'b'): ... and 2 more statements": None
+    }
 
 
 def test_launch_file_in_another_format_is_compared_with_the_old_one(repository, compare):
@@ -149,7 +151,7 @@ def test_include_of_renamed_file_is_replaced(repository, compare):
         ('FindExecutable(name="xacro"), " arm.urdf"', '"xacro arm.urdf"'),
     ],
 )
-def test_other_notation_of_a_path_or_command_is_no_change(changes_of, old, new):
+def test_other_notation_of_a_path_or_command_is_no_change(review_changes, old, new):
     text = """def generate_launch_description():
     return LaunchDescription([
         Node(package="arm", executable="driver", parameters=[
@@ -159,16 +161,16 @@ def test_other_notation_of_a_path_or_command_is_no_change(changes_of, old, new):
     ])
 """
     before = "PathJoinSubstitution([" if "yaml" in old else ""
-    assert changes_of("arm.launch.py", text, before + old, ("(" if before else "") + new) == ([], [])
+    assert review_changes("arm.launch.py", text, before + old, ("(" if before else "") + new) == ([], [])
 
 
-def test_action_that_is_appended_to_a_list_is_no_other_code(changes_of):
+def test_action_that_is_appended_to_a_list_is_no_other_code(review_changes):
     text = """def generate_launch_description():
     actions = [Node(package="arm", executable="driver")]
     actions.append(Node(package="arm", executable="hand"))
     return LaunchDescription(actions)
 """
-    found, _ = changes_of(
+    found, _ = review_changes(
         "arm.launch.py", text, "    return", "    actions.append(Node(package='a', executable='b'))\n    return"
     )
     assert found == ["node 'a/b' added"]
@@ -178,10 +180,12 @@ WITH_NODE = PART.replace('"1")]', '"1"), Node(package="arm", executable="hand")]
 
 
 @pytest.mark.parametrize(("part", "reason"), [(WITH_NODE, "its nodes do not start any more"), (PART, None)])
-def test_removed_include_stops_its_nodes(changes_with_reasons, part, reason):
+def test_removed_include_stops_its_nodes(review_changes_with_reasons, part, reason):
     line = '        IncludeLaunchDescription(PathJoinSubstitution([ThisLaunchFileDir(), "part.launch.py"])),\n'
     new = READING.replace(line, "")
-    assert changes_with_reasons(new, part, old_part=part) == {"include of '$(dirname)/part.launch.py' removed": reason}
+    assert review_changes_with_reasons(new, part, old_part=part) == {
+        "include of '$(dirname)/part.launch.py' removed": reason
+    }
 
 
 UNUSED = """import os
@@ -221,45 +225,45 @@ def generate_launch_description():
          ["node 'arm/driver': parameter speed $(var speed 1) -> 1"], False),
     ],
 )  # fmt: skip
-def test_only_what_is_used_is_compared(changes_of, old, new, expected, is_breaking):
-    found, found_breaking = changes_of("arm.launch.py", UNUSED, old, new)
+def test_only_what_is_used_is_compared(review_changes, old, new, expected, is_breaking):
+    found, found_breaking = review_changes("arm.launch.py", UNUSED, old, new)
     assert found == expected
     assert bool(found_breaking) is is_breaking
 
 
-def test_argument_that_is_used_without_being_declared_is_removed(changes_of):
+def test_argument_that_is_used_without_being_declared_is_removed(review_changes):
     text = (
         UNUSED.replace('"speed": speed', '"rate": speed').replace("speed = L", "rate = L").replace(": speed", ": rate")
     )
     new = text.replace('LaunchConfiguration("speed", default="1")', "1")
-    found, found_breaking = changes_of("arm.launch.py", text, text, new)
+    found, found_breaking = review_changes("arm.launch.py", text, text, new)
     assert found == ["node 'arm/driver': parameter rate $(var speed 1) -> 1", "argument 'speed' removed"]
     assert found_breaking == found[1:]
 
 
-def test_node_that_moves_to_another_launch_file_is_missing_where_it_was(changes_with_reasons):
+def test_node_that_moves_to_another_launch_file_is_missing_where_it_was(review_changes_with_reasons):
     part = PART.replace("LaunchDescription([", 'LaunchDescription([Node(package="arm", executable="hand"), ')
     alone = READING.replace('PathJoinSubstitution([ThisLaunchFileDir(), "part.launch.py"])', '"other.launch.py"')
     new = alone.replace('        Node(package="arm", executable="hand"),\n', "")
-    assert changes_with_reasons(new, part, old=alone) == {
+    assert review_changes_with_reasons(new, part, old=alone) == {
         "node 'arm/hand' moved to arm/launch/part.launch.py": "the topics and services of the node are missing"
     }
 
 
-def test_items_of_lists_are_split_outside_of_parentheses(changes_of):
+def test_items_of_lists_are_split_outside_of_parentheses(review_changes):
     text = """def generate_launch_description():
     return LaunchDescription([Node(package="a", executable="b", arguments=[f(1, 2), "c", "d", "e", "f"])])
 """
-    found, _ = changes_of("arm.launch.py", text, "f(1, 2)", "f(1, 3)")
+    found, _ = review_changes("arm.launch.py", text, "f(1, 2)", "f(1, 3)")
     assert found == ["node 'a/b': arguments: f(1, 3) added, f(1, 2) removed"]
 
 
-def test_delay_of_a_timer_is_compared(changes_of):
+def test_delay_of_a_timer_is_compared(review_changes):
     text = """def generate_launch_description():
     hand = Node(package="arm", executable="hand")
     return LaunchDescription([TimerAction(period=3.0, actions=[hand])])
 """
-    found, _ = changes_of("arm.launch.py", text, "3.0", "5.0")
+    found, _ = review_changes("arm.launch.py", text, "3.0", "5.0")
     assert found == ["node 'arm/hand': condition after 3.0 s -> after 5.0 s"]
 
 
@@ -290,22 +294,22 @@ def test_same_notations_in_python_and_xml(repository, compare):
     ]
 
 
-def test_prefix_of_frames_that_is_unknown_is_not_breaking(changes_of):
+def test_prefix_of_frames_that_is_unknown_is_not_breaking(review_changes):
     text = """def generate_launch_description():
     publisher = Node(package="robot_state_publisher", executable="robot_state_publisher", parameters=[{}])
     return LaunchDescription([publisher])
 """
-    found, found_breaking = changes_of("arm.launch.py", text, "{}", '{"frame_prefix": Mixin.prefix()}')
+    found, found_breaking = review_changes("arm.launch.py", text, "{}", '{"frame_prefix": Mixin.prefix()}')
     assert (len(found), found_breaking) == (1, [])
 
 
-def test_joined_path_of_a_substitution_instead_of_a_list_is_not_the_substitution(changes_of):
+def test_joined_path_of_a_substitution_instead_of_a_list_is_not_the_substitution(review_changes):
     text = """def generate_launch_description():
     command = Command([PathJoinSubstitution(FindExecutable(name="xacro")), " arm.urdf"])
     return LaunchDescription([Node(package="arm", executable="driver", parameters=[{"model": command}])])
 """
     old = 'PathJoinSubstitution(FindExecutable(name="xacro"))'
-    assert changes_of("arm.launch.py", text, old, 'FindExecutable(name="xacro")')[0] == [
+    assert review_changes("arm.launch.py", text, old, 'FindExecutable(name="xacro")')[0] == [
         (
             "node 'arm/driver': parameter model $(command PathJoinSubstitution($(find-exec xacro)) arm.urdf) -> "
             "$(command xacro arm.urdf)"

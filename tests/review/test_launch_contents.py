@@ -14,7 +14,7 @@ PATH = "arm/launch/arm.launch"
 
 
 @pytest.fixture
-def changes_of(repository, compare):
+def review_changes(repository, compare):
     """Review two contents of a launch file.
 
     Return the sentences of all changes and of the breaking ones.
@@ -44,8 +44,8 @@ NODE = """<node pkg="cam" type="driver" name="cam" output="screen" args="--fast"
 
 
 @pytest.mark.parametrize(("is_added", "word"), [(True, "added"), (False, "removed")])
-def test_added_and_removed_node_has_its_contents(changes_of, is_added, word):
-    changes, _ = changes_of(*(("", NODE) if is_added else (NODE, "")))
+def test_added_and_removed_node_has_its_contents(review_changes, is_added, word):
+    changes, _ = review_changes(*(("", NODE) if is_added else (NODE, "")))
     assert changes == [
         (
             f"node 'cam/driver' {word}: name cam, arguments --fast, remapping image -> front/image, "
@@ -66,18 +66,18 @@ def test_added_and_removed_node_has_its_contents(changes_of, is_added, word):
          "node 'cam/driver': parameters [cam.yaml (namespace lens)] -> [cam.yaml (namespace mount)]"),
     ],
 )  # fmt: skip
-def test_changed_parameters_of_a_node_of_ros1_are_named(changes_of, old, new, expected):
-    assert changes_of(NODE, NODE.replace(old, new)) == ([expected], [])
+def test_changed_parameters_of_a_node_of_ros1_are_named(review_changes, old, new, expected):
+    assert review_changes(NODE, NODE.replace(old, new)) == ([expected], [])
 
 
-def test_parameters_in_a_text_that_is_not_yaml_are_shown_as_it_is(changes_of):
+def test_parameters_in_a_text_that_is_not_yaml_are_shown_as_it_is(review_changes):
     text = "<rosparam>a: [$(arg x)}</rosparam>"
-    assert changes_of("", text)[0] == ["parameter 'YAML text' added: a: [$(arg x)}"]
+    assert review_changes("", text)[0] == ["parameter 'YAML text' added: a: [$(arg x)}"]
 
 
-def test_renamed_parameter_file_is_the_same_one(changes_of):
+def test_renamed_parameter_file_is_the_same_one(review_changes):
     old, new = (f'<rosparam ns="x" command="load" file="$(find arm)/{name}.yaml"/>' for name in ("limits", "limit"))
-    (change,), _ = changes_of(old, new)
+    (change,), _ = review_changes(old, new)
     assert change == "parameters of '$(find arm)/limits.yaml' replaced by parameters of '$(find arm)/limit.yaml'"
 
 
@@ -91,17 +91,17 @@ REMAPS = REMAP.format("real/scan").replace(
 )
 
 
-def test_values_of_one_name_have_their_conditions(changes_of):
-    changes, _ = changes_of(ARGUMENTS, ARGUMENTS.replace('"real"', '"robot"'))
+def test_values_of_one_name_have_their_conditions(review_changes):
+    changes, _ = review_changes(ARGUMENTS, ARGUMENTS.replace('"real"', '"robot"'))
     assert changes == ["argument 'side' (unless $(arg sim)): value real -> robot"]
 
 
-def test_name_has_the_value_whose_condition_holds_by_default(changes_of):
+def test_name_has_the_value_whose_condition_holds_by_default(review_changes):
     old, new = REMAP.format("$(arg side)/scan"), REMAP.format("real/scan")
-    changes, found_breaking = changes_of(ARGUMENTS + old, ARGUMENTS + new)
+    changes, found_breaking = review_changes(ARGUMENTS + old, ARGUMENTS + new)
     assert changes == ["node 'cam/driver': remapping scan $(arg side)/scan -> real/scan"]
     assert found_breaking == []
-    _, found_breaking = changes_of(ARGUMENTS + old, ARGUMENTS + REMAP.format("sim/scan"))
+    _, found_breaking = review_changes(ARGUMENTS + old, ARGUMENTS + REMAP.format("sim/scan"))
     assert len(found_breaking) == 1
 
 
@@ -115,25 +115,25 @@ def test_name_has_the_value_whose_condition_holds_by_default(changes_of):
          "scan scan -> sim/scan (if $(arg sim)), real/scan (unless $(arg sim))", True),
     ],
 )  # fmt: skip
-def test_remappings_of_one_name_under_conditions_are_told_apart(changes_of, old, new, expected, is_breaking):
-    changes, found_breaking = changes_of(ARGUMENTS + old, ARGUMENTS + new)
+def test_remappings_of_one_name_under_conditions_are_told_apart(review_changes, old, new, expected, is_breaking):
+    changes, found_breaking = review_changes(ARGUMENTS + old, ARGUMENTS + new)
     assert changes == [f"node 'cam/driver': remapping {expected}"]
     assert bool(found_breaking) is is_breaking
 
 
-def test_old_text_has_the_old_name_of_a_renamed_argument(changes_of):
+def test_old_text_has_the_old_name_of_a_renamed_argument(review_changes):
     text = '<arg name="robot" default="a"/><node pkg="cam" type="driver" name="cam" args="-m $(arg robot) -x {}"/>'
-    changes, _ = changes_of(text.format(1), text.replace("robot", "model").format(2))
+    changes, _ = review_changes(text.format(1), text.replace("robot", "model").format(2))
     assert changes[1:] == ["node 'cam/driver': arguments -m $(arg robot) -x 1 -> -m $(arg model) -x 2"]
 
 
-def test_targets_of_remappings_with_another_prefix_are_one_change(changes_of):
+def test_targets_of_remappings_with_another_prefix_are_one_change(review_changes):
     text = "".join(
         f'<node pkg="cam" type="{name}" name="{name}"><remap from="a" to="/x/a"/>'
         f'<remap from="{name}" to="/x/{name}"/></node>'
         for name in ("left", "right")
     )
-    changes, found_breaking = changes_of(text, text.replace("/x/", "/y/"))
+    changes, found_breaking = review_changes(text, text.replace("/x/", "/y/"))
     assert changes == found_breaking
     assert changes == [
         "node 'cam/left', node 'cam/right': remappings /x/a -> /y/a, /x/left -> /y/left, /x/right -> /y/right"
@@ -146,9 +146,9 @@ ROBOT = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="arm">
 """
 
 
-def test_environment_variable_that_another_file_reads_is_not_lost(changes_of):
+def test_environment_variable_that_another_file_reads_is_not_lost(review_changes):
     text = '<arg name="tool" default="$(optenv TOOL a)"/>'
-    changes, found_breaking = changes_of(text, '<arg name="tool" default="a"/>', **{"urdf/arm.xacro": ROBOT})
+    changes, found_breaking = review_changes(text, '<arg name="tool" default="a"/>', **{"urdf/arm.xacro": ROBOT})
     assert changes == [
         "argument 'tool': default $(optenv TOOL a) -> a",
         "use of environment variable 'TOOL' removed; arm/urdf/arm.xacro uses it",
@@ -156,9 +156,9 @@ def test_environment_variable_that_another_file_reads_is_not_lost(changes_of):
     assert found_breaking == []
 
 
-def test_name_that_callers_choose_is_not_a_lost_name(changes_of):
+def test_name_that_callers_choose_is_not_a_lost_name(review_changes):
     node = '<node pkg="cam" type="driver" name="$(arg name)"/>'
-    _, found_breaking = changes_of(
+    _, found_breaking = review_changes(
         f'<arg name="name" default="cam"/>{node}', f'<arg name="robot"/><arg name="name" default="$(arg robot)"/>{node}'
     )
     assert found_breaking == ["argument 'robot' added"]
@@ -169,14 +169,14 @@ STATES = '<node pkg="joint_state_publisher" exec="joint_state_publisher"/>'
 
 
 @pytest.mark.parametrize(("old", "new", "count"), [("", "", 1), ("", STATES, 0), (STATES, STATES, 1)])
-def test_frame_of_a_joint_whose_position_is_published_now_may_not_be_lost(changes_of, old, new, count):
-    _, found_breaking = changes_of(TRANSFORM + old, new)
+def test_frame_of_a_joint_whose_position_is_published_now_may_not_be_lost(review_changes, old, new, count):
+    _, found_breaking = review_changes(TRANSFORM + old, new)
     assert len(found_breaking) == count
 
 
-def test_name_to_which_another_topic_of_the_node_is_remapped_is_not_lost(changes_of):
+def test_name_to_which_another_topic_of_the_node_is_remapped_is_not_lost(review_changes):
     old = REMAP.format("scan_raw")
-    changes, found_breaking = changes_of(old, old.replace('from="scan"', 'from="lidar/scan"'))
+    changes, found_breaking = review_changes(old, old.replace('from="scan"', 'from="lidar/scan"'))
     assert changes == [
         "node 'cam/driver': remapping lidar/scan scan_raw added",
         "node 'cam/driver': remapping scan scan_raw removed",
@@ -185,9 +185,9 @@ def test_name_to_which_another_topic_of_the_node_is_remapped_is_not_lost(changes
 
 
 @pytest.mark.parametrize(("name", "is_breaking"), [("ekf_filter_node", False), ("filter", True)])
-def test_name_that_a_known_program_has_anyway_is_not_lost(changes_of, name, is_breaking):
+def test_name_that_a_known_program_has_anyway_is_not_lost(review_changes, name, is_breaking):
     node = '<node pkg="robot_localization" exec="ekf_node"{}/>'
-    _, found_breaking = changes_of(node.format(f' name="{name}"'), node.format(""))
+    _, found_breaking = review_changes(node.format(f' name="{name}"'), node.format(""))
     assert bool(found_breaking) is is_breaking
 
 
@@ -221,7 +221,7 @@ def generate_launch_description():
     ]
 
 
-def test_parameter_from_a_command_is_called_one(changes_of):
+def test_parameter_from_a_command_is_called_one(review_changes):
     text = '<param name="robot_description" command="xacro {}.xacro"/>'
-    changes, _ = changes_of(text.format("a"), text.format("b"))
+    changes, _ = review_changes(text.format("a"), text.format("b"))
     assert "$(command xacro a.xacro) -> $(command xacro b.xacro)" in changes[0]

@@ -41,7 +41,7 @@ TAGS = """        "tags": {"size": "0.2"},
 
 
 @pytest.fixture
-def changes(repository, compare):
+def review_changes(repository, compare):
     """Review a replacement in a launch file, and return its changes."""
 
     def run(body: str, old: str, new: str):
@@ -62,13 +62,13 @@ def changes(repository, compare):
         ('"nav": {', '"nav": {"deep": "true", ', ["include of 'nav.launch.py': deep true added"]),
     ],
 )
-def test_loop_over_a_dictionary_is_read_for_each_item(changes, old, new, expected):
-    assert changes(EVALUATED, old, new) == expected
+def test_loop_over_a_dictionary_is_read_for_each_item(review_changes, old, new, expected):
+    assert review_changes(EVALUATED, old, new) == expected
 
 
 @pytest.mark.parametrize("body", [EVALUATED, UNKNOWN])
-def test_flag_that_no_action_shows_is_other_code(changes, body):
-    (change,) = changes(body, 'mode="none"', 'mode="debug"')
+def test_flag_that_no_action_shows_is_other_code(review_changes, body):
+    (change,) = review_changes(body, 'mode="none"', 'mode="debug"')
     assert change.startswith("other code: ")
     assert "debug" in change
 
@@ -77,7 +77,7 @@ def test_flag_that_no_action_shows_is_other_code(changes, body):
     ("old", "new", "value"),
     [('"1.0"', '"2.0"', "'2.0'"), ('{"ids": IDS},', '{"ids": IDS, "size": "3"},', "'size': '3'")],
 )
-def test_item_that_no_action_shows_is_other_code(changes, old, new, value):
-    (change,) = changes(UNKNOWN, old, new)
+def test_item_that_no_action_shows_is_other_code(review_changes, old, new, value):
+    (change,) = review_changes(UNKNOWN, old, new)
     assert change.startswith("other code: ")
     assert value in change

@@ -31,22 +31,22 @@ def generate_launch_description():
         ("""PythonExpression(["'", robot, "' + '_controller'"])""", "$(eval '$(var robot)' + '_controller')", False),
     ],
 )
-def test_expression_of_a_text_in_quotes_is_the_text(changes_of, expression, text, is_breaking):
-    _, found = changes_of("arm.launch.py", FILE, '"arm_controller"', expression)
+def test_expression_of_a_text_in_quotes_is_the_text(review_changes, expression, text, is_breaking):
+    _, found = review_changes("arm.launch.py", FILE, '"arm_controller"', expression)
     title = f"node 'controller_manager/spawner' of '{text}'"
     assert found == ([f"{title}: arguments [arm_controller] -> [{text}]"] if is_breaking else [])
 
 
 @pytest.mark.parametrize("start", ['"config/"', '"config"'])
-def test_joined_path_has_one_slash(changes_of, start):
-    changes, _ = changes_of("arm.launch.py", FILE, '"config/arm.yaml"', f'{start}, [robot, ".yaml"]')
+def test_joined_path_has_one_slash(review_changes, start):
+    changes, _ = review_changes("arm.launch.py", FILE, '"config/arm.yaml"', f'{start}, [robot, ".yaml"]')
     file = "$(find-pkg-share arm)/config/$(var robot).yaml"
     assert any(file in change for change in changes), changes
     assert not any("//" in change for change in changes)
 
 
-def test_later_absolute_path_replaces_those_before_it(changes_of):
-    changes, _ = changes_of("arm.launch.py", FILE, '"config/arm.yaml"', '"/etc/arm.yaml"')
+def test_later_absolute_path_replaces_those_before_it(review_changes):
+    changes, _ = review_changes("arm.launch.py", FILE, '"config/arm.yaml"', '"/etc/arm.yaml"')
     assert changes == ["node 'arm/driver': parameters [$(find-pkg-share arm)/config/arm.yaml] -> [/etc/arm.yaml]"]
 
 
@@ -59,9 +59,9 @@ def test_later_absolute_path_replaces_those_before_it(changes_of):
         ("$(eval 1 if arg(' a') else 2)", False),
     ],
 )
-def test_layout_of_an_expression_is_no_change(changes_of, expression, is_same):
+def test_layout_of_an_expression_is_no_change(review_changes, expression, is_same):
     old = "$(eval ( (1 if arg('a') else 2)))"
     arguments = f'<arg name="a" default="x"/><arg name="b" value="{old}"/>'
     text = f'<launch>{arguments}<param name="q" value="$(arg b)"/></launch>'
-    changes, _ = changes_of("arm.launch", text, old, expression)
+    changes, _ = review_changes("arm.launch", text, old, expression)
     assert (changes == []) == is_same

@@ -24,7 +24,7 @@ SENTENCE = "'description' does not choose the file '$(find-pkg-share $(var viewe
 
 
 @pytest.fixture
-def reasons(repository, compare):
+def review_reasons(repository, compare):
     """Review a replacement in a launch file, and return its changes with their reasons."""
 
     def run(text: str, old: str, new: str, other: str = "<launch/>"):
@@ -41,9 +41,9 @@ def reasons(repository, compare):
     ("viewer", "caller", "is_breaking"),
     [("arm_description", "<launch/>", False), ("viewer", "<launch/>", True), ("arm_description", CALLER, True)],
 )
-def test_path_that_another_argument_begins(reasons, viewer, caller, is_breaking):
+def test_path_that_another_argument_begins(review_reasons, viewer, caller, is_breaking):
     text = FILE.format(viewer=viewer)
-    found = reasons(text, "$(var description))", "$(var viewer))", caller)
+    found = review_reasons(text, "$(var description))", "$(var viewer))", caller)
     reason = "the value that a caller passes for 'description' chooses another file"
     (sentence,) = [sentence for sentence in found if sentence.startswith(SENTENCE)]
     assert found[sentence] == (reason if is_breaking else None)
@@ -56,14 +56,14 @@ def test_path_that_another_argument_begins(reasons, viewer, caller, is_breaking)
         ("$(var viewer)", "'$(find-pkg-share arm)/urdf/v.xacro'"),
     ],
 )
-def test_fixed_path_that_depends_on_an_argument_now(reasons, path, end):
+def test_fixed_path_that_depends_on_an_argument_now(review_reasons, path, end):
     name = path.removeprefix("$(var ").removesuffix(")")
-    found = reasons(FILE.format(viewer="v"), "/arm.xacro", f"/{path}.xacro")
+    found = review_reasons(FILE.format(viewer="v"), "/arm.xacro", f"/{path}.xacro")
     text = f"the file '$(find-pkg-share arm)/urdf/{path}.xacro' depends on '{name}' now; by default, it is {end}"
     assert found[text] is None
 
 
-def test_path_with_other_arguments_has_the_files_that_it_chooses_by_default(reasons):
+def test_path_with_other_arguments_has_the_files_that_it_chooses_by_default(review_reasons):
     text = """<launch>
   <arg name="team" default="1"/>
   <include file="$(find-pkg-share gazebo)/empty.launch.xml">
@@ -71,12 +71,12 @@ def test_path_with_other_arguments_has_the_files_that_it_chooses_by_default(reas
   </include>
 </launch>
 """
-    found = reasons(text, "worlds/team$(var team)", "worlds/$(var team)")
+    found = review_reasons(text, "worlds/team$(var team)", "worlds/$(var team)")
     assert found["by default, the file is 'worlds/1.world' instead of 'worlds/team1.world'"] is None
 
 
-def test_lost_argument_of_a_path_has_the_files_that_are_chosen_by_default(reasons):
+def test_lost_argument_of_a_path_has_the_files_that_are_chosen_by_default(review_reasons):
     text = FILE.format(viewer="viewer")
-    found = reasons(text, "$(var description))", "$(var viewer))")
+    found = review_reasons(text, "$(var description))", "$(var viewer))")
     folders = [f"'$(find-pkg-share {name})/config/view.rviz'" for name in ("viewer", "arm_description")]
     assert f"{SENTENCE}; by default, it is {folders[0]} instead of {folders[1]}" in found

@@ -99,8 +99,8 @@ YAML = """launch:
          True),
     ],
 )  # fmt: skip
-def test_actions_in_python_are_compared(changes_of, old, new, expected, is_breaking):
-    changes, found_breaking = changes_of("arm.launch.py", PYTHON, old, new)
+def test_actions_in_python_are_compared(review_changes, old, new, expected, is_breaking):
+    changes, found_breaking = review_changes("arm.launch.py", PYTHON, old, new)
     assert changes == [expected]
     assert bool(found_breaking) is is_breaking
 
@@ -114,11 +114,11 @@ def test_actions_in_python_are_compared(changes_of, old, new, expected, is_break
         ("from launch_ros.actions import Node, ", "import os\nfrom launch_ros.actions import Node, "),
     ],
 )
-def test_refactored_python_is_no_change(changes_of, old, new):
-    assert changes_of("arm.launch.py", PYTHON, old, new) == ([], [])
+def test_refactored_python_is_no_change(review_changes, old, new):
+    assert review_changes("arm.launch.py", PYTHON, old, new) == ([], [])
 
 
-def test_namespace_of_each_node_is_that_of_a_group(changes_of):
+def test_namespace_of_each_node_is_that_of_a_group(review_changes):
     old = """            PushRosNamespace("front"),
             SetRemap("scan", "scan_front"),
             SetParameter("use_sim_time", True),
@@ -128,26 +128,26 @@ def test_namespace_of_each_node_is_that_of_a_group(changes_of):
             SetParameter("use_sim_time", True),
             Node(package="lidar", executable="driver", namespace="front"),
             Node(package="lidar", executable="filter", namespace="front", """
-    assert changes_of("arm.launch.py", PYTHON, old, new) == ([], [])
+    assert review_changes("arm.launch.py", PYTHON, old, new) == ([], [])
 
 
-def test_difference_at_the_end_of_a_long_value_is_shown(changes_of):
+def test_difference_at_the_end_of_a_long_value_is_shown(review_changes):
     text = PYTHON.replace('"filter.yaml"', f"build(text='{'x' * 2000}', gain=1)")
-    (sentence,), _ = changes_of("arm.launch.py", text, "gain=1", "gain=2")
+    (sentence,), _ = review_changes("arm.launch.py", text, "gain=1", "gain=2")
     assert len(sentence) < 300
     assert "gain=1" in sentence
     assert "gain=2" in sentence
 
 
-def test_other_code_is_reported_besides_actions(changes_of):
+def test_other_code_is_reported_besides_actions(review_changes):
     text = PYTHON.replace("    return Launch", "    print('starting')\n    return Launch")
     changed = text.replace('"models"', '"worlds"').replace("'starting'", "'started'")
-    changes, _ = changes_of("arm.launch.py", text, text, changed)
+    changes, _ = review_changes("arm.launch.py", text, text, changed)
     assert changes[1:] == ["other code: print('starting') -> print('started')"]
 
 
-def test_launch_file_with_name_of_a_test_is_compared(changes_of):
-    changes, _ = changes_of("test_arm.launch.py", PYTHON, '"models"', '"worlds"')
+def test_launch_file_with_name_of_a_test_is_compared(review_changes):
+    changes, _ = review_changes("test_arm.launch.py", PYTHON, '"models"', '"worlds"')
     assert len(changes) == 1
 
 
@@ -167,8 +167,8 @@ def test_launch_file_with_name_of_a_test_is_compared(changes_of):
          "include of 'other.launch': ur $(arg ur) -> ur10", False),
     ],
 )  # fmt: skip
-def test_actions_in_xml_are_compared(changes_of, old, new, expected, is_breaking):
-    changes, found_breaking = changes_of("arm.launch", XML, old, new)
+def test_actions_in_xml_are_compared(review_changes, old, new, expected, is_breaking):
+    changes, found_breaking = review_changes("arm.launch", XML, old, new)
     assert expected in changes
     assert bool(found_breaking) is is_breaking
 
@@ -186,8 +186,8 @@ def test_actions_in_xml_are_compared(changes_of, old, new, expected, is_breaking
         ('- arg: {name: real, default: "true"}\n', "", "argument 'real' removed", True),
     ],
 )  # fmt: skip
-def test_actions_in_yaml_are_compared(changes_of, old, new, expected, is_breaking):
-    changes, found_breaking = changes_of("arm.launch.yaml", YAML, old, new)
+def test_actions_in_yaml_are_compared(review_changes, old, new, expected, is_breaking):
+    changes, found_breaking = review_changes("arm.launch.yaml", YAML, old, new)
     assert changes == [expected]
     assert bool(found_breaking) is is_breaking
 
@@ -283,48 +283,48 @@ def generate_launch_description():
         ('["left", "right"]', '["left"]', "node 'arm/driver' removed: namespace right"),
     ],
 )
-def test_actions_of_loops_over_lists_are_compared(changes_of, old, new, expected):
-    assert changes_of("arm.launch.py", LOOPS, old, new)[0] == [expected]
+def test_actions_of_loops_over_lists_are_compared(review_changes, old, new, expected):
+    assert review_changes("arm.launch.py", LOOPS, old, new)[0] == [expected]
 
 
-def test_name_that_is_assigned_again_has_the_value_before_the_action(changes_of):
+def test_name_that_is_assigned_again_has_the_value_before_the_action(review_changes):
     text = LOOPS.replace("    ld = Launch", "    side = 'a'\n    side = side + '_arm'\n    ld = Launch")
     text = text.replace('    for side in ["left", "right"]:\n        ld', "    ld")
-    changes, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'b'")
+    changes, _ = review_changes("arm.launch.py", text, "side = 'a'", "side = 'b'")
     assert changes[0] == "node 'arm/driver': namespace a_arm -> b_arm"
 
 
-def test_name_with_values_in_branches_stays_a_name(changes_of):
+def test_name_with_values_in_branches_stays_a_name(review_changes):
     text = LOOPS.replace(
         'for side in ["left", "right"]:', "side = 'a'\n    if PARAMETERS:\n        side = 'b'\n    if 1:"
     )
-    changes, _ = changes_of("arm.launch.py", text, "side = 'a'", "side = 'c'")
+    changes, _ = review_changes("arm.launch.py", text, "side = 'a'", "side = 'c'")
     assert changes == ["other code: side = 'a' -> side = 'c'"]
 
 
-def test_command_of_a_process_is_a_change(changes_of):
+def test_command_of_a_process_is_a_change(review_changes):
     text = """from launch.actions import ExecuteProcess
 def generate_launch_description():
     return LaunchDescription([ExecuteProcess(cmd=["gz", "sim", "-r", "house.sdf"], output="screen")])
 """
-    changes, _ = changes_of("arm.launch.py", text, "house", "yard")
+    changes, _ = review_changes("arm.launch.py", text, "house", "yard")
     assert changes == ["process 'gz': command [gz, sim, -r, house.sdf] -> [gz, sim, -r, yard.sdf]"]
 
 
 @pytest.mark.parametrize(("old", "new"), [("/tf", "tf"), ("tf", "/tf")])
-def test_relative_name_is_that_of_the_empty_namespace(changes_of, old, new):
+def test_relative_name_is_that_of_the_empty_namespace(review_changes, old, new):
     text = PYTHON.replace('("joy", "arm/joy")', f'("joy", "{old}")')
-    assert changes_of("arm.launch.py", text, f'"{old}")', f'"{new}")')[1] == []
+    assert review_changes("arm.launch.py", text, f'"{old}")', f'"{new}")')[1] == []
 
 
-def test_controllers_of_a_spawner_come_after_its_options(changes_of):
+def test_controllers_of_a_spawner_come_after_its_options(review_changes):
     arguments = (
         '"--controller-manager-timeout", "60", "--inactive", "arm_controller", "--controller-ros-args", "-r a:=b"'
     )
     text = PYTHON.replace('"arm_controller", "-v"', arguments)
     start = text.index('        Node(package="controller_manager"')
     line = text[start : text.index("\n", start) + 1]
-    assert changes_of("arm.launch.py", text, line, "")[0] == [
+    assert review_changes("arm.launch.py", text, line, "")[0] == [
         (
             "node 'controller_manager/spawner' of 'arm_controller' removed: arguments "
             "[--controller-manager-timeout, 60, --inactive, arm_controller, --controller-ros-args, -r a:=b]"
@@ -341,12 +341,12 @@ def test_controllers_of_a_spawner_come_after_its_options(changes_of):
          "node 'ros_gz_sim/create' replaced by node 'gz_sim/create'"),
     ],
 )  # fmt: skip
-def test_action_under_a_new_name_is_replaced(changes_of, old, new, expected):
-    assert changes_of("arm.launch.py", PYTHON, old, new) == ([expected], [])
+def test_action_under_a_new_name_is_replaced(review_changes, old, new, expected):
+    assert review_changes("arm.launch.py", PYTHON, old, new) == ([expected], [])
 
 
-def test_program_of_the_same_package_is_not_a_replacement(changes_of):
-    changes, found_breaking = changes_of("arm.launch.py", PYTHON, 'executable="teleop"', 'executable="keyboard"')
+def test_program_of_the_same_package_is_not_a_replacement(review_changes):
+    changes, found_breaking = review_changes("arm.launch.py", PYTHON, 'executable="teleop"', 'executable="keyboard"')
     assert changes == [
         "node 'arm/keyboard' added: remapping joy -> arm/joy",
         "node 'arm/teleop' removed: remapping joy -> arm/joy",
@@ -422,9 +422,9 @@ DEFAULTS = """<launch>
 """
 
 
-def test_same_change_of_several_nodes_is_one(changes_of):
+def test_same_change_of_several_nodes_is_one(review_changes):
     text = DEFAULTS.replace("<node ", '<node respawn="true" ')
-    (sentence,), _ = changes_of("arm.launch.xml", text, 'respawn="true"', 'respawn="false"')
+    (sentence,), _ = review_changes("arm.launch.xml", text, 'respawn="true"', 'respawn="false"')
     assert sentence.startswith("node 'arm/driver.py', node 'arm/model', node 'controller_manager/spawner' of")
     assert sentence.endswith("node 'lidar/driver', node 'slam_toolbox/slam_node': respawn true -> false")
 
@@ -469,16 +469,16 @@ def generate_launch_description():
         ('"frame_name": "tool"', '"frame_name": 3', "node 'arm/driver': parameter frame_name tool -> 3", False),
     ],
 )  # fmt: skip
-def test_failures_and_types_of_parameters_are_breaking(changes_of, old, new, expected, is_breaking):
-    changes, found_breaking = changes_of("arm.launch.py", FAILING, old, new)
+def test_failures_and_types_of_parameters_are_breaking(review_changes, old, new, expected, is_breaking):
+    changes, found_breaking = review_changes("arm.launch.py", FAILING, old, new)
     assert changes == [expected]
     assert bool(found_breaking) is is_breaking
 
 
-def test_other_message_of_an_exception_is_no_new_failure(changes_of):
+def test_other_message_of_an_exception_is_no_new_failure(review_changes):
     check = '    if model == "x":\n        raise RuntimeError("no such model")\n    return L'
     text = FAILING.replace("    return L", check)
-    changes, found_breaking = changes_of("arm.launch.py", text, "no such model", "no model of this name")
+    changes, found_breaking = review_changes("arm.launch.py", text, "no such model", "no model of this name")
     assert len(changes) == 1
     assert not found_breaking
 
@@ -491,24 +491,24 @@ def test_removed_argument_of_ros_1_makes_callers_fail(repository, compare):
     assert str(change.reason) == "launch files that pass 'ur' to the file fail"
 
 
-def test_default_of_an_environment_variable_is_its_value(changes_of):
+def test_default_of_an_environment_variable_is_its_value(review_changes):
     text = XML.replace('name="real" default="true"', 'name="base_frame" default="base_link"')
-    changes, found_breaking = changes_of(
+    changes, found_breaking = review_changes(
         "arm.launch", text, 'default="base_link"', 'default="$(optenv ARM_FRAME base_link)"'
     )
     assert "argument 'base_frame': default base_link -> $(optenv ARM_FRAME base_link)" in changes
     assert found_breaking == []
 
 
-def test_changed_value_is_quoted_and_not_the_statement_that_uses_it(changes_of):
+def test_changed_value_is_quoted_and_not_the_statement_that_uses_it(review_changes):
     text = PYTHON.replace("    return Launch", "    size = 3\n    print(size)\n    return Launch")
-    assert changes_of("arm.launch.py", text, "size = 3", "size = 4") == (["other code: size = 3 -> size = 4"], [])
+    assert review_changes("arm.launch.py", text, "size = 3", "size = 4") == (["other code: size = 3 -> size = 4"], [])
 
 
-def test_node_whose_package_program_and_name_change_is_replaced(changes_of):
+def test_node_whose_package_program_and_name_change_is_replaced(review_changes):
     node = 'Node(package="arm_xs_driver", executable="xs_driver_node", name="xs_driver", output="screen"),'
     text = PYTHON.replace("    return LaunchDescription([", f"    return LaunchDescription([\n        {node}")
-    changes, found_breaking = changes_of("arm.launch.py", text, node, node.replace("xs_", ""))
+    changes, found_breaking = review_changes("arm.launch.py", text, node, node.replace("xs_", ""))
     assert changes == [
         "node 'arm_xs_driver/xs_driver_node' replaced by node 'arm_driver/driver_node'",
         "node 'arm_driver/driver_node': name xs_driver -> driver",
@@ -517,8 +517,8 @@ def test_node_whose_package_program_and_name_change_is_replaced(changes_of):
 
 
 @pytest.mark.parametrize(("name", "is_breaking"), [("detection_overlay", False), ("front_camera", True)])
-def test_name_of_a_component_that_its_class_may_have_is_not_breaking(changes_of, name, is_breaking):
+def test_name_of_a_component_that_its_class_may_have_is_not_breaking(review_changes, name, is_breaking):
     node = 'ComposableNode(package="cam", plugin="cam::Detection2DOverlay")'
     text = PYTHON.replace("    return LaunchDescription([", f"    return LaunchDescription([\n        {node},")
-    _, found_breaking = changes_of("arm.launch.py", text, 'Overlay")', f'Overlay", name="{name}")')
+    _, found_breaking = review_changes("arm.launch.py", text, 'Overlay")', f'Overlay", name="{name}")')
     assert bool(found_breaking) is is_breaking

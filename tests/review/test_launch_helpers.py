@@ -103,18 +103,18 @@ def generate_launch_description():
 """
 
 
-def test_items_of_a_loop_over_pairs_are_actions(changes_of):
-    changes, found = changes_of("arm.launch.py", LOOP, ', ("arm", "hand")', "")
+def test_items_of_a_loop_over_pairs_are_actions(review_changes):
+    changes, found = review_changes("arm.launch.py", LOOP, ', ("arm", "hand")', "")
     assert changes == found == ["node 'arm/hand' removed"]
 
 
-def test_substitutions_in_a_list_are_one_word_of_the_arguments(changes_of):
-    changes, found = changes_of("arm.launch.py", LOOP, '"camera"', '"lidar"')
+def test_substitutions_in_a_list_are_one_word_of_the_arguments(review_changes):
+    changes, found = review_changes("arm.launch.py", LOOP, '"camera"', '"lidar"')
     assert len(changes) == 1
     assert changes == found
     assert changes[0].endswith("map, $(var map)camera] -> [0, 0, 0, 0, 0, 0, map, $(var map)lidar]")
 
 
-def test_comparison_of_an_argument_may_be_a_substitution(changes_of):
+def test_comparison_of_an_argument_may_be_a_substitution(review_changes):
     new = 'IfCondition(EqualsSubstitution(LaunchConfiguration("map"), ""))'
-    assert changes_of("arm.launch.py", LOOP, 'LaunchConfigurationEquals("map", "")', new) == ([], [])
+    assert review_changes("arm.launch.py", LOOP, 'LaunchConfigurationEquals("map", "")', new) == ([], [])

@@ -27,7 +27,7 @@ CAMERA_STOPS = "by default, 'arm/camera.py' does not start any more"
 
 
 @pytest.fixture
-def reasons(repository, compare):
+def review_reasons(repository, compare):
     """Review a replacement in a launch file that includes others.
 
     Return the changes with their reasons.
@@ -48,8 +48,8 @@ def reasons(repository, compare):
     ("line", "reason"),
     [(SAFETY, STOPS), (PART_INCLUDE, STOPS), (MODEL_INCLUDE, None), (LASER, STOPS), (RVIZ, None)],
 )
-def test_removed_include_is_breaking_if_its_nodes_start_by_default(reasons, line, reason):
-    assert list(reasons(line, "").values()) == [reason]
+def test_removed_include_is_breaking_if_its_nodes_start_by_default(review_reasons, line, reason):
+    assert list(review_reasons(line, "").values()) == [reason]
 
 
 def test_removed_include_is_not_breaking_if_its_nodes_were_switched_off(repository, compare):
@@ -60,13 +60,13 @@ def test_removed_include_is_not_breaking_if_its_nodes_were_switched_off(reposito
     assert change.reason is None
 
 
-def test_removed_include_is_not_breaking_if_the_file_starts_its_nodes(reasons):
+def test_removed_include_is_not_breaking_if_the_file_starts_its_nodes(review_reasons):
     node = '  <node pkg="arm" type="camera.py" name="camera"/>\n'
-    assert set(reasons(PART_INCLUDE, node).values()) == {None}
+    assert set(review_reasons(PART_INCLUDE, node).values()) == {None}
 
 
-def test_include_of_a_file_with_the_same_role_replaces_another(reasons):
-    found = reasons(LASER, '  <include file="$(find elsewhere)/launch/pipeline.launch"/>\n')
+def test_include_of_a_file_with_the_same_role_replaces_another(review_reasons):
+    found = review_reasons(LASER, '  <include file="$(find elsewhere)/launch/pipeline.launch"/>\n')
     assert set(found.values()) == {None}
     assert (
         "include of '$(find elsewhere)/launch/laser_pipeline.launch' replaced by "
@@ -74,8 +74,8 @@ def test_include_of_a_file_with_the_same_role_replaces_another(reasons):
     ) in found
 
 
-def test_include_of_a_file_with_another_role_does_not_replace_it(reasons):
-    found = reasons(SAFETY, '  <include file="$(find elsewhere)/launch/mux.launch"/>\n')
+def test_include_of_a_file_with_another_role_does_not_replace_it(review_reasons):
+    found = review_reasons(SAFETY, '  <include file="$(find elsewhere)/launch/mux.launch"/>\n')
     assert list(found.values()) == [None, STOPS]
 
 
@@ -141,15 +141,15 @@ def test_argument_in_an_expression_is_used_and_one_in_a_comment_is_not(repositor
         ('default="true"', 'default="false"', "argument 'camera': default true -> false"),
     ],
 )
-def test_value_that_switches_off_a_node_of_an_included_file_is_breaking(reasons, old, new, expected):
-    assert reasons(old, new) == {expected: CAMERA_STOPS}
+def test_value_that_switches_off_a_node_of_an_included_file_is_breaking(review_reasons, old, new, expected):
+    assert review_reasons(old, new) == {expected: CAMERA_STOPS}
 
 
 @pytest.mark.parametrize(
     ("line", "reason"), [(SAFETY, "by default, it does not start any more"), (MODEL_INCLUDE, None)]
 )
-def test_condition_that_does_not_hold_is_breaking_for_a_file_with_nodes(reasons, line, reason):
-    assert list(reasons(line, line.replace("/>", ' if="false"/>')).values()) == [reason]
+def test_condition_that_does_not_hold_is_breaking_for_a_file_with_nodes(review_reasons, line, reason):
+    assert list(review_reasons(line, line.replace("/>", ' if="false"/>')).values()) == [reason]
 
 
 CONDITIONAL = """from launch import LaunchDescription
@@ -167,9 +167,9 @@ def generate_launch_description():
 """
 
 
-def test_boolean_argument_of_moveit_has_a_default(changes_of):
+def test_boolean_argument_of_moveit_has_a_default(review_changes):
     line = next(line for line in CONDITIONAL.splitlines() if "IncludeLaunchDescription(" in line)
-    assert changes_of("arm.launch.py", CONDITIONAL, f"{line}\n", "") == (
+    assert review_changes("arm.launch.py", CONDITIONAL, f"{line}\n", "") == (
         ["include of 'db.launch.py' removed: if $(var db)"],
         [],
     )
@@ -185,9 +185,9 @@ def test_name_of_an_included_file_may_contain_an_argument(repository, compare):
     assert change.reason is None
 
 
-def test_many_arguments_that_an_include_passes_are_one_change(reasons):
+def test_many_arguments_that_an_include_passes_are_one_change(review_reasons):
     arguments = "".join(f'<arg name="a{number}" value="{number}"/>' for number in range(3))
-    found = reasons('<arg name="scan" value="front"/>', f'<arg name="scan" value="front"/>{arguments}')
+    found = review_reasons('<arg name="scan" value="front"/>', f'<arg name="scan" value="front"/>{arguments}')
     assert found == {
         "include of '$(find elsewhere)/launch/laser_pipeline.launch': arguments added: a0 0, a1 1, a2 2": None
     }

@@ -28,17 +28,19 @@ def generate_launch_description():
 """
 
 
-def test_namespace_that_begins_with_a_slash_by_default_replaces_the_outer_one(changes_of):
+def test_namespace_that_begins_with_a_slash_by_default_replaces_the_outer_one(review_changes):
     text = XML.format(default=' default="/hero"')
-    assert changes_of("arm.launch", text, '<group ns="$(arg namespace)">', "<group>") == ([], [])
+    assert review_changes("arm.launch", text, '<group ns="$(arg namespace)">', "<group>") == ([], [])
 
 
-def test_pushed_namespace_that_begins_with_a_slash_by_default_replaces_the_outer_one(changes_of):
-    assert changes_of("arm.launch.py", PYTHON, '        PushRosNamespace("outer"),\n', "") == ([], [])
+def test_pushed_namespace_that_begins_with_a_slash_by_default_replaces_the_outer_one(review_changes):
+    assert review_changes("arm.launch.py", PYTHON, '        PushRosNamespace("outer"),\n', "") == ([], [])
 
 
 @pytest.mark.parametrize(("default", "is_breaking"), [(' default="hero"', True), ("", False)])
-def test_lost_outer_namespace_is_breaking_if_the_inner_one_is_known(changes_of, default, is_breaking):
-    changes, found = changes_of("arm.launch", XML.format(default=default), '<group ns="$(arg namespace)">', "<group>")
+def test_lost_outer_namespace_is_breaking_if_the_inner_one_is_known(review_changes, default, is_breaking):
+    changes, found = review_changes(
+        "arm.launch", XML.format(default=default), '<group ns="$(arg namespace)">', "<group>"
+    )
     assert len(changes) == 2
     assert (found == changes) is is_breaking

@@ -21,7 +21,7 @@ LAUNCH = """<launch>
 
 
 @pytest.fixture
-def reasons(repository, compare):
+def review_reasons(repository, compare):
     """Review a new script and a new launch file.
 
     Return the breaking changes of the launch file with their reasons.
@@ -46,22 +46,22 @@ def reasons(repository, compare):
         ('add_argument("-p", "--port", "--serial-port")', 'add_argument("--no-port", action="store_true")'),
     ],
 )
-def test_option_that_a_script_does_not_accept_any_more_is_breaking_where_it_is_passed(reasons, old, new):
-    assert reasons(SCRIPT.replace(old, new)) == {
+def test_option_that_a_script_does_not_accept_any_more_is_breaking_where_it_is_passed(review_reasons, old, new):
+    assert review_reasons(SCRIPT.replace(old, new)) == {
         "'--port' is passed to 'driver.py'": "'driver.py' does not accept '--port'"
     }
 
 
-def test_option_that_a_launch_file_begins_to_pass_must_be_accepted(reasons):
-    assert reasons(SCRIPT, LAUNCH.replace("--port", "--tty"))["'--tty' is passed to 'driver.py'"] == (
+def test_option_that_a_launch_file_begins_to_pass_must_be_accepted(review_reasons):
+    assert review_reasons(SCRIPT, LAUNCH.replace("--port", "--tty"))["'--tty' is passed to 'driver.py'"] == (
         "'driver.py' does not accept '--tty'"
     )
 
 
-def test_option_that_a_script_requires_must_be_passed(reasons):
+def test_option_that_a_script_requires_must_be_passed(review_reasons):
     script = SCRIPT.replace("args =", 'parser.add_argument("--name", required=True)\nargs =')
-    assert reasons(script) == {"'--name' is not passed to 'driver.py'": "'driver.py' requires '--name'"}
-    assert reasons(script, LAUNCH.replace("--port", "--name=a --port")) == {}
+    assert review_reasons(script) == {"'--name' is not passed to 'driver.py'": "'driver.py' requires '--name'"}
+    assert review_reasons(script, LAUNCH.replace("--port", "--name=a --port")) == {}
 
 
 @pytest.mark.parametrize(
@@ -74,6 +74,6 @@ def test_option_that_a_script_requires_must_be_passed(reasons):
         ('"--rate"', '"--rates"'),
     ],
 )
-def test_option_that_a_script_may_accept_is_not_breaking(reasons, old, new):
+def test_option_that_a_script_may_accept_is_not_breaking(review_reasons, old, new):
     text = SCRIPT.replace('"--rate"', '"--speed"') if "parse" in old else SCRIPT
-    assert reasons(text.replace(old, new)) == {}
+    assert review_reasons(text.replace(old, new)) == {}

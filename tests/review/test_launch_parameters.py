@@ -29,20 +29,24 @@ FILE = """<launch>
         ("output_topic", "$(arg robot)/state", True),
     ],
 )
-def test_topic_that_a_node_publishes_is_a_name_that_others_use(changes_of, name, new, is_breaking):
-    changes, found = changes_of("arm.launch", FILE.format(name=name), 'value="state"', f'value="{new}"')
+def test_topic_that_a_node_publishes_is_a_name_that_others_use(review_changes, name, new, is_breaking):
+    changes, found = review_changes("arm.launch", FILE.format(name=name), 'value="state"', f'value="{new}"')
     assert changes == [f"node 'arm/driver': parameter {name} state -> {new}"]
     assert found == (changes if is_breaking else [])
 
 
-def test_null_is_not_an_empty_text(changes_of):
+def test_null_is_not_an_empty_text(review_changes):
     text = FILE.format(name="rate")
-    assert changes_of("arm.launch", text, "gains:", "gains: 1")[0] == ["node 'arm/driver': parameter gains null -> 1"]
+    assert review_changes("arm.launch", text, "gains:", "gains: 1")[0] == [
+        "node 'arm/driver': parameter gains null -> 1"
+    ]
 
 
-def test_empty_text_is_shown_as_one(changes_of):
+def test_empty_text_is_shown_as_one(review_changes):
     text = FILE.format(name="rate")
-    assert changes_of("arm.launch", text, "limit: ''", "limit: 1")[0] == ["node 'arm/driver': parameter limit '' -> 1"]
+    assert review_changes("arm.launch", text, "limit: ''", "limit: 1")[0] == [
+        "node 'arm/driver': parameter limit '' -> 1"
+    ]
 
 
 SERVER = """<launch>
@@ -64,29 +68,29 @@ SERVER = """<launch>
         ("limit", "/limit", ""),
     ],
 )
-def test_parameter_of_the_server_with_a_new_name_is_renamed(changes_of, old, new, reason):
-    changes, found = changes_of("arm.launch", SERVER, f'name="{old}"', f'name="{new}"')
+def test_parameter_of_the_server_with_a_new_name_is_renamed(review_changes, old, new, reason):
+    changes, found = review_changes("arm.launch", SERVER, f'name="{old}"', f'name="{new}"')
     assert changes == [f"parameter '{old}' renamed to '{new}'"]
     assert found == (changes if reason else [])
 
 
 @pytest.mark.parametrize("new", ['name="speed" value="1"', 'name="motion/limit" value="2"'])
-def test_parameter_of_the_server_with_another_name_or_value_is_another_one(changes_of, new):
-    changes, found = changes_of("arm.launch", SERVER, 'name="limit" value="1"', new)
+def test_parameter_of_the_server_with_another_name_or_value_is_another_one(review_changes, new):
+    changes, found = review_changes("arm.launch", SERVER, 'name="limit" value="1"', new)
     assert len(changes) == 2
     assert not found
 
 
-def test_old_name_that_another_parameter_has_is_not_gone(changes_of):
+def test_old_name_that_another_parameter_has_is_not_gone(review_changes):
     line = '<param name="limit" value="1"/>'
-    changes, found = changes_of("arm.launch", SERVER, line, f'{line}<param name="/a/limit" value="1"/>')
+    changes, found = review_changes("arm.launch", SERVER, line, f'{line}<param name="/a/limit" value="1"/>')
     assert changes == ["parameter '/a/limit' added: 1"]
     assert not found
 
 
 @pytest.mark.parametrize(("new", "is_replaced"), [("config/left.yaml", True), ("other/left.yaml", False)])
-def test_file_that_an_argument_chooses_is_replaced_by_a_fixed_one(changes_of, new, is_replaced):
-    changes, _ = changes_of("arm.launch", SERVER, "config/$(arg robot).yaml", new)
+def test_file_that_an_argument_chooses_is_replaced_by_a_fixed_one(review_changes, new, is_replaced):
+    changes, _ = review_changes("arm.launch", SERVER, "config/$(arg robot).yaml", new)
     text = (
         "parameters of '$(find arm)/config/$(arg robot).yaml' replaced by parameters of '$(find arm)/config/left.yaml'"
     )

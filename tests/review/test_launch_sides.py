@@ -39,10 +39,10 @@ def test_remapping_is_breaking_by_the_side_of_the_node(repository, compare, pack
     assert (None if change.reason is None else str(change.reason)) == (reason and reason.format(name))
 
 
-def test_side_of_a_nodelet_is_that_of_its_class(changes_of):
+def test_side_of_a_nodelet_is_that_of_its_class(review_changes):
     node = '<node pkg="nodelet" type="nodelet" name="n" args="load depthimage_to_laserscan/Nodelet manager">'
     text = f'<launch>{node}<remap from="image" to="depth/image_raw"/></node></launch>'
-    assert changes_of("arm.launch", text, "depth/image_raw", "other/image_raw")[1] == []
+    assert review_changes("arm.launch", text, "depth/image_raw", "other/image_raw")[1] == []
 
 
 def test_remapping_of_a_name_that_is_new_in_the_node_breaks_nobody(repository, compare):

@@ -61,8 +61,8 @@ def generate_launch_description():
 
 
 @pytest.mark.parametrize("name", ["args.node", 'vars(args)["node"]'])
-def test_name_that_is_not_known_may_be_the_same(changes_of, name):
-    changes, breaking_changes = changes_of("arm.launch.py", OPTIONS, 'name="camera"', f"name={name}")
+def test_name_that_is_not_known_may_be_the_same(review_changes, name):
+    changes, breaking_changes = review_changes("arm.launch.py", OPTIONS, 'name="camera"', f"name={name}")
     assert len(changes) == 1
     assert breaking_changes == []
 
@@ -119,9 +119,9 @@ NODELETS = """<launch>
 THROTTLE = NODELETS.splitlines()[3]
 
 
-def test_nodelet_of_another_class_is_another_node(changes_of):
+def test_nodelet_of_another_class_is_another_node(review_changes):
     new = THROTTLE.replace("throttle", "to_scan").replace("laser/Throttle", "depth/ToScan")
-    changes, found = changes_of("arm.launch", NODELETS, THROTTLE, new)
+    changes, found = review_changes("arm.launch", NODELETS, THROTTLE, new)
     assert changes == [
         "node 'nodelet/nodelet' added: name to_scan, arguments load depth/ToScan manager",
         "node 'nodelet/nodelet' removed: name throttle, arguments load laser/Throttle manager",
@@ -129,23 +129,23 @@ def test_nodelet_of_another_class_is_another_node(changes_of):
     assert found == changes[1:]
 
 
-def test_removed_remapping_that_did_not_hold_is_not_breaking(changes_of):
+def test_removed_remapping_that_did_not_hold_is_not_breaking(review_changes):
     line = NODELETS.splitlines()[2]
-    assert changes_of("arm.launch", NODELETS, f"{line}\n", "") == (
+    assert review_changes("arm.launch", NODELETS, f"{line}\n", "") == (
         ["remapping of 'scan' for the nodes that follow removed: if $(arg simulation), to front/scan"],
         [],
     )
 
 
-def test_change_of_one_of_several_nodes_of_a_program_names_the_node(changes_of):
-    assert changes_of("arm.launch", NODELETS, 'name="right"', 'name="right" output="screen"')[0] == [
+def test_change_of_one_of_several_nodes_of_a_program_names_the_node(review_changes):
+    assert review_changes("arm.launch", NODELETS, 'name="right"', 'name="right" output="screen"')[0] == [
         "node 'arm/driver' (arm/right): output screen added"
     ]
 
 
-def test_same_change_of_several_but_not_all_nodes_of_a_program_names_each(changes_of):
+def test_same_change_of_several_but_not_all_nodes_of_a_program_names_each(review_changes):
     text = NODELETS.replace("</launch>", '<node pkg="arm" type="driver" name="back"/></launch>')
-    assert changes_of("arm.launch", text, 'ns="arm"', 'ns="arm" output="screen"')[0] == [
+    assert review_changes("arm.launch", text, 'ns="arm"', 'ns="arm" output="screen"')[0] == [
         "node 'arm/driver' (arm/left), node 'arm/driver' (arm/right): output screen added"
     ]
 
@@ -182,5 +182,5 @@ SPAWNS = f'<launch><node pkg="rviz2" exec="rviz2"/>{SPAWN}</launch>'
         (SPAWN.replace("<node", '<node if="false"'), True),
     ],
 )
-def test_robot_that_is_not_spawned_any_more_is_breaking(changes_of, new, is_breaking):
-    assert bool(changes_of("arm.launch.xml", SPAWNS, SPAWN, new)[1]) is is_breaking
+def test_robot_that_is_not_spawned_any_more_is_breaking(review_changes, new, is_breaking):
+    assert bool(review_changes("arm.launch.xml", SPAWNS, SPAWN, new)[1]) is is_breaking

@@ -25,7 +25,7 @@ LOST = "names the controller 'hand_controller', which 'arm/config/c.yaml' no lon
 
 
 @pytest.fixture
-def lines_of(repository, compare):
+def find_breaking_lines(repository, compare):
     """Return the breaking lines about a removed controller beside files that stay as they are."""
 
     def run(files: dict[str, str]):
@@ -49,9 +49,9 @@ def lines_of(repository, compare):
         ("arm/test/grip.py", 'node.create_publisher(Float64, "/hand_controller/commands", 10)\n', False),
     ],
 )  # fmt: skip
-def test_file_that_names_a_removed_controller_is_breaking(lines_of, path, text, is_lost):
-    assert lines_of({path: text}) == [LOST] * is_lost
+def test_file_that_names_a_removed_controller_is_breaking(find_breaking_lines, path, text, is_lost):
+    assert find_breaking_lines({path: text}) == [LOST] * is_lost
 
 
-def test_controller_that_another_file_still_has_is_not_lost(lines_of):
-    assert lines_of({"arm/launch/arm.launch.py": START, "arm/config/other.yaml": MANAGER}) == []
+def test_controller_that_another_file_still_has_is_not_lost(find_breaking_lines):
+    assert find_breaking_lines({"arm/launch/arm.launch.py": START, "arm/config/other.yaml": MANAGER}) == []

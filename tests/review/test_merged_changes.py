@@ -164,15 +164,19 @@ def test_parameters_that_hardware_gains_are_one_line(repository, compare):
     assert str(sentence_of(found)) == expected
 
 
-ALL = ("sim:=true tool:=a", "sim:=true tool:=b", "sim:=false tool:=a", "")
+ALL_ARGUMENT_SETS = ("sim:=true tool:=a", "sim:=true tool:=b", "sim:=false tool:=a", "")
 
 
 @pytest.mark.parametrize(
     ("cases", "all_cases", "expected"),
     [
-        (ALL[:2], ALL, "with sim:=true"),
-        (("", ALL[2]), (ALL[0], ALL[1], ALL[2], ""), "without sim:=true"),
-        (ALL[1:3], ALL, "with 2 of 4 argument sets"),
+        (ALL_ARGUMENT_SETS[:2], ALL_ARGUMENT_SETS, "with sim:=true"),
+        (
+            ("", ALL_ARGUMENT_SETS[2]),
+            (ALL_ARGUMENT_SETS[0], ALL_ARGUMENT_SETS[1], ALL_ARGUMENT_SETS[2], ""),
+            "without sim:=true",
+        ),
+        (ALL_ARGUMENT_SETS[1:3], ALL_ARGUMENT_SETS, "with 2 of 4 argument sets"),
         (("",), ("", "sim:=true", "tool:=b"), "with the default arguments"),
         (("a:=1 b:=1 c:=1 d:=1 e:=1",), ("a:=1 b:=1 c:=1 d:=1 e:=1", ""), "with a:=1 b:=1 c:=1 d:=1 ..."),
     ],

@@ -37,7 +37,7 @@ RRT = "  RRT: {type: geometric::RRT, range: 0.0, delay: 1}\n"
 
 
 @pytest.fixture
-def changes_of(repository, compare):
+def review_changes(repository, compare):
     """Review two versions of a file.
 
     Return all changes, the breaking ones, and the reasons of these.
@@ -77,10 +77,10 @@ def changes_of(repository, compare):
          "programs that plan with the planner 'EST' do not find it"),
     ],
 )  # fmt: skip
-def test_name_that_is_gone_is_one_breaking_change(changes_of, old, new, sentence, reason):
-    found, found_breaking, reasons = changes_of(SETTINGS, SETTINGS.replace(old, new))
+def test_name_that_is_gone_is_one_breaking_change(review_changes, old, new, sentence, reason):
+    found, found_breaking, review_reasons = review_changes(SETTINGS, SETTINGS.replace(old, new))
     assert found == found_breaking == [sentence]
-    assert reasons == [reason]
+    assert review_reasons == [reason]
 
 
 @pytest.mark.parametrize(
@@ -96,24 +96,24 @@ def test_name_that_is_gone_is_one_breaking_change(changes_of, old, new, sentence
         ("joint_limits:", "limits:\n  joint_limits:"),
     ],
 )
-def test_other_change_is_not_breaking(changes_of, old, new):
+def test_other_change_is_not_breaking(review_changes, old, new):
     changed = SETTINGS.replace(old, new)
     if new.startswith("limits:"):
         start = changed.index("  upper:")
         end = changed.index("planner_configs:\n  EST")
         changed = changed[:start] + changed[start:end].replace("  ", "    ") + changed[end:]
-    assert changes_of(SETTINGS, changed)[1] == []
+    assert review_changes(SETTINGS, changed)[1] == []
 
 
-def test_planner_that_is_also_gone_from_the_groups_is_breaking_once(changes_of):
-    _, found_breaking, _ = changes_of(SETTINGS, SETTINGS.replace(RRT, "").replace("[EST, RRT]", "[EST]"))
+def test_planner_that_is_also_gone_from_the_groups_is_breaking_once(review_changes):
+    _, found_breaking, _ = review_changes(SETTINGS, SETTINGS.replace(RRT, "").replace("[EST, RRT]", "[EST]"))
     assert found_breaking == ["planner_configs.RRT removed: type geometric::RRT, range 0.0, delay 1"]
 
 
-def test_joints_that_are_renamed_alike_are_one_breaking_change(changes_of):
+def test_joints_that_are_renamed_alike_are_one_breaking_change(review_changes):
     text = SETTINGS.replace("  upper:", "  left_upper:").replace("  lower:", "  left_lower:")
-    found, _, reasons = changes_of(text, text.replace("left", "right"))
+    found, _, review_reasons = review_changes(text, text.replace("left", "right"))
     assert found == ["joint_limits.left_upper renamed to joint_limits.right_upper"]
-    assert reasons == [
+    assert review_reasons == [
         "controllers and programs that name the joint 'left_upper' do not find it; likewise for the others"
     ]

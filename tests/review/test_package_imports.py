@@ -17,7 +17,7 @@ INIT = "import os\nfrom .driver import Driver\n"
 
 
 @pytest.fixture
-def lines(repository, compare):
+def review_lines(repository, compare):
     """Review a replacement of ``arm/__init__.py``.
 
     Return the sentences except those about all imports.
@@ -43,8 +43,8 @@ def lines(repository, compare):
         (INIT + "from driver import Gripper\n", "absolute import of 'driver', a module of the same package", True),
     ],
 )
-def test_names_and_failing_imports_of_an_installed_package_are_told(lines, new, expected, is_breaking):
-    assert lines(INIT, new) == ([expected], [expected] if is_breaking else [])
+def test_names_and_failing_imports_of_an_installed_package_are_told(review_lines, new, expected, is_breaking):
+    assert review_lines(INIT, new) == ([expected], [expected] if is_breaking else [])
 
 
 @pytest.mark.parametrize(
@@ -56,17 +56,17 @@ def test_names_and_failing_imports_of_an_installed_package_are_told(lines, new, 
         INIT + "import logging\n",
     ],
 )
-def test_names_of_other_packages_and_names_that_are_still_there_are_not_told(lines, new):
-    assert lines(INIT, new, {**FILES, "arm/logging.py": ""}) == ([], [])
+def test_names_of_other_packages_and_names_that_are_still_there_are_not_told(review_lines, new):
+    assert review_lines(INIT, new, {**FILES, "arm/logging.py": ""}) == ([], [])
 
 
-def test_a_package_that_is_not_installed_has_no_names_for_others(lines):
+def test_a_package_that_is_not_installed_has_no_names_for_others(review_lines):
     files = {**FILES, "setup.py": SETUP.replace("['arm']", "[]")}
-    assert lines(INIT, "import os\nfrom driver import Gripper\n", files) == ([], [])
+    assert review_lines(INIT, "import os\nfrom driver import Gripper\n", files) == ([], [])
 
 
-def test_python_2_finds_a_module_beside_the_file(lines):
+def test_python_2_finds_a_module_beside_the_file(review_lines):
     manifest = PACKAGE_XML.replace("arm_description", "arm").replace(
         "</package>", "  <buildtool_depend>catkin</buildtool_depend>\n</package>"
     )
-    assert lines(INIT, INIT + "from driver import park\n", {**FILES, "package.xml": manifest}) == ([], [])
+    assert review_lines(INIT, INIT + "from driver import park\n", {**FILES, "package.xml": manifest}) == ([], [])

@@ -40,7 +40,7 @@ BRIDGES = """- ros_topic_name: /scan
 
 
 @pytest.fixture
-def changes_of(repository, compare):
+def review_changes(repository, compare):
     def run(text: str, changed: str):
         assert text != changed
         repository.commit({"a/package.xml": PACKAGE_XML, PATH: text})
@@ -64,15 +64,15 @@ def changes_of(repository, compare):
          "executor.ros__parameters.joint_names [upper, lower] -> [upper]", False),
     ],
 )  # fmt: skip
-def test_names_that_controllers_offer_are_breaking(changes_of, old, new, expected, is_breaking):
-    changes, found_breaking = changes_of(CONTROLLERS, CONTROLLERS.replace(old, new))
+def test_names_that_controllers_offer_are_breaking(review_changes, old, new, expected, is_breaking):
+    changes, found_breaking = review_changes(CONTROLLERS, CONTROLLERS.replace(old, new))
     assert changes == [expected]
     assert bool(found_breaking) is is_breaking
 
 
-def test_renamed_controller_is_compared_with_the_old_one(changes_of):
+def test_renamed_controller_is_compared_with_the_old_one(review_changes):
     text = CONTROLLERS.replace("    base:\n", "    drive:\n").replace("\nbase:\n", "\ndrive:\n").replace("0.4", "0.5")
-    changes, found_breaking = changes_of(CONTROLLERS, text)
+    changes, found_breaking = review_changes(CONTROLLERS, text)
     assert changes == [
         "base renamed to drive",
         "drive.ros__parameters.wheel_separation 0.4 -> 0.5",
@@ -99,8 +99,8 @@ def test_renamed_controller_is_compared_with_the_old_one(changes_of):
          "bridge '/tf' added: gz_topic_name /pose, direction GZ_TO_ROS", False),
     ],
 )  # fmt: skip
-def test_bridges_are_compared_by_topic(changes_of, old, new, expected, is_breaking):
-    changes, found_breaking = changes_of(BRIDGES, BRIDGES.replace(old, new))
+def test_bridges_are_compared_by_topic(review_changes, old, new, expected, is_breaking):
+    changes, found_breaking = review_changes(BRIDGES, BRIDGES.replace(old, new))
     assert changes == [expected]
     assert bool(found_breaking) is is_breaking
 
@@ -118,8 +118,8 @@ SETTINGS = "a: null\nb: ~\nc:\nd: ''\ne: 1\nf: [null, 1]\n"
         ("f: [null, 1]", "f: [1]", ["f [null, 1] -> [1]"]),
     ],
 )
-def test_null_is_shown_as_null(changes_of, old, new, expected):
-    assert changes_of(SETTINGS, SETTINGS.replace(old, new))[0] == expected
+def test_null_is_shown_as_null(review_changes, old, new, expected):
+    assert review_changes(SETTINGS, SETTINGS.replace(old, new))[0] == expected
 
 
 def test_other_writing_of_null_is_no_change(repository, compare):
@@ -160,8 +160,8 @@ global_costmap:
         (NODES[NODES.index("global"):], "", ["global_costmap removed: base base_footprint, size 3"], True),
     ],
 )  # fmt: skip
-def test_types_and_nodes_of_parameters_are_compared(changes_of, old, new, expected, is_breaking):
-    found, found_breaking = changes_of(NODES, NODES.replace(old, new))
+def test_types_and_nodes_of_parameters_are_compared(review_changes, old, new, expected, is_breaking):
+    found, found_breaking = review_changes(NODES, NODES.replace(old, new))
     assert found == expected
     assert bool(found_breaking) is is_breaking
 
@@ -186,14 +186,14 @@ def test_equal_changes_of_a_parameter_are_one_line(repository, compare):
 POINTS = "vertices:\n" + "".join(f"  - [{n}.0, 0.0, {{kind: [1, p{n}]}}]\n" for n in range(20))
 
 
-def test_inserted_item_of_a_list_does_not_shift_the_others(changes_of):
+def test_inserted_item_of_a_list_does_not_shift_the_others(review_changes):
     text = POINTS.replace("  - [3.0", "  - [7.5, 1.0, {kind: [1, q]}]\n  - [3.0")
-    found, _ = changes_of(POINTS, text)
+    found, _ = review_changes(POINTS, text)
     assert found == ["vertices[3] added: [0] 7.5, [1] 1.0, [2].kind [1, q]"]
 
 
-def test_many_changes_of_a_list_are_one_line(changes_of):
-    found, _ = changes_of(POINTS, POINTS.replace("0.0,", "2.0,"))
+def test_many_changes_of_a_list_are_one_line(review_changes):
+    found, _ = review_changes(POINTS, POINTS.replace("0.0,", "2.0,"))
     assert found[0].startswith("list vertices: 22 values changed: [0][0] 0.0 -> 2.0; ")
 
 
@@ -207,8 +207,8 @@ LAYERS = """costmap:
 """
 
 
-def test_renamed_plugin_is_compared_with_the_old_one(changes_of):
-    found, found_breaking = changes_of(LAYERS, LAYERS.replace("voxels", "cubes").replace("16", "10"))
+def test_renamed_plugin_is_compared_with_the_old_one(review_changes):
+    found, found_breaking = review_changes(LAYERS, LAYERS.replace("voxels", "cubes").replace("16", "10"))
     part = "costmap.ros__parameters"
     renamed = f"{part}.voxels renamed to {part}.cubes"
     assert found == [renamed, f"{part}.plugins [voxels] -> [cubes]", f"{part}.cubes.size 16 -> 10"]
@@ -222,17 +222,17 @@ pose:
 """
 
 
-def test_frame_that_others_still_offer_and_transform_that_is_switched_off(changes_of):
+def test_frame_that_others_still_offer_and_transform_that_is_switched_off(review_changes):
     text = FRAMES.replace("{frame_id: map, tf", "{frame_id: odom, tf")
-    changes, found_breaking = changes_of(FRAMES, text.replace("send: true", "send: false"))
+    changes, found_breaking = review_changes(FRAMES, text.replace("send: true", "send: false"))
     assert "odometry.ros__parameters.frame_id map -> odom" in changes
     assert found_breaking == ["odometry.ros__parameters.tf.send true -> false"]
 
 
-def test_long_list_of_names_has_the_added_and_removed_ones(changes_of):
+def test_long_list_of_names_has_the_added_and_removed_ones(review_changes):
     names = [f"left_gripper_inner_finger_joint_{number}" for number in range(8)]
     text = "hand: {joints: [finger_joint, old_joint]}\n"
-    found, _ = changes_of(text, text.replace("old_joint", ", ".join(names)))
+    found, _ = review_changes(text, text.replace("old_joint", ", ".join(names)))
     assert found == [f"hand.joints: {', '.join(names)} added, old_joint removed"]
 
 
@@ -253,12 +253,15 @@ def test_another_type_of_a_controller_is_breaking(repository, compare, text, nam
     )
 
 
-def test_another_type_of_something_else_is_not_breaking(changes_of):
+def test_another_type_of_something_else_is_not_breaking(review_changes):
     text = "filters:\n  - name: a\n    type: laser_filters/A\nmap:\n  type: costmap_2d/Static\n"
-    assert changes_of(text, text.replace("Static", "Layer")) == (["map.type costmap_2d/Static -> costmap_2d/Layer"], [])
+    assert review_changes(text, text.replace("Static", "Layer")) == (
+        ["map.type costmap_2d/Static -> costmap_2d/Layer"],
+        [],
+    )
 
 
-def test_list_without_names_has_the_smallest_edit_with_its_values(changes_of):
+def test_list_without_names_has_the_smallest_edit_with_its_values(review_changes):
     def steps(*values: str) -> str:
         moves = [
             f"  - action: move\n    target: {{x: 0.0, y: {y}, turn: {turn}}}\n" for y, turn in map(str.split, values)
@@ -266,7 +269,7 @@ def test_list_without_names_has_the_smallest_edit_with_its_values(changes_of):
         return "actions:\n" + "  - action: grasp\n".join(moves)
 
     old, new = steps("0.0 -60", "-0.1 -60", "0.0 60", "-0.1 60", "0.0 -60"), steps("-0.2 -60", "-0.2 60", "-0.2 -60")
-    found, _ = changes_of(old, new)
+    found, _ = review_changes(old, new)
     assert found == [
         (
             "list actions: 3 values changed, 4 parts removed: [0].target.y 0.0 -> -0.2; [2].target.y 0.0 -> -0.2; "

@@ -17,7 +17,7 @@ PATH = "arm/config/arm.yaml"
 
 
 @pytest.fixture
-def changes_of(repository, compare):
+def review_changes(repository, compare):
     """Review two versions of a YAML file.
 
     Return the changes, and the sentences of the breaking ones.
@@ -44,8 +44,8 @@ CONTROLLER = """arm_controller:
 """
 
 
-def test_joints_that_get_another_prefix_are_one_change_and_the_list_of_them(changes_of):
-    found, found_breaking = changes_of(CONTROLLER, CONTROLLER.replace("left", "right").replace("0.06", "0.07"))
+def test_joints_that_get_another_prefix_are_one_change_and_the_list_of_them(review_changes):
+    found, found_breaking = review_changes(CONTROLLER, CONTROLLER.replace("left", "right").replace("0.06", "0.07"))
     part = "arm_controller.constraints"
     assert sentences(found) == [
         f"{part}.left_joint1 renamed to {part}.right_joint1",
@@ -61,8 +61,8 @@ def test_joints_that_get_another_prefix_are_one_change_and_the_list_of_them(chan
     assert found_breaking == sentences(found)[1:2]
 
 
-def test_name_with_a_substitution_can_be_the_old_name(changes_of):
-    _, found_breaking = changes_of(CONTROLLER, CONTROLLER.replace("left", "$(arg side)"))
+def test_name_with_a_substitution_can_be_the_old_name(review_changes):
+    _, found_breaking = review_changes(CONTROLLER, CONTROLLER.replace("left", "$(arg side)"))
     assert found_breaking == []
 
 
@@ -72,8 +72,8 @@ TELEOP = """bluetooth:
 """
 
 
-def test_parts_outside_their_group_are_moved(changes_of):
-    found, _ = changes_of(TELEOP, "teleop: {axis: 1, scale: 0.5, turbo: 2}\njoy: {deadzone: 0.1}\n")
+def test_parts_outside_their_group_are_moved(review_changes):
+    found, _ = review_changes(TELEOP, "teleop: {axis: 1, scale: 0.5, turbo: 2}\njoy: {deadzone: 0.1}\n")
     assert sentences(found) == ["bluetooth.teleop moved to teleop", "teleop.scale 0.4 -> 0.5"]
     assert found.changes[0].other_names == ("bluetooth.joy -> joy",)
 
@@ -104,8 +104,8 @@ GROUPED_POSES = """poses:
 """
 
 
-def test_parts_that_move_together_are_paired_with_their_own_new_places(changes_of):
-    found, found_breaking = changes_of(POSES, GROUPED_POSES)
+def test_parts_that_move_together_are_paired_with_their_own_new_places(review_changes):
+    found, found_breaking = review_changes(POSES, GROUPED_POSES)
     part = "poses.ros__parameters"
     assert sentences(found)[0] == f"{part}.home moved to {part}.group.home"
     assert found.changes[0].other_names == (f"{part}.tour -> {part}.group.tour",)
@@ -117,16 +117,16 @@ def test_parts_that_move_together_are_paired_with_their_own_new_places(changes_o
     ]
 
 
-def test_removed_group_of_parameters_of_a_node_is_breaking_and_a_single_value_is_not(changes_of):
+def test_removed_group_of_parameters_of_a_node_is_breaking_and_a_single_value_is_not(review_changes):
     text = "poses:\n  ros__parameters:\n    rate: 5\n    open: {x: 1}\n    close: {x: 0, y: 1}\n"
-    _, found_breaking = changes_of(text, "poses:\n  ros__parameters:\n    close: {x: 0}\n")
+    _, found_breaking = review_changes(text, "poses:\n  ros__parameters:\n    close: {x: 0}\n")
     assert found_breaking == ["poses.ros__parameters.open.x 1 removed"]
 
 
-def test_values_of_the_same_name_that_many_parts_lose_are_one_line(changes_of):
+def test_values_of_the_same_name_that_many_parts_lose_are_one_line(review_changes):
     text = "".join(f"joint{number}: {{gain: {number}.5, limit: 1}}\n" for number in range(5))
     text = f"joints:\n{textwrap.indent(text, '  ')}"
-    found, _ = changes_of(text, re.sub(r"gain: \S+ ", "", text))
+    found, _ = review_changes(text, re.sub(r"gain: \S+ ", "", text))
     assert sentences(found) == ["joints.joint0.gain removed"]
     assert found.changes[0].other_names == tuple(f"joints.joint{number}.gain" for number in range(1, 5))
 
@@ -141,24 +141,24 @@ driver:
 """
 
 
-def test_controller_of_ros_1_with_another_name_is_breaking(changes_of):
+def test_controller_of_ros_1_with_another_name_is_breaking(review_changes):
     balance = "  balance: {type: robot_controllers/Balance, root: base, tip: hand, autostart: true}\n"
     text = ROS_1_CONTROLLERS.replace(balance, "").replace("arm_controller:\n", f"arm_controller:\n{balance}")
     text = text.replace("[torso_controller/trajectory, torso_controller/balance]", "[torso_controller/trajectory]")
-    _, found_breaking = changes_of(ROS_1_CONTROLLERS, text)
+    _, found_breaking = review_changes(ROS_1_CONTROLLERS, text)
     assert found_breaking[0] == "torso_controller.balance moved to arm_controller.balance"
     assert found_breaking[1].startswith("driver.default_controllers")
 
 
-def test_removed_controller_of_ros_1_is_breaking(changes_of):
+def test_removed_controller_of_ros_1_is_breaking(review_changes):
     part = "  balance: {type: robot_controllers/Balance, root: base, tip: hand, autostart: true}\n"
-    found, found_breaking = changes_of(ROS_1_CONTROLLERS, ROS_1_CONTROLLERS.replace(part, ""))
+    found, found_breaking = review_changes(ROS_1_CONTROLLERS, ROS_1_CONTROLLERS.replace(part, ""))
     assert found_breaking == sentences(found)
     assert found_breaking[0].startswith("torso_controller.balance removed: type robot_controllers/Balance")
 
 
-def test_empty_key_that_gets_or_loses_children_is_neither_removed_nor_added(changes_of):
-    found, _ = changes_of("limits:\nrate: 1\n", "limits: {speed: 2}\nrate: 1\n")
+def test_empty_key_that_gets_or_loses_children_is_neither_removed_nor_added(review_changes):
+    found, _ = review_changes("limits:\nrate: 1\n", "limits: {speed: 2}\nrate: 1\n")
     assert sentences(found) == ["limits.speed 2 added"]
 
 
@@ -169,8 +169,8 @@ NODE = "{ros__parameters: {rate: 1, size: 2, base: x}}"
     ("old", "new", "is_breaking"),
     [("amcl", "/**/amcl", False), ("/**", "/**/amcl", False), ("amcl", "map_server", True), ("/a/amcl", "/*/b", True)],
 )
-def test_node_whose_new_name_matches_the_old_one_keeps_its_parameters(changes_of, old, new, is_breaking):
-    _, found_breaking = changes_of(f"{old}: {NODE}\n", f"{new}: {NODE}\n")
+def test_node_whose_new_name_matches_the_old_one_keeps_its_parameters(review_changes, old, new, is_breaking):
+    _, found_breaking = review_changes(f"{old}: {NODE}\n", f"{new}: {NODE}\n")
     assert found_breaking == [f"{old} renamed to {new}"][: int(is_breaking)]
 
 
@@ -188,26 +188,26 @@ STEPS = [f"- {{action: move, to: {n}, tool: t{n}}}\n" for n in range(6)]
          ["steps[5].wait 3 added", "steps[old 5] removed: action move, to 5, tool t5"]),
     ],
 )  # fmt: skip
-def test_items_that_move_in_a_list_are_compared_with_the_old_ones(changes_of, steps, expected):
-    found, _ = changes_of("steps:\n" + "".join(STEPS), "steps:\n" + "".join(steps))
+def test_items_that_move_in_a_list_are_compared_with_the_old_ones(review_changes, steps, expected):
+    found, _ = review_changes("steps:\n" + "".join(STEPS), "steps:\n" + "".join(steps))
     assert sentences(found) == expected
 
 
-def test_equal_edits_of_names_are_one_change(changes_of):
+def test_equal_edits_of_names_are_one_change(review_changes):
     text = "".join(f"{name}: {{topic: /robot/{name}, timeout: 1}}\n" for name in ("joy", "key"))
-    found, _ = changes_of(text, text.replace("/robot/", ""))
+    found, _ = review_changes(text, text.replace("/robot/", ""))
     assert sentences(found) == ["joy.topic /robot/joy -> joy"]
     assert found.changes[0].other_names == ("key.topic /robot/key -> key",)
 
 
-def test_empty_text_in_a_list_is_visible(changes_of):
-    found, _ = changes_of('buttons: [Select, "", ""]\n', "buttons: [Select]\n")
+def test_empty_text_in_a_list_is_visible(review_changes):
+    found, _ = review_changes('buttons: [Select, "", ""]\n', "buttons: [Select]\n")
     assert sentences(found) == ["buttons [Select, '', ''] -> [Select]"]
 
 
-def test_removed_file_has_its_values_and_the_number_of_the_others(changes_of):
+def test_removed_file_has_its_values_and_the_number_of_the_others(review_changes):
     text = "".join(f"gain{number}: {number}\n" for number in range(42))
-    found, _ = changes_of(text, None)
+    found, _ = review_changes(text, None)
     assert sentences(found)[0].startswith("parameter file removed: gain0 0, gain1 1, ")
     assert sentences(found)[0].endswith(" and 2 more")
 
@@ -220,9 +220,9 @@ PLANNERS = """planners:
 """
 
 
-def test_parts_whose_names_lose_the_same_end_are_renamed_beside_added_ones(changes_of):
+def test_parts_whose_names_lose_the_same_end_are_renamed_beside_added_ones(review_changes):
     added = "  BiEST: {type: g.BiEST, range: 0.0, bias: 0.05}\n  Lazy: {type: g.Lazy, range: 0.0}\n"
-    found, _ = changes_of(PLANNERS, PLANNERS.replace("kOld", "") + added)
+    found, _ = review_changes(PLANNERS, PLANNERS.replace("kOld", "") + added)
     assert [text.partition(":")[0] for text in sentences(found)] == [
         "planners.SBLkOld renamed to planners.SBL",
         "planners.BiEST added",
@@ -233,11 +233,11 @@ def test_parts_whose_names_lose_the_same_end_are_renamed_beside_added_ones(chang
     )
 
 
-def test_part_with_a_unique_text_is_not_another_part_with_equal_numbers(changes_of):
+def test_part_with_a_unique_text_is_not_another_part_with_equal_numbers(review_changes):
     text = "filters:\n  first: {type: clip, low: 1, high: 2, rate: 3, size: 4}\n"
     new = text.replace("first", "b").replace("rate: 3", "rate: 5")
     new = new.replace("  b", "  a: {type: mean, low: 1, high: 2, rate: 3, size: 4}\n  b")
-    found, _ = changes_of(text, new)
+    found, _ = review_changes(text, new)
     assert sentences(found) == [
         "filters.first renamed to filters.b",
         "filters.b.rate 3 -> 5",
@@ -245,8 +245,8 @@ def test_part_with_a_unique_text_is_not_another_part_with_equal_numbers(changes_
     ]
 
 
-def test_name_that_gains_a_part_wins_over_another_with_equal_contents(changes_of):
+def test_name_that_gains_a_part_wins_over_another_with_equal_contents(review_changes):
     text = "filters:\n  scan: {low: 1, high: 2, rate: 3, size: 4}\n"
     new = "filters:\n  depth: {low: 1, high: 2, rate: 3, size: 4}\n  scan_left: {low: 1, high: 2, rate: 3, size: 5}\n"
-    found, _ = changes_of(text, new)
+    found, _ = review_changes(text, new)
     assert sentences(found)[:2] == ["filters.scan renamed to filters.scan_left", "filters.scan_left.size 4 -> 5"]

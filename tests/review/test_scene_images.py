@@ -27,7 +27,7 @@ FIXED = BOX.format(name="fixed", x=0)
 
 
 @pytest.fixture
-def images_of(repository):
+def render_images(repository):
     def run(path: str, old: str | bytes, new: str | bytes):
         repository.commit({path: old})
         repository.write({path: new})
@@ -42,19 +42,19 @@ def images_of(repository):
 
 
 @pytest.mark.parametrize("new_pose", [3, 100])
-def test_moved_model_of_a_world_is_shown(images_of, new_pose):
+def test_moved_model_of_a_world_is_shown(render_images, new_pose):
     old, new = (world_text(FIXED, BOX.format(name="moved", x=x)) for x in (new_pose, new_pose + 1))
-    images = images_of("w/worlds/w.sdf", old, new)
+    images = render_images("w/worlds/w.sdf", old, new)
     assert [view.name for view in images] == ["iso", "front", "left", "top"]
     assert images[0].old != images[0].new
 
 
-def test_world_with_same_appearance_has_no_images(images_of):
-    assert images_of("w/worlds/w.sdf", world_text(FIXED), world_text(FIXED, step=0.002)) == []
+def test_world_with_same_appearance_has_no_images(render_images):
+    assert render_images("w/worlds/w.sdf", world_text(FIXED), world_text(FIXED, step=0.002)) == []
 
 
-def test_changed_mesh_is_shown(images_of):
-    images = images_of("w/meshes/m.stl", make_stl(1.0), make_stl(2.0))
+def test_changed_mesh_is_shown(render_images):
+    images = render_images("w/meshes/m.stl", make_stl(1.0), make_stl(2.0))
     assert len(images) == 4
     assert images[0].old != images[0].new
 

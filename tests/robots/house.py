@@ -29,11 +29,11 @@ ROBOT = "package://my_robot_description/urdf/mbot_gazebo.xacro"
 STEP_S = 0.1
 
 
-def flat(nested: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+def flatten_parameters(nested: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     """Return parameters by dotted names."""
     parameters: dict[str, Any] = {}
     for name, value in nested.items():
-        parameters.update(flat(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value})
+        parameters.update(flatten_parameters(value, f"{prefix}{name}.") if isinstance(value, dict) else {prefix + name: value})
     return parameters
 
 
@@ -59,10 +59,10 @@ class House(SteppedSimulation):
         return self
 
     def _options(self, name: str, costmap: str = "", **parameters: Any) -> NodeOptions:
-        file_parameters = flat(self._told[name]["ros__parameters"])
+        file_parameters = flatten_parameters(self._told[name]["ros__parameters"])
         options = NodeOptions(parameters={**file_parameters, "autostart_node": True, **parameters})
         if costmap:
-            for key, value in flat(self._told[costmap][costmap]["ros__parameters"]).items():
+            for key, value in flatten_parameters(self._told[costmap][costmap]["ros__parameters"]).items():
                 options.parameters_of_others.set(f"/{costmap}/{costmap}", key, value)
         return options
 

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.packages import PackageFinder
 from tests.places import GAZEBO_PACKAGE, PACKAGE
-from tests.robots.workspaces import colcon_build, sourced
+from tests.robots.workspaces import colcon_build, read_sourced_variable
 
 pytestmark = pytest.mark.slow
 
@@ -29,7 +29,7 @@ def workspace(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathF
     return workspace
 
 
-def share(workspace: Path) -> Path:
+def share_folder(workspace: Path) -> Path:
     return workspace / "install" / PACKAGE.name / "share" / PACKAGE.name
 
 
@@ -37,7 +37,7 @@ def share(workspace: Path) -> Path:
 def test_package_files_are_installed(workspace: Path, folder: str) -> None:
     source = workspace / "src" / PACKAGE.name / folder
     written = sorted(path.relative_to(source) for path in source.rglob("*") if path.is_file())
-    installed = share(workspace) / folder
+    installed = share_folder(workspace) / folder
     assert written
     assert sorted(path.relative_to(installed) for path in installed.rglob("*") if path.is_file()) == written
     assert all((installed / path).read_bytes() == (source / path).read_bytes() for path in written)
@@ -49,16 +49,16 @@ def test_all_package_folders_are_tested() -> None:
 
 
 def test_manifest_and_index_marker_are_installed(workspace: Path) -> None:
-    assert (share(workspace) / "package.xml").read_bytes() == (PACKAGE / "package.xml").read_bytes()
-    index = share(workspace).parent / "ament_index" / "resource_index" / "packages"
+    assert (share_folder(workspace) / "package.xml").read_bytes() == (PACKAGE / "package.xml").read_bytes()
+    index = share_folder(workspace).parent / "ament_index" / "resource_index" / "packages"
     assert (index / PACKAGE.name).is_file()
 
 
 def test_sourced_workspace_provides_package(workspace: Path) -> None:
-    prefix = sourced(workspace, "AMENT_PREFIX_PATH")
+    prefix = read_sourced_variable(workspace, "AMENT_PREFIX_PATH")
     assert prefix == str(workspace / "install" / PACKAGE.name)
     finder = PackageFinder(start=Path("/no/such/folder"), environment={"AMENT_PREFIX_PATH": prefix})
-    assert finder.share(PACKAGE.name).resolve() == share(workspace).resolve()
+    assert finder.share(PACKAGE.name).resolve() == share_folder(workspace).resolve()
 
 
 def test_gazebo_package_is_installed_completely(tmp_path: Path) -> None:

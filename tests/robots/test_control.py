@@ -33,7 +33,7 @@ ROBOT_RADIUS_M = 0.2
 
 
 @pytest.fixture
-def load(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
+def load_module(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """Return a function that imports a module of the package, as a sourced workspace does."""
     standins.activate()
     monkeypatch.syspath_prepend(str(CONTROL_PACKAGE))
@@ -46,37 +46,37 @@ def load(monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
         del sys.modules[name]
 
 
-def world(name: str) -> Path:
+def world_path(name: str) -> Path:
     return GAZEBO_PACKAGE / "worlds" / f"{name}.world"
 
 
-def place(test: SteppedSimulation) -> tuple[float, float]:
+def true_position(test: SteppedSimulation) -> tuple[float, float]:
     """Return the robot's true position."""
     x, y, *_ = test.robot_pose()
     return x, y
 
 
-def logged(test: SteppedSimulation) -> list[str]:
+def logged_texts(test: SteppedSimulation) -> list[str]:
     return [record.text for record in test.log]
 
 
 @pytest.mark.slow
-def test_drive_square_closes_square(load: Any) -> None:
-    with SteppedSimulation(world("empty"), ROBOT) as test:
+def test_drive_square_closes_square(load_module: Any) -> None:
+    with SteppedSimulation(world_path("empty"), ROBOT) as test:
         test.init_rclpy()
-        load("drive_square").DriveSquare()
+        load_module("drive_square").DriveSquare()
         odometry = test.record("/odom")
         corners: list[tuple[float, float]] = []
         for _ in range(60):
             test.advance(1.0)
-            reached = sum("corner reached" in text for text in logged(test))
+            reached = sum("corner reached" in text for text in logged_texts(test))
             if reached > len(corners):
-                corners.append(place(test))
-            if "the square is closed" in logged(test):
+                corners.append(true_position(test))
+            if "the square is closed" in logged_texts(test):
                 break
         measured = odometry.last.pose.pose.position
         assert math.hypot(measured.x, measured.y) < 0.05, "by odometry"
-        assert math.dist(place(test), (0.0, 0.0)) < 0.25, "in the world, because wheels slip"
+        assert math.dist(true_position(test), (0.0, 0.0)) < 0.25, "in the world, because wheels slip"
         for corner, expected in zip(corners, [(1, 0), (1, 1), (0, 1)], strict=True):
             assert math.dist(corner, expected) < 0.25
         test.advance(1.0)
@@ -86,16 +86,16 @@ def test_drive_square_closes_square(load: Any) -> None:
 
 
 @pytest.mark.slow
-def test_follow_wall_goes_through_maze(load: Any) -> None:
-    with SteppedSimulation(world("maze"), ROBOT, arguments={"laser": True}) as test:
+def test_follow_wall_goes_through_maze(load_module: Any) -> None:
+    with SteppedSimulation(world_path("maze"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy()
-        load("follow_wall").FollowWall()
+        load_module("follow_wall").FollowWall()
         scans = test.record("/scan")
         test.advance(2.0)
-        way, before, beside, nearest = 0.0, place(test), [], []
+        way, before, beside, nearest = 0.0, true_position(test), [], []
         for _ in range(60):
             test.advance(1.0)
-            way, before = way + math.dist(before, place(test)), place(test)
+            way, before = way + math.dist(before, true_position(test)), true_position(test)
             nearest.append(min(scans.last.ranges))
             beside.append(scans.last.ranges[90])  # 90 degrees to the right
         assert way > 8.0
@@ -103,24 +103,24 @@ def test_follow_wall_goes_through_maze(load: Any) -> None:
         near_distances = [distance for distance in beside if distance < 0.9]
         assert len(near_distances) > 40, "there is a wall on the right most of the time"
         assert sorted(near_distances)[len(near_distances) // 2] == pytest.approx(0.5, abs=0.1)
-        assert math.dist(place(test), (0.0, 0.0)) > 4.0, "mbot gets through the maze"
+        assert math.dist(true_position(test), (0.0, 0.0)) > 4.0, "mbot gets through the maze"
 
 
-def test_follow_wall_works_on_left_side(load: Any) -> None:
-    with SteppedSimulation(world("maze"), ROBOT, arguments={"laser": True}) as test:
+def test_follow_wall_works_on_left_side(load_module: Any) -> None:
+    with SteppedSimulation(world_path("maze"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy(["--ros-args", "-p", "side:=left"])
-        load("follow_wall").FollowWall()
+        load_module("follow_wall").FollowWall()
         scans = test.record("/scan")
         test.advance(5.0)
-        assert place(test)[0] > 0.7
+        assert true_position(test)[0] > 0.7
         assert scans.last.ranges[270] == pytest.approx(0.5, abs=0.1)
 
 
 @pytest.mark.parametrize(("x", "y", "yaw"), [(1.0, 0.5, 1.57), (-0.8, -0.4, 0.0)])
-def test_go_to_pose_reaches_pose(load: Any, x: float, y: float, yaw: float) -> None:
-    with SteppedSimulation(world("empty"), ROBOT) as test:
+def test_go_to_pose_reaches_pose(load_module: Any, x: float, y: float, yaw: float) -> None:
+    with SteppedSimulation(world_path("empty"), ROBOT) as test:
         test.init_rclpy()
-        load("go_to_pose").GoToPose()
+        load_module("go_to_pose").GoToPose()
         odometry = test.record("/odom")
         test.advance(0.2)
         goal = get_message("geometry_msgs/msg/PoseStamped")()
@@ -129,65 +129,65 @@ def test_go_to_pose_reaches_pose(load: Any, x: float, y: float, yaw: float) -> N
         goal.header.frame_id = "map"
         test.publish("/goal_pose", goal)
         test.advance(0.2)
-        assert any("set the Fixed Frame to 'odom'" in text for text in logged(test))
+        assert any("set the Fixed Frame to 'odom'" in text for text in logged_texts(test))
         goal.header.frame_id = "odom"
         test.publish("/goal_pose", goal)
         for _ in range(40):
             test.advance(1.0)
-            if "goal reached" in logged(test):
+            if "goal reached" in logged_texts(test):
                 break
         pose = odometry.last.pose.pose
         assert math.dist((pose.position.x, pose.position.y), (x, y)) < 0.1
         heading = 2.0 * math.atan2(pose.orientation.z, pose.orientation.w)
         assert math.cos(heading - yaw) > math.cos(0.1)
-        assert "goal reached" in logged(test)
+        assert "goal reached" in logged_texts(test)
 
 
 @pytest.mark.slow
-def test_follow_line_follows_line(load: Any) -> None:
-    line = _pieces()
-    with SteppedSimulation(world("line_track"), ROBOT, arguments={"camera": True}) as test:
+def test_follow_line_follows_line(load_module: Any) -> None:
+    line = _line_piece_centers()
+    with SteppedSimulation(world_path("line_track"), ROBOT, arguments={"camera": True}) as test:
         test.init_rclpy()
-        load("follow_line").FollowLine()
-        way, before = 0.0, place(test)
+        load_module("follow_line").FollowLine()
+        way, before = 0.0, true_position(test)
         for _ in range(18):
             test.advance(1.0)
-            way, before = way + math.dist(before, place(test)), place(test)
-            assert min(math.dist(place(test), piece) for piece in line) < 0.15, "mbot is on the line"
+            way, before = way + math.dist(before, true_position(test)), true_position(test)
+            assert min(math.dist(true_position(test), piece) for piece in line) < 0.15, "mbot is on the line"
         assert way > 2.5
 
 
 @pytest.mark.slow
-def test_avoid_obstacles_touches_nothing(load: Any) -> None:
-    with SteppedSimulation(world("obstacles"), ROBOT, arguments={"laser": True}) as test:
+def test_avoid_obstacles_touches_nothing(load_module: Any) -> None:
+    with SteppedSimulation(world_path("obstacles"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy()
-        load("avoid_obstacles").AvoidObstacles()
+        load_module("avoid_obstacles").AvoidObstacles()
         scans = test.record("/scan")
-        way, before = 0.0, place(test)
+        way, before = 0.0, true_position(test)
         for _ in range(60):
             test.advance(1.0)
-            way, before = way + math.dist(before, place(test)), place(test)
+            way, before = way + math.dist(before, true_position(test)), true_position(test)
             assert min(scans.last.ranges) > ROBOT_RADIUS_M + 0.05
         assert way > 6.0
-        assert any("m ahead" in text for text in logged(test))
+        assert any("m ahead" in text for text in logged_texts(test))
 
 
-def test_avoid_obstacles_stops_before_box(load: Any) -> None:
-    with SteppedSimulation(world("obstacles"), ROBOT, arguments={"laser": True}) as test:
+def test_avoid_obstacles_stops_before_box(load_module: Any) -> None:
+    with SteppedSimulation(world_path("obstacles"), ROBOT, arguments={"laser": True}) as test:
         test.init_rclpy(["--ros-args", "-p", "wander:=false"])
-        load("avoid_obstacles").AvoidObstacles()
+        load_module("avoid_obstacles").AvoidObstacles()
         scans, odometry = test.record("/scan"), test.record("/odom")
         test.advance(20.0)
-        assert place(test)[0] > 2.0, "mbot drives toward the boxes, which are 3.6 m away"
+        assert true_position(test)[0] > 2.0, "mbot drives toward the boxes, which are 3.6 m away"
         distance_ahead = min(distance for number, distance in enumerate(scans.last.ranges) if abs(number - 180) <= 40)
         assert 0.35 < distance_ahead < 0.6
         assert abs(odometry.last.twist.twist.linear.x) < 1e-3
 
 
-def test_silent_laser_stops_robot(load: Any) -> None:
-    with SteppedSimulation(world("empty"), ROBOT) as test:
+def test_silent_laser_stops_robot(load_module: Any) -> None:
+    with SteppedSimulation(world_path("empty"), ROBOT) as test:
         test.init_rclpy()
-        load("avoid_obstacles").AvoidObstacles()
+        load_module("avoid_obstacles").AvoidObstacles()
         velocities = test.record("/cmd_vel")
         scan = get_message("sensor_msgs/msg/LaserScan")(angle_min=-math.pi, angle_increment=math.pi / 180)
         scan.range_max, scan.ranges = 6.0, [6.0] * 360
@@ -199,9 +199,9 @@ def test_silent_laser_stops_robot(load: Any) -> None:
         assert velocities.last.linear.x == 0.0
 
 
-def test_decision_tests_of_package_pass(load: Any) -> None:
+def test_decision_tests_of_package_pass(load_module: Any) -> None:
     path = CONTROL_PACKAGE / "test" / "test_decisions.py"
-    load("driving_node")
+    load_module("driving_node")
     names: dict[str, Any] = {"__name__": "test_decisions"}
     exec(compile(path.read_text(encoding="utf-8"), str(path), "exec"), names)
     tests = [value for name, value in names.items() if name.startswith("test_")]
@@ -224,11 +224,11 @@ def test_nodes_have_parameters_launch_files_and_entry_points() -> None:
 
 
 @pytest.mark.parametrize("name", NODES)
-def test_parameter_file_matches_declared_parameters(load: Any, name: str) -> None:
+def test_parameter_file_matches_declared_parameters(load_module: Any, name: str) -> None:
     text = yaml.safe_load((CONTROL_PACKAGE / "config" / "control.yaml").read_text(encoding="utf-8"))
-    with SteppedSimulation(world("empty")) as test:
+    with SteppedSimulation(world_path("empty")) as test:
         test.init_rclpy()
-        module = load(name)
+        module = load_module(name)
         (kind,) = [
             member
             for member in vars(module).values()
@@ -260,9 +260,9 @@ def test_colcon_installs_package_completely(tmp_path: Path) -> None:
     assert (share / "config" / "control.yaml").is_file()
 
 
-def _pieces() -> list[tuple[float, float]]:
+def _line_piece_centers() -> list[tuple[float, float]]:
     """Return the centers of the line's pieces, x and y in m."""
-    model = ET.parse(world("line_track")).find(".//model[@name='line']")
+    model = ET.parse(world_path("line_track")).find(".//model[@name='line']")
     assert model is not None
     poses = [pose.text.split() for pose in model.iterfind(".//visual/pose") if pose.text]
     return [(float(x), float(y)) for x, y, *_ in poses]

@@ -23,21 +23,21 @@ CHOICES = [
     for count in range(len(SENSORS) + 1)
     for chosen in itertools.combinations(SENSORS, count)
 ]
-WITHOUT_MASS = {"base_footprint", "imu_link", "camera_optical_frame", "kinect_optical_frame"}
-ALONE = {"camera": "mbot_with_camera.urdf", "kinect": "mbot_with_kinect.urdf", "laser": "mbot_with_laser.urdf"}
+LINKS_WITHOUT_MASS = {"base_footprint", "imu_link", "camera_optical_frame", "kinect_optical_frame"}
+SINGLE_SENSOR_MODELS = {"camera": "mbot_with_camera.urdf", "kinect": "mbot_with_kinect.urdf", "laser": "mbot_with_laser.urdf"}
 """The model of the tutorial that carries one sensor."""
 
 
-def name(choice: dict[str, str]) -> str:
+def choice_name(choice: dict[str, str]) -> str:
     return "-".join([choice["simulator"], *(word for word in choice if word != "simulator")])
 
 
-@pytest.fixture(params=CHOICES, ids=name)
+@pytest.fixture(params=CHOICES, ids=choice_name)
 def choice(request: pytest.FixtureRequest) -> dict[str, str]:
     return request.param
 
 
-def robot_of(choice: dict[str, str]) -> Robot:
+def load_robot(choice: dict[str, str]) -> Robot:
     return load(MODEL, arguments=choice)
 
 
@@ -46,30 +46,30 @@ def test_model_has_no_findings(choice: dict[str, str]) -> None:
 
 
 def test_only_bodies_have_mass_collision_and_visual(choice: dict[str, str]) -> None:
-    for link in robot_of(choice).links.values():
-        bodily = link.name not in WITHOUT_MASS
+    for link in load_robot(choice).links.values():
+        bodily = link.name not in LINKS_WITHOUT_MASS
         assert (link.inertial is not None, bool(link.collisions), bool(link.visuals)) == (bodily,) * 3, link.name
 
 
 def test_wheels_and_casters_touch_ground_at_footprint(choice: dict[str, str]) -> None:
-    robot = robot_of(choice)
-    heights = {link: low for link, (low, _) in extents(robot).items()}
+    robot = load_robot(choice)
+    heights = {link: low for link, (low, _) in collision_extents(robot).items()}
     for part in ("left_wheel_link", "right_wheel_link", "front_caster_link", "back_caster_link"):
         assert heights[part] == pytest.approx(0.0, abs=1e-12)
     assert min(heights.values()) == pytest.approx(0.0, abs=1e-12)
 
 
-@pytest.mark.parametrize("choice", [choice for choice in CHOICES if "laser" in choice], ids=name)
+@pytest.mark.parametrize("choice", [choice for choice in CHOICES if "laser" in choice], ids=choice_name)
 def test_laser_plane_is_above_all_other_parts(choice: dict[str, str]) -> None:
-    robot = robot_of(choice)
-    plane = height(robot, "laser_link")
-    assert all(high < plane for link, (_, high) in extents(robot).items() if link != "laser_link")
+    robot = load_robot(choice)
+    plane = height_above_root(robot, "laser_link")
+    assert all(high < plane for link, (_, high) in collision_extents(robot).items() if link != "laser_link")
 
 
-@pytest.mark.parametrize("sensor", ALONE)
+@pytest.mark.parametrize("sensor", SINGLE_SENSOR_MODELS)
 def test_single_sensor_is_mounted_as_in_tutorial(sensor: str) -> None:
     link = f"{sensor}_link"
-    tutorial_robot, full_robot = load(PACKAGE / "urdf" / ALONE[sensor]), robot_of({sensor: "true"})
+    tutorial_robot, full_robot = load(PACKAGE / "urdf" / SINGLE_SENSOR_MODELS[sensor]), load_robot({sensor: "true"})
     assert full_robot.joints[f"{sensor}_joint"].origin == tutorial_robot.joints[f"{sensor}_joint"].origin
     assert [visual.geometry for visual in full_robot.links[link].visuals] == [
         visual.geometry for visual in tutorial_robot.links[link].visuals
@@ -77,7 +77,7 @@ def test_single_sensor_is_mounted_as_in_tutorial(sensor: str) -> None:
 
 
 def test_base_matches_tutorial() -> None:
-    base, full_robot = load(PACKAGE / "urdf" / "mbot_base.urdf"), robot_of({})
+    base, full_robot = load(PACKAGE / "urdf" / "mbot_base.urdf"), load_robot({})
     for link in base.links.values():
         assert [visual.geometry for visual in full_robot.links[link.name].visuals] == [
             visual.geometry for visual in link.visuals
@@ -95,7 +95,7 @@ def test_base_matches_tutorial() -> None:
 def test_diff_drive_parameters_match_wheels(simulator: str, drive: str) -> None:
     plugins = {
         plugin.attributes["filename"]: {child.tag: child.text() for child in plugin.elements()}
-        for extension in robot_of({"simulator": simulator}).extensions
+        for extension in load_robot({"simulator": simulator}).extensions
         for plugin in extension.elements()
         if plugin.tag == "plugin"
     }
@@ -107,7 +107,7 @@ def test_diff_drive_parameters_match_wheels(simulator: str, drive: str) -> None:
 
 
 def test_optical_frames_look_along_sensor_x_axis() -> None:
-    robot = robot_of({"camera": "true", "kinect": "true"})
+    robot = load_robot({"camera": "true", "kinect": "true"})
     tree = KinematicTree(robot)
     frames = tree.forward({joint: 0.0 for joint in robot.joints if "wheel" in joint or "caster" in joint})
     for sensor in ("camera", "kinect"):
@@ -116,7 +116,7 @@ def test_optical_frames_look_along_sensor_x_axis() -> None:
         assert rotation[:, 0] == pytest.approx([0, -1, 0])  # x points to the right
 
 
-def height(robot: Robot, link: str) -> float:
+def height_above_root(robot: Robot, link: str) -> float:
     """Return the height of a link's frame above the footprint in meters.
 
     The model's fixed joints are not rotated.
@@ -129,7 +129,7 @@ def height(robot: Robot, link: str) -> float:
     return above
 
 
-def extents(robot: Robot) -> dict[str, tuple[float, float]]:
+def collision_extents(robot: Robot) -> dict[str, tuple[float, float]]:
     """Return the lowest and the highest point of each link's collision.
 
     They are above the ground, in meters.
@@ -137,7 +137,7 @@ def extents(robot: Robot) -> dict[str, tuple[float, float]]:
     extents_by_link = {}
     for link in robot.links.values():
         for collision in link.collisions:
-            center_height = height(robot, link.name) + collision.origin.xyz[2]
+            center_height = height_above_root(robot, link.name) + collision.origin.xyz[2]
             lying = abs(collision.origin.rpy[0]) > 1.0
             shape = collision.geometry
             if isinstance(shape, Box):

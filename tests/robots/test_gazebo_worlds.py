@@ -65,7 +65,7 @@ def test_worlds_have_no_findings(path: Path, capsys: pytest.CaptureFixture[str])
 
 @pytest.mark.parametrize("path", WORLDS, ids=lambda path: path.stem)
 def test_robot_start_area_is_free(path: Path) -> None:
-    for name, x, y, yaw, size in solid_boxes(path):
+    for name, x, y, yaw, size in read_solid_boxes(path):
         # The origin in the axes of the box, and its distance from the box.
         forward, sideways = (-x * math.cos(yaw) - y * math.sin(yaw), x * math.sin(yaw) - y * math.cos(yaw))
         distance = math.hypot(max(abs(forward) - size[0] / 2, 0), max(abs(sideways) - size[1] / 2, 0))
@@ -75,7 +75,7 @@ def test_robot_start_area_is_free(path: Path) -> None:
         assert math.hypot(x, y) > START_RADIUS_M + 0.4, include.findtext("name")
 
 
-def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[float, ...]]]:
+def read_solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[float, ...]]]:
     """Return the boxes of a world with which the robot can collide.
 
     Each has a name, x, y, yaw and size in meters and radians.
@@ -93,7 +93,7 @@ def solid_boxes(path: Path) -> Iterator[tuple[str, float, float, float, tuple[fl
 
 def test_maze_cells_are_reachable_and_one_is_exit() -> None:
     cell, size = 1.1, 9
-    boxes = list(solid_boxes(GAZEBO_PACKAGE / "worlds" / "maze.world"))
+    boxes = list(read_solid_boxes(GAZEBO_PACKAGE / "worlds" / "maze.world"))
 
     def is_open(start: tuple[int, int], end: tuple[int, int]) -> bool:
         x, y = ((a + b) / 2 * cell for a, b in zip(start, end, strict=True))
@@ -121,7 +121,7 @@ def test_maze_cells_are_reachable_and_one_is_exit() -> None:
 
 
 def test_bridge_covers_all_robot_topics() -> None:
-    bridged = {entry["gz_topic_name"]: entry for entry in bridge()}
+    bridged = {entry["gz_topic_name"]: entry for entry in bridge_entries()}
     robot = load(
         PACKAGE / "urdf" / "mbot_gazebo.xacro",
         arguments={"camera": "true", "kinect": "true", "laser": "true", "simulator": "gz"},
@@ -137,7 +137,7 @@ def test_bridge_covers_all_robot_topics() -> None:
     assert {name for name, entry in bridged.items() if entry["direction"] == "ROS_TO_GZ"} == {"cmd_vel"}
 
 
-def bridge() -> list[dict[str, Any]]:
+def bridge_entries() -> list[dict[str, Any]]:
     text = (GAZEBO_PACKAGE / "config" / "bridge.yaml").read_text(encoding="utf-8")
     return list(yaml.safe_load(text))
 
@@ -147,7 +147,7 @@ def test_rviz_topics_are_bridged(name: str) -> None:
     text = (GAZEBO_PACKAGE / "rviz" / f"{name}.rviz").read_text(encoding="utf-8")
     displays = yaml.safe_load(text)["Visualization Manager"]["Displays"]
     shown = {display["Topic"]["Value"].lstrip("/") for display in displays if "Topic" in display}
-    assert shown <= {entry["ros_topic_name"] for entry in bridge()}
+    assert shown <= {entry["ros_topic_name"] for entry in bridge_entries()}
     assert "odom" in shown
 
 

@@ -125,45 +125,45 @@ def test_sensor_macros_attach_sensor_to_link(name: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", LINKS)
 def test_models_match_tutorial_facts(name: str) -> None:
-    assert _facts(load_model(name)) == _approximately(TUTORIAL["models"][name])
+    assert _robot_facts(load_model(name)) == _approximate(TUTORIAL["models"][name])
 
 
 @pytest.mark.skipif(not PUBLISHED.is_dir(), reason="the published files of the tutorial are missing")
 @pytest.mark.parametrize("name", LINKS)
 def test_tutorial_facts_match_published_files(name: str) -> None:
-    assert _facts(load(PUBLISHED / "urdf" / name)) == TUTORIAL["models"][name]
+    assert _robot_facts(load(PUBLISHED / "urdf" / name)) == TUTORIAL["models"][name]
 
 
-def _facts(robot: Robot) -> dict[str, Any]:
-    return {"joints": _joints(robot), "visuals": _visuals(robot)}
+def _robot_facts(robot: Robot) -> dict[str, Any]:
+    return {"joints": _joint_facts(robot), "visuals": _visual_facts_by_link(robot)}
 
 
-def _joints(robot: Robot) -> dict[str, list[Any]]:
+def _joint_facts(robot: Robot) -> dict[str, list[Any]]:
     return {
         name: [joint.type, joint.parent, joint.child, *joint.origin.xyz, *joint.origin.rpy, *joint.axis]
         for name, joint in robot.joints.items()
     }
 
 
-def _visuals(robot: Robot) -> dict[str, list[Any]]:
-    return {name: [_visual(visual) for visual in link.visuals] for name, link in robot.links.items()}
+def _visual_facts_by_link(robot: Robot) -> dict[str, list[Any]]:
+    return {name: [_visual_facts(visual) for visual in link.visuals] for name, link in robot.links.items()}
 
 
-def _visual(visual: Visual) -> list[Any]:
+def _visual_facts(visual: Visual) -> list[Any]:
     color = list(visual.material.rgba) if visual.material and visual.material.rgba else None
     shape = type(visual.geometry).__name__
-    return [shape, *_numbers(visual.geometry), *visual.origin.xyz, *visual.origin.rpy, visual.material_name, color]
+    return [shape, *_shape_numbers(visual.geometry), *visual.origin.xyz, *visual.origin.rpy, visual.material_name, color]
 
 
-def _numbers(geometry: Any) -> list[Any]:
+def _shape_numbers(geometry: Any) -> list[Any]:
     values = [getattr(geometry, name) for name in geometry.__dataclass_fields__]
     return [number for value in values for number in (value if isinstance(value, tuple) else (value,))]
 
 
-def _approximately(value: Any) -> Any:
+def _approximate(value: Any) -> Any:
     """Return the same structure; each number accepts a difference of a ten-millionth."""
     if isinstance(value, dict):
-        return {key: _approximately(item) for key, item in value.items()}
+        return {key: _approximate(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
-        return type(value)(_approximately(item) for item in value)
+        return type(value)(_approximate(item) for item in value)
     return pytest.approx(value, abs=1e-7) if isinstance(value, float) else value

@@ -49,12 +49,12 @@ def test_manifest_declares_launch_file_dependencies(manifest: Package) -> None:
         imported = {
             node.module.split(".")[0] for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.module
         }
-        assert imported | set(_node_words(tree, "package")) <= declared
+        assert imported | set(_find_node_words(tree, "package")) <= declared
 
 
 def test_setup_py_matches_manifest(manifest: Package) -> None:
     tree = ast.parse((PACKAGE / "setup.py").read_text(encoding="utf-8"))
-    (call,) = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and _name(node) == "setup"]
+    (call,) = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and _called_name(node) == "setup"]
     values = {word.arg: word.value for word in call.keywords}
     assert ast.literal_eval(values["version"]) == manifest.version
     assert [ast.literal_eval(values["license"])] == list(manifest.licenses)
@@ -66,7 +66,7 @@ def test_setup_py_matches_manifest(manifest: Package) -> None:
 def test_launch_files_declare_expected_arguments(name: str) -> None:
     tree = ast.parse((PACKAGE / "launch" / name).read_text(encoding="utf-8"))
     declared = [
-        node for node in ast.walk(tree) if isinstance(node, ast.Call) and _name(node) == "DeclareLaunchArgument"
+        node for node in ast.walk(tree) if isinstance(node, ast.Call) and _called_name(node) == "DeclareLaunchArgument"
     ]
     defaults = {}
     for call in declared:
@@ -83,7 +83,7 @@ def test_launch_files_declare_expected_arguments(name: str) -> None:
 def test_launch_files_start_expected_nodes(name: str) -> None:
     tree = ast.parse((PACKAGE / "launch" / name).read_text(encoding="utf-8"))
     started = {"joint_state_publisher", "joint_state_publisher_gui", "robot_state_publisher", "rviz2"}
-    assert set(_node_words(tree, "executable")) == started
+    assert set(_find_node_words(tree, "executable")) == started
 
 
 def test_rviz_configuration_has_expected_displays(rviz: dict[str, Any]) -> None:
@@ -121,10 +121,10 @@ def _assert_within(part: Any, other_items: Any, place: str) -> None:
         assert other_items == part, place
 
 
-def _name(call: ast.Call) -> str:
+def _called_name(call: ast.Call) -> str:
     return call.func.id if isinstance(call.func, ast.Name) else ""
 
 
-def _node_words(tree: ast.AST, word: str) -> list[str]:
-    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and _name(node) == "Node"]
+def _find_node_words(tree: ast.AST, word: str) -> list[str]:
+    calls = [node for node in ast.walk(tree) if isinstance(node, ast.Call) and _called_name(node) == "Node"]
     return [ast.literal_eval(keyword.value) for call in calls for keyword in call.keywords if keyword.arg == word]

@@ -19,7 +19,7 @@ from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_f
 from linkwright.speech.nodes.voice_commander import VoiceCommander
 from linkwright.testing import AsyncSteppedSimulation
 from tests.places import GAZEBO_PACKAGE, VOICE_PACKAGE
-from tests.robots.workspaces import colcon_build, sourced
+from tests.robots.workspaces import colcon_build, read_sourced_variable
 from tests.waiting import TIMEOUT_S
 
 COMMANDS = VOICE_PACKAGE / "config" / "commands.yaml"
@@ -91,7 +91,7 @@ def test_colcon_installs_package_and_program_runs(tmp_path: Path) -> None:
     assert (programs / "audio_capture").is_file()
     ran = subprocess.run(
         [programs / "voice_commander", "--ros-args", "-p", "commands_file:=gone.yaml"],
-        env={**os.environ, "PYTHONPATH": sourced(tmp_path, "PYTHONPATH"), "LINKWRIGHT_DDS": "0"},
+        env={**os.environ, "PYTHONPATH": read_sourced_variable(tmp_path, "PYTHONPATH"), "LINKWRIGHT_DDS": "0"},
         capture_output=True,
         text=True,
         timeout=TIMEOUT_S,

@@ -33,7 +33,7 @@ def colcon_build(workspace: Path, package: str, *options: str) -> None:
     assert result.returncode == 0, result.stdout + result.stderr
 
 
-def sourced(workspace: Path, variable: str) -> str:
+def read_sourced_variable(workspace: Path, variable: str) -> str:
     """Return the value of an environment variable after ``source install/setup.bash``."""
     script = f'source install/setup.bash && printf %s "${variable}"'
     environment = {"PATH": os.environ["PATH"], "HOME": str(workspace)}

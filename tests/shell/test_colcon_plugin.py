@@ -21,7 +21,7 @@ MANIFEST = """\
 """
 
 
-def package(workspace: Path, name: str, cmake: str) -> Path:
+def write_package(workspace: Path, name: str, cmake: str) -> Path:
     folder = workspace / "src" / name
     folder.mkdir(parents=True)
     (folder / "package.xml").write_text(MANIFEST.format(name=name))
@@ -29,7 +29,7 @@ def package(workspace: Path, name: str, cmake: str) -> Path:
     return folder
 
 
-def in_shell(workspace: Path, text: str, **variables: str) -> subprocess.CompletedProcess[str]:
+def run_in_shell(workspace: Path, text: str, **variables: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "linkwright", "shell", "--", "bash", "-c", text],
         cwd=workspace,
@@ -42,7 +42,7 @@ def in_shell(workspace: Path, text: str, **variables: str) -> subprocess.Complet
 
 
 def test_descriptions_scripts_and_interfaces_are_built(tmp_path: Path) -> None:
-    arm = package(
+    arm = write_package(
         tmp_path,
         "arm",
         "install(DIRECTORY urdf DESTINATION share/arm)\ninstall(PROGRAMS hello.py DESTINATION lib/arm)\n"
@@ -54,14 +54,14 @@ def test_descriptions_scripts_and_interfaces_are_built(tmp_path: Path) -> None:
     (arm / "hello.py").chmod(0o755)
     (arm / "arm").mkdir()
     (arm / "arm" / "__init__.py").write_text("VALUE = 7\n")
-    speeds = package(tmp_path, "speeds", 'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Speed.msg")')
+    speeds = write_package(tmp_path, "speeds", 'rosidl_generate_interfaces(${PROJECT_NAME} "msg/Speed.msg")')
     (speeds / "msg").mkdir()
     (speeds / "msg" / "Speed.msg").write_text("float64 value\n")
 
-    built = in_shell(tmp_path, "colcon build")
+    built = run_in_shell(tmp_path, "colcon build")
     assert built.returncode == 0, built.stdout + built.stderr
     assert "2 packages finished" in built.stdout
-    output = in_shell(
+    output = run_in_shell(
         tmp_path,
         "source install/setup.bash && cd / && ros2 pkg prefix arm && ros2 interface show speeds/msg/Speed "
         "&& python3 -c 'import arm; print(arm.VALUE)' && ros2 run arm hello.py",
@@ -73,15 +73,15 @@ def test_descriptions_scripts_and_interfaces_are_built(tmp_path: Path) -> None:
 
 
 def test_symlink_install_creates_links(tmp_path: Path) -> None:
-    arm = package(tmp_path, "arm", "install(DIRECTORY urdf DESTINATION share/arm)")
+    arm = write_package(tmp_path, "arm", "install(DIRECTORY urdf DESTINATION share/arm)")
     (arm / "urdf").mkdir()
     (arm / "urdf" / "arm.urdf").write_text("<robot/>")
-    assert in_shell(tmp_path, "colcon build --symlink-install").returncode == 0
+    assert run_in_shell(tmp_path, "colcon build --symlink-install").returncode == 0
     assert (tmp_path / "install/arm/share/arm/urdf/arm.urdf").is_symlink()
 
 
 def test_compiled_targets_are_reported_and_other_files_installed(tmp_path: Path) -> None:
-    arm = package(
+    arm = write_package(
         tmp_path,
         "arm",
         "add_executable(move src/move.cpp)\ninstall(TARGETS move DESTINATION lib/arm)\n"
@@ -93,7 +93,7 @@ def test_compiled_targets_are_reported_and_other_files_installed(tmp_path: Path)
     (arm / "description" / "urdf").mkdir(parents=True)
     (arm / "description" / "urdf" / "arm.urdf").write_text("<robot/>")
     (arm / "description" / "CMakeLists.txt").write_text("install(DIRECTORY urdf DESTINATION share/${PROJECT_NAME})\n")
-    result = in_shell(tmp_path, "colcon build")
+    result = run_in_shell(tmp_path, "colcon build")
     assert result.returncode == 0, result.stderr
     assert "'arm' is not built in full without ROS 2: 'move' would have to be compiled" in result.stderr
     share = tmp_path / "install/arm/share/arm"
@@ -102,7 +102,7 @@ def test_compiled_targets_are_reported_and_other_files_installed(tmp_path: Path)
 
 
 def test_environment_hooks_and_python_package_files_are_installed(tmp_path: Path) -> None:
-    arm = package(
+    arm = write_package(
         tmp_path,
         "arm",
         'ament_environment_hooks("hooks/${PROJECT_NAME}.dsv.in")\nament_python_install_package(arm)\n'
@@ -116,9 +116,9 @@ def test_environment_hooks_and_python_package_files_are_installed(tmp_path: Path
     }.items():
         (arm / name).parent.mkdir(parents=True, exist_ok=True)
         (arm / name).write_text(text)
-    built = in_shell(tmp_path, "colcon build")
+    built = run_in_shell(tmp_path, "colcon build")
     assert built.returncode == 0, built.stderr
-    output = in_shell(
+    output = run_in_shell(
         tmp_path,
         "source install/setup.bash && cd / && echo $GZ_SIM_RESOURCE_PATH && python3 -c 'import arm, extra, pathlib; "
         'print(extra.VALUE, pathlib.Path(arm.__file__).with_name("data").joinpath("table.csv").read_text().strip())\'',
@@ -127,17 +127,17 @@ def test_environment_hooks_and_python_package_files_are_installed(tmp_path: Path
 
 
 def test_missing_install_folder_fails_build(tmp_path: Path) -> None:
-    package(tmp_path, "arm", "install(DIRECTORY meshes DESTINATION share/arm)")
-    result = in_shell(tmp_path, "colcon build")
+    write_package(tmp_path, "arm", "install(DIRECTORY meshes DESTINATION share/arm)")
+    result = run_in_shell(tmp_path, "colcon build")
     assert result.returncode == 1
     assert "'arm' installs 'meshes', which does not exist" in result.stderr
     assert "Traceback" not in result.stderr
 
 
 def test_installed_ament_cmake_is_used_by_colcon(tmp_path: Path) -> None:
-    package(tmp_path, "arm", "")
+    write_package(tmp_path, "arm", "")
     real = tmp_path / "opt"
     (real / "share" / "ament_cmake").mkdir(parents=True)
-    listed = in_shell(tmp_path, "colcon list", AMENT_PREFIX_PATH=str(real))
+    listed = run_in_shell(tmp_path, "colcon list", AMENT_PREFIX_PATH=str(real))
     assert "(ros.ament_cmake)" in listed.stdout
-    assert "(ros.ament_cmake_copied)" in in_shell(tmp_path, "colcon list").stdout
+    assert "(ros.ament_cmake_copied)" in run_in_shell(tmp_path, "colcon list").stdout

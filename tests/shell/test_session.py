@@ -16,10 +16,10 @@ from linkwright.shell import PROGRAMS, run_shell, shell_environment, write_progr
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="the test uses POSIX commands")
 
-BARE = "/usr/bin:/bin"
+BARE_PATH = "/usr/bin:/bin"
 
 
-def script(folder: Path, name: str, text: str) -> Path:
+def write_script(folder: Path, name: str, text: str) -> Path:
     """Write an executable shell script."""
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / name
@@ -30,7 +30,7 @@ def script(folder: Path, name: str, text: str) -> Path:
 
 def run_in_shell(words: list[str], **variables: str) -> subprocess.CompletedProcess[str]:
     """Run ``linkwright shell -- WORDS`` as a user does."""
-    environment = {"PATH": BARE, "HOME": os.environ.get("HOME", "/"), **variables}
+    environment = {"PATH": BARE_PATH, "HOME": os.environ.get("HOME", "/"), **variables}
     return subprocess.run(
         [sys.executable, "-m", "linkwright", "shell", "--", *words],
         capture_output=True,
@@ -49,8 +49,8 @@ def test_programs_are_found_in_shell() -> None:
 
 
 def test_installed_program_takes_precedence(tmp_path: Path) -> None:
-    script(tmp_path / "bin", "xacro", "echo the real one")
-    result = run_in_shell(["xacro"], PATH=f"{tmp_path / 'bin'}:{BARE}")
+    write_script(tmp_path / "bin", "xacro", "echo the real one")
+    result = run_in_shell(["xacro"], PATH=f"{tmp_path / 'bin'}:{BARE_PATH}")
     assert result.stdout == "the real one\n"
 
 
@@ -60,11 +60,11 @@ def test_python_is_linkwrights_without_installed_ros() -> None:
 
 
 def test_path_keeps_order_with_installed_ros(tmp_path: Path) -> None:
-    script(tmp_path / "opt", "ros2", "echo real ros2")
+    write_script(tmp_path / "opt", "ros2", "echo real ros2")
     folder = tmp_path / "programs"
     folder.mkdir()
-    path = shell_environment(folder, {"PATH": f"{tmp_path / 'opt'}:{BARE}"})["PATH"].split(os.pathsep)
-    assert path == [str(tmp_path / "opt"), *BARE.split(":"), str(folder)]
+    path = shell_environment(folder, {"PATH": f"{tmp_path / 'opt'}:{BARE_PATH}"})["PATH"].split(os.pathsep)
+    assert path == [str(tmp_path / "opt"), *BARE_PATH.split(":"), str(folder)]
 
 
 def test_nested_shell_does_not_extend_path_twice(tmp_path: Path) -> None:
@@ -72,7 +72,7 @@ def test_nested_shell_does_not_extend_path_twice(tmp_path: Path) -> None:
     for folder in (first, second):
         folder.mkdir()
         write_programs(folder)
-    outer_environment = shell_environment(first, {"PATH": BARE})
+    outer_environment = shell_environment(first, {"PATH": BARE_PATH})
     inner_environment = shell_environment(second, outer_environment)
     assert str(first) not in inner_environment["PATH"].split(os.pathsep)
     assert inner_environment["PATH"].split(os.pathsep)[-1] == str(second)
@@ -89,7 +89,7 @@ def test_options_of_command_are_passed_on() -> None:
 
 def test_unknown_command_is_reported_with_nearest_name() -> None:
     with pytest.raises(LinkwrightError) as caught:
-        run_shell(["colcn"], {"PATH": BARE})
+        run_shell(["colcn"], {"PATH": BARE_PATH})
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "SHELL101"
     assert "colcon" in (diagnostic.hint or "")
@@ -103,28 +103,28 @@ def test_programs_of_rqt_are_commands() -> None:
 
 def test_missing_ros_program_suggests_alternative() -> None:
     with pytest.raises(LinkwrightError) as caught:
-        run_shell(["rqt_publisher"], {"PATH": BARE})
+        run_shell(["rqt_publisher"], {"PATH": BARE_PATH})
     (diagnostic,) = caught.value.diagnostics
     assert "ros2 topic pub" in (diagnostic.hint or "")
 
 
-def in_bash(home: Path, lines: str) -> subprocess.CompletedProcess[str]:
+def type_in_bash(home: Path, lines: str) -> subprocess.CompletedProcess[str]:
     """Type lines in the interactive shell of a user with this home folder."""
     return subprocess.run(
         [sys.executable, "-m", "linkwright", "shell"],
         input=lines,
         capture_output=True,
         text=True,
-        env={"PATH": BARE, "HOME": str(home), "SHELL": "/bin/bash"},
+        env={"PATH": BARE_PATH, "HOME": str(home), "SHELL": "/bin/bash"},
         timeout=60,
         check=False,
     )
 
 
 def test_bashrc_that_sets_path_keeps_commands_available(tmp_path: Path) -> None:
-    script(tmp_path / "opt", "ros2", "echo real ros2")
-    (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE}\nunset PYTHONPATH\n")
-    result = in_bash(tmp_path, 'ros2; command -v check_urdf; echo "$PYTHONPATH"; exit 5\n')
+    write_script(tmp_path / "opt", "ros2", "echo real ros2")
+    (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE_PATH}\nunset PYTHONPATH\n")
+    result = type_in_bash(tmp_path, 'ros2; command -v check_urdf; echo "$PYTHONPATH"; exit 5\n')
     ros2, check_urdf, python_path = result.stdout.splitlines()
     assert ros2 == "real ros2"
     assert check_urdf.endswith("/check_urdf")
@@ -133,28 +133,28 @@ def test_bashrc_that_sets_path_keeps_commands_available(tmp_path: Path) -> None:
 
 
 def test_bash_completes_commands_and_reports_missing_programs(tmp_path: Path) -> None:
-    result = in_bash(tmp_path, "complete -p linkwright ros2; rosdep update; echo $?\n")
+    result = type_in_bash(tmp_path, "complete -p linkwright ros2; rosdep update; echo $?\n")
     assert [line.rpartition(" ")[2] for line in result.stdout.splitlines()] == ["linkwright", "ros2", "127"]
     assert "command 'rosdep' does not exist" in result.stderr
 
 
 def test_installed_ros2_keeps_its_completion(tmp_path: Path) -> None:
-    script(tmp_path / "opt", "ros2", "echo real ros2")
-    (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE}\n")
-    assert "ros2" not in in_bash(tmp_path, "complete -p | grep linkwright\n").stdout
+    write_script(tmp_path / "opt", "ros2", "echo real ros2")
+    (tmp_path / ".bashrc").write_text(f"export PATH={tmp_path / 'opt'}:{BARE_PATH}\n")
+    assert "ros2" not in type_in_bash(tmp_path, "complete -p | grep linkwright\n").stdout
 
 
-@pytest.mark.parametrize("start", ["", f"export PATH={BARE}\n", 'export PATH="$PATH:/opt/ros/bin"\n'])
+@pytest.mark.parametrize("start", ["", f"export PATH={BARE_PATH}\n", 'export PATH="$PATH:/opt/ros/bin"\n'])
 def test_program_folders_are_on_path_once(tmp_path: Path, start: str) -> None:
     (tmp_path / ".bashrc").write_text(start)
-    path, mark = in_bash(tmp_path, 'echo "$PATH"; echo "$LINKWRIGHT_SHELL"\n').stdout.splitlines()
+    path, mark = type_in_bash(tmp_path, 'echo "$PATH"; echo "$LINKWRIGHT_SHELL"\n').stdout.splitlines()
     parts = path.split(os.pathsep)
     assert parts[0] == str(Path(sys.executable).parent)
     assert parts[-1] == mark
     assert len(set(parts)) == len(parts)
 
 
-def in_shell(command: str, folder: Path) -> subprocess.Popen[str]:
+def start_in_shell(command: str, folder: Path) -> subprocess.Popen[str]:
     """Run a command of sh in Linkwright's shell.
 
     It runs in its own session, so that both can receive Ctrl-C.
@@ -171,7 +171,7 @@ def in_shell(command: str, folder: Path) -> subprocess.Popen[str]:
 def test_sigterm_is_forwarded_and_program_folder_removed(tmp_path: Path) -> None:
     result = tmp_path / "told"
     command = f'trap "echo ended > {result}; exit 3" TERM; echo $LINKWRIGHT_SHELL; while :; do sleep 0.05; done'
-    with in_shell(command, tmp_path) as process:
+    with start_in_shell(command, tmp_path) as process:
         assert process.stdout is not None
         folder = Path(process.stdout.readline().strip())
         assert (folder / "ros2").exists()
@@ -183,7 +183,7 @@ def test_sigterm_is_forwarded_and_program_folder_removed(tmp_path: Path) -> None
 
 def test_ctrl_c_reaches_command(tmp_path: Path) -> None:
     command = 'trap "exit 4" INT; echo ready; while :; do sleep 0.05; done'
-    with in_shell(command, tmp_path) as process:
+    with start_in_shell(command, tmp_path) as process:
         assert process.stdout is not None
         process.stdout.readline()
         os.killpg(process.pid, signal.SIGINT)
@@ -196,7 +196,7 @@ def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
     A signal to the group arrives only once.
     """
     command = "trap 'echo heard' INT; echo ready; while :; do sleep 0.05; done"
-    with in_shell(command, tmp_path) as process:
+    with start_in_shell(command, tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         process.send_signal(signal.SIGINT)
@@ -210,7 +210,7 @@ def test_sigint_to_shell_alone_reaches_command(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux signals a process when its parent was killed")
 def test_command_ends_when_shell_is_killed(tmp_path: Path) -> None:
-    with in_shell("echo ready; exec sleep 600", tmp_path) as process:
+    with start_in_shell("echo ready; exec sleep 600", tmp_path) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         process.kill()

@@ -45,45 +45,51 @@ def shell_words(text: str) -> list[str]:
     return [sys.executable, "-m", "linkwright", "shell", "--", "bash", "-c", text]
 
 
-def environment(home: Path) -> dict[str, str]:
+def shell_environment_of(home: Path) -> dict[str, str]:
     variables = {"PATH": "/usr/bin:/bin", "HOME": str(home), "USER": "learner", "LC_ALL": "C.UTF-8"}
     return {**variables, "ROS_DOMAIN_ID": str(own_domain())}
 
 
-def typed(text: str, home: Path) -> str:
+def type_lines(text: str, home: Path) -> str:
     """Return the standard output of the lines that a learner types."""
     result = subprocess.run(
-        shell_words(text), cwd=home, env=environment(home), capture_output=True, text=True, timeout=120, check=False
+        shell_words(text),
+        cwd=home,
+        env=shell_environment_of(home),
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
     )
     assert result.returncode == 0, result.stdout + result.stderr
     return result.stdout
 
 
 def test_tutorial_commands_work_as_written(home: Path) -> None:
-    assert "going to create a new package" in typed(PREPARE, home)
+    assert "going to create a new package" in type_lines(PREPARE, home)
     package = home / "ros2_ws" / "src" / "my_robot_description"
     for name in ("urdf", "launch", "rviz", "meshes"):
         shutil.copytree(ROBOT / name, package / name, dirs_exist_ok=True)
     shutil.copy(ROBOT / "setup.py", package)
 
-    built = typed(BUILD, home)
+    built = type_lines(BUILD, home)
     assert "Summary: 1 package finished" in built
     assert built.splitlines()[-1] == str(home / "ros2_ws" / "install" / "my_robot_description")
 
-    output = launched(home)
+    output = launch_and_read(home)
     assert re.search(r"\[robot_state_publisher-\d\] \[INFO\] .*Robot initialized", output)
     assert "has finished cleanly" in output
 
-    assert typed(DIAGRAM, home).splitlines() == ["Created file mbot.gv", "Created file mbot.pdf"]
+    assert type_lines(DIAGRAM, home).splitlines() == ["Created file mbot.gv", "Created file mbot.pdf"]
     assert (package / "urdf" / "mbot.pdf").read_bytes().startswith(b"%PDF")
 
 
-def launched(home: Path) -> str:
+def launch_and_read(home: Path) -> str:
     """Return the output of a launch until its page was loaded and Ctrl-C ended it."""
     process = subprocess.Popen(
         shell_words(LAUNCH),
         cwd=home,
-        env=environment(home),
+        env=shell_environment_of(home),
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

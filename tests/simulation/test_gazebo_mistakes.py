@@ -16,10 +16,10 @@ from tests.simulation.test_movers import drive, moving_box_model, planar_plugin
 from tests.simulation.test_plugins import robot, running_server
 from tests.simulation.worlds import GROUND
 
-BOTH = pytest.mark.parametrize("with_mistake", [False, True])
+with_and_without_mistake = pytest.mark.parametrize("with_mistake", [False, True])
 
 
-@BOTH
+@with_and_without_mistake
 async def test_backward_velocity_sign_mistake_is_optional(with_mistake):
     options = ServerOptions(gazebo_mistakes=with_mistake)
     async with running_server(GROUND, robot(classic_plugin(source=0)), options=options) as (server, graph, _):
@@ -30,7 +30,7 @@ async def test_backward_velocity_sign_mistake_is_optional(with_mistake):
         assert message.pose.pose.position.x < -0.3
 
 
-@BOTH
+@with_and_without_mistake
 async def test_p3d_velocity_frame_mistake_is_optional(with_mistake):
     p3d = (
         '<plugin name="p3d" filename="libgazebo_ros_p3d.so"><ros><remapping>odom:=told</remapping></ros>'
@@ -46,7 +46,7 @@ async def test_p3d_velocity_frame_mistake_is_optional(with_mistake):
         assert (velocity.x, velocity.y) == pytest.approx((0.0, 0.5 if with_mistake else -0.5), abs=0.01)
 
 
-@BOTH
+@with_and_without_mistake
 def test_point_color_mistake_is_optional(with_mistake):
     cloud = get_message("sensor_msgs/msg/PointCloud2")()
     fill_camera_cloud(cloud, np.zeros((1, 1, 3)), np.array([[[1, 2, 3]]], np.uint8), swap_red_blue=with_mistake)

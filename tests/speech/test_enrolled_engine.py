@@ -16,7 +16,7 @@ from linkwright.speech.enrolled.words import Words
 from linkwright.speech.sound.samples import BLOCK_LENGTH, RATE
 from tests.speech.voices import WORDS, add_noise, babble, say
 
-OTHERS = ("mumi", "faso.t", "ri.tamu", "om", "se.pifu", "tatata", "u", "moramifu")
+OTHER_WORDS = ("mumi", "faso.t", "ri.tamu", "om", "se.pifu", "tatata", "u", "moramifu")
 """Words that are not commands, in the letters of `voices`."""
 
 
@@ -95,7 +95,7 @@ def test_word_is_recognized_two_meters_away_in_room(engine):
     assert sum(texts == [name] for name, texts in result) >= 13
 
 
-@pytest.mark.parametrize("phones", OTHERS)
+@pytest.mark.parametrize("phones", OTHER_WORDS)
 def test_unknown_word_is_not_recognized_in_room(engine, phones):
     assert set(results_in_room(engine, phones, 1)) <= {""}
 
@@ -130,7 +130,7 @@ def test_words_are_recognized_in_babble(path):
     assert sum(right) >= 10
 
 
-@pytest.mark.parametrize("phones", OTHERS)
+@pytest.mark.parametrize("phones", OTHER_WORDS)
 def test_unknown_word_is_not_recognized_in_babble(engine, phones):
     results = results_of(engine, with_babble(phones, 1)) + list(engine.finish())
     assert {result.text for result in results} <= {""}
@@ -141,7 +141,7 @@ def test_babble_alone_is_not_recognized(engine):
     assert not [result.text for result in results_of(engine, sound) if result.text]
 
 
-@pytest.mark.parametrize("phones", OTHERS)
+@pytest.mark.parametrize("phones", OTHER_WORDS)
 def test_unknown_word_gives_empty_text(engine, phones):
     assert final_texts(engine, say(phones, silence=0.8, seed=11)) == [""]
 
@@ -161,7 +161,7 @@ def test_similar_utterance_reports_nearest_word(engine, path):
     (final_result,) = [result for result in results_of(other_engine, noisy) if result.final]
     assert (final_result.text, final_result.nearest) == ("", "")
     (final_result,) = [
-        result for result in results_of(other_engine, say(OTHERS[0], silence=0.8, seed=11)) if result.final
+        result for result in results_of(other_engine, say(OTHER_WORDS[0], silence=0.8, seed=11)) if result.final
     ]
     assert (final_result.text, final_result.nearest) == ("", "")
 

@@ -163,7 +163,7 @@ def test_tutorial_patrol_program_visits_all_rooms(page, servers, monkeypatch, ca
     monkeypatch.setattr(rclpy, "init", lambda: None)
     monkeypatch.setattr(rclpy, "shutdown", lambda: None)
     names = {"__name__": "patrol"}
-    exec(program.text, names)  # the code is from our page
+    exec(program.text, names)  # the code is from the documentation
     names["main"]()
     rooms = [line for line in capsys.readouterr().out.splitlines() if line.startswith("in the")]
     assert rooms == ["in the bedroom", "in the study", "in the living room"]

@@ -15,16 +15,16 @@ def squares(n, drawn, seed):
 """
 
 
-def write(folder: Path, text: str = SQUARES, name: str = "squares.py") -> Path:
+def write_scenario(folder: Path, text: str = SQUARES, name: str = "squares.py") -> Path:
     """Write a scenario file."""
     path = folder / name
     path.write_text(text, encoding="utf-8")
     return path
 
 
-def loaded(folder: Path, text: str = SQUARES) -> Scenario:
+def load_scenario_text(folder: Path, text: str = SQUARES) -> Scenario:
     """Return the scenario of a text."""
-    return load_scenario(write(folder, text))
+    return load_scenario(write_scenario(folder, text))
 
 
 def ignore(_: Outcome) -> None:

@@ -14,7 +14,7 @@ from linkwright.sweep.plan import plan_runs
 from linkwright.sweep.scenario import load_scenario
 from linkwright.sweep.workers import run_locally
 from tests.begun import command_that_reports
-from tests.sweep.scenarios import HEAD, SQUARES, write
+from tests.sweep.scenarios import HEAD, SQUARES, write_scenario
 from tests.waiting import wait_until
 
 DYING = f"""import os, signal
@@ -61,7 +61,7 @@ def run_scenario(path: Path, workers: int) -> dict[int, object]:
 
 
 def test_results_are_identical_in_any_process_and_order(tmp_path):
-    path = write(tmp_path, SIMULATED)
+    path = write_scenario(tmp_path, SIMULATED)
     scenario = load_scenario(path)
     results_by_row = {run.row: run_once(scenario, run) for run in reversed(plan_runs(scenario))}
     assert run_scenario(path, 2) == results_by_row
@@ -71,7 +71,7 @@ def test_results_are_identical_in_any_process_and_order(tmp_path):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGKILL")
 def test_dead_worker_process_is_replaced_and_run_retried_once(tmp_path):
-    path = write(tmp_path, DYING)
+    path = write_scenario(tmp_path, DYING)
     outcomes = run_scenario(path, 2)
     assert [outcomes[row].results.get("square") for row in (1, 2, 3, 4)] == [1, 4, 9, None]
     assert outcomes[4].error == "the process of the run was ended by SIGKILL, twice"
@@ -79,7 +79,7 @@ def test_dead_worker_process_is_replaced_and_run_retried_once(tmp_path):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows cannot send SIGINT to one process")
 def test_interrupted_sweep_keeps_rows_and_resumes(tmp_path):
-    write(tmp_path, HELD)
+    write_scenario(tmp_path, HELD)
     words = ["sweep", "squares.py", "--workers", "1"]
     process = subprocess.Popen(
         command_that_reports("linkwright", *words), cwd=tmp_path, stderr=subprocess.PIPE, stdout=subprocess.PIPE
@@ -108,7 +108,7 @@ def test_interrupted_sweep_keeps_rows_and_resumes(tmp_path):
 
 def test_sweep_command_writes_table_and_summary(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    write(tmp_path, SQUARES)
+    write_scenario(tmp_path, SQUARES)
     assert main(["sweep", "squares.py", "n:=4,5", "--seeds", "1", "--workers", "1", "--out", "a/b.csv"]) == 0
     printed = capsys.readouterr()
     assert printed.out == f"Created file {Path('a', 'b.csv')}\nCreated file {Path('a', 'b.html')}\n"
@@ -120,7 +120,7 @@ def test_sweep_command_writes_table_and_summary(tmp_path, monkeypatch, capsys):
 
 def test_failed_run_exits_with_status_1(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    write(tmp_path, f"{HEAD}@scenario(n=[0, 1])\ndef f(n): return {{'x': 1 / n}}\n")
+    write_scenario(tmp_path, f"{HEAD}@scenario(n=[0, 1])\ndef f(n): return {{'x': 1 / n}}\n")
     assert main(["sweep", "squares.py", "--workers", "1"]) == 1
     assert "1 failed" in capsys.readouterr().err
     assert "--rerun 1</td>" in (tmp_path / "squares.html").read_text()
@@ -128,7 +128,7 @@ def test_failed_run_exits_with_status_1(tmp_path, monkeypatch, capsys):
 
 def test_rerun_repeats_row_by_number(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
-    path = write(tmp_path, SQUARES)
+    path = write_scenario(tmp_path, SQUARES)
     fourth = plan_runs(load_scenario(path))[3]
     assert main(["sweep", "squares.py", "--rerun", "4"]) == 0
     drawn = fourth.parameters["drawn"]
@@ -136,7 +136,7 @@ def test_rerun_repeats_row_by_number(tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().out == expected
     assert main(["sweep", "squares.py", "--rerun", "7"]) == 1
     assert "SWEEP112" in capsys.readouterr().err
-    write(tmp_path, f"{HEAD}@scenario(n=[0])\ndef f(n):\n    return 1 / n\n")
+    write_scenario(tmp_path, f"{HEAD}@scenario(n=[0])\ndef f(n):\n    return 1 / n\n")
     assert main(["sweep", "squares.py", "--rerun", "1"]) == 1
     assert f'{path}", line 4, in f' in capsys.readouterr().err
 
@@ -154,7 +154,7 @@ def test_rerun_repeats_row_by_number(tmp_path, monkeypatch, capsys):
 )
 def test_invalid_input_is_one_error(tmp_path, monkeypatch, capsys, words, code):
     monkeypatch.chdir(tmp_path)
-    write(tmp_path, SQUARES)
+    write_scenario(tmp_path, SQUARES)
     assert main(["sweep", *words]) == 1
     output = capsys.readouterr().err
     assert output.count("error[") == 1

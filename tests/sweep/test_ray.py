@@ -10,7 +10,7 @@ import pytest
 
 from linkwright.diagnostics import LinkwrightError
 from linkwright.sweep.ray_workers import run_on_ray
-from tests.sweep.scenarios import HEAD, ignore, write
+from tests.sweep.scenarios import HEAD, ignore, write_scenario
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="Ray is tested on Linux only")
 
@@ -26,7 +26,7 @@ def work(n, seed):
         os.kill(os.getpid(), signal.SIGKILL)
     return {{"square": beside.square(n)}}
 """
-TWO = """import sys
+CLUSTER_PROGRAM = """import sys
 import ray.cluster_utils
 cluster = ray.cluster_utils.Cluster()
 for _ in range(2):
@@ -40,7 +40,7 @@ sys.exit(status)
 
 @pytest.mark.slow
 def test_ray_cluster_completes_table_after_losing_worker(tmp_path):
-    path = write(tmp_path, LOSING)
+    path = write_scenario(tmp_path, LOSING)
     (tmp_path / "beside.py").write_text("def square(n): return n * n\n")
     lost = tmp_path / "lost"
     environment = {
@@ -49,7 +49,7 @@ def test_ray_cluster_completes_table_after_losing_worker(tmp_path):
         "RAY_raylet_start_wait_time_s": "600",
     }
     result = subprocess.run(
-        [sys.executable, "-c", TWO], cwd=tmp_path, env=environment, capture_output=True, check=False
+        [sys.executable, "-c", CLUSTER_PROGRAM], cwd=tmp_path, env=environment, capture_output=True, check=False
     )
     assert result.returncode == 0, result.stderr
     assert lost.exists()
@@ -63,14 +63,14 @@ def test_unreachable_ray_cluster_is_an_error(tmp_path):
         address = f"127.0.0.1:{unused.getsockname()[1]}"
         for cluster in (address, f"ray://{address}"):
             with pytest.raises(LinkwrightError, match="refused") as raised:
-                run_on_ray(write(tmp_path), [], cluster, ignore)
+                run_on_ray(write_scenario(tmp_path), [], cluster, ignore)
             assert raised.value.diagnostics[0].code == "SWEEP114"
 
 
 def test_missing_ray_is_reported(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(LinkwrightError) as raised:
-        run_on_ray(write(tmp_path), [], "auto", ignore)
+        run_on_ray(write_scenario(tmp_path), [], "auto", ignore)
     assert raised.value.diagnostics[0].code == "SWEEP113"
 
 
@@ -80,5 +80,5 @@ def test_ray_that_does_not_start_is_an_error(tmp_path, monkeypatch):
 
     monkeypatch.setitem(sys.modules, "ray", SimpleNamespace(init=init))
     with pytest.raises(LinkwrightError, match="Ray does not start on this computer: The current node") as raised:
-        run_on_ray(write(tmp_path), [], "local", ignore)
+        run_on_ray(write_scenario(tmp_path), [], "local", ignore)
     assert raised.value.diagnostics[0].code == "SWEEP114"

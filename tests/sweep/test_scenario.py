@@ -3,21 +3,21 @@
 import pytest
 
 from linkwright.diagnostics import LinkwrightError
-from linkwright.sweep.execution import run_once
 from linkwright.sweep.plan import compute_fingerprint, plan_runs, replace_values
+from linkwright.sweep.execution import run_once
 from linkwright.sweep.scenario import load_scenario
-from tests.sweep.scenarios import HEAD, SQUARES, loaded, write
+from tests.sweep.scenarios import HEAD, SQUARES, load_scenario_text, write_scenario
 
 
 def test_scenario_runs_each_value_with_each_seed(tmp_path):
-    runs = plan_runs(loaded(tmp_path))
+    runs = plan_runs(load_scenario_text(tmp_path))
     assert [run.row for run in runs] == [1, 2, 3, 4, 5, 6]
     assert [(run.parameters["n"], run.seed) for run in runs] == [(1, 0), (1, 1), (2, 0), (2, 1), (3, 0), (3, 1)]
     assert list(runs[0].parameters) == ["n", "drawn"]
 
 
 def test_drawn_values_depend_only_on_seed_and_name(tmp_path):
-    scenario = loaded(tmp_path)
+    scenario = load_scenario_text(tmp_path)
     drawn = {run.seed: run.parameters["drawn"] for run in plan_runs(scenario)}
     assert all(run.parameters["drawn"] == drawn[run.seed] for run in plan_runs(scenario))
     assert len(set(drawn.values())) == 2
@@ -29,7 +29,7 @@ def test_drawn_values_depend_only_on_seed_and_name(tmp_path):
 def test_command_line_values_are_parsed_as_yaml(tmp_path):
     text = f"{HEAD}\n@scenario(world=['empty'], laser=[True], mass=Normal(1.0, 0.1))\ndef f(world, laser, mass): ...\n"
     scenario = replace_values(
-        loaded(tmp_path, text), {"world": "maze,house", "laser": "true,false", "mass": "1.5"}, None
+        load_scenario_text(tmp_path, text), {"world": "maze,house", "laser": "true,false", "mass": "1.5"}, None
     )
     assert {name: list(values) for name, values in scenario.parameters.items()} == {
         "world": ["maze", "house"],
@@ -39,7 +39,7 @@ def test_command_line_values_are_parsed_as_yaml(tmp_path):
 
 
 def test_run_outcome_contains_function_results(tmp_path):
-    scenario = loaded(tmp_path)
+    scenario = load_scenario_text(tmp_path)
     last = plan_runs(scenario)[-1]
     outcome = run_once(scenario, last)
     assert (outcome.row, outcome.error) == (6, "")
@@ -55,7 +55,7 @@ import numpy
 def draw():
     return {{"python": random.random(), "numpy": numpy.random.rand(), "array": numpy.float64(0.5)}}
 """
-    scenario = loaded(tmp_path, text)
+    scenario = load_scenario_text(tmp_path, text)
     first, second = (run_once(scenario, run).results for run in plan_runs(scenario))
     assert first == run_once(scenario, plan_runs(scenario)[0]).results
     assert first["python"] != second["python"]
@@ -78,13 +78,13 @@ def draw():
     ],
 )
 def test_run_failure_is_recorded_as_outcome(tmp_path, body, error):
-    scenario = loaded(tmp_path, f"{HEAD}\n@scenario(n=[1])\ndef f(n):\n    {body}\n")
+    scenario = load_scenario_text(tmp_path, f"{HEAD}\n@scenario(n=[1])\ndef f(n):\n    {body}\n")
     outcome = run_once(scenario, plan_runs(scenario)[0])
     assert outcome.error.startswith(error)
     assert outcome.results == {}
 
 
-BAD = {
+INVALID_SCENARIOS = {
     "SWEEP102 squares.py:1:5 the file is not valid Python: invalid syntax": "def :\n",
     "SWEEP102 squares.py:2:1 the scenario cannot be loaded: ZeroDivisionError: division by zero": "\n1 / 0\n",
     "SWEEP102 squares.py:1:1 the scenario cannot be loaded: ModuleNotFoundError: No module named 'nothing_of_this'": (
@@ -117,11 +117,11 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize(("message", "text"), BAD.items(), ids=range(len(BAD)))
+@pytest.mark.parametrize(("message", "text"), INVALID_SCENARIOS.items(), ids=range(len(INVALID_SCENARIOS)))
 def test_invalid_scenario_is_one_error(tmp_path, monkeypatch, message, text):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(LinkwrightError) as raised:
-        loaded(tmp_path, text)
+        load_scenario_text(tmp_path, text)
     (diagnostic,) = raised.value.diagnostics
     assert f"{diagnostic.code} {diagnostic.span or ''} {diagnostic.message}" == message
 
@@ -139,14 +139,14 @@ def test_scenario_must_be_a_python_file(tmp_path, name):
 )
 def test_invalid_command_line_values_are_rejected(tmp_path, words, code):
     with pytest.raises(LinkwrightError) as raised:
-        replace_values(loaded(tmp_path), words, None)
+        replace_values(load_scenario_text(tmp_path), words, None)
     assert raised.value.diagnostics[0].code == code
 
 
 def test_fingerprint_depends_on_file_and_values(tmp_path):
-    scenario = loaded(tmp_path)
+    scenario = load_scenario_text(tmp_path)
     fingerprint_of_plan = compute_fingerprint(scenario, plan_runs(scenario))
     assert fingerprint_of_plan == compute_fingerprint(scenario, plan_runs(scenario))
     assert fingerprint_of_plan != compute_fingerprint(scenario, plan_runs(replace_values(scenario, {}, 1)))
-    write(tmp_path, f"{SQUARES}\n# changed\n")
+    write_scenario(tmp_path, f"{SQUARES}\n# changed\n")
     assert fingerprint_of_plan != compute_fingerprint(scenario, plan_runs(scenario))

@@ -14,7 +14,7 @@ from linkwright.sweep.plan import plan_runs
 from linkwright.sweep.sweep import Sweep
 from linkwright.sweep.table import Table, check_format, encode_table
 from tests.full_disk import full_disk, needs_limits
-from tests.sweep.scenarios import HEAD, SQUARES, loaded, write
+from tests.sweep.scenarios import HEAD, SQUARES, load_scenario_text, write_scenario
 
 MIXED = f"""{HEAD}
 @scenario(world=['maze', 'a,"b"'], n=[1, 2])
@@ -47,12 +47,12 @@ def driven(n, seed):
 """
 
 
-def rows_of(path):
+def read_rows(path):
     return list(csv.DictReader(io.StringIO(path.read_text())))
 
 
 def run_sweep(tmp_path, text=SQUARES, name="out.csv", should_stop=None, resume=False, paths=None):
-    scenario = loaded(tmp_path, text)
+    scenario = load_scenario_text(tmp_path, text)
     sweep = Sweep(scenario, tmp_path / name, ["linkwright", "sweep", "squares.py"], paths and tmp_path / paths)
     messages = []
     table = sweep.run(
@@ -64,7 +64,7 @@ def run_sweep(tmp_path, text=SQUARES, name="out.csv", should_stop=None, resume=F
 def test_table_rows_are_sorted_regardless_of_completion_order(tmp_path):
     table, result = run_sweep(tmp_path)
     assert result[-1] == (6, 6, 0)
-    rows = rows_of(tmp_path / "out.csv")
+    rows = read_rows(tmp_path / "out.csv")
     assert [row["row"] for row in rows] == ["1", "2", "3", "4", "5", "6"]
     assert list(rows[0]) == ["row", "n", "drawn", "seed", "square", "big", "sum", "error"]
     assert [row["square"] for row in rows] == ["1", "1", "4", "4", "9", "9"]
@@ -77,7 +77,7 @@ def test_failed_run_is_a_row_with_error(tmp_path):
     table, result = run_sweep(tmp_path, MIXED)
     assert result[-1] == (4, 4, 1)
     assert table.failed_rows == [1]
-    rows = rows_of(tmp_path / "out.csv")
+    rows = read_rows(tmp_path / "out.csv")
     assert rows[1]["error"] == "RuntimeError: <no> way (squares.py:6)"
     assert rows[1]["text"] == ""
     assert rows[2]["world"] == 'a,"b"'
@@ -85,7 +85,7 @@ def test_failed_run_is_a_row_with_error(tmp_path):
 
 def test_paths_are_in_a_file_and_not_in_the_table(tmp_path):
     run_sweep(tmp_path, DRIVEN, paths="paths.json")
-    assert list(rows_of(tmp_path / "out.csv")[0]) == ["row", "n", "seed", "n_and_seed", "error"]
+    assert list(read_rows(tmp_path / "out.csv")[0]) == ["row", "n", "seed", "n_and_seed", "error"]
     runs = json.loads((tmp_path / "paths.json").read_text())["runs"]
     assert [(run["row"], run["parameters"], run["seed"]) for run in runs[1:3]] == [(2, {"n": 1}, 1), (3, {"n": 2}, 0)]
     assert runs[3]["paths"] == {
@@ -147,7 +147,7 @@ def test_unfinished_sweep_is_neither_lost_nor_mixed_with_another(tmp_path):
 @needs_limits
 def test_full_disk_keeps_previous_table(tmp_path):
     (tmp_path / "out.csv").write_text("old")
-    scenario = loaded(tmp_path)
+    scenario = load_scenario_text(tmp_path)
     sweep = Sweep(scenario, tmp_path / "out.csv", ["linkwright"])
     with full_disk(200), pytest.raises(LinkwrightError, match="too large") as raised:
         sweep.run(make_reverse_runner(scenario), resume=False, progress=lambda *_: None)
@@ -162,7 +162,9 @@ def test_sweep_failing_before_first_row_leaves_no_files(tmp_path):
         raise LinkwrightError(Diagnostic("SWEEP114", phrase("there is no cluster")))
 
     with pytest.raises(LinkwrightError):
-        Sweep(loaded(tmp_path), tmp_path / "out.csv", []).run(refused, resume=False, progress=lambda *_: None)
+        Sweep(load_scenario_text(tmp_path), tmp_path / "out.csv", []).run(
+            refused, resume=False, progress=lambda *_: None
+        )
     assert [path.name for path in tmp_path.iterdir() if path.is_file()] == ["squares.py"]
 
 
@@ -228,8 +230,8 @@ def test_table_format_must_be_csv_or_parquet(tmp_path):
 
 
 def test_missing_results_are_empty_cells(tmp_path):
-    runs = plan_runs(loaded(tmp_path))[:2]
+    runs = plan_runs(load_scenario_text(tmp_path))[:2]
     table = Table.of(runs, {1: Outcome(1, {"a": 1}), 2: Outcome(2, {"b": "x"})})
     lines = encode_table(table, tmp_path / "out.csv").decode().splitlines()
     assert [line.split(",")[4:] for line in lines] == [["a", "b", "error"], ["1", "", ""], ["", "x", ""]]
-    assert write(tmp_path).exists()
+    assert write_scenario(tmp_path).exists()

@@ -54,7 +54,7 @@ def generate_launch_description():
 
 
 @pytest.fixture(params=SYSTEMS)
-def other_system(request, tmp_path):
+def start_on_other_system(request, tmp_path):
     """Return a function that starts ``linkwright`` on another system."""
     environment = {
         **os.environ,
@@ -80,25 +80,25 @@ def output_of(process: subprocess.Popen[str]) -> str:
     return out
 
 
-def test_all_modules_can_be_imported(other_system, tmp_path):
+def test_all_modules_can_be_imported(start_on_other_system, tmp_path):
     (tmp_path / "import_all.py").write_text(IMPORT_ALL, encoding="utf-8")
-    assert output_of(other_system(module="import_all")).splitlines()[-1] == "all"
+    assert output_of(start_on_other_system(module="import_all")).splitlines()[-1] == "all"
 
 
-def test_commands_run(other_system, tmp_path):
-    assert "base_link" in output_of(other_system("check", ROBOT))
+def test_commands_run(start_on_other_system, tmp_path):
+    assert "base_link" in output_of(start_on_other_system("check", ROBOT))
     assert (
-        output_of(other_system("xacro", PACKAGE / "urdf" / "mbot_gazebo.xacro", "laser:=true"))
+        output_of(start_on_other_system("xacro", PACKAGE / "urdf" / "mbot_gazebo.xacro", "laser:=true"))
         .rstrip()
         .endswith("</robot>")
     )
-    output_of(other_system("pkg", "create", "arm", "--build-type", "ament_python", "--license", "MIT"))
+    output_of(start_on_other_system("pkg", "create", "arm", "--build-type", "ament_python", "--license", "MIT"))
     assert (tmp_path / "arm" / "package.xml").is_file()
-    assert "base_link" in output_of(other_system("inertia", ROBOT))
+    assert "base_link" in output_of(start_on_other_system("inertia", ROBOT))
 
 
-def test_viewer_serves_page_and_ctrl_c_ends_it(other_system):
-    viewer = other_system("view", ROBOT, "--no-open")
+def test_viewer_serves_page_and_ctrl_c_ends_it(start_on_other_system):
+    viewer = start_on_other_system("view", ROBOT, "--no-open")
     try:
         address = next(match[0] for line in viewer.stdout if (match := re.search(r"http://\S+", line)))
         with urllib.request.urlopen(address, timeout=60) as response:
@@ -111,18 +111,18 @@ def test_viewer_serves_page_and_ctrl_c_ends_it(other_system):
 
 
 @pytest.mark.parametrize("emulated", ["", "emulate_tty=True"])
-def test_launched_processes_end_cleanly(other_system, tmp_path, emulated):
+def test_launched_processes_end_cleanly(start_on_other_system, tmp_path, emulated):
     (tmp_path / "it.launch.py").write_text(PROGRAM.replace("EMULATED", emulated), encoding="utf-8")
-    process = other_system("launch", "./it.launch.py")
+    process = start_on_other_system("launch", "./it.launch.py")
     out, error = process.communicate(timeout=120)
     assert process.returncode == 0, out + error
     assert "process has finished cleanly" in out + error
     assert "has died" not in out + error
 
 
-def test_world_is_simulated(other_system):
+def test_world_is_simulated(start_on_other_system):
     pytest.importorskip("mujoco")
-    output_of(other_system("sim", "empty", ROBOT, "--headless", "--seconds", "0.5"))
+    output_of(start_on_other_system("sim", "empty", ROBOT, "--headless", "--seconds", "0.5"))
 
 
 @pytest.mark.parametrize(

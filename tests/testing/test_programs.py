@@ -41,7 +41,7 @@ def write(tmp_path):
     return write_program
 
 
-def run(path, seconds=2.0, args=(), topic="/chatter"):
+def run_program(path, seconds=2.0, args=(), topic="/chatter"):
     """Return the messages that a program publishes in simulated seconds, and the program."""
     with SteppedGraph() as test:
         chatter = test.record(topic, String)
@@ -63,7 +63,7 @@ def test_spinning_node_runs_in_simulated_time(write):
         if __name__ == "__main__":
             main()
     """)
-    messages, ended = run(program)
+    messages, ended = run_program(program)
     assert messages == [f"{seconds} {1_700_000_000 + seconds}" for seconds in (0.5, 1.0, 1.5, 2.0)]
     assert ended.error is None
     assert not ended.is_running
@@ -79,7 +79,7 @@ def test_loop_with_spin_once_and_sleep_runs_in_simulated_time(write):
             publisher.publish(String(data=f"{time.monotonic():.3f}"))
             time.sleep(0.4)
     """)
-    assert run(program)[0] == ["0.100", "0.600", "1.100", "1.600"]
+    assert run_program(program)[0] == ["0.100", "0.600", "1.100", "1.600"]
 
 
 def test_busy_loop_sees_time_advance(write):
@@ -95,7 +95,7 @@ def test_busy_loop_sees_time_advance(write):
             pass
         publisher.publish(String(data="end"))
     """)
-    assert run(program)[0] == ["tick", "tick", "tick", "end"]
+    assert run_program(program)[0] == ["tick", "tick", "tick", "end"]
 
 
 def test_rate_works_with_spinning_thread(write):
@@ -122,7 +122,7 @@ def test_rate_works_with_spinning_thread(write):
             rclpy.try_shutdown()
             thread.join()
     """)
-    assert run(program)[0] == ["0.5", "1.0", "1.5", "2.0"]
+    assert run_program(program)[0] == ["0.5", "1.0", "1.5", "2.0"]
 
 
 def test_client_waits_for_service_of_graph(write):
@@ -198,9 +198,9 @@ ACTION = """
 
 def test_action_runs_in_multi_threaded_executor(write):
     program = write(ACTION)
-    messages, _ = run(program)
+    messages, _ = run_program(program)
     assert messages == ["0.2 3", "0.4 4", "0.6 5", "0.6 [0, 1, 1, 2, 3]", "0.6 end"]
-    assert run(program)[0] == messages
+    assert run_program(program)[0] == messages
 
 
 def test_threads_queues_pools_and_conditions_run_in_simulated_time(write):
@@ -235,13 +235,13 @@ def test_threads_queues_pools_and_conditions_run_in_simulated_time(write):
             results = list(pool.map(lambda seconds: (time.sleep(seconds), time.monotonic())[1], [0.2, 0.1, 0.1]))
         publisher.publish(String(data=" ".join(f"{result:.2f}" for result in results)))
     """)
-    messages, ended = run(program)
+    messages, ended = run_program(program)
     assert messages[0] == "0.30 empty"
     assert [message.split()[1] for message in messages if "empty" not in message][:3] == ["0", "1", "2"]
     start = float(messages[-2].split()[0])
     assert messages[-1] == " ".join(f"{start + seconds:.2f}" for seconds in (0.2, 0.1, 0.2))
     assert ended.exit_code == 0
-    assert run(program)[0] == messages
+    assert run_program(program)[0] == messages
 
 
 def test_asyncio_runs_in_simulated_time(write):
@@ -262,7 +262,7 @@ def test_asyncio_runs_in_simulated_time(write):
 
         asyncio.run(main())
     """)
-    assert run(program)[0] == ["0.2", "0.5", "1.1"]
+    assert run_program(program)[0] == ["0.2", "0.5", "1.1"]
 
 
 def test_program_follows_clock_topic(write):
@@ -319,8 +319,8 @@ def test_exception_of_program_is_raised_in_test_with_location(write):
 
 
 def test_sys_exit_ends_program(write):
-    assert run(write("sys.exit(3)"))[1].exit_code == 3
-    assert run(write("sys.exit('no robot')"))[1].exit_code == 1
+    assert run_program(write("sys.exit(3)"))[1].exit_code == 3
+    assert run_program(write("sys.exit('no robot')"))[1].exit_code == 1
 
 
 STOPS_AT_CTRL_C = """
@@ -373,7 +373,7 @@ def test_signal_handler_of_program_receives_ctrl_c(write):
         stopping.wait()
         sys.exit(4)
     """)
-    assert run(program)[1].exit_code == 4
+    assert run_program(program)[1].exit_code == 4
 
 
 def test_program_that_ignores_ctrl_c_is_ended(write):
@@ -385,7 +385,7 @@ def test_program_that_ignores_ctrl_c_is_ended(write):
                 pass
     """)
     before = threading.active_count()
-    _, ended = run(program)
+    _, ended = run_program(program)
     assert not ended.is_running
     assert ended.exit_code != 0
     assert threading.active_count() <= before + 1
@@ -435,9 +435,9 @@ def test_random_numbers_are_equal_in_each_run(write):
         publisher.publish(String(data=f"{random.random()} {np.random.random()}"))
     """)
     random.seed()
-    first = run(program)[0]
+    first = run_program(program)[0]
     random.seed()
-    assert run(program)[0] == first
+    assert run_program(program)[0] == first
 
 
 def test_file_that_only_defines_main_is_run(write):
@@ -446,8 +446,8 @@ def test_file_that_only_defines_main_is_run(write):
             rclpy.init()
             Node("talker").create_publisher(String, "chatter", 10).publish(String(data="once"))
     """)
-    assert run(program)[0] == ["once"]
-    assert run(write(program.read_text()[len(HEAD) :] + "\nmain()", "calls_main.py"))[0] == ["once"]
+    assert run_program(program)[0] == ["once"]
+    assert run_program(write(program.read_text()[len(HEAD) :] + "\nmain()", "calls_main.py"))[0] == ["once"]
 
 
 def test_functions_and_modules_can_be_run_as_programs(write, monkeypatch, tmp_path):
@@ -457,11 +457,11 @@ def test_functions_and_modules_can_be_run_as_programs(write, monkeypatch, tmp_pa
         time.sleep(0.5)
         texts.append(time.monotonic())
 
-    run(main)
+    run_program(main)
     assert texts == [0.5]
     write("def main(): sys.exit(7)", "my_program_module.py")
     monkeypatch.syspath_prepend(tmp_path)
-    assert run("my_program_module")[1].exit_code == 7
+    assert run_program("my_program_module")[1].exit_code == 7
 
 
 def test_missing_program_file_is_an_error(tmp_path):
@@ -473,7 +473,7 @@ def test_missing_program_file_is_an_error(tmp_path):
 
 def test_patched_python_functions_are_restored(write):
     originals = (time.sleep, time.time, threading.Lock, threading.Thread.start)
-    run(write("time.sleep(0.1)"))
+    run_program(write("time.sleep(0.1)"))
     assert (time.sleep, time.time, threading.Lock, threading.Thread.start) == originals
 
 

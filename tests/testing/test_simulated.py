@@ -88,7 +88,7 @@ def test_laser_measures_links_on_fixed_joints(tmp_path):
         assert list(scan.last.ranges) == pytest.approx([0.4], abs=0.01)
 
 
-def _driven(seed: int) -> tuple[list[bytes], list[float]]:
+def _drive_mbot(seed: int) -> tuple[list[bytes], list[float]]:
     with SteppedSimulation("empty", MBOT, seed=seed, noise=2.0) as test:
         imu, odometry = test.record("/imu"), test.record("/odom")
         test.drive(0.3, 0.5)
@@ -99,8 +99,8 @@ def _driven(seed: int) -> tuple[list[bytes], list[float]]:
 
 
 def test_same_seed_gives_identical_run_and_other_seed_other_noise():
-    assert _driven(1) == _driven(1)
-    assert _driven(1)[0] != _driven(2)[0]
+    assert _drive_mbot(1) == _drive_mbot(1)
+    assert _drive_mbot(1)[0] != _drive_mbot(2)[0]
 
 
 def test_rclpy_node_drives_robot_without_thread():

@@ -19,60 +19,60 @@ from tests.urdf.robots import chain_of_links, robot_text
 BOX = '<geometry><box size="1 2 3"/></geometry>'
 
 
-def reading(*parts, version=None):
+def read_text(*parts, version=None):
     return read(parse(robot_text(*parts, version=version), "robot.urdf"))
 
 
-def robot(*parts, version=None):
-    result = reading(*parts, version=version)
+def read_robot_of(*parts, version=None):
+    result = read_text(*parts, version=version)
     assert result.robot is not None, result.diagnostics
     return result.robot
 
 
-def joint(inside="", kind="revolute", version=None):
-    return robot(chain_of_links(f"{kind}:{inside}"), version=version).joints["j0"]
+def joint_text(inside="", kind="revolute", version=None):
+    return read_robot_of(chain_of_links(f"{kind}:{inside}"), version=version).joints["j0"]
 
 
-def codes(result):
+def diagnostic_codes(result):
     return [diagnostic.code for diagnostic in result.diagnostics]
 
 
-def visual(inside, version=None):
-    return reading(f'<link name="a"><visual>{inside}</visual></link>', version=version)
+def visual_text(inside, version=None):
+    return read_text(f'<link name="a"><visual>{inside}</visual></link>', version=version)
 
 
 class TestDefaults:
     def test_link_has_no_parts_by_default(self):
-        link = robot('<link name="a"/>').links["a"]
+        link = read_robot_of('<link name="a"/>').links["a"]
         assert (link.inertial, link.visuals, link.collisions) == (None, (), ())
 
     def test_joint_is_read(self):
-        read_joint = joint(kind="continuous")
+        read_joint = joint_text(kind="continuous")
         assert read_joint.origin == Pose()
         assert read_joint.axis == (1, 0, 0)
         assert read_joint.limit is read_joint.mimic is read_joint.safety is read_joint.dynamics is None
 
     def test_axis_tag_without_xyz_is_zero(self):
-        assert joint("<axis/>", "continuous").axis == (0, 0, 0)
+        assert joint_text("<axis/>", "continuous").axis == (0, 0, 0)
 
     def test_axis_is_not_normalized(self):
-        assert joint('<axis xyz="0 0 2"/>', "continuous").axis == (0, 0, 2)
+        assert joint_text('<axis xyz="0 0 2"/>', "continuous").axis == (0, 0, 2)
 
     @pytest.mark.parametrize("kind", ["fixed", "floating"])
     def test_axis_of_fixed_and_floating_joints_is_ignored(self, kind):
-        assert joint('<axis xyz="nonsense"/>', kind).axis == (1, 0, 0)
+        assert joint_text('<axis xyz="nonsense"/>', kind).axis == (1, 0, 0)
 
     def test_limit_defaults_to_zero_bounds(self):
-        assert joint('<limit effort="1" velocity="2"/>').limit == Limit(0, 0, 1, 2)
+        assert joint_text('<limit effort="1" velocity="2"/>').limit == Limit(0, 0, 1, 2)
 
     def test_limit_of_fixed_joint_is_read(self):
-        assert joint('<limit effort="1" velocity="2"/>', "fixed").limit == Limit(0, 0, 1, 2)
+        assert joint_text('<limit effort="1" velocity="2"/>', "fixed").limit == Limit(0, 0, 1, 2)
 
     def test_mimic_has_default_multiplier_and_offset(self):
-        assert joint('<mimic joint="x"/>', "continuous").mimic == Mimic("x", 1, 0)
+        assert joint_text('<mimic joint="x"/>', "continuous").mimic == Mimic("x", 1, 0)
 
     def test_origin_without_xyz_has_zero_position(self):
-        assert joint('<origin rpy="0 0 1"/>').origin == Pose((0, 0, 0), (0, 0, 1))
+        assert joint_text('<origin rpy="0 0 1"/>').origin == Pose((0, 0, 0), (0, 0, 1))
 
 
 class TestLenience:
@@ -89,7 +89,9 @@ class TestLenience:
         ],
     )
     def test_joint_is_read(self, inside):
-        assert not any(d.severity is Severity.ERROR for d in reading(chain_of_links(f"revolute:{inside}")).diagnostics)
+        assert not any(
+            d.severity is Severity.ERROR for d in read_text(chain_of_links(f"revolute:{inside}")).diagnostics
+        )
 
     @pytest.mark.parametrize(
         "shape",
@@ -102,7 +104,7 @@ class TestLenience:
         ],
     )
     def test_unusual_shapes_are_accepted(self, shape):
-        result = visual(f"<geometry>{shape}</geometry>")
+        result = visual_text(f"<geometry>{shape}</geometry>")
         assert not result.diagnostics
         assert len(result.robot.links["a"].visuals) == 1
 
@@ -110,16 +112,16 @@ class TestLenience:
         assert read(parse('<robot name=""><link name="a"/></robot>', "x")).robot.name == ""
 
     def test_single_link_may_be_unnamed(self):
-        result = reading('<link><visual name="lost"/></link>')
+        result = read_text('<link><visual name="lost"/></link>')
         assert result.robot.root == ""
         assert result.robot.links[""].visuals == ()
 
     def test_two_unnamed_materials_are_rejected(self):
-        assert reading('<material/><material/><link name="a"/>').robot is None
+        assert read_text('<material/><material/><link name="a"/>').robot is None
 
     def test_negative_mass_is_accepted(self):
         inertia = '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/>'
-        link = robot(f'<link name="a"><inertial><mass value="-1"/>{inertia}</inertial></link>').links["a"]
+        link = read_robot_of(f'<link name="a"><inertial><mass value="-1"/>{inertia}</inertial></link>').links["a"]
         assert link.inertial.mass == -1
 
 
@@ -133,7 +135,7 @@ class TestTruncation:
     INERTIAL = '<inertial><mass value="{}"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
 
     def parts(self, inside):
-        link = robot(f'<link name="a">{inside}</link>').links["a"]
+        link = read_robot_of(f'<link name="a">{inside}</link>').links["a"]
         return link.inertial is not None, len(link.visuals), len(link.collisions)
 
     def test_valid_link_keeps_all_parts(self):
@@ -168,14 +170,14 @@ class TestMaterials:
         return material and material.rgba
 
     def two_links(self, *parts):
-        return robot(*parts, '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>')
+        return read_robot_of(*parts, '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>')
 
     def test_global_material_may_follow_its_use(self):
-        read_robot = robot(self.link("a", self.material("m")), self.material("m", self.RED))
+        read_robot = read_robot_of(self.link("a", self.material("m")), self.material("m", self.RED))
         assert self.color(read_robot, "a") == self.RED
 
     def test_global_material_overrides_color_of_visual(self):
-        read_robot = robot(self.material("m", self.RED), self.link("a", self.material("m", self.GREEN)))
+        read_robot = read_robot_of(self.material("m", self.RED), self.link("a", self.material("m", self.GREEN)))
         assert self.color(read_robot, "a") == self.RED
 
     def test_first_link_that_defines_material_wins(self):
@@ -202,76 +204,76 @@ class TestMaterials:
 
     def test_texture_defines_material(self):
         textured = '<material name="m"><texture filename="wood.png"/></material>'
-        assert robot(self.link("a", textured)).links["a"].visuals[0].material.texture == "wood.png"
+        assert read_robot_of(self.link("a", textured)).links["a"].visuals[0].material.texture == "wood.png"
 
     def test_dropped_visual_defines_no_material(self):
         lost = f'<link name="a"><visual><geometry/>{self.material("m", self.RED)}</visual></link>'
-        assert robot(lost).materials == {}
+        assert read_robot_of(lost).materials == {}
 
 
 class TestVersions:
     @pytest.mark.parametrize("version", ["1.0", "1.1", "1.2", " 1.0", "+1.0", "01.00"])
     def test_supported_versions_are_accepted(self, version):
-        assert reading('<link name="a"/>', version=version).robot is not None
+        assert read_text('<link name="a"/>', version=version).robot is not None
 
     @pytest.mark.parametrize(
         "version", ["", "1", "1.", ".1", "1.0.0", "1.3", "0.9", "2.0", "-1.0", "1.-1", "1.0 ", "a.b"]
     )
     def test_malformed_and_unsupported_versions_are_rejected(self, version):
-        assert reading('<link name="a"/>').robot is not None
+        assert read_text('<link name="a"/>').robot is not None
         text = f'<robot name="r" version="{version}"><link name="a"/></robot>'
-        assert codes(read(parse(text, "x"))) == ["URDF104"]
+        assert diagnostic_codes(read(parse(text, "x"))) == ["URDF104"]
 
     def test_capsule_requires_version_1_1(self):
         capsule = '<geometry><capsule radius="1" length="2"/></geometry>'
-        assert visual(capsule, "1.1").robot.links["a"].visuals[0].geometry == Capsule(1, 2)
-        assert visual(capsule, "1.0").robot.links["a"].visuals == ()
+        assert visual_text(capsule, "1.1").robot.links["a"].visuals[0].geometry == Capsule(1, 2)
+        assert visual_text(capsule, "1.0").robot.links["a"].visuals == ()
 
     def test_sizes_must_be_positive_since_1_2(self):
         sphere = '<geometry><sphere radius="-1"/></geometry>'
-        assert len(visual(sphere, "1.1").robot.links["a"].visuals) == 1
-        assert visual(sphere, "1.2").robot.links["a"].visuals == ()
+        assert len(visual_text(sphere, "1.1").robot.links["a"].visuals) == 1
+        assert visual_text(sphere, "1.2").robot.links["a"].visuals == ()
 
     def test_quaternion_origin_is_read_since_1_1(self):
-        turned = joint('<origin xyz="1 2 3" quat_xyzw="0 0 2 2"/>', "fixed", "1.1").origin
+        turned = joint_text('<origin xyz="1 2 3" quat_xyzw="0 0 2 2"/>', "fixed", "1.1").origin
         assert turned.xyz == (1, 2, 3)
         assert pose_quaternion(turned) == pytest.approx((0, 0, 0.5**0.5, 0.5**0.5))
         assert turned.rpy == pytest.approx((0, 0, pi / 2))
 
     def test_zero_quaternion_is_identity(self):
-        assert pose_quaternion(joint('<origin quat_xyzw="0 0 0 0"/>', "fixed", "1.1").origin) == (0, 0, 0, 1)
+        assert pose_quaternion(joint_text('<origin quat_xyzw="0 0 0 0"/>', "fixed", "1.1").origin) == (0, 0, 0, 1)
 
     def test_quaternion_with_three_numbers_is_rejected(self):
-        result = reading(chain_of_links('fixed:<origin quat_xyzw="0 0 1"/>'), version="1.1")
-        assert (result.robot, codes(result)) == (None, ["URDF122"])
+        result = read_text(chain_of_links('fixed:<origin quat_xyzw="0 0 1"/>'), version="1.1")
+        assert (result.robot, diagnostic_codes(result)) == (None, ["URDF122"])
 
     def test_limits_default_to_infinity_since_1_2(self):
-        assert joint("<limit/>", "continuous", "1.2").limit == Limit(-inf, inf, inf, inf)
+        assert joint_text("<limit/>", "continuous", "1.2").limit == Limit(-inf, inf, inf, inf)
 
     def test_deceleration_defaults_to_acceleration(self):
-        limit = joint('<limit lower="0" upper="1" acceleration="5"/>', version="1.2").limit
+        limit = joint_text('<limit lower="0" upper="1" acceleration="5"/>', version="1.2").limit
         assert (limit.acceleration, limit.deceleration, limit.jerk) == (5, 5, None)
 
     def test_limit_attributes_of_1_2_are_ignored_before(self):
-        result = reading(chain_of_links('revolute:<limit effort="1" velocity="1" jerk="nonsense"/>'))
-        assert codes(result) == ["URDF171"]
+        result = read_text(chain_of_links('revolute:<limit effort="1" velocity="1" jerk="nonsense"/>'))
+        assert diagnostic_codes(result) == ["URDF171"]
         assert result.robot.joints["j0"].limit == Limit(0, 0, 1, 1)
 
     @pytest.mark.parametrize("name", ["effort", "velocity", "acceleration", "deceleration", "jerk"])
     def test_negative_limits_are_rejected_since_1_2(self, name):
         assert (
-            reading(chain_of_links(f'revolute:<limit lower="0" upper="1" {name}="-1"/>'), version="1.2").robot is None
+            read_text(chain_of_links(f'revolute:<limit lower="0" upper="1" {name}="-1"/>'), version="1.2").robot is None
         )
 
 
 class TestExtensionElements:
     def test_extension_elements_are_kept_in_order(self):
-        result = robot('<gazebo reference="a"/>', '<link name="a"/>', "<transmission/>", "<ros2_control/>")
+        result = read_robot_of('<gazebo reference="a"/>', '<link name="a"/>', "<transmission/>", "<ros2_control/>")
         assert [element.tag for element in result.extensions] == ["gazebo", "transmission", "ros2_control"]
 
     def test_links_and_joints_keep_file_order(self):
         ends = '<parent link="z"/><child link="{}"/>'
-        result = robot(
+        result = read_robot_of(
             '<link name="z"/><link name="b"/><link name="a"/>',
             f'<joint name="y" type="fixed">{ends.format("b")}</joint>',
             f'<joint name="x" type="fixed">{ends.format("a")}</joint>',
@@ -281,17 +283,17 @@ class TestExtensionElements:
         assert result.root == "z"
 
     def test_robot_parts_refer_to_their_elements(self):
-        result = robot(f'<link name="a"><visual>{BOX}</visual></link>')
+        result = read_robot_of(f'<link name="a"><visual>{BOX}</visual></link>')
         assert result.links["a"].visuals[0].element.tag == "visual"
         assert result.links["a"].visuals[0].geometry == Box((1, 2, 3))
 
     def test_finding_of_generated_element_has_no_span(self):
         result = read(Document(Element("robot", {"name": "r"})))
-        assert codes(result) == ["URDF106"]
+        assert diagnostic_codes(result) == ["URDF106"]
         assert result.diagnostics[0].span is None
 
     def test_findings_are_in_text_order(self):
-        result = reading('\n<link name="a"/>', '\n<link name="a"/>', '\n<material name="m"/>', '\n<link name="b"/>')
+        result = read_text('\n<link name="a"/>', '\n<link name="a"/>', '\n<material name="m"/>', '\n<link name="b"/>')
         lines = [diagnostic.span.line for diagnostic in result.diagnostics]
         assert lines == sorted(lines)
         assert len(lines) == 3
@@ -312,7 +314,7 @@ class TestExtensionElements:
             f'<joint name="j{n}" type="fixed"><parent link="l{n - 1}"/><child link="l{n}"/></joint>'
             for n in range(1, count)
         )
-        assert len(robot(links, joints).joints) == count - 1
+        assert len(read_robot_of(links, joints).joints) == count - 1
 
 
 def test_reader_imports_only_required_modules():

@@ -32,7 +32,7 @@ ALLOWED = {"URDF171", "URDF180"}  # no joint to mimic; the limits of URDF 1.2 ar
 VERSIONS = ("1.0", "1.2")
 
 
-def full(rule: ElementRule, version: tuple[int, int]) -> Element:
+def full_element(rule: ElementRule, version: tuple[int, int]) -> Element:
     """Return an element with all its attributes and children.
 
     ``<geometry>`` has only its first child.
@@ -48,18 +48,18 @@ def full(rule: ElementRule, version: tuple[int, int]) -> Element:
     if rule.tag == "mimic":
         element.attributes["joint"] = "other"
     children = rule.children[:1] if rule.tag == "geometry" else rule.children
-    element.children += [full(child, version) for child in children if child.since <= version]
+    element.children += [full_element(child, version) for child in children if child.since <= version]
     return element
 
 
-def full_robot(version: str, shape: ElementRule = SHAPES[0]) -> Element:
+def make_full_robot(version: str, shape: ElementRule = SHAPES[0]) -> Element:
     parsed = tuple(map(int, version.split(".")))
-    robot = full(ROBOT, parsed)
+    robot = full_element(ROBOT, parsed)
     robot.attributes["version"] = version
     robot.children.append(Element("link", {"name": "a"}))
     for element in walk_elements(robot):
         if element.tag == "geometry":
-            element.children = [full(shape, parsed)]
+            element.children = [full_element(shape, parsed)]
     return robot
 
 
@@ -69,15 +69,15 @@ def walk_elements(element: Element):
         yield from walk_elements(child)
 
 
-def rules(version, rule=ROBOT, path=()):
+def all_rules(version, rule=ROBOT, path=()):
     path = (*path, rule.tag)
     if rule.since <= tuple(map(int, version.split("."))):
         yield path, rule
         for child in rule.children:
-            yield from rules(version, child, path)
+            yield from all_rules(version, child, path)
 
 
-def find(element: Element, path: tuple[str, ...]) -> Element:
+def find_element(element: Element, path: tuple[str, ...]) -> Element:
     for tag in path[1:]:
         element = next(child for child in element.elements(tag) if tag != "link" or child.attributes["name"] == "b")
     return element
@@ -88,7 +88,7 @@ def attribute_cases(choose):
     cases = []
     for version in VERSIONS:
         parsed = tuple(map(int, version.split(".")))
-        for path, rule in rules(version):
+        for path, rule in all_rules(version):
             for attribute in rule.attributes:
                 if attribute.since <= parsed and choose(attribute, parsed):
                     name = f"{version}/{'/'.join(path)}@{attribute.name}"
@@ -96,15 +96,15 @@ def attribute_cases(choose):
     return cases
 
 
-def prepared(version, path):
+def prepare_element(version, path):
     shape = next((shape for shape in SHAPES if shape.tag == path[-1]), SHAPES[0])
-    robot = full_robot(version, shape)
-    return robot, find(robot, path)
+    robot = make_full_robot(version, shape)
+    return robot, find_element(robot, path)
 
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_robot_with_all_schema_elements_is_read(version):
-    result = read(Document(full_robot(version)))
+    result = read(Document(make_full_robot(version)))
     assert [diagnostic.message for diagnostic in result.diagnostics if diagnostic.code != "URDF180"] == []
     assert result.robot.joints["b"].safety is not None
 
@@ -113,14 +113,14 @@ def test_robot_with_all_schema_elements_is_read(version):
     ("version", "path", "attribute"), attribute_cases(lambda rule, version: rule.is_required(version))
 )
 def test_required_attributes_are_required_by_reader(version, path, attribute: AttributeRule):
-    robot, element = prepared(version, path)
+    robot, element = prepare_element(version, path)
     del element.attributes[attribute.name]
     assert any(f"no '{attribute.name}'" in diagnostic.message for diagnostic in read(Document(robot)).diagnostics)
 
 
 @pytest.mark.parametrize(("version", "path", "attribute"), attribute_cases(lambda rule, _: rule.type != TEXT))
 def test_malformed_values_are_reported(version, path, attribute: AttributeRule):
-    robot, element = prepared(version, path)
+    robot, element = prepare_element(version, path)
     if attribute.name == "quat_xyzw":
         element.attributes.pop("rpy")
     element.attributes[attribute.name] = "nonsense"
@@ -135,7 +135,7 @@ def test_malformed_values_are_reported(version, path, attribute: AttributeRule):
     ),
 )
 def test_optional_attributes_may_be_missing(version, path, attribute: AttributeRule):
-    robot, element = prepared(version, path)
+    robot, element = prepare_element(version, path)
     del element.attributes[attribute.name]
     result = read(Document(robot))
     assert result.robot is not None

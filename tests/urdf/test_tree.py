@@ -15,21 +15,21 @@ from linkwright.urdf.tree import walk
 from tests.urdf.robots import robot_text, robots
 
 
-def joint(name, parent, child, inside=""):
+def joint_text(name, parent, child, inside=""):
     return f'<joint name="{name}" type="fixed"><parent link="{parent}"/><child link="{child}"/>{inside}</joint>'
 
 
 BRANCHES = robot_text(
     '<link name="base"/><link name="b"/><link name="a"/><link name="tip"/>',
-    joint("z_to_a", "base", "a"),
-    joint("Y_to_b", "base", "b", '<origin xyz="0.1 1e-7 123456789" rpy="0 1.5707963267948966 0.3"/>'),
-    joint("tip_joint", "b", "tip", '<origin xyz="-0 0 0.333" rpy="-1.57079632679 0 0"/>'),
+    joint_text("z_to_a", "base", "a"),
+    joint_text("Y_to_b", "base", "b", '<origin xyz="0.1 1e-7 123456789" rpy="0 1.5707963267948966 0.3"/>'),
+    joint_text("tip_joint", "b", "tip", '<origin xyz="-0 0 0.333" rpy="-1.57079632679 0 0"/>'),
 )
 DIAMOND = robot_text(
     '<link name="r"/><link name="a"/><link name="b"/>',
-    joint("i", "r", "a"),
-    joint("j", "r", "b", '<origin xyz="1 0 0"/>'),
-    joint("k", "a", "b", '<origin xyz="2 0 0"/>'),
+    joint_text("i", "r", "a"),
+    joint_text("j", "r", "b", '<origin xyz="1 0 0"/>'),
+    joint_text("k", "a", "b", '<origin xyz="2 0 0"/>'),
 )
 
 
@@ -86,7 +86,7 @@ def test_link_with_two_parents_is_listed_under_both():
 def test_tree_text_of_many_paths_is_bounded():
     count = 60
     links = "".join(f'<link name="l{n}"/>' for n in range(count))
-    doubled = "".join(joint(f"{side}{n:02}", f"l{n - 1}", f"l{n}") for n in range(1, count) for side in "xy")
+    doubled = "".join(joint_text(f"{side}{n:02}", f"l{n - 1}", f"l{n}") for n in range(1, count) for side in "xy")
     text = tree_text(load(robot_text(links, doubled)))
     assert 64 * count < text.count("\n") < 200 * count
 

@@ -9,7 +9,7 @@ import yaml
 
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 PointStamped = get_message("geometry_msgs/msg/PointStamped")
 
@@ -41,31 +41,31 @@ Visualization Manager:
 
 
 @asynccontextmanager
-async def opened(text: str = TEXT, path: Path | None = None):
+async def open_configured(text: str = TEXT, path: Path | None = None):
     """Return a world, and a page that has read its opening messages."""
     config = RvizConfig.parse(text)
     if path is not None:
         path.write_text(text, encoding="utf-8")  # noqa: ASYNC240 - a test may wait
         config = RvizConfig.load(path)
-    async with open_world(config) as world, page(world.viewer) as client:
+    async with open_world(config) as world, open_page(world.viewer) as client:
         client.first = await client.opened()
         yield world, client
 
 
-def names(world) -> list[str]:
+def display_names(world) -> list[str]:
     return [display.config.name for display in world.viewer.displays]
 
 
-def entries(world) -> list[dict]:
+def display_entries(world) -> list[dict]:
     return yaml.safe_load(world.viewer.config.text())["Visualization Manager"]["Displays"]
 
 
-async def edit(client, kind: str, **fields) -> dict:
+async def perform_edit(client, kind: str, **fields) -> dict:
     """Perform an edit, and return the state afterwards."""
     await client.drain(0.03)
     await client.send(kind, **fields)
     return await client.until("configuration")
 
 
-async def undo(client, kind: str = "undo") -> dict:
-    return await edit(client, kind)
+async def undo_edit(client, kind: str = "undo") -> dict:
+    return await perform_edit(client, kind)

@@ -42,7 +42,7 @@ def unpack(frame: bytes) -> Content:
     return Content(header["key"], header["frame"], header["pose"], header["stamp"], fields)
 
 
-def contents(display: Any) -> list[Content]:
+def unpack_contents(display: Any) -> list[Content]:
     """Return the messages about a display for a page that opens now."""
     return [unpack(getattr(frame, "full_frame", frame)) for frame in display.data()]
 

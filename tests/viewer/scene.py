@@ -183,7 +183,7 @@ class Client:
 
 
 @asynccontextmanager
-async def page(viewer: Viewer, options: str = "") -> AsyncIterator[Client]:
+async def open_page(viewer: Viewer, options: str = "") -> AsyncIterator[Client]:
     """Open a connected page, with `options` appended to its address.
 
     Its end is not waited for long.

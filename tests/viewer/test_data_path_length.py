@@ -13,12 +13,12 @@ import pytest
 
 from tests.places import REPOSITORY
 
-MOST = {"opening": 160, "slider": 21}
+MAX_FILES = {"opening": 160, "slider": 21}
 """The maximum numbers of files whose functions run from `view` to an open page, and from a slider to the frames."""
 
 
 @cache
-def _files() -> dict[str, list[str]]:
+def _find_files() -> dict[str, list[str]]:
     result = subprocess.run(
         [sys.executable, "-m", "tests.viewer.ways"], capture_output=True, text=True, cwd=REPOSITORY, check=True
     )
@@ -26,9 +26,9 @@ def _files() -> dict[str, list[str]]:
     return files
 
 
-@pytest.mark.parametrize("way", MOST)
+@pytest.mark.parametrize("way", MAX_FILES)
 def test_data_path_uses_few_files(way: str):
-    files = _files()[way]
+    files = _find_files()[way]
     rooms = Counter(Path(file).parts[0] for file in files)
     listed = "\n".join(files)
-    assert len(files) <= MOST[way], f"{len(files)} files in {dict(rooms.most_common())}:\n{listed}"
+    assert len(files) <= MAX_FILES[way], f"{len(files)} files in {dict(rooms.most_common())}:\n{listed}"

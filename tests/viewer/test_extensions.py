@@ -11,7 +11,7 @@ import pytest
 from linkwright.loading import extensions
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays import catalog
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 MODULE = """\
 from linkwright.rviz.displays.geometry import PolygonDisplay
@@ -69,14 +69,14 @@ def extension_package(tmp_path, monkeypatch):
     catalog._display_class.cache_clear()
 
 
-def config_with(cls: str) -> RvizConfig:
+def make_config(cls: str) -> RvizConfig:
     config = RvizConfig.for_model("base")
     config.insert(config.make_display(cls, "Brought"))
     return config
 
 
 async def test_display_of_another_package_is_created_and_offered(extension_package):
-    async with open_world(config_with("brought/Fence")) as world, page(world.viewer) as client:
+    async with open_world(make_config("brought/Fence")) as world, open_page(world.viewer) as client:
         first = await client.opened()
         (fence,) = [display for display in first["tree"]["displays"] if display["cls"] == "brought/Fence"]
         assert (fence["supported"], fence["drawing"]) == (True, "rviz_default_plugins/Polygon")
@@ -86,7 +86,7 @@ async def test_display_of_another_package_is_created_and_offered(extension_packa
 
 
 async def test_display_that_cannot_be_imported_is_kept_and_reported(extension_package):
-    async with open_world(config_with("brought/Broken")) as world:
+    async with open_world(make_config("brought/Broken")) as world:
         assert not world.viewer.displays[-1].SUPPORTED
         assert "'brought/Broken' cannot be imported: AttributeError" in world.logged()
 
@@ -96,7 +96,7 @@ def test_built_in_display_cannot_be_replaced(extension_package):
 
 
 async def test_page_feature_of_another_package_receives_messages(extension_package):
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         await client.send("greet", name="you")
         assert (await client.until("greeting"))["text"] == "hello you"

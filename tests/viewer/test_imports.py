@@ -8,10 +8,10 @@ from pathlib import Path
 
 OPENING = """
 import asyncio, sys
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 async def main():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         print(*sys.modules)
         await client.send("watch_node_graph", watched=True)

@@ -38,7 +38,7 @@ ARM = """
 """
 
 
-def recorded(path: Path, lift_positions: Sequence[float], transforms: bool = False) -> Path:
+def record_arm(path: Path, lift_positions: Sequence[float], transforms: bool = False) -> Path:
     """Record an arm, and a joint state each second that contains only one joint."""
     with BagWriter(path) as writer:
         writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
@@ -55,7 +55,7 @@ def recorded(path: Path, lift_positions: Sequence[float], transforms: bool = Fal
     return path
 
 
-class Shown:
+class ShownRecording:
     """A published recording, and the last positions of the links.
 
     Positions are x, y, z in the parent link, in meters.
@@ -95,8 +95,8 @@ async def test_link_poses_follow_recorded_joint_states(tmp_path: Path) -> None:
 
     Mimic joints follow.
     """
-    with BagReader(recorded(tmp_path / "bag", [0.5, 1.0, 7.0])) as bag:
-        shown = Shown(bag)
+    with BagReader(record_arm(tmp_path / "bag", [0.5, 1.0, 7.0])) as bag:
+        shown = ShownRecording(bag)
         for second, lift in ((2, 7.0), (0, 0.5), (1, 1.0)):
             assert await shown.at(second) == {
                 "camera": [0, 0, 0],
@@ -108,8 +108,8 @@ async def test_link_poses_follow_recorded_joint_states(tmp_path: Path) -> None:
 
 
 async def test_joints_without_recorded_states_are_at_zero(tmp_path: Path) -> None:
-    with BagReader(recorded(tmp_path / "bag", [])) as bag:
-        shown = Shown(bag)
+    with BagReader(record_arm(tmp_path / "bag", [])) as bag:
+        shown = ShownRecording(bag)
         places = await shown.at(0)
         assert (places["upper"], places["camera"]) == ([0, 0, 0], [0, 0, 0])
         await shown.close()
@@ -117,8 +117,8 @@ async def test_joints_without_recorded_states_are_at_zero(tmp_path: Path) -> Non
 
 @pytest.mark.parametrize("transforms", [False, True])
 async def test_recorded_transforms_take_precedence(tmp_path: Path, transforms: bool) -> None:
-    with BagReader(recorded(tmp_path / "bag", [0.5], transforms)) as bag:
-        shown = Shown(bag)
+    with BagReader(record_arm(tmp_path / "bag", [0.5], transforms)) as bag:
+        shown = ShownRecording(bag)
         assert isinstance(shown.output, RecordingWithTransforms) is not transforms
         assert bool(await shown.at(0)) is not transforms
         await shown.close()
@@ -136,7 +136,7 @@ async def test_namespaced_transforms_are_used(tmp_path: Path) -> None:
             batch = TransformBatch(("base",), (name,), (START_S + second) * SECOND_NS, pose)
             writer.write(topic, (START_S + second) * SECOND_NS, serialize(TFMessage(batch=batch)))
     with BagReader(tmp_path / "bag") as bag:
-        shown = Shown(bag)
+        shown = ShownRecording(bag)
         assert await shown.at(2) == {"one": [0, 0, 0], "two": [1, 0, 0], "laser": [2, 0, 0]}
         assert await shown.at(0) == {"one": [0, 0, 0]}
         await shown.close()

@@ -21,7 +21,7 @@ LaserScan = get_message("sensor_msgs/msg/LaserScan")
 TransformStamped = get_message("geometry_msgs/msg/TransformStamped")
 
 
-def transform(parent: str, child: str) -> bytes:
+def make_transform(parent: str, child: str) -> bytes:
     message = TransformStamped(child_frame_id=child)
     message.header.frame_id = parent
     return serialize(TFMessage(transforms=[message]))
@@ -32,7 +32,7 @@ def test_transforms_are_displayed_without_robot(tmp_path: Path, described: bool)
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
         writer.add_topic("/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
-        writer.write("/tf", START_NS, transform("odom", "base_link"))
+        writer.write("/tf", START_NS, make_transform("odom", "base_link"))
         writer.write("/scan", START_NS + 1, serialize(LaserScan()))
         if described:
             writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
@@ -50,8 +50,8 @@ def test_transforms_are_displayed_without_robot(tmp_path: Path, described: bool)
 def test_recorded_simulation_opens_with_its_world(tmp_path: Path) -> None:
     with BagWriter(tmp_path / "bag") as writer:
         for name, message in (
-            ("/tf", transform("odom", "base_link")),
-            ("/world_poses", transform("world", "mbot::base_link")),
+            ("/tf", make_transform("odom", "base_link")),
+            ("/world_poses", make_transform("world", "mbot::base_link")),
         ):
             writer.add_topic(name, "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
             writer.write(name, START_NS, message)
@@ -86,11 +86,11 @@ def test_fixed_frame_is_found_in_late_transforms(tmp_path: Path, storage: str) -
     with BagWriter(tmp_path / "bag", storage) as writer:
         for name in ("/tf", "/tf_static"):
             writer.add_topic(name, "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
-        writer.write("/tf_static", START_NS, transform("base_link", "laser"))
+        writer.write("/tf_static", START_NS, make_transform("base_link", "laser"))
         for tenth in range(50, 400):
-            writer.write("/tf", START_NS + tenth * second // 10, transform("odom", "base_link"))
+            writer.write("/tf", START_NS + tenth * second // 10, make_transform("odom", "base_link"))
             if tenth > 150:
-                writer.write("/tf", START_NS + tenth * second // 10, transform("map", "odom"))
+                writer.write("/tf", START_NS + tenth * second // 10, make_transform("map", "odom"))
     with BagReader(tmp_path / "bag") as bag:
         assert create_recording_config(bag).options.text("Fixed Frame") == "map"
 
@@ -104,7 +104,7 @@ def test_first_namespaced_robot_with_description_is_shown(tmp_path: Path) -> Non
         for number in range(3):
             writer.add_topic(f"/robot{number}/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
             writer.add_topic(f"/robot{number}/scan", "sensor_msgs/msg/LaserScan", [SENSOR_DATA_QOS])
-            writer.write(f"/robot{number}/tf", START_NS, transform("odom", "base_link"))
+            writer.write(f"/robot{number}/tf", START_NS, make_transform("odom", "base_link"))
             writer.write(f"/robot{number}/scan", START_NS, serialize(LaserScan()))
             if number:
                 writer.add_topic(f"/robot{number}/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
@@ -131,7 +131,7 @@ def test_view_follows_moving_robot_and_fits_unmoving_robot(tmp_path: Path, place
     )
     with BagWriter(tmp_path / "bag") as writer:
         writer.add_topic("/tf", "tf2_msgs/msg/TFMessage", [DEFAULT_QOS])
-        writer.write("/tf", START_NS, transform(place, "base"))
+        writer.write("/tf", START_NS, make_transform(place, "base"))
         writer.add_topic("/robot_description", "std_msgs/msg/String", [DESCRIPTION_QOS])
         writer.write("/robot_description", START_NS, serialize(String(data=text)))
     with BagReader(tmp_path / "bag") as bag:

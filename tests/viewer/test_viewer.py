@@ -27,7 +27,7 @@ from linkwright.rviz import RvizConfig
 from linkwright.viewer import Viewer
 from tests.places import TUTORIAL_PACKAGES, without_meshes
 from tests.skipping import graph_clock, skipping
-from tests.viewer.scene import ARM, World, open_world, page
+from tests.viewer.scene import ARM, World, open_page, open_world
 
 Clock = get_message("rosgraph_msgs/msg/Clock")
 
@@ -37,7 +37,7 @@ async def test_opened_page_receives_messages_in_order():
         world.describe(ARM)
         world.move_arm(1.0)
         await world.settle()
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             transforms = await client.transforms()
             kinds = [message["type"] for message in client.messages[:-1]]
             first, table = client.messages[0], client.messages[-2]
@@ -62,7 +62,7 @@ async def test_opened_page_receives_messages_in_order():
 
 
 async def test_transforms_are_relative_to_fixed_frame():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         world.move_arm(1.0)
         names = (await client.until("frame_table"))["names"]
@@ -75,7 +75,7 @@ async def test_transforms_are_relative_to_fixed_frame():
 
 
 async def test_fixed_frame_status_matches_rviz():
-    async with open_world(RvizConfig.for_model("map")) as world, page(world.viewer) as client:
+    async with open_world(RvizConfig.for_model("map")) as world, open_page(world.viewer) as client:
         opening = await client.opened()
         assert opening["tree"]["global_status"] == [
             {
@@ -93,7 +93,7 @@ async def test_fixed_frame_status_matches_rviz():
 
 
 async def test_known_frames_are_offered_as_options():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         world.move_arm()
         options_message = await client.until("property_changed", id="global/Fixed Frame")
@@ -105,7 +105,7 @@ async def test_known_frames_are_offered_as_options():
 
 
 async def test_property_change_is_sent_to_all_pages():
-    async with open_world() as world, page(world.viewer) as first, page(world.viewer) as second:
+    async with open_world() as world, open_page(world.viewer) as first, open_page(world.viewer) as second:
         await first.opened()
         await second.opened()
         await first.set("display-2/Alpha", 0.5)
@@ -117,7 +117,7 @@ async def test_property_change_is_sent_to_all_pages():
 
 
 async def test_rejected_value_is_answered_with_current_value():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         for identity, value, standing in (
             ("display-2/Alpha", "much", 1.0),
@@ -136,7 +136,7 @@ async def test_rejected_value_is_answered_with_current_value():
 async def test_pages_open_with_view_of_file():
     config = RvizConfig.for_model("base")
     async with open_world(config) as world:
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             state = (await client.opened())["view_state"]
             view = state["view"]
             assert (view["values"]["Distance"], state["whole_robot"]) == (3.0, True)
@@ -144,7 +144,7 @@ async def test_pages_open_with_view_of_file():
             await client.send("view_changed", view=view | {"values": {"Focal Point": 1.0}})
             await client.set("display-1/Alpha", 1.0)
             await client.until("property_changed")
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             state = (await client.opened())["view_state"]
             assert (state["view"]["values"]["Distance"], state["whole_robot"]) == (3.0, True)
     assert RvizConfig.parse(config.text()).views.current.values["Distance"] == 7.0
@@ -152,7 +152,7 @@ async def test_pages_open_with_view_of_file():
 
 
 async def test_measured_robot_sets_size_of_grid_and_axes():
-    async with open_world(RvizConfig.for_model("base")) as world, page(world.viewer) as client:
+    async with open_world(RvizConfig.for_model("base")) as world, open_page(world.viewer) as client:
         await client.opened()
         await client.send("robot_measured", diagonal=100.0, ground=-2.5)
         cells = await client.until("property_changed", id="display-1/Cell Size")
@@ -168,7 +168,7 @@ async def test_diagnostics_are_shown_with_line_and_cleared():
     source = SourceText("/some/r.xacro", "<robot>\n  <xacro:whel/>\n</robot>\n")
     span = source.span(10, 21)
     diagnostic = Diagnostic("XAC101", "unknown macro", span, notes=(Note("called", span),), hint="did", source=source)
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         world.viewer.show_diagnostics([diagnostic, Diagnostic("X1", "no place")])
         items = (await client.until("diagnostics"))["items"]
@@ -186,7 +186,7 @@ async def test_diagnostics_are_shown_with_line_and_cleared():
             "hints": ["did"],
         }
         assert items[1]["file"] is None
-        async with page(world.viewer) as late_client:
+        async with open_page(world.viewer) as late_client:
             assert len((await late_client.opened())["diagnostics"]["items"]) == 2
         world.viewer.show_diagnostics([])
         assert (await client.until("diagnostics"))["items"] == []
@@ -209,7 +209,7 @@ async def test_joint_slider_moves_joint_in_page():
     panel = JointStatePublisherGui(graph, NodeOptions(library=library)).panel
     viewer.attach_joint_panel(panel)
     RobotStatePublisher(graph, NodeOptions(parameters={"robot_description": ARM}, library=library))
-    async with page(viewer) as client:
+    async with open_page(viewer) as client:
         while not (controls := (await client.until("joints"))["controls"]):
             pass
         assert [(control["name"], control["kind"]) for control in controls] == [("turn", "continuous")]
@@ -235,7 +235,7 @@ async def test_joint_slider_moves_joint_in_page():
 
 async def test_close_notifies_page_and_leaves_graph():
     async with open_world() as world:
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             closing = asyncio.ensure_future(world.viewer.close())
             with pytest.raises(ConnectionError):
@@ -418,7 +418,7 @@ async def test_tutorial_models_are_shown(package, model, links, tmp_path):
     async with open_world(config, packages={"my_robot_description": share}) as world:
         world.describe((share / "urdf" / f"{model}.urdf").read_text(encoding="utf-8"))
         await world.settle()
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             opening = await client.opened()
     assert len(opening["robot_scene"]["links"]) == links
     view = opening["view_state"]["view"]["values"]

@@ -33,7 +33,7 @@ class FunctionFiles:
     """Records the files below a folder whose functions run; the code of modules does not count.
 
     Args:
-        folder: the folder.
+        folder: the folder whose files are recorded.
     """
 
     def __init__(self, folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""A process that behaves on the wire like Fast DDS, with a service and a client of ours.
+"""A process that behaves on the wire like Fast DDS, with a service and a client.
 
 ``python -m tests.wire.fast_peer``. It serves ``/fast_echo`` and calls ``/linkwright_echo``; both return the text of the
 request. Each reply of ``/fast_echo`` comes after a reply to another client.

@@ -46,7 +46,7 @@ class LinkwrightProgram:
         return sorted(name for name, _ in self.node.get_node_names_and_namespaces())
 
     def fork(self) -> list[Any]:
-        """Fork, and return whether the child could publish and end, and the number of our threads."""
+        """Fork, and return whether the child could publish and end, and the number of its own threads."""
         child = os.fork()
         if not child:
             self.publisher.publish(Int32(data=1))

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(not TOOL.exists(), reason="the tool is not insta
 
 
 @pytest.fixture
-def tool(domain, monkeypatch):
+def run_tool(domain, monkeypatch):
     def run(*arguments: str) -> str:
         result = subprocess.run(
             [str(TOOL), *arguments, "--suppress-progress-bar", "-r", "1s"],
@@ -37,20 +37,20 @@ def tool(domain, monkeypatch):
     return run
 
 
-def test_cyclonedds_ps_shows_participant(processes, tool, domain):
+def test_cyclonedds_ps_shows_participant(processes, run_tool, domain):
     process = processes("ours")
     process.node.create_publisher(JointState, "joint_states", 10)
-    output = tool("ps", "-i", str(domain))
+    output = run_tool("ps", "-i", str(domain))
     assert "linkwright/" in output
     assert str(os.getpid()) in output
     for topic in ("ros_discovery_info", "rt/joint_states", "rt/rosout", "rq/ours/get_parametersRequest"):
         assert topic in output
 
 
-def test_cyclonedds_ls_shows_endpoints_and_qos(processes, tool, domain):
+def test_cyclonedds_ls_shows_endpoints_and_qos(processes, run_tool, domain):
     process = processes("ours")
     process.node.create_publisher(JointState, "joint_states", 7)
-    output = tool("ls", "-i", str(domain), "-q", "-t", "rt/joint_states")
+    output = run_tool("ls", "-i", str(domain), "-q", "-t", "rt/joint_states")
     assert "sensor_msgs::msg::dds_::JointState_" in output
     assert "History.KeepLast(depth=7)" in output
     assert "Reliability.Reliable(max_blocking_time='100 milliseconds')" in output
@@ -58,11 +58,11 @@ def test_cyclonedds_ls_shows_endpoints_and_qos(processes, tool, domain):
     assert "enclave=/;" in output
 
 
-def test_cyclonedds_typeof_shows_no_type_description(processes, tool, domain):
+def test_cyclonedds_typeof_shows_no_type_description(processes, run_tool, domain):
     """Type descriptions are not sent.
 
     rmw_fastrtps_cpp and Humble's Cyclone DDS cannot process Linkwright's.
     """
     process = processes("ours")
     process.node.create_publisher(JointState, "joint_states", 10)
-    assert "struct" not in tool("typeof", "rt/joint_states", "-i", str(domain))
+    assert "struct" not in run_tool("typeof", "rt/joint_states", "-i", str(domain))

@@ -17,7 +17,7 @@ on_linux = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="the 
 
 
 @pytest.fixture
-def tables(tmp_path):
+def write_tables(tmp_path):
     """Return a function that writes the system's tables with sockets at these ports."""
 
     def write(*ports: int, **inodes: int) -> object:
@@ -45,15 +45,15 @@ def tables(tmp_path):
         ((FIRST - 250, FIRST + 250, 53, 5353), 0),  # other domains, and sockets without DDS
     ],
 )
-def test_processes_are_counted_by_their_ports(tables, ports, count):
-    assert other_processes(DOMAIN_ID, tables(*ports)) == count
+def test_processes_are_counted_by_their_ports(write_tables, ports, count):
+    assert other_processes(DOMAIN_ID, write_tables(*ports)) == count
 
 
 @on_linux
-def test_sockets_of_this_process_are_not_counted(tables):
+def test_sockets_of_this_process_are_not_counted(write_tables):
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own_socket:
         inode = os.fstat(own_socket.fileno()).st_ino
-        assert other_processes(DOMAIN_ID, tables(FIRST, **{f"p{FIRST}": inode})) == 0
+        assert other_processes(DOMAIN_ID, write_tables(FIRST, **{f"p{FIRST}": inode})) == 0
 
 
 def test_count_is_unknown_without_socket_tables(tmp_path):

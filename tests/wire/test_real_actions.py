@@ -25,7 +25,7 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 
 @pytest.fixture
-def peers(programs):
+def start_peer(programs):
     """Return a function that starts the program on a side.
 
     The side's name is the node's name.
@@ -41,17 +41,17 @@ def peers(programs):
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
 @pytest.mark.parametrize("server_is_first", [True, False])
-def test_goal_is_executed_with_feedback(peers, client_side, server_side, server_is_first):
+def test_goal_is_executed_with_feedback(start_peer, client_side, server_side, server_is_first):
     first, second = (server_side, client_side) if server_is_first else (client_side, server_side)
-    peers_by_side = {first: peers(first), second: peers(second)}
+    peers_by_side = {first: start_peer(first), second: start_peer(second)}
     message = peers_by_side[client_side].ask("send_goal", f"/{server_side}/fibonacci", 5)
     assert (message["accepted"], message["status"], message["sequence"]) == (True, "SUCCEEDED", [0, 1, 1, 2, 3, 5])
 
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
-def test_goals_are_rejected_aborted_and_canceled(peers, client_side, server_side):
-    peers(server_side)
-    client = peers(client_side)
+def test_goals_are_rejected_aborted_and_canceled(start_peer, client_side, server_side):
+    start_peer(server_side)
+    client = start_peer(client_side)
     action = f"/{server_side}/fibonacci"
     assert client.ask("send_goal", action, -1) == {"accepted": False}
     assert client.ask("send_goal", action, 0)["status"] == "ABORTED"
@@ -62,14 +62,14 @@ def test_goals_are_rejected_aborted_and_canceled(peers, client_side, server_side
 
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
-def test_simultaneous_goals_get_their_own_results(peers, client_side, server_side):
-    peers(server_side)
-    assert peers(client_side).ask("count_correct_goals", f"/{server_side}/fibonacci", GOAL_COUNT) == GOAL_COUNT
+def test_simultaneous_goals_get_their_own_results(start_peer, client_side, server_side):
+    start_peer(server_side)
+    assert start_peer(client_side).ask("count_correct_goals", f"/{server_side}/fibonacci", GOAL_COUNT) == GOAL_COUNT
 
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
-def test_managed_node_changes_states(peers, client_side, server_side):
-    server, client = peers(server_side), peers(client_side)
+def test_managed_node_changes_states(start_peer, client_side, server_side):
+    server, client = start_peer(server_side), start_peer(client_side)
     client.ask("watch", server_side)
     for peer in (client, server):
         peer.ask_until(lambda counts: counts == [1, 1], "endpoint_counts", f"/{server_side}/transition_event")
@@ -87,8 +87,8 @@ def test_managed_node_changes_states(peers, client_side, server_side):
 
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
-def test_parameter_events_are_received(peers, client_side, server_side):
-    observer, node = peers(client_side), peers(server_side)
+def test_parameter_events_are_received(start_peer, client_side, server_side):
+    observer, node = start_peer(client_side), start_peer(server_side)
     for peer in (observer, node):
         peer.ask_until(lambda counts: counts == [2, 2], "endpoint_counts", "/parameter_events")
     node.ask("declare", "speed", 1.5)
@@ -97,8 +97,8 @@ def test_parameter_events_are_received(peers, client_side, server_side):
     assert events == [["new", "speed", 1.5], ["changed", "speed", 2.5]]
 
 
-def test_verbs_use_actions_and_lifecycle_of_real_node(peers):
-    peers("theirs")
+def test_verbs_use_actions_and_lifecycle_of_real_node(start_peer):
+    start_peer("theirs")
     out, err, status = linkwright(
         "action", "send_goal", "--feedback", "/theirs/fibonacci", "test_msgs/action/Fibonacci", "{order: 3}"
     )

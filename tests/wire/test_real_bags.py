@@ -19,15 +19,15 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 
 @pytest.fixture
-def real_node(programs):
+def start_real_node(programs):
     return lambda: programs("real_peer", "real_node", python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp")
 
 
 @pytest.mark.parametrize("storage", ["mcap", "sqlite3"])
-def test_bag_records_real_node_and_plays_to_it(real_node, tmp_path, storage):
+def test_bag_records_real_node_and_plays_to_it(start_real_node, tmp_path, storage):
     """Record images, joint states and earlier latched messages, each once and in order."""
     bag = tmp_path / "bag"
-    real = real_node()
+    real = start_real_node()
     topics = ["/states_from_ros", "/images_from_ros", "/lasting_from_ros"]
     command = [sys.executable, "-m", "linkwright", "bag", "record", "-o", str(bag), "-s", storage, *topics]
     with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL) as recording:

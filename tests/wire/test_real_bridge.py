@@ -1,4 +1,4 @@
-"""A bridge between nodes of real ROS 2 on Fast DDS and nodes of ours over Zenoh.
+"""A bridge between nodes of real ROS 2 on Fast DDS and nodes of Linkwright over Zenoh.
 
 See `test_real_ros`.
 
@@ -49,7 +49,7 @@ class Bridge:
 
 
 @pytest.fixture
-def bridge():
+def start_bridge():
     bridges = []
 
     def start():
@@ -57,12 +57,12 @@ def bridge():
         return bridges[-1]
 
     yield start
-    for bridge in bridges:
-        bridge.kill()
+    for start_bridge in bridges:
+        start_bridge.kill()
 
 
 @pytest.fixture
-def peer(programs):
+def start_peer(programs):
     """Return a function that starts the program on a side.
 
     The side's name is the node's name.
@@ -86,8 +86,8 @@ def peer(programs):
     return start
 
 
-def start_both_sides(peer, program):
-    return {side: peer(program, side) for side in RMW}
+def start_both_sides(start_peer, program):
+    return {side: start_peer(program, side) for side in RMW}
 
 
 def publish_until_received(publisher, subscriber, text):
@@ -113,9 +113,9 @@ def publish_image_until_received(publisher, subscriber):
     subscriber.ask_until(has_arrived, "received_images")
 
 
-def test_bridge_connects_topics_services_and_parameters(bridge, peer):
-    bridge()
-    sides = start_both_sides(peer, "real_peer")
+def test_bridge_connects_topics_services_and_parameters(start_bridge, start_peer):
+    start_bridge()
+    sides = start_both_sides(start_peer, "real_peer")
     for side in sides.values():
         side.ask_until(lambda nodes: ["/", "ours"] in nodes and ["/", "theirs"] in nodes, "nodes")
     for publisher_side, subscriber_side in SIDES:
@@ -140,9 +140,9 @@ def test_bridge_connects_topics_services_and_parameters(bridge, peer):
 
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
-def test_goals_are_executed_rejected_aborted_and_canceled(bridge, peer, client_side, server_side):
-    bridge()
-    client = start_both_sides(peer, "managed_peer")[client_side]
+def test_goals_are_executed_rejected_aborted_and_canceled(start_bridge, start_peer, client_side, server_side):
+    start_bridge()
+    client = start_both_sides(start_peer, "managed_peer")[client_side]
     action = f"/{server_side}/fibonacci"
     message = client.ask("send_goal", action, 5)
     assert (message["accepted"], message["status"], message["sequence"]) == (True, "SUCCEEDED", [0, 1, 1, 2, 3, 5])
@@ -156,20 +156,20 @@ def test_goals_are_executed_rejected_aborted_and_canceled(bridge, peer, client_s
 
 @pytest.mark.skipif(not TYPES, reason="LINKWRIGHT_ROS_TYPES names no types of tf2")
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_transforms_are_received(bridge, peer, publisher_side, subscriber_side):
-    bridge()
-    publisher = peer("tf_peer", publisher_side)
+def test_transforms_are_received(start_bridge, start_peer, publisher_side, subscriber_side):
+    start_bridge()
+    publisher = start_peer("tf_peer", publisher_side)
     publisher.ask("publish_transform", "/tf_static", "map", "odom", 1.0)
     publisher.ask("keep_publishing", "odom", "base_link", 2.0)
-    subscriber = peer("tf_peer", subscriber_side)
+    subscriber = start_peer("tf_peer", subscriber_side)
     assert subscriber.ask_until(bool, "received", "/tf_static") == {"odom": ["map", 1.0]}
     assert subscriber.ask_until(bool, "received", "/tf") == {"base_link": ["odom", 2.0]}
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_images_arrive_in_order(bridge, peer, publisher_side, subscriber_side):
-    bridge()
-    sides = start_both_sides(peer, "real_peer")
+def test_images_arrive_in_order(start_bridge, start_peer, publisher_side, subscriber_side):
+    start_bridge()
+    sides = start_both_sides(start_peer, "real_peer")
     publish_image_until_received(sides[publisher_side], sides[subscriber_side])
     sides[publisher_side].ask("publish_images", IMAGE_COUNT, RATE_HZ)
     indices = sides[subscriber_side].ask_until(lambda numbers: IMAGE_COUNT - 1 in numbers, "received_images")
@@ -177,28 +177,28 @@ def test_images_arrive_in_order(bridge, peer, publisher_side, subscriber_side):
 
 
 @pytest.mark.parametrize("killed", RMW)
-def test_killed_node_disappears_and_returns_across_bridge(bridge, peer, killed):
-    bridge()
-    sides = start_both_sides(peer, "real_peer")
+def test_killed_node_disappears_and_returns_across_bridge(start_bridge, start_peer, killed):
+    start_bridge()
+    sides = start_both_sides(start_peer, "real_peer")
     (remaining,) = RMW.keys() - {killed}
     publish_until_received(sides[killed], sides[remaining], "once")
     sides[killed].kill()
     sides[remaining].ask_until(lambda nodes: ["/", killed] not in nodes, "nodes")
-    sides[killed] = peer("real_peer", killed)
+    sides[killed] = start_peer("real_peer", killed)
     publish_until_received(sides[killed], sides[remaining], "again")
     publish_until_received(sides[remaining], sides[killed], "answered")
     assert sides[remaining].ask("nodes").count(["/", killed]) == 1
     assert sides[remaining].ask("count_correct_echoes", f"/{killed}_echo", "again", 10) == 10
 
 
-def test_killed_bridge_is_replaced(bridge, peer):
-    first = bridge()
-    sides = start_both_sides(peer, "real_peer")
+def test_killed_bridge_is_replaced(start_bridge, start_peer):
+    first = start_bridge()
+    sides = start_both_sides(start_peer, "real_peer")
     publish_until_received(sides["theirs"], sides["ours"], "once")
     first.kill()
     for side, other in SIDES:
         sides[side].ask_until(lambda nodes, other=other: ["/", other] not in nodes, "nodes")
-    bridge()
+    start_bridge()
     for publisher_side, subscriber_side in SIDES:
         publish_until_received(sides[publisher_side], sides[subscriber_side], f"again from {publisher_side}")
         assert sides[subscriber_side].ask("received", "lasting_to_ros") == ["said before"] * 2
@@ -207,9 +207,9 @@ def test_killed_bridge_is_replaced(bridge, peer):
     assert nodes == sides["ours"].ask("nodes")
 
 
-def test_verbs_show_nodes_beyond_bridge(bridge, peer, monkeypatch):
-    bridge()
-    sides = start_both_sides(peer, "real_peer")
+def test_verbs_show_nodes_beyond_bridge(start_bridge, start_peer, monkeypatch):
+    start_bridge()
+    sides = start_both_sides(start_peer, "real_peer")
     publish_until_received(sides["theirs"], sides["ours"], "we know each other")
     monkeypatch.setenv("RMW_IMPLEMENTATION", RMW["ours"])
     assert {"/ours", "/theirs"} <= set(linkwright("node", "list")[0].splitlines())

@@ -1,4 +1,4 @@
-"""The nodes of the course's solutions under the real rclpy, unchanged, together with ours.
+"""The nodes of the course's solutions under the real rclpy, unchanged, beside Linkwright's.
 
 See `test_real_ros`.
 """
@@ -84,7 +84,7 @@ def start_solution(workspace):
 
 @pytest.fixture
 def velocities(processes):
-    """Return a node of ours, and the commands that it receives on /cmd_vel."""
+    """Return a node of Linkwright, and the commands that it receives on /cmd_vel."""
     process = processes("ours")
     commands: list[tuple[float, float]] = []
     process.node.create_subscription(
@@ -187,7 +187,7 @@ def test_word_driver_ends_on_ctrl_c(velocities, start_solution):
 @pytest.mark.extra("sim")
 @pytest.mark.parametrize("workspace", ["11", "12"], indirect=True)
 def test_mission_spoken_in_chinese_reaches_red_ball(workspace, processes, start_solution):
-    """The world is ours, and each node of the learner runs under the real rclpy.
+    """The world is Linkwright's, and each node of the learner runs under the real rclpy.
 
     In lesson 12, the images are sent with best effort. Kilted's Fast DDS sometimes does not connect two real nodes,
     logs "Inconsistent TypeObject", and does not try again. When the nodes started at the same time, 3 of 26 runs with

@@ -1,4 +1,4 @@
-"""Many simultaneous calls and goals between nodes of real ROS 2 on Fast DDS and ours.
+"""Many simultaneous calls and goals between nodes of real ROS 2 on Fast DDS and of Linkwright.
 
 See `test_real_ros`.
 
@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 
 @pytest.fixture
-def peers(programs):
+def start_peer(programs):
     """Return a function that starts the program; its name says on which side."""
 
     def start(name):
@@ -36,10 +36,10 @@ def peers(programs):
 
 
 @pytest.mark.parametrize("server", ["theirs", "ours"])
-def test_thousand_mixed_calls_from_three_clients_are_answered(peers, server):
+def test_thousand_mixed_calls_from_three_clients_are_answered(start_peer, server):
     """Every call gets its own response."""
-    peers(server)
-    clients = [peers(name) for name in CLIENTS]
+    start_peer(server)
+    clients = [start_peer(name) for name in CLIENTS]
     with ThreadPoolExecutor(len(clients)) as threads:
         share = CALL_COUNT // len(clients) + 1
         asking = [
@@ -50,8 +50,8 @@ def test_thousand_mixed_calls_from_three_clients_are_answered(peers, server):
 
 
 @pytest.mark.parametrize(("asks", "answers"), [("theirs", "ours"), ("ours", "theirs")])
-def test_goals_are_canceled_and_preempted_under_load(peers, asks, answers):
-    client, server, other = peers(asks), peers(answers), peers(f"{asks}_2")
+def test_goals_are_canceled_and_preempted_under_load(start_peer, asks, answers):
+    client, server, other = start_peer(asks), start_peer(answers), start_peer(f"{asks}_2")
     client.ask("exchange_states", RATE_HZ, answers)
     server.ask("exchange_states", RATE_HZ, asks)
     for peer in (client, server):

@@ -48,7 +48,7 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 
 @pytest.fixture
-def peers(programs, monkeypatch):
+def start_peer(programs, monkeypatch):
     """Return a function that starts the program on a side.
 
     The side's name is the node's name.
@@ -75,8 +75,10 @@ def peers(programs, monkeypatch):
     ],
     ids=lambda value: str(getattr(value, "name", value)),
 )
-def test_incompatible_qos_is_reported_on_both_sides(peers, publisher_side, subscriber_side, offered, requested, policy):
-    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
+def test_incompatible_qos_is_reported_on_both_sides(
+    start_peer, publisher_side, subscriber_side, offered, requested, policy
+):
+    publishes, subscribes = start_peer(publisher_side), start_peer(subscriber_side)
     publishes.ask("publisher", "/topic", offered)
     subscribes.ask("subscription", "/topic", requested)
     for peer in (publishes, subscribes):
@@ -84,8 +86,8 @@ def test_incompatible_qos_is_reported_on_both_sides(peers, publisher_side, subsc
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_only_compatible_qos_profiles_match(peers, publisher_side, subscriber_side):
-    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
+def test_only_compatible_qos_profiles_match(start_peer, publisher_side, subscriber_side):
+    publishes, subscribes = start_peer(publisher_side), start_peer(subscriber_side)
     fits = {}
     for number, (offered, requested) in enumerate(product(PROFILES, PROFILES)):
         topic = f"/topic_{number}"
@@ -113,8 +115,8 @@ def has_event(kind, events):
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_best_available_qos_always_matches(peers, publisher_side, subscriber_side):
-    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
+def test_best_available_qos_always_matches(start_peer, publisher_side, subscriber_side):
+    publishes, subscribes = start_peer(publisher_side), start_peer(subscriber_side)
     for number, offered in enumerate(({}, SENSOR_DATA, LATCHED, LIVELY)):
         publishes.ask("publisher", f"/topic_{number}", offered)
         publishes.ask("publish", f"/topic_{number}", "before")
@@ -129,12 +131,12 @@ def test_best_available_qos_always_matches(peers, publisher_side, subscriber_sid
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_missed_deadline_is_reported_on_both_sides(peers, publisher_side, subscriber_side):
+def test_missed_deadline_is_reported_on_both_sides(start_peer, publisher_side, subscriber_side):
     """A missed deadline is reported on both sides.
 
     A deadline begins with the first message, and is not missed while messages arrive in time.
     """
-    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
+    publishes, subscribes = start_peer(publisher_side), start_peer(subscriber_side)
     for topic in ("/topic", "/silent"):
         publishes.ask("publisher", topic, {"deadline": 2.0})
         subscribes.ask("subscription", topic, {"deadline": 3.0})
@@ -155,9 +157,9 @@ def count_missed_deadlines(peer, topic):
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_liveliness_is_lost_and_regained(peers, publisher_side, subscriber_side):
+def test_liveliness_is_lost_and_regained(start_peer, publisher_side, subscriber_side):
     """The liveliness is asserted manually, and then expires."""
-    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
+    publishes, subscribes = start_peer(publisher_side), start_peer(subscriber_side)
     by_hand = {"liveliness": "manual_by_topic", "lease": 1.0}
     publishes.ask("publisher", "/topic", by_hand)
     subscribes.ask("subscription", "/topic", by_hand)
@@ -171,8 +173,8 @@ def test_liveliness_is_lost_and_regained(peers, publisher_side, subscriber_side)
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_killed_publisher_loses_liveliness(peers, publisher_side, subscriber_side):
-    publishes, subscribes = peers(publisher_side), peers(subscriber_side)
+def test_killed_publisher_loses_liveliness(start_peer, publisher_side, subscriber_side):
+    publishes, subscribes = start_peer(publisher_side), start_peer(subscriber_side)
     publishes.ask("publisher", "/topic", LIVELY)
     subscribes.ask("subscription", "/topic", LIVELY)
     subscribes.ask_until(lambda text: ["alive", 1, 0] in text, "events", "/topic")
@@ -182,14 +184,14 @@ def test_killed_publisher_loses_liveliness(peers, publisher_side, subscriber_sid
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_message_beyond_its_lifespan_is_not_delivered(peers, publisher_side, subscriber_side):
-    publishes = peers(publisher_side)
+def test_message_beyond_its_lifespan_is_not_delivered(start_peer, publisher_side, subscriber_side):
+    publishes = start_peer(publisher_side)
     for topic, lifespan in (("/short", 0.5), ("/long", 300.0)):
         publishes.ask("publisher", topic, {"durability": "transient_local", "lifespan": lifespan})
         publishes.ask("publish", topic, "old")
     publishes.ask("publisher", "/clock", {})
     publishes.ask("keep_publishing", "/clock", 0.1)
-    subscribes = peers(subscriber_side)  # its start takes longer than the short lifespan
+    subscribes = start_peer(subscriber_side)  # its start takes longer than the short lifespan
     subscribes.ask("subscription", "/clock", {})
     subscribes.ask_until(lambda texts: len(texts) > 10, "received", "/clock")
     for topic in ("/short", "/long"):

@@ -23,7 +23,7 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 
 @pytest.fixture
-def robot(programs):
+def start_robot(programs):
     """Start a robot with some variables of its environment.
 
     It listens and publishes when this returns.
@@ -37,10 +37,10 @@ def run_recipe_command(name):
     return linkwright(*shlex.split(line)[1:])
 
 
-def test_robot_is_found_with_documented_variables(robot, monkeypatch) -> None:
+def test_robot_is_found_with_documented_variables(start_robot, monkeypatch) -> None:
     for name, value in re.findall(r"^export (\w+)=(\w+)", FIND_COMMAND, re.MULTILINE):
         monkeypatch.setenv(name, str(own_domain()) if name == "ROS_DOMAIN_ID" else value)
-    robot()
+    start_robot()
     assert "/from_ros" in run_recipe_command("topic list")[0].splitlines()
     output, errors, status = run_recipe_command("doctor")
     (shown,) = (line for block in read_blocks(PAGE) for line in block.text.splitlines() if ": 1 node, " in line)
@@ -48,11 +48,11 @@ def test_robot_is_found_with_documented_variables(robot, monkeypatch) -> None:
 
 
 @pytest.mark.parametrize(("transports", "found"), [("SHM", False), ("LARGE_DATA", False), ("DEFAULT", True)])
-def test_fast_dds_transports_that_hide_robot(robot, transports, found) -> None:
-    robot(FASTDDS_BUILTIN_TRANSPORTS=transports)
+def test_fast_dds_transports_that_hide_robot(start_robot, transports, found) -> None:
+    start_robot(FASTDDS_BUILTIN_TRANSPORTS=transports)
     assert ("/from_ros" in run_recipe_command("topic list")[0].splitlines()) is found
 
 
-def test_doctor_reports_possibly_different_domain(robot) -> None:
-    robot(ROS_DOMAIN_ID=str(own_domain(2)))
+def test_doctor_reports_possibly_different_domain(start_robot) -> None:
+    start_robot(ROS_DOMAIN_ID=str(own_domain(2)))
     assert "DOC801" in run_recipe_command("doctor")[1]

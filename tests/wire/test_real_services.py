@@ -22,7 +22,7 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names 
 
 
 @pytest.fixture
-def real_node(programs):
+def start_real_node(programs):
     def start(name="real_node", **variables):
         return programs("real_peer", name, python=PYTHON, RMW_IMPLEMENTATION="rmw_fastrtps_cpp", **variables)
 
@@ -46,7 +46,7 @@ def wait_for_result(process, future):
 
 
 def ask_while_spinning(process, peer, *question):
-    """Ask the peer a question, and run our callbacks until it answers."""
+    """Ask the peer a question, and run callbacks until it answers."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(peer.ask(*question)))
     thread.start()
@@ -56,9 +56,9 @@ def ask_while_spinning(process, peer, *question):
 
 
 @pytest.mark.parametrize("we_are_first", [True, False])
-def test_thousand_calls_to_real_service_get_their_own_responses(processes, real_node, we_are_first):
+def test_thousand_calls_to_real_service_get_their_own_responses(processes, start_real_node, we_are_first):
     process = processes("ours") if we_are_first else None
-    real_node()
+    start_real_node()
     process = process or processes("ours")
     client = process.node.create_client(SetCameraInfo, "/echo")
     process.spin_until(client.service_is_ready)
@@ -69,14 +69,14 @@ def test_thousand_calls_to_real_service_get_their_own_responses(processes, real_
         )
 
 
-def test_thousand_calls_from_real_client_get_their_own_responses(processes, real_node):
+def test_thousand_calls_from_real_client_get_their_own_responses(processes, start_real_node):
     process = processes("ours")
     process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
-    peer = real_node()
+    peer = start_real_node()
     assert ask_while_spinning(process, peer, "echoes_are_right", "/linkwright_echo", "call", CALL_COUNT) == CALL_COUNT
 
 
-def test_first_call_of_first_real_node_is_answered(processes, real_node):
+def test_first_call_of_first_real_node_is_answered(processes, start_real_node):
     """The first call of the first real node is answered.
 
     The node calls as soon as it has read Cyclone's announcement, before Linkwright has discovered it.
@@ -84,16 +84,16 @@ def test_first_call_of_first_real_node_is_answered(processes, real_node):
     process = processes("ours")
     process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     for attempt in range(3):
-        peer = real_node(f"real_node_{attempt}")
+        peer = start_real_node(f"real_node_{attempt}")
         assert ask_while_spinning(process, peer, "echoes", "/linkwright_echo", ["one", "two"]) == ["one", "two"]
         peer.end()
 
 
-def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_node):
+def test_simultaneous_real_and_linkwright_clients_are_answered(processes, start_real_node):
     process = processes("ours")
     process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     client = process.node.create_client(SetCameraInfo, "/echo")
-    peers = [real_node(f"real_node_{number}") for number in range(3)]
+    peers = [start_real_node(f"real_node_{number}") for number in range(3)]
     counts = []
     threads = [
         threading.Thread(
@@ -117,9 +117,9 @@ def test_simultaneous_real_and_linkwright_clients_are_answered(processes, real_n
     assert own_futures == [f"mine {number}" for number in range(20)]
 
 
-def test_history_of_real_publisher_is_unknown(processes, real_node):
+def test_history_of_real_publisher_is_unknown(processes, start_real_node):
     process = processes("ours")
-    real_node()
+    start_real_node()
     process.spin_until(lambda: process.node.get_publishers_info_by_topic("/from_ros"))
     (info,) = process.node.get_publishers_info_by_topic("/from_ros")
     assert info.qos_profile.history is HistoryPolicy.UNKNOWN
@@ -127,47 +127,47 @@ def test_history_of_real_publisher_is_unknown(processes, real_node):
 
 @pytest.mark.parametrize("ours", [{"ROS_LOCALHOST_ONLY": "1"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}])
 @pytest.mark.parametrize("we_are_first", [True, False])
-def test_calls_work_in_both_directions_on_localhost(processes, real_node, monkeypatch, ours, we_are_first):
-    peer = None if we_are_first else real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
+def test_calls_work_in_both_directions_on_localhost(processes, start_real_node, monkeypatch, ours, we_are_first):
+    peer = None if we_are_first else start_real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     for name, value in ours.items():
         monkeypatch.setenv(name, value)
     process = processes("ours")
     process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     client = process.node.create_client(SetCameraInfo, "/echo")
-    peer = peer or real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
+    peer = peer or start_real_node(ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST")
     process.spin_until(client.service_is_ready)
     assert wait_for_result(process, client.call_async(camera_request("hej"))).status_message == "hej"
     assert ask_while_spinning(process, peer, "echoes", "/linkwright_echo", ["hej"]) == ["hej"]
 
 
-def test_calls_larger_than_packet_work_in_both_directions(processes, real_node):
+def test_calls_larger_than_packet_work_in_both_directions(processes, start_real_node):
     process = processes("ours")
     process.node.create_service(SetCameraInfo, "/linkwright_echo", echo)
     client = process.node.create_client(SetCameraInfo, "/echo")
-    peer = real_node()
+    peer = start_real_node()
     process.spin_until(client.service_is_ready)
     large = "".join(chr(ord("a") + number % 26) for number in range(LARGE_TEXT_LENGTH))
     assert wait_for_result(process, client.call_async(camera_request(large))).status_message == large
     assert ask_while_spinning(process, peer, "echoes", "/linkwright_echo", [large, "small"]) == [large, "small"]
 
 
-def test_killed_real_server_disappears_and_successor_is_called(processes, real_node):
+def test_killed_real_server_disappears_and_successor_is_called(processes, start_real_node):
     process = processes("ours")
     client = process.node.create_client(SetCameraInfo, "/echo")
-    first = real_node()
+    first = start_real_node()
     process.spin_until(client.service_is_ready)
     assert wait_for_result(process, client.call_async(camera_request("first"))).status_message == "first"
     first.kill()
-    real_node()
+    start_real_node()
     process.spin_until(client.service_is_ready)
     process.spin_until(
         lambda: wait_for_result(process, client.call_async(camera_request("again"))).status_message == "again"
     )
 
 
-def test_successor_of_killed_linkwright_server_answers(processes, programs, real_node):
+def test_successor_of_killed_linkwright_server_answers(processes, programs, start_real_node):
     ours = programs("linkwright_program", "ours")
-    peer = real_node()
+    peer = start_real_node()
     assert "use_sim_time" in peer.ask("parameters_of", "ours")
     ours.kill()
     process = processes("ours")
@@ -177,10 +177,10 @@ def test_successor_of_killed_linkwright_server_answers(processes, programs, real
         pass
 
 
-def test_parameters_are_read_and_set_in_both_directions(processes, real_node):
+def test_parameters_are_read_and_set_in_both_directions(processes, start_real_node):
     process = processes("ours")
     process.node.declare_parameter("speed", 1.5)
-    peer = real_node()
+    peer = start_real_node()
     assert "speed" in ask_while_spinning(process, peer, "parameters_of", "ours")
     assert ask_while_spinning(process, peer, "set_parameter_of", "ours", "speed", 2.5) == [True, 2.5]
     assert process.node.get_parameter("speed").value == 2.5
@@ -189,8 +189,8 @@ def test_parameters_are_read_and_set_in_both_directions(processes, real_node):
     assert wait_for_result(process, parameters.get_parameters(["speed"])).values[0].double_value == 1.5
 
 
-def test_verbs_use_services_and_parameters_of_real_node(real_node):
-    real_node()
+def test_verbs_use_services_and_parameters_of_real_node(start_real_node):
+    start_real_node()
     out, err, status = linkwright("service", "call", "/flip", "std_srvs/srv/SetBool", "{data: false}")
     assert "success=True, message='by ROS'" in out
     assert (err, status) == ("", 0)

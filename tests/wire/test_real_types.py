@@ -22,13 +22,13 @@ LARGE_BYTES, LARGE_MESSAGE_COUNT = 8_000_000, 5
 SIDES = [("theirs", "ours"), ("ours", "theirs")]
 """The side of the publisher or client, and the side of the subscription or server."""
 INTERNAL_TYPES = "rmw_dds_common/"
-"""Types that only the transport uses; ours are Humble's."""
+"""Types that only the transport uses; Linkwright's are those of Humble."""
 
 pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ROS_PYTHON names no interpreter with rclpy")
 
 
 @pytest.fixture
-def peers(programs, monkeypatch):
+def start_peer(programs, monkeypatch):
     """Return a function that starts the program on a side.
 
     The side's name is the node's name.
@@ -50,8 +50,8 @@ def find_common_types(kind, peer):
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_messages_have_same_values_on_both_sides(peers, publisher_side, subscriber_side):
-    peers_by_side = {side: peers(side) for side in ("theirs", "ours")}
+def test_messages_have_same_values_on_both_sides(start_peer, publisher_side, subscriber_side):
+    peers_by_side = {side: start_peer(side) for side in ("theirs", "ours")}
     types = find_common_types("msg", peers_by_side["theirs"])
     assert {"test_msgs/msg/WStrings", "test_msgs/msg/BoundedSequences", "sensor_msgs/msg/PointCloud2"} <= set(types)
     for name in types:
@@ -72,8 +72,8 @@ def test_messages_have_same_values_on_both_sides(peers, publisher_side, subscrib
 
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
-def test_services_have_same_values_on_both_sides(peers, client_side, server_side):
-    peers_by_side = {side: peers(side) for side in ("theirs", "ours")}
+def test_services_have_same_values_on_both_sides(start_peer, client_side, server_side):
+    peers_by_side = {side: start_peer(side) for side in ("theirs", "ours")}
     services = find_common_types("srv", peers_by_side["theirs"])
     assert {"test_msgs/srv/Arrays", "test_msgs/srv/Empty", "nav_msgs/srv/GetPlan"} <= set(services)
     peers_by_side[server_side].ask("serve", services)
@@ -85,8 +85,8 @@ def test_services_have_same_values_on_both_sides(peers, client_side, server_side
 
 @pytest.mark.parametrize(("client_side", "server_side"), SIDES)
 @pytest.mark.parametrize("action", ["test_msgs/action/NestedMessage", "test_msgs/action/Fibonacci"])
-def test_actions_have_same_values_on_both_sides(peers, client_side, server_side, action):
-    peers_by_side = {side: peers(side) for side in ("theirs", "ours")}
+def test_actions_have_same_values_on_both_sides(start_peer, client_side, server_side, action):
+    peers_by_side = {side: start_peer(side) for side in ("theirs", "ours")}
     peers_by_side[server_side].ask("serve_action", action)
     feedback, result, (goal, meant_feedback, meant_result) = peers_by_side[client_side].ask("send_goal", action)
     assert peers_by_side[server_side].ask("requests", action) == [goal]
@@ -95,8 +95,8 @@ def test_actions_have_same_values_on_both_sides(peers, client_side, server_side,
 
 
 @pytest.mark.parametrize(("publisher_side", "subscriber_side"), SIDES)
-def test_arrays_of_eight_megabytes_arrive_complete(peers, publisher_side, subscriber_side):
-    peers_by_side = {side: peers(side) for side in ("theirs", "ours")}
+def test_arrays_of_eight_megabytes_arrive_complete(start_peer, publisher_side, subscriber_side):
+    peers_by_side = {side: start_peer(side) for side in ("theirs", "ours")}
     peers_by_side[subscriber_side].ask("subscribe_large", "/large")
     peers_by_side[publisher_side].ask_until(lambda count: count == 1, "subscription_count", "/large")
     # A reader of Cyclone misses samples that a writer of Fast DDS sends directly after the discovery.

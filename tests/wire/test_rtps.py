@@ -98,7 +98,7 @@ def test_endpoint_data_round_trips():
 
 
 class _LossyLink:
-    """A writer of ours and a reader of theirs; the packets between them may get lost."""
+    """A writer of Linkwright and a reader of Fast DDS; the packets between them may get lost."""
 
     def __init__(self, loss, seed=1):
         self.writer, self.reader = Writer(WRITER), Reader(READER)

@@ -18,7 +18,7 @@ REQUESTED_RMW = {"RMW_IMPLEMENTATION": ZENOH}
 
 
 @pytest.fixture
-def installed(monkeypatch):
+def install_only(monkeypatch):
     """Return a function that makes only these packages appear installed."""
 
     def only(*names: str) -> None:
@@ -45,22 +45,22 @@ def installed(monkeypatch):
     ],
 )
 def test_rmw_implementation_selects_transport_before_installed_packages(
-    installed, packages, variables, chosen, is_installed
+    install_only, packages, variables, chosen, is_installed
 ):
-    installed(*packages)
+    install_only(*packages)
     assert middleware(variables) == chosen
     assert is_available(variables) is is_installed
 
 
-def test_missing_packages_are_reported(installed):
-    installed()
+def test_missing_packages_are_reported(install_only):
+    install_only()
     assert f"neither DDS nor Zenoh is installed: {install_hint('zenoh')}, or with 'dds'" in unavailable_reason({})
     assert "the package 'eclipse-zenoh' is not installed" in unavailable_reason(REQUESTED_RMW)
     assert "the package 'cyclonedds' is not installed" in unavailable_reason({"RMW_IMPLEMENTATION": CYCLONE})
 
 
-def test_process_without_transport_logs_and_continues(installed):
-    installed()
+def test_process_without_transport_logs_and_continues(install_only):
+    install_only()
     log = []
     graph = Graph(threads=True, on_log=log.append)
     try:

@@ -16,7 +16,7 @@ PIECES = [
     *(", ", "1e3", "1.5", ".inf", "2001-01-01", '"q"', "'s'", "? ", "!!str ", "!!set ", "|\n", "# c", "=", "null"),
 ]
 
-PLAIN = NodeLoader.__base__
+PLAIN_LOADER = NodeLoader.__base__
 """PyYAML's loader; if PyYAML uses libyaml, some of its errors differ from those of the parser in Python."""
 
 
@@ -38,7 +38,7 @@ def load_text(text: str) -> Any:
 
 @given(st.lists(st.sampled_from(PIECES), max_size=14).map("".join))
 def test_conversion_of_any_text_matches_pyyaml(text: str) -> None:
-    assert load_outcome(lambda: load_text(text)) == load_outcome(lambda: yaml.load(text, PLAIN))
+    assert load_outcome(lambda: load_text(text)) == load_outcome(lambda: yaml.load(text, PLAIN_LOADER))
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ PACKAGES = {"pkg_a": "/share/pkg_a"}
 
 
 @pytest.fixture
-def inputs(write: Write, tmp_path, monkeypatch):
+def make_inputs(write: Write, tmp_path, monkeypatch):
     monkeypatch.setenv("LINKWRIGHT_TEST", "env value")
     monkeypatch.delenv("LINKWRIGHT_UNSET", raising=False)
 
@@ -37,8 +37,8 @@ def inputs(write: Write, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
-def test_traced_attributes_have_locations(case: Case, inputs) -> None:
-    inputs(case)
+def test_traced_attributes_have_locations(case: Case, make_inputs) -> None:
+    make_inputs(case)
     expansion = expand("main.xacro", case.arguments, packages=PACKAGES)
     provenance = expansion.provenance(expansion.document.root)
     for part in provenance.walk():
@@ -51,8 +51,8 @@ def test_traced_attributes_have_locations(case: Case, inputs) -> None:
 
 
 @pytest.mark.parametrize("case", [*CASES.values(), *ERRORS.values()], ids=[*CASES, *ERRORS])
-def test_tracing_raises_only_linkwright_errors(case: Case, inputs) -> None:
-    case_inputs = inputs(case)
+def test_tracing_raises_only_linkwright_errors(case: Case, make_inputs) -> None:
+    case_inputs = make_inputs(case)
     for trace in (
         lambda: arguments_of("main.xacro", case.arguments, packages=PACKAGES),
         lambda: explain("main.xacro", "no such name", case.arguments, packages=PACKAGES),

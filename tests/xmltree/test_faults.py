@@ -10,7 +10,7 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.xmltree import Overlay, parse, parse_file, reader
 
 
-def finding_of(text: str | bytes) -> tuple[str, str, int, int, str | None]:
+def find_fault(text: str | bytes) -> tuple[str, str, int, int, str | None]:
     with pytest.raises(LinkwrightError) as caught:
         parse(text, "robot.urdf")
     (diagnostic,) = caught.value.diagnostics
@@ -77,7 +77,7 @@ CASES = [
 def test_mistakes_have_expected_findings(
     text: str, code: str, message: str, line: int, column: int, hint: str | None
 ) -> None:
-    fault = finding_of(text)
+    fault = find_fault(text)
     assert fault[:4] == (code, message, line, column)
     if hint is not None:
         assert fault[4] == hint
@@ -92,7 +92,7 @@ def test_mismatched_tag_notes_opening_tag() -> None:
 
 
 def test_missing_attribute_quote_is_reported() -> None:
-    code, _, line, _, hint = finding_of('<a>\n<b x="1 y="2">\n</b></a>')
+    code, _, line, _, hint = find_fault('<a>\n<b x="1 y="2">\n</b></a>')
     assert code == "XML206"
     assert line == 2
     assert hint is not None
@@ -100,7 +100,7 @@ def test_missing_attribute_quote_is_reported() -> None:
 
 @pytest.mark.parametrize("text", ["", "  \n "])
 def test_empty_file_is_reported(text: str) -> None:
-    code, message, *_ = finding_of(text)
+    code, message, *_ = find_fault(text)
     assert (code, message) == ("XML105", "'robot.urdf' is empty")
 
 
@@ -115,7 +115,7 @@ def test_empty_file_hint_names_root_element(name: str, element: str) -> None:
 
 
 def test_invalid_utf8_byte_is_reported() -> None:
-    code, message, line, column, hint = finding_of(b"<a>\n\xc3\xa9<b n='\xff'/></a>")
+    code, message, line, column, hint = find_fault(b"<a>\n\xc3\xa9<b n='\xff'/></a>")
     assert (code, message, line, column) == ("XML104", "byte 0xff is not valid UTF-8", 2, 8)
     assert hint is not None
 
@@ -125,20 +125,20 @@ def test_invalid_utf8_byte_is_reported() -> None:
     [b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR", b"PK\x03\x04\0\0\0", b"\x7fELF\x02\x01\x01\0", b"\0" * 80 + b"\x0c\0\0\0"],
 )
 def test_binary_file_is_reported(data: bytes) -> None:
-    code, message, *_, hint = finding_of(data)
+    code, message, *_, hint = find_fault(data)
     assert (code, message) == ("XML104", "'robot.urdf' is not a text file")
     assert "check that it is the intended file" in str(hint)
 
 
 @pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
 def test_utf_16_without_byte_order_mark_is_reported(encoding: str) -> None:
-    code, message, *_, hint = finding_of("<a b='车'/>".encode(encoding))
+    code, message, *_, hint = find_fault("<a b='车'/>".encode(encoding))
     assert (code, message) == ("XML104", "'robot.urdf' is in UTF-16 and has no byte order mark")
     assert hint == "save the file as UTF-8"
 
 
 def test_null_character_is_reported_with_location() -> None:
-    assert finding_of(b"<a>\n <b n='\0'/></a>")[:4] == ("XML206", "the character U+0000 is not allowed in XML", 2, 8)
+    assert find_fault(b"<a>\n <b n='\0'/></a>")[:4] == ("XML206", "the character U+0000 is not allowed in XML", 2, 8)
 
 
 @pytest.mark.parametrize(
@@ -149,17 +149,17 @@ def test_null_character_is_reported_with_location() -> None:
     ],
 )
 def test_merge_conflict_is_reported(text: str) -> None:
-    code, message, line, column, hint = finding_of(text)
+    code, message, line, column, hint = find_fault(text)
     assert (code, message) == ("XML206", "there is an unresolved merge conflict here")
     assert (line, column) == (2, 1)
     assert "keep one of the two" in str(hint)
 
 
 def test_gbk_text_is_recognized() -> None:
-    code, message, line, column, hint = finding_of('<a>\n <b n="机器人底盘"/></a>'.encode("gbk"))
+    code, message, line, column, hint = find_fault('<a>\n <b n="机器人底盘"/></a>'.encode("gbk"))
     assert (code, message, line, column) == ("XML104", "byte 0xbb is not valid UTF-8", 2, 8)
     assert "though it looks like GBK" in str(hint)
-    assert "GBK" not in str(finding_of("<a n='rübe'/>".encode("latin-1"))[-1])
+    assert "GBK" not in str(find_fault("<a n='rübe'/>".encode("latin-1"))[-1])
 
 
 @pytest.mark.parametrize(
@@ -173,7 +173,7 @@ def test_gbk_text_is_recognized() -> None:
     ],
 )
 def test_template_language_is_named(text: str, language: str, column: int) -> None:
-    code, message, _, location, hint = finding_of(text)
+    code, message, _, location, hint = find_fault(text)
     assert (code, location) == ("XML206", column)
     assert message == f"this is a {language} template, not XML"
     assert (
@@ -186,7 +186,7 @@ def test_template_language_is_named(text: str, language: str, column: int) -> No
 
 
 def test_error_before_template_is_reported_first() -> None:
-    assert finding_of("<a>1 < 2 <% %></a>")[1] == "'<' does not begin a tag"
+    assert find_fault("<a>1 < 2 <% %></a>")[1] == "'<' does not begin a tag"
 
 
 def test_unknown_encoding_is_reported() -> None:

@@ -13,10 +13,10 @@ from linkwright.diagnostics import LinkwrightError
 from linkwright.xmltree import Comment, Element, ProcessingInstruction, Text, parse, parse_file
 
 
-def nodes(element: Element) -> list[Element | Text | Comment | ProcessingInstruction]:
+def all_nodes(element: Element) -> list[Element | Text | Comment | ProcessingInstruction]:
     tree_nodes: list[Element | Text | Comment | ProcessingInstruction] = [element]
     for child in element.children:
-        tree_nodes.extend(nodes(child) if isinstance(child, Element) else [child])
+        tree_nodes.extend(all_nodes(child) if isinstance(child, Element) else [child])
     return tree_nodes
 
 
@@ -42,7 +42,7 @@ def test_every_node_has_source_location() -> None:
         "<![CDATA[<é>]]>\r\n<b/>ü</robot>\n<!-- after -->"
     )
     document = parse(text, "x")
-    for node in [*document.prolog, *nodes(document.root), *document.epilog]:
+    for node in [*document.prolog, *all_nodes(document.root), *document.epilog]:
         remaining_text = text[node.offset :]
         if isinstance(node, Element):
             assert remaining_text.startswith("<" + node.tag)
@@ -131,25 +131,27 @@ NAMES = st.sampled_from(["a", "b", "名", "x-y.z", "_1"])
 VALUES = st.text(alphabet="ab <&>\"'é\n\t中", max_size=6)
 
 
-def escaped(text: str) -> str:
+def escape(text: str) -> str:
     return "".join(f"&#{ord(character)};" if character in "<&>\"'\n\t" else character for character in text)
 
 
-def write(name: str, attributes: dict[str, str], children: list[str]) -> str:
-    inside = "".join(f' {key}="{escaped(value)}"' for key, value in attributes.items())
+def write_element(name: str, attributes: dict[str, str], children: list[str]) -> str:
+    inside = "".join(f' {key}="{escape(value)}"' for key, value in attributes.items())
     return f"<{name}{inside}>{''.join(children)}</{name}>"
 
 
 TREES = st.recursive(
-    VALUES.map(escaped),
-    lambda inner: st.builds(write, NAMES, st.dictionaries(NAMES, VALUES, max_size=3), st.lists(inner, max_size=4)),
+    VALUES.map(escape),
+    lambda inner: st.builds(
+        write_element, NAMES, st.dictionaries(NAMES, VALUES, max_size=3), st.lists(inner, max_size=4)
+    ),
     max_leaves=12,
 )
 
 
 @given(st.lists(TREES, max_size=4))
 def test_tree_matches_element_tree(parts: list[str]) -> None:
-    text = write("root", {}, parts)
+    text = write_element("root", {}, parts)
     actual, theirs = parse(text, "x").root, ET.fromstring(text)
     pending = [(actual, theirs)]
     while pending:

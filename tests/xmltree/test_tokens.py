@@ -15,11 +15,11 @@ ROBOTS = sorted((Path(__file__).parents[2] / "robots").rglob("*.xacro"))
 MARKUP = st.text(alphabet="<>/!?-[]=\"' \nab:", max_size=60)
 
 
-def kinds(text: str) -> list[tuple[str, str, bool]]:
+def token_kinds(text: str) -> list[tuple[str, str, bool]]:
     return [(token.kind.name, token.text, token.is_closed) for token in tokens(text)]
 
 
-def attributes(text: str) -> list[tuple[str, str | None, str]]:
+def attribute_names(text: str) -> list[tuple[str, str | None, str]]:
     (tag,) = tokens(text)
     return [(attribute.name, attribute.value, attribute.quote) for attribute in tag.attributes()]
 
@@ -42,16 +42,16 @@ def test_token_attributes_have_correct_positions(text: str):
             assert attribute.value in (None, text[attribute.value_start : attribute.value_end])
 
 
-def _elements(element: Element):
+def _all_elements(element: Element):
     yield element
     for child in element.elements():
-        yield from _elements(child)
+        yield from _all_elements(child)
 
 
 @pytest.mark.parametrize("path", ROBOTS, ids=lambda path: path.name)
 def test_start_tags_match_parsed_tree(path: Path):
     text = path.read_text(encoding="utf-8")
-    tree = {element.offset: element for element in _elements(parse(text, path.name).root)}
+    tree = {element.offset: element for element in _all_elements(parse(text, path.name).root)}
     starts = [token for token in tokens(text) if token.kind is Kind.START]
     assert [token.start for token in starts] == sorted(tree)
     for token in starts:
@@ -74,7 +74,7 @@ def test_start_tags_match_parsed_tree(path: Path):
     ],
 )
 def test_incomplete_markup_ends_before_next_tag(text, expected):
-    assert kinds(text) == expected
+    assert token_kinds(text) == expected
 
 
 @pytest.mark.parametrize(
@@ -90,7 +90,7 @@ def test_incomplete_markup_ends_before_next_tag(text, expected):
     ],
 )
 def test_incomplete_attributes_are_found(text, expected):
-    assert attributes(text) == expected
+    assert attribute_names(text) == expected
 
 
 @pytest.mark.parametrize("piece", ["<", "<!", "<![", '<a b="', "<!--", "<a '", "<a b=", '"', "<!DOCTYPE ["])

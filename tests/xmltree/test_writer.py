@@ -64,7 +64,7 @@ def test_invalid_comment_is_rejected() -> None:
 TEXTS = st.text(alphabet="ab<&>\"'é中", min_size=1, max_size=6)
 
 
-def build(tag: str, attributes: dict[str, str], children: list[Element | Text | Comment]) -> Element:
+def build_element(tag: str, attributes: dict[str, str], children: list[Element | Text | Comment]) -> Element:
     element = Element(tag, attributes)
     for child in children:
         last = element.children[-1] if element.children else None
@@ -76,7 +76,7 @@ def build(tag: str, attributes: dict[str, str], children: list[Element | Text | 
 ELEMENTS = st.recursive(
     st.builds(Element, st.sampled_from(["a", "b"]), st.dictionaries(st.sampled_from(["k", "l"]), TEXTS)),
     lambda inner: st.builds(
-        build,
+        build_element,
         st.sampled_from(["a", "b", "名"]),
         st.dictionaries(st.sampled_from(["k", "l", "m"]), TEXTS),
         st.lists(st.one_of(inner, TEXTS.map(Text), st.just("c").map(Comment)), max_size=4),
@@ -85,11 +85,11 @@ ELEMENTS = st.recursive(
 )
 
 
-def content(element: Element) -> object:
+def element_content(element: Element) -> object:
     inside: list[object] = []
     for child in element.children:
         if isinstance(child, Element):
-            inside.append(content(child))
+            inside.append(element_content(child))
         elif isinstance(child, ProcessingInstruction):
             inside.append((child.target, child.data))
         elif child.data.strip():
@@ -101,4 +101,4 @@ def content(element: Element) -> object:
 def test_written_document_is_read_back(element: Element) -> None:
     text = write(Document(element))
     reread = parse(text, "x")
-    assert content(reread.root) == content(element)
+    assert element_content(reread.root) == element_content(element)

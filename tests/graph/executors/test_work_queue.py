@@ -25,27 +25,27 @@ class InterruptedAt:
     """Raises KeyboardInterrupt in this thread, in code outside of this file, as a signal does.
 
     Args:
-        moment: at which of the moments when Python looks for signals; the first is 1.
+        check_number: the number of Python's check for signals that raises; the first is 1.
     """
 
-    def __init__(self, moment: int) -> None:
-        self.left = moment
-        self.before = sys.gettrace()
+    def __init__(self, check_number: int) -> None:
+        self._checks_left = check_number
+        self._previous_trace = sys.gettrace()
 
     def __enter__(self) -> None:
         sys._getframe().f_trace_opcodes = True  # Python 3.12 reads this attribute only in `settrace`
         sys.settrace(self._trace)
 
     def __exit__(self, *_: object) -> None:
-        sys.settrace(self.before)
+        sys.settrace(self._previous_trace)
 
     def _trace(self, frame: FrameType, event: str, _argument: object) -> Any:
         if frame.f_code.co_filename == __file__:
             return None
         frame.f_trace_opcodes = True
         if event == "opcode" and frame.f_lasti in signal_check_offsets(frame.f_code):
-            self.left -= 1
-            if self.left == 0:
+            self._checks_left -= 1
+            if self._checks_left == 0:
                 raise KeyboardInterrupt
         return self._trace
 
@@ -66,17 +66,17 @@ def signal_check_offsets(code: CodeType) -> frozenset[int]:
 
 def test_interrupt_during_wait_raises_keyboard_interrupt_and_keeps_queue() -> None:
     queue = WorkQueue()
-    for moment in count(1):
+    for check_number in count(1):
         queue.call_at(2**62, str)
         try:
-            with InterruptedAt(moment):
+            with InterruptedAt(check_number):
                 queue.wait(time.monotonic_ns() + 1_000_000)
         except KeyboardInterrupt:
-            queue.add(moment)
-            assert queue.take() == moment
+            queue.add(check_number)
+            assert queue.take() == check_number
         else:
             break  # the wait ended before this moment
-    assert moment > 10
+    assert check_number > 10
     thread = threading.Thread(target=queue.wait, args=(None,), daemon=True)
     thread.start()
     wait_until(lambda: is_waiting(thread))

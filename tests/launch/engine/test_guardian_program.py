@@ -16,7 +16,7 @@ from linkwright.launch.engine import guardian_program
 from tests.waiting import TIMEOUT_S
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "killpg"), reason="this system has no process groups")
-MARK = "LINKWRIGHT_GUARDED"
+GUARDED_VARIABLE = "LINKWRIGHT_GUARDED"
 NUMBERS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 Start = Callable[..., "subprocess.Popen[str]"]
@@ -59,7 +59,7 @@ def start() -> Iterator[Start]:
 
 def run_guardian(monkeypatch: pytest.MonkeyPatch, text: str, mark: str = "nobody") -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(text))
-    guardian_program.main(f"{MARK}={mark}")
+    guardian_program.main(f"{GUARDED_VARIABLE}={mark}")
 
 
 def test_guardian_ends_processes_and_removes_folder(
@@ -85,7 +85,7 @@ def test_guardian_ignores_launch_that_ended_normally(start: Start, monkeypatch: 
     not Path("/proc/self/environ").exists(), reason="the environments of other processes are not readable"
 )
 def test_guardian_finds_unreported_processes_by_mark(start: Start, monkeypatch: pytest.MonkeyPatch) -> None:
-    marked, other = start(**{MARK: "mine"}), start(**{MARK: "theirs"})
+    marked, other = start(**{GUARDED_VARIABLE: "mine"}), start(**{GUARDED_VARIABLE: "theirs"})
     run_guardian(monkeypatch, "", "mine")
     assert marked.wait(TIMEOUT_S) in (1, -signal.SIGINT)
     assert other.poll() is None

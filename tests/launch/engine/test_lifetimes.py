@@ -24,7 +24,7 @@ from tests.launch.launcher import Running, launch_file
 from tests.waiting import eventually, wait_until
 
 Write = Callable[[str, str], Path]
-MARK = "LINKWRIGHT_LAUNCH"
+LAUNCH_VARIABLE = "LINKWRIGHT_LAUNCH"
 SLEEPS = "import time; print('up', flush=True); time.sleep(60)"
 TALKER = "Node(package='demo_nodes_cpp', executable='talker')"
 
@@ -236,7 +236,7 @@ class TestGuardian:
         guardian.close()
         assert process.returncode == 0
         guardian.close()  # a second call has no effect
-        assert guardian.start_and_mark({})[MARK]
+        assert guardian.start_and_mark({})[LAUNCH_VARIABLE]
         assert guardian._process is None
 
     def test_killed_guardian_is_tolerated(self) -> None:

@@ -26,7 +26,7 @@ FALLING = box("falling", "0 0 9 0 0 0")
 ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base"/><link name="tip"><inertial>
 <mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <joint name="turn" type="continuous"><parent link="base"/><child link="tip"/><axis xyz="0 0 1"/></joint>{}</robot>"""
-MORE = '<link name="more"/><joint name="on" type="fixed"><parent link="tip"/><child link="more"/></joint>'
+EXTRA_LINK = '<link name="more"/><joint name="on" type="fixed"><parent link="tip"/><child link="more"/></joint>'
 
 
 def world_text(*parts: str) -> str:
@@ -90,7 +90,7 @@ async def test_launched_simulation_reloads_world_and_robot(write) -> None:
         await running.wait_until(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one"})
         files[0].write_text(world_text(FALLING, box("new", "5 5 1 0 0 0")))
         await running.wait_until(lambda simulation: set(simulation.scene.models) == {"ground", "falling", "one", "new"})
-        files[1].write_text(ARM.format(MORE))
+        files[1].write_text(ARM.format(EXTRA_LINK))
         await running.wait_until(lambda simulation: "one::more" in simulation.scene.bodies)
         await running.wait_until(lambda simulation: simulation.model_pose("one")[0] == 2.0)
         files[1].write_text(ARM.format("<link"))

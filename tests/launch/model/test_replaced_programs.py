@@ -28,7 +28,7 @@ def installed_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterat
     metadata = tmp_path / "my_sea-1.0.dist-info"
     metadata.mkdir()
     (metadata / "entry_points.txt").write_text(
-        f"[linkwright.replaced_programs]\nsea = {__name__}:sail\nsunk = my_sea_that_is_not_there:sail\n"
+        f"[linkwright.replaced_programs]\nsea = {__name__}:parse_sail\nsunk = my_sea_that_is_not_there:sail\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
     extensions._read_all_groups.cache_clear()

@@ -42,7 +42,7 @@ class ManagedNode(LifecycleNodeMixin):
 
 @pytest.fixture(autouse=True)
 def _executable(monkeypatch: pytest.MonkeyPatch) -> None:
-    entry = EntryPoint("life/node", f"{__name__}:Managed", "linkwright.nodes")
+    entry = EntryPoint("life/node", f"{__name__}:ManagedNode", "linkwright.nodes")
     monkeypatch.setitem(EXECUTABLES.entry_points, ("life", "node"), entry)
 
 

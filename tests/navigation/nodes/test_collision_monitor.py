@@ -50,7 +50,7 @@ def robot(graph, clock):
 
 
 @pytest.fixture
-def monitor(graph, robot):
+def start_monitor(graph, robot):
     monitors = []
 
     def make(**parameters):
@@ -58,18 +58,18 @@ def monitor(graph, robot):
         return monitors[-1].node
 
     yield make
-    for monitor in monitors:
-        monitor.close()
+    for start_monitor in monitors:
+        start_monitor.close()
 
 
-async def test_velocity_passes_in_free_space(robot, monitor):
-    monitor(**STOP)
+async def test_velocity_passes_in_free_space(robot, start_monitor):
+    start_monitor(**STOP)
     await robot.run(1.0)
     assert robot.velocity.x == pytest.approx(0.4)
 
 
-async def test_robot_stops_for_obstacle_in_zone_and_resumes(robot, monitor, log):
-    node = monitor(**STOP, state_topic="state")
+async def test_robot_stops_for_obstacle_in_zone_and_resumes(robot, start_monitor, log):
+    node = start_monitor(**STOP, state_topic="state")
     states = []
     robot.node.create_subscription("nav2_msgs/msg/CollisionMonitorState", "state", states.append, 10)
     await robot.run(1.0)
@@ -84,8 +84,8 @@ async def test_robot_stops_for_obstacle_in_zone_and_resumes(robot, monitor, log)
     assert node.lifecycle_state == ACTIVE
 
 
-async def test_publishing_ends_after_stop_pub_timeout(robot, monitor):
-    monitor(**STOP, stop_pub_timeout=1.0)
+async def test_publishing_ends_after_stop_pub_timeout(robot, start_monitor):
+    start_monitor(**STOP, stop_pub_timeout=1.0)
     robot.obstacles = ((0, 0.5),)
     await robot.run(3.0)
     robot.speeds.clear()
@@ -93,8 +93,8 @@ async def test_publishing_ends_after_stop_pub_timeout(robot, monitor):
     assert robot.speeds == []
 
 
-async def test_silent_sensor_stops_robot(robot, monitor):
-    monitor(**STOP, source_timeout=1.0)
+async def test_silent_sensor_stops_robot(robot, start_monitor):
+    start_monitor(**STOP, source_timeout=1.0)
     await robot.run(1.0)
     assert robot.velocity.x == pytest.approx(0.4)
     robot.publishes_scans = False
@@ -102,23 +102,23 @@ async def test_silent_sensor_stops_robot(robot, monitor):
     assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_sensor_with_zero_timeout_may_be_silent(robot, monitor):
-    monitor(**STOP, **{"scan.source_timeout": 0.0})
+async def test_sensor_with_zero_timeout_may_be_silent(robot, start_monitor):
+    start_monitor(**STOP, **{"scan.source_timeout": 0.0})
     robot.publishes_scans = False
     await robot.run(1.0)
     assert robot.velocity.x == pytest.approx(0.4)
 
 
-async def test_slowdown_zone_reduces_velocity(robot, monitor):
-    monitor(**{**STOP, "stop.action_type": "slowdown", "stop.slowdown_ratio": 0.3})
+async def test_slowdown_zone_reduces_velocity(robot, start_monitor):
+    start_monitor(**{**STOP, "stop.action_type": "slowdown", "stop.slowdown_ratio": 0.3})
     robot.obstacles = ((0, 0.5),)
     await robot.run(1.0)
     assert robot.velocity.x == pytest.approx(0.12)
 
 
-async def test_points_and_max_points_of_humble_are_read(robot, monitor):
+async def test_points_and_max_points_of_humble_are_read(robot, start_monitor):
     humble = {**STOP, "stop.points": [0.6, 0.3, 0.6, -0.3, 0.0, -0.3, 0.0, 0.3], "stop.max_points": 1}
-    monitor(**humble)
+    start_monitor(**humble)
     robot.obstacles = ((0, 0.5),)
     await robot.run(1.0)
     assert robot.velocity.x == pytest.approx(0.4)  # one point is allowed
@@ -127,8 +127,8 @@ async def test_points_and_max_points_of_humble_are_read(robot, monitor):
     assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_old_observations_stay_fixed_in_odometry_frame(robot, monitor):
-    monitor(**STOP)
+async def test_old_observations_stay_fixed_in_odometry_frame(robot, start_monitor):
+    start_monitor(**STOP)
     robot.obstacles = ((0, 0.9),)
     await robot.run(0.5)
     assert robot.velocity.x == pytest.approx(0.4)
@@ -138,7 +138,7 @@ async def test_old_observations_stay_fixed_in_odometry_frame(robot, monitor):
     assert robot.velocity == ZERO_VELOCITY
 
 
-async def test_approach_with_costmap_footprint_slows_down_before_wall(robot, monitor):
+async def test_approach_with_costmap_footprint_slows_down_before_wall(robot, start_monitor):
     polygon, point = get_message("geometry_msgs/msg/PolygonStamped"), get_message("geometry_msgs/msg/Point32")
     footprints = robot.node.create_publisher(polygon, "/local_costmap/published_footprint", 10)
 
@@ -152,7 +152,7 @@ async def test_approach_with_costmap_footprint_slows_down_before_wall(robot, mon
 
     robot.node.create_timer(0.1, publish_reading)
     approach = {"polygons": ["body"], "body.type": "polygon", "body.action_type": "approach", "body.min_points": 1}
-    monitor(**approach, **{"body.time_before_collision": 2.0})
+    start_monitor(**approach, **{"body.time_before_collision": 2.0})
     robot.wall = robot.pose[0] + 1.5
     await robot.run(8.0)
     assert 0.2 < robot.wall - robot.pose[0] < 0.45
@@ -161,7 +161,7 @@ async def test_approach_with_costmap_footprint_slows_down_before_wall(robot, mon
     assert 0 < speeds[-1] < 0.2
 
 
-async def test_velocity_polygon_follows_speed(robot, monitor):
+async def test_velocity_polygon_follows_speed(robot, start_monitor):
     zone = {
         "polygons": ["v"],
         "v.type": "velocity_polygon",
@@ -173,7 +173,7 @@ async def test_velocity_polygon_follows_speed(robot, monitor):
         zone[f"v.{name}.points"] = f"[[{size}, 0.3], [{size}, -0.3], [0.0, -0.3], [0.0, 0.3]]"
         zone |= {f"v.{name}.linear_min": lowest, f"v.{name}.linear_max": highest}
         zone |= {f"v.{name}.theta_min": -1.0, f"v.{name}.theta_max": 1.0}
-    monitor(**zone)
+    start_monitor(**zone)
     robot.obstacles = ((0, 0.7),)
     await robot.run(1.0)
     assert robot.velocity == ZERO_VELOCITY
@@ -182,8 +182,8 @@ async def test_velocity_polygon_follows_speed(robot, monitor):
     assert robot.velocity.x == pytest.approx(0.2)
 
 
-async def test_zone_can_be_disabled_by_parameter(robot, monitor):
-    node = monitor(**STOP)
+async def test_zone_can_be_disabled_by_parameter(robot, start_monitor):
+    node = start_monitor(**STOP)
     robot.obstacles = ((0, 0.5),)
     await robot.run(1.0)
     assert robot.velocity == ZERO_VELOCITY
@@ -192,7 +192,7 @@ async def test_zone_can_be_disabled_by_parameter(robot, monitor):
     assert robot.velocity.x == pytest.approx(0.4)
 
 
-async def test_point_cloud_is_filtered_by_height(robot, monitor):
+async def test_point_cloud_is_filtered_by_height(robot, start_monitor):
     cloud, field = get_message("sensor_msgs/msg/PointCloud2"), get_message("sensor_msgs/msg/PointField")
     clouds = robot.node.create_publisher(cloud, "/points", 5)
     height = [0.01]
@@ -205,7 +205,7 @@ async def test_point_cloud_is_filtered_by_height(robot, monitor):
         clouds.publish(message)
 
     robot.node.create_timer(0.1, publish_reading)
-    monitor(**STOP, **{"scan.type": "pointcloud", "scan.topic": "points"})
+    start_monitor(**STOP, **{"scan.type": "pointcloud", "scan.topic": "points"})
     await robot.run(1.0)
     assert robot.velocity.x == pytest.approx(0.4)
     height[0] = 0.2
@@ -214,7 +214,7 @@ async def test_point_cloud_is_filtered_by_height(robot, monitor):
 
 
 @pytest.mark.parametrize(("distance", "passes"), [(0.5, False), (2.0, True), (9.0, True)])
-async def test_range_message_is_arc_of_points(robot, monitor, distance, passes):
+async def test_range_message_is_arc_of_points(robot, start_monitor, distance, passes):
     message_type = get_message("sensor_msgs/msg/Range")
     ranges = robot.node.create_publisher(message_type, "/sonar", 5)
 
@@ -224,7 +224,7 @@ async def test_range_message_is_arc_of_points(robot, monitor, distance, passes):
         ranges.publish(message)
 
     robot.node.create_timer(0.1, publish_reading)
-    monitor(**STOP, **{"scan.type": "range", "scan.topic": "sonar"})
+    start_monitor(**STOP, **{"scan.type": "range", "scan.topic": "sonar"})
     await robot.run(1.0)
     assert (robot.velocity != ZERO_VELOCITY) is passes
 
@@ -239,8 +239,8 @@ async def test_range_message_is_arc_of_points(robot, monitor, distance, passes):
         ("scan.type", "sonar"),
     ],
 )
-async def test_invalid_parameter_is_reported_and_node_stays_unconfigured(robot, monitor, log, name, value):
-    node = monitor(**{**STOP, name: value})
+async def test_invalid_parameter_is_reported_and_node_stays_unconfigured(robot, start_monitor, log, name, value):
+    node = start_monitor(**{**STOP, name: value})
     await robot.run(0.5)
     assert node.lifecycle_state == UNCONFIGURED
     errors = [record.text for record in log if record.level == LogLevel.ERROR]

@@ -68,7 +68,7 @@ class SentGoal:
 
 
 @pytest.fixture
-async def server(graph, robot):
+async def start_server(graph, robot):
     nodes = []
 
     async def start(kind=PlannerServer, grid=None, costmap=None, **parameters):
@@ -100,8 +100,8 @@ def plan_to_pose(robot, goal, **fields):
     return SentGoal(robot, "ComputePathToPose", "compute_path_to_pose", {"goal": goal, **fields})
 
 
-async def test_compute_path_to_pose_returns_and_publishes_path(robot, server):
-    await server()
+async def test_compute_path_to_pose_returns_and_publishes_path(robot, start_server):
+    await start_server()
     plans = []
     robot.node.create_subscription(get_message("nav_msgs/msg/Path"), "/plan", plans.append, 1)
     status, result = await plan_to_pose(robot, make_pose(3.0, 2.0, 1.0)).wait_ended()
@@ -115,15 +115,15 @@ async def test_compute_path_to_pose_returns_and_publishes_path(robot, server):
     assert length == pytest.approx(hypot(2.0, 1.0), rel=0.05)
 
 
-async def test_goal_without_frame_is_aborted(robot, server, log):
-    await server()
+async def test_goal_without_frame_is_aborted(robot, start_server, log):
+    await start_server()
     status, result = await plan_to_pose(robot, make_pose(3.0, 2.0, frame="")).wait_ended()
     assert (status, len(result.path.poses)) == (ABORTED, 0)
     assert any("Failed to transform from  to map" in record.text for record in log)
 
 
-async def test_start_pose_and_goal_frame_are_respected(robot, server):
-    await server()
+async def test_start_pose_and_goal_frame_are_respected(robot, start_server):
+    await start_server()
     start = make_pose(0.5, 2.5)
     status, result = await plan_to_pose(
         robot, make_pose(1.5, 0.0, frame="base_link"), start=start, use_start=True
@@ -133,8 +133,8 @@ async def test_start_pose_and_goal_frame_are_respected(robot, server):
     assert path_poses[[0, -1], :2] == pytest.approx(np.array([[0.5, 2.5], [2.5, 1.0]]))
 
 
-async def test_compute_path_through_poses_visits_all_poses(robot, server):
-    await server()
+async def test_compute_path_through_poses_visits_all_poses(robot, start_server):
+    await start_server()
     goals = [make_pose(1.0, 2.0), make_pose(3.0, 2.0), make_pose(3.0, 1.0, 2.0)]
     goal = SentGoal(robot, "ComputePathThroughPoses", "compute_path_through_poses", {"goals": goals})
     status, result = await goal.wait_ended()
@@ -161,8 +161,8 @@ def divided_room():
         (make_pose(0.0, 0.0, frame="moon"), "TF_ERROR", "Unable to transform poses to global frame"),
     ],
 )
-async def test_planning_failure_has_error_code_and_message(jazzy, robot, server, goal, code, reason):
-    await server(grid=divided_room())
+async def test_planning_failure_has_error_code_and_message(jazzy, robot, start_server, goal, code, reason):
+    await start_server(grid=divided_room())
     status, result = await plan_to_pose(robot, goal).wait_ended()
     assert status == ABORTED
     assert result.error_code == getattr(result, code)
@@ -170,8 +170,8 @@ async def test_planning_failure_has_error_code_and_message(jazzy, robot, server,
     assert not len(result.path.poses)
 
 
-async def test_planning_failure_is_logged(robot, server, logged):
-    await server(grid=divided_room())
+async def test_planning_failure_is_logged(robot, start_server, logged):
+    await start_server(grid=divided_room())
     status, _ = await plan_to_pose(robot, make_pose(2.1, 1.5)).wait_ended()
     assert status == ABORTED
     assert logged("WARN")[-1] == (
@@ -221,10 +221,10 @@ async def test_new_goal_preempts_running_goal(robot, graph):
     node.close()
 
 
-async def test_planners_are_chosen_by_name(jazzy, robot, server, log):
+async def test_planners_are_chosen_by_name(jazzy, robot, start_server, log):
     smac = {"Smac.plugin": "nav2_smac_planner/SmacPlannerHybrid", "Smac.minimum_turning_radius": 0.4}
     near_parameters = {"Near.plugin": "nav2_navfn_planner::NavfnPlanner", "Near.tolerance": 0.0}
-    await server(planner_plugins=["Smac", "Near"], **smac, **near_parameters)
+    await start_server(planner_plugins=["Smac", "Near"], **smac, **near_parameters)
     texts = [record.text for record in log]
     assert [
         text
@@ -275,8 +275,8 @@ async def test_costmap_in_container_has_parameters_of_process(robot, graph):
     container.close()
 
 
-async def test_is_path_valid_checks_costmap(robot, server):
-    await server(costmap={"map_topic": "/map"})
+async def test_is_path_valid_checks_costmap(robot, start_server):
+    await start_server(costmap={"map_topic": "/map"})
     service = get_service("nav2_msgs/srv/IsPathValid")
     client = robot.node.create_client(service, "is_path_valid")
     stamp = get_message("builtin_interfaces/msg/Time")()
@@ -305,9 +305,9 @@ def smooth_path(robot, poses, **fields):
 CORNER = [(1.0 + 0.05 * step, 1.0, 0.0) for step in range(20)] + [(2.0, 1.0 + 0.05 * step, 1.0) for step in range(20)]
 
 
-async def test_path_is_smoothed(robot, server):
-    await server(SmootherServer)
-    await server()
+async def test_path_is_smoothed(robot, start_server):
+    await start_server(SmootherServer)
+    await start_server()
     await robot.run(0.5)
     status, result = await smooth_path(robot, CORNER, check_for_collisions=True).wait_ended()
     assert status == SUCCEEDED
@@ -318,11 +318,11 @@ async def test_path_is_smoothed(robot, server):
     assert np.abs(np.diff(path_poses[:-1, 2])).max() < 1.0
 
 
-async def test_smoothing_failures_have_error_code_and_message(jazzy, robot, server):
-    await server(SmootherServer)
+async def test_smoothing_failures_have_error_code_and_message(jazzy, robot, start_server):
+    await start_server(SmootherServer)
     _, result = await smooth_path(robot, CORNER).wait_ended()
     assert (result.error_code, result.error_msg) == (result.FAILED_TO_SMOOTH_PATH, "Costmap is not available")
-    await server()
+    await start_server()
     await robot.run(0.5)
     _, result = await smooth_path(robot, []).wait_ended()
     assert result.error_code == result.INVALID_PATH

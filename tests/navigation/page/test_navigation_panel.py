@@ -8,7 +8,7 @@ from typing import Any
 from linkwright.graph import DurabilityPolicy, Graph, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.rviz import RvizConfig
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 FILE = """\
 Panels:
@@ -87,7 +87,7 @@ async def navigation_page():
     """Run nav2's services, and a page that shows the panel."""
     async with open_world() as world:
         nav2 = Nav2(world.graph)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             await client.send("watch_navigation", open=True)
             yield world, nav2, client
@@ -101,7 +101,7 @@ async def test_manager_states_are_shown():
 
 
 async def test_panel_without_nav2_shows_unknown_and_rejects_commands():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         await client.send("watch_navigation", open=True)
         first = await client.until("navigation_state")
@@ -130,7 +130,7 @@ async def test_goal_progress_is_shown_until_next_goal():
 async def test_goal_failure_is_shown_with_error_until_next_goal():
     async with open_world() as world:
         nav2 = Nav2(world.graph)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             nav2.publish_goal_states(2)
             world.graph.create_node("camera").get_logger().error("no light")
@@ -146,7 +146,7 @@ async def test_goal_failure_before_page_opened_is_not_shown():
     async with open_world() as world:
         nav2 = Nav2(world.graph)
         nav2.publish_goal_states(6)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             nav2.publish_goal_states(6, 5)
             messages = [message for message in await client.drain(0.6) if isinstance(message, dict)]

@@ -10,7 +10,7 @@ import numpy as np
 from linkwright.navigation.slam.poses import compose, relative_pose
 from linkwright.navigation.slam.scan import planar_scan
 
-AHEAD = (np.eye(3), np.zeros(3))
+IDENTITY_MOUNTING = (np.eye(3), np.zeros(3))
 """The pose of a laser at the center of the robot."""
 
 
@@ -58,7 +58,7 @@ def measure_ranges(walls, pose, count=360, noise=0.01, rng=None, farthest=12.0):
 def make_scan(walls, pose, stamp_ns=0, rng=None, count=360, farthest=12.0):
     """Return the scan at a pose of the robot."""
     ranges, angles = measure_ranges(walls, pose, count, rng=rng, farthest=farthest)
-    return planar_scan(ranges, angles, (0.05, farthest), (0.0, 20.0), AHEAD, stamp_ns)
+    return planar_scan(ranges, angles, (0.05, farthest), (0.0, 20.0), IDENTITY_MOUNTING, stamp_ns)
 
 
 def path_along(corners, step=0.1, turn=0.1):

@@ -9,24 +9,24 @@ import pytest
 
 from linkwright.navigation.slam.scan import planar_scan
 
-AHEAD = (np.eye(3), np.zeros(3))
+IDENTITY_MOUNTING = (np.eye(3), np.zeros(3))
 
 
 def test_invalid_ranges_give_no_points():
     ranges = np.array([nan, inf, -inf, 0.0, 0.05, 40.0, 30.0, -1.0], dtype=np.float32)
-    scan = planar_scan(ranges, np.zeros(8), (0.1, 30.0), (0.0, 20.0), AHEAD, 7)
+    scan = planar_scan(ranges, np.zeros(8), (0.1, 30.0), (0.0, 20.0), IDENTITY_MOUNTING, 7)
     assert len(scan.points) == len(scan.free_ends) == 0
     assert scan.stamp_ns == 7
 
 
 def test_range_above_maximum_gives_free_ray():
-    scan = planar_scan(np.array([5.0, 25.0]), np.array([0.0, pi / 2]), (0.1, 30.0), (0.0, 20.0), AHEAD, 0)
+    scan = planar_scan(np.array([5.0, 25.0]), np.array([0.0, pi / 2]), (0.1, 30.0), (0.0, 20.0), IDENTITY_MOUNTING, 0)
     assert scan.points == pytest.approx(np.array([[5.0, 0.0]]))
     assert scan.free_ends == pytest.approx(np.array([[0.0, 20.0]]), abs=1e-9)
 
 
 def test_range_below_minimum_is_ignored():
-    scan = planar_scan(np.array([0.3, 0.6]), np.zeros(2), (0.1, 30.0), (0.5, 20.0), AHEAD, 0)
+    scan = planar_scan(np.array([0.3, 0.6]), np.zeros(2), (0.1, 30.0), (0.5, 20.0), IDENTITY_MOUNTING, 0)
     assert scan.points == pytest.approx(np.array([[0.6, 0.0]]))
 
 

@@ -16,7 +16,7 @@ from linkwright.graph.parameters.parameter import Range
 from linkwright.graph.qos.profile import ROSOUT_QOS, DurabilityPolicy, ReliabilityPolicy
 from linkwright.messages import get_message
 from tests.skipping import skipping
-from tests.viewer.scene import Client, World, open_world, page
+from tests.viewer.scene import Client, World, open_page, open_world
 from tests.waiting import eventually
 
 FLOAT = get_message("std_msgs/msg/Float64")
@@ -27,7 +27,7 @@ TWIST_STAMPED = get_message("geometry_msgs/msg/TwistStamped")
 
 @asynccontextmanager
 async def open_client() -> AsyncIterator[tuple[World, Client]]:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         yield world, client
 
@@ -113,7 +113,7 @@ async def test_closed_page_leaves_no_subscriptions():
     async with open_world() as world:
         world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         before = {name: subscription_count(world, name) for name in ("/rosout", "/parameter_events", "/speed")}
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             await client.send("watch_topics", wants_list=True, measured_topics=["/speed"], opened_topics=["/speed"])
             await client.send("watch_series", series=[{"id": 1, "topic": "/speed", "path": "data"}])
@@ -136,7 +136,7 @@ async def test_closed_page_leaves_no_subscriptions():
 
 
 async def test_two_pages_share_subscription():
-    async with open_client() as (world, first), page(world.viewer) as second:
+    async with open_client() as (world, first), open_page(world.viewer) as second:
         world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10).publish(FLOAT())
         for client in (first, second):
             await client.send("watch_topics", wants_list=False, measured_topics=["/speed"], opened_topics=[])
@@ -470,7 +470,7 @@ async def test_teleop_stops_robot_when_page_is_silent_or_closed():
         speeds = []
         node = world.graph.create_node("base")
         node.create_subscription(TWIST, "/cmd_vel", lambda message: speeds.append(message.linear.x), 10)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             await client.send("aim_teleop", target={"topic": "/cmd_vel", "kind": "auto", "frame_id": ""})
             await send_drive(client, 0.5)

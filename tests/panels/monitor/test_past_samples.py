@@ -10,7 +10,7 @@ from tests.panels.test_live_history import MAX_HISTORY_BYTES
 from tests.panels.test_time import config
 from tests.panels.test_timeline import START_S, open_recording
 from tests.skipping import skipping
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 from tests.waiting import eventually
 
 FLOAT = get_message("std_msgs/msg/Float64")
@@ -25,7 +25,7 @@ async def wait_for_plot(client, values: list[float]) -> None:
 
 @skipping
 async def test_plots_follow_time_back_and_are_complete_in_live_mode():
-    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, open_page(world.viewer) as client:
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_series", series=SERIES, seconds=30)
         await eventually(lambda: subscription_count(world, "/speed") == 1)
@@ -49,21 +49,21 @@ async def test_plots_follow_time_back_and_are_complete_in_live_mode():
 
 @skipping
 async def test_added_series_begins_with_stored_samples():
-    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, page(world.viewer) as client:
+    async with open_world(config(), history=MAX_HISTORY_BYTES) as world, open_page(world.viewer) as client:
         publisher = world.graph.create_node("talker").create_publisher(FLOAT, "/speed", 10)
         await client.send("watch_series", series=SERIES, seconds=30)
         await eventually(lambda: subscription_count(world, "/speed") == 1)
         for number in range(3):
             publisher.publish(FLOAT(data=float(number)))
             await asyncio.sleep(0.5)
-        async with page(world.viewer) as late_client:
+        async with open_page(world.viewer) as late_client:
             await late_client.send("watch_series", series=SERIES, seconds=30)
             await wait_for_plot(late_client, [0.0, 1.0, 2.0])
 
 
 @skipping
 async def test_plots_of_recording_show_samples_before_playback_time(tmp_path):
-    async with open_recording(tmp_path) as world, page(world.viewer) as client:
+    async with open_recording(tmp_path) as world, open_page(world.viewer) as client:
         await client.until("playhead", playing=True)
         await client.send("play", playing=False)
         await client.until("playhead", playing=False)

@@ -20,7 +20,7 @@ from linkwright.panels.terminal import feature as terminals
 from linkwright.panels.terminal.feature import MAX_TERMINALS, TerminalFeature
 from linkwright.panels.terminal.process_session import session_processes
 from linkwright.panels.terminal.terminal import MAX_UNACKNOWLEDGED
-from tests.viewer.scene import World, open_world, page
+from tests.viewer.scene import World, open_page, open_world
 from tests.waiting import TIMEOUT_S, wait_until
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no pseudoterminals")
@@ -92,7 +92,7 @@ def leader_pid(world: World, number: int = 1) -> int:
 
 
 async def test_terminal_runs_commands_in_folder(tmp_path: Path) -> None:
-    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, open_page(world.viewer) as client:
         assert (await client.until("terminals"))["folder"] == str(tmp_path)
         reader = await open_terminal(client)
         await reader.type("pwd -P; echo 'Wort 小车'; echo $TERM $COLORTERM\r")
@@ -100,7 +100,7 @@ async def test_terminal_runs_commands_in_folder(tmp_path: Path) -> None:
 
 
 async def test_requests_without_permission_are_rejected(tmp_path: Path) -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.send("open_terminal", **SIZE)
         refused = await client.until("terminals")
         assert "--terminal" in refused["refusal_reason"]
@@ -111,14 +111,14 @@ async def test_requests_without_permission_are_rejected(tmp_path: Path) -> None:
 
 
 async def test_page_without_permission_receives_no_terminal_messages() -> None:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.until("frame_table")
         assert not any(isinstance(message, dict) and message["type"] == "terminals" for message in client.messages)
 
 
 async def test_pages_on_other_machines_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "is_local_connection", lambda _: False)
-    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, open_page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "on the machine of the program" in (await client.until("terminals"))["refusal_reason"]
@@ -127,7 +127,7 @@ async def test_pages_on_other_machines_are_rejected(tmp_path: Path, monkeypatch:
 
 async def test_pages_of_other_users_are_rejected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "may_be_own_user", lambda _: False)
-    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, open_page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "the user who started the program" in (await client.until("terminals"))["refusal_reason"]
@@ -172,7 +172,7 @@ async def test_terminal_requires_loopback_address(host: str) -> None:
 
 
 async def test_exited_shell_is_shown_and_restarted(tmp_path: Path) -> None:
-    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, open_page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("echo first; exit 4\r")
         await wait_for_state(client, status=4)
@@ -183,11 +183,11 @@ async def test_exited_shell_is_shown_and_restarted(tmp_path: Path) -> None:
 
 
 async def test_another_page_attaches_with_last_output(tmp_path: Path) -> None:
-    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as first:
+    async with open_world_with_terminals(tmp_path) as world, open_page(world.viewer) as first:
         reader = await open_terminal(first)
         await reader.type("echo remem'ber'\r")
         await reader.until("remember\r\n")
-        async with page(world.viewer) as second:
+        async with open_page(world.viewer) as second:
             assert (await second.until("terminals"))["terminals"][0]["shown"] == "elsewhere"
             await second.send("show_terminal", terminal=1, columns=90, rows=20)
             other = Reader(second)
@@ -204,11 +204,11 @@ async def test_another_page_attaches_with_last_output(tmp_path: Path) -> None:
 
 async def test_reloaded_page_shows_terminal_again(tmp_path: Path) -> None:
     async with open_world_with_terminals(tmp_path) as world:
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             reader = await open_terminal(client)
             await reader.type("x=4''2\r")
             await reader.until("x=4")
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await wait_for_state(client, shown="nowhere")
             await client.send("show_terminal", terminal=1, **SIZE)
             reader = Reader(client)
@@ -217,7 +217,7 @@ async def test_reloaded_page_shows_terminal_again(tmp_path: Path) -> None:
 
 
 async def test_endless_output_waits_for_acknowledgment(tmp_path: Path) -> None:
-    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, open_page(world.viewer) as client:
         reader = await open_terminal(client)
         reader.acknowledges = False
         await reader.type("yes\r")
@@ -237,11 +237,11 @@ async def test_endless_output_waits_for_acknowledgment(tmp_path: Path) -> None:
 
 async def test_programs_continue_without_page(tmp_path: Path) -> None:
     async with open_world_with_terminals(tmp_path) as world:
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             reader = await open_terminal(client)
             await reader.type("seq 300000; touch finished\r")
         await asyncio.to_thread(wait_until, (tmp_path / "finished").exists, TIMEOUT_S)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.send("show_terminal", terminal=1, **SIZE)
             reader = Reader(client)
             await reader.until("\r\n300000\r\n")
@@ -249,7 +249,7 @@ async def test_programs_continue_without_page(tmp_path: Path) -> None:
 
 
 async def test_closing_terminal_ends_its_programs(tmp_path: Path) -> None:
-    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, open_page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("sleep 1000 & sleep 1000 & echo do'ne'\r")
         await reader.until("done\r\n")
@@ -261,7 +261,7 @@ async def test_closing_terminal_ends_its_programs(tmp_path: Path) -> None:
 
 
 async def test_closing_server_ends_all_programs(tmp_path: Path) -> None:
-    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, open_page(world.viewer) as client:
         reader = await open_terminal(client)
         await reader.type("trap '' HUP; (trap '' HUP; sleep 1000) & echo do'ne'\r")
         await reader.until("done\r\n")
@@ -271,7 +271,7 @@ async def test_closing_server_ends_all_programs(tmp_path: Path) -> None:
 
 
 async def test_number_of_terminals_is_limited(tmp_path: Path) -> None:
-    async with open_world_with_terminals(tmp_path, ("/bin/sleep", "1000")) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path, ("/bin/sleep", "1000")) as world, open_page(world.viewer) as client:
         for _ in range(MAX_TERMINALS + 1):
             await client.send("open_terminal", **SIZE)
         refused = await client.until(
@@ -281,7 +281,7 @@ async def test_number_of_terminals_is_limited(tmp_path: Path) -> None:
 
 
 async def test_shell_start_failure_is_reported(tmp_path: Path) -> None:
-    async with open_world_with_terminals(tmp_path / "gone") as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path / "gone") as world, open_page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "No such file" in (await client.until("terminals"))["refusal_reason"]
@@ -292,7 +292,7 @@ async def test_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.Monk
         raise ModuleNotFoundError("no winpty", name="winpty")
 
     monkeypatch.setattr(terminals, "open_pty", fail)
-    async with open_world_with_terminals(tmp_path) as world, page(world.viewer) as client:
+    async with open_world_with_terminals(tmp_path) as world, open_page(world.viewer) as client:
         await client.until("terminals")
         await client.send("open_terminal", **SIZE)
         assert "[learn]" in (await client.until("terminals"))["refusal_reason"]
@@ -300,7 +300,10 @@ async def test_missing_package_is_named(tmp_path: Path, monkeypatch: pytest.Monk
 
 async def test_unread_input_is_limited(tmp_path: Path) -> None:
     script = "stty raw -echo; echo ready; exec sleep 1000"
-    async with open_world_with_terminals(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
+    async with (
+        open_world_with_terminals(tmp_path, ("/bin/sh", "-c", script)) as world,
+        open_page(world.viewer) as client,
+    ):
         reader = await open_terminal(client)
         await reader.until("ready")
         for _ in range(5):
@@ -311,7 +314,10 @@ async def test_unread_input_is_limited(tmp_path: Path) -> None:
 
 async def test_binary_input_reaches_program_as_bytes(tmp_path: Path) -> None:
     script = "stty raw -echo; echo ready; head -c 2 | od -An -tu1"
-    async with open_world_with_terminals(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
+    async with (
+        open_world_with_terminals(tmp_path, ("/bin/sh", "-c", script)) as world,
+        open_page(world.viewer) as client,
+    ):
         reader = await open_terminal(client)
         await reader.until("ready")
         await client.send("write_terminal", terminal=1, text="\xff\x80", is_binary=True)
@@ -320,7 +326,10 @@ async def test_binary_input_reaches_program_as_bytes(tmp_path: Path) -> None:
 
 async def test_split_utf8_character_arrives_complete(tmp_path: Path) -> None:
     script = r"stty raw -echo; printf 'ready\346'; read -r a; printf '\234\272<'"  # an echo would separate the bytes
-    async with open_world_with_terminals(tmp_path, ("/bin/sh", "-c", script)) as world, page(world.viewer) as client:
+    async with (
+        open_world_with_terminals(tmp_path, ("/bin/sh", "-c", script)) as world,
+        open_page(world.viewer) as client,
+    ):
         reader = await open_terminal(client)
         await reader.until("ready")
         await reader.type("\n")
@@ -329,7 +338,7 @@ async def test_split_utf8_character_arrives_complete(tmp_path: Path) -> None:
 
 async def test_terminal_has_commands_of_linkwright_shell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SHELL", "/bin/sh")
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         world.viewer.add_feature(TerminalFeature).enable(tmp_path)
         reader = await open_terminal(client)
         await reader.type("command -v ros2; command -v linkwright\r")

@@ -22,11 +22,11 @@ async def test():
         yield graph
 
 
-def start(test, kind, **parameters):
+def start_filter(test, kind, **parameters):
     return kind(test.graph, NodeOptions(parameters=parameters))
 
 
-async def measure(test, rpy=(0.0, 0.0, 0.0), rates=(0.0, 0.0, 0.0), magnetic=False, acceleration=None):
+async def publish_measurements(test, rpy=(0.0, 0.0, 0.0), rates=(0.0, 0.0, 0.0), magnetic=False, acceleration=None):
     """Publish a rotated IMU's measurements every hundredth of a second."""
     back = quaternion_inverse(quaternion_from_rpy(rpy))
     if magnetic:
@@ -46,19 +46,19 @@ async def measure(test, rpy=(0.0, 0.0, 0.0), rates=(0.0, 0.0, 0.0), magnetic=Fal
     await test.advance(0.01)
 
 
-def angles(message):
+def rpy_angles(message):
     turn = message.orientation
     return rpy_from_quaternion((turn.x, turn.y, turn.z, turn.w))
 
 
 async def test_madgwick_publishes_orientation_and_transform(test):
-    start(test, MadgwickNode, orientation_stddev=0.1)
+    start_filter(test, MadgwickNode, orientation_stddev=0.1)
     data, tf = test.record("/imu/data"), test.record("/tf")
-    await measure(test)
+    await publish_measurements(test)
     assert len(data) == 0  # no message of the magnetometer has arrived
     for _ in range(20):
-        await measure(test, (0.3, -0.2, 1.0), magnetic=True)
-    assert angles(data.last) == pytest.approx((0.3, -0.2, 1.0), abs=0.01)
+        await publish_measurements(test, (0.3, -0.2, 1.0), magnetic=True)
+    assert rpy_angles(data.last) == pytest.approx((0.3, -0.2, 1.0), abs=0.01)
     assert list(data.last.orientation_covariance)[::4] == pytest.approx([0.01] * 3)
     (transform,) = tf.last.transforms
     assert (transform.header.frame_id, transform.child_frame_id) == ("odom", "imu_link")
@@ -67,11 +67,11 @@ async def test_madgwick_publishes_orientation_and_transform(test):
 
 async def test_madgwick_applies_offset_gravity_removal_and_reverse_tf(test):
     parameters = {"use_mag": False, "yaw_offset": pi / 2, "declination": 0.1, "remove_gravity_vector": True}
-    start(test, MadgwickNode, **parameters, reverse_tf=True, publish_debug_topics=True)
+    start_filter(test, MadgwickNode, **parameters, reverse_tf=True, publish_debug_topics=True)
     data, tf, rpy = test.record("/imu/data"), test.record("/tf"), test.record("/imu/rpy/filtered")
     for _ in range(3):
-        await measure(test, (0.2, 0.1, 0.0))
-    assert angles(data.last)[2] == pytest.approx(pi / 2 - 0.1)
+        await publish_measurements(test, (0.2, 0.1, 0.0))
+    assert rpy_angles(data.last)[2] == pytest.approx(pi / 2 - 0.1)
     measured_acceleration = data.last.linear_acceleration
     assert (measured_acceleration.x, measured_acceleration.y, measured_acceleration.z) == pytest.approx(
         (0.0, 0.0, 0.0), abs=1e-3
@@ -82,28 +82,28 @@ async def test_madgwick_applies_offset_gravity_removal_and_reverse_tf(test):
 
 
 async def test_stateless_madgwick_restarts_at_each_measurement(test):
-    start(test, MadgwickNode, use_mag=False, stateless=True, publish_tf=False)
+    start_filter(test, MadgwickNode, use_mag=False, stateless=True, publish_tf=False)
     data = test.record("/imu/data")
     for roll in (0.1, 0.5, -0.4):
-        await measure(test, (roll, 0.0, 0.0))
-        await measure(test, (roll, 0.0, 0.0))
-        assert angles(data.last)[0] == pytest.approx(roll, abs=1e-6)
+        await publish_measurements(test, (roll, 0.0, 0.0))
+        await publish_measurements(test, (roll, 0.0, 0.0))
+        assert rpy_angles(data.last)[0] == pytest.approx(roll, abs=1e-6)
 
 
 async def test_complementary_filter_follows_gyroscope(test):
-    start(test, ComplementaryNode, do_bias_estimation=False)
+    start_filter(test, ComplementaryNode, do_bias_estimation=False)
     data = test.record("/imu/data")
     for _ in range(101):
-        await measure(test, rates=(0.0, 0.0, 0.5))
-    assert angles(data.last)[2] == pytest.approx(0.5, abs=0.01)
+        await publish_measurements(test, rates=(0.0, 0.0, 0.5))
+    assert rpy_angles(data.last)[2] == pytest.approx(0.5, abs=0.01)
     assert test.graph.count_publishers("/tf") == 0
 
 
 async def test_falling_imu_publishes_nothing(test):
-    start(test, ComplementaryNode)
+    start_filter(test, ComplementaryNode)
     data = test.record("/imu/data")
     for _ in range(3):
-        await measure(test, acceleration=(0.0, 0.0, 0.0))
+        await publish_measurements(test, acceleration=(0.0, 0.0, 0.0))
     assert len(data) == 0
     (text,) = [record.text for record in test.log if record.level.name == "WARN"]
     assert text == "The IMU seems to be in free fall, cannot determine gravity direction!"
@@ -119,5 +119,5 @@ async def test_falling_imu_publishes_nothing(test):
 )
 async def test_invalid_parameters_are_rejected(test, kind, parameters, text):
     with pytest.raises(LinkwrightError) as caught:
-        start(test, kind, **parameters)
+        start_filter(test, kind, **parameters)
     assert text in str(caught.value)

@@ -36,15 +36,15 @@ async def test():
         yield graph
 
 
-def start(test, **parameters):
+def start_filter(test, **parameters):
     return ScanToScanFilterChain(test.graph, NodeOptions(parameters=parameters))
 
 
-def logged(test, level):
+def logged_texts(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
-def scan(test, *ranges, frame="laser"):
+def publish_scan(test, *ranges, frame="laser"):
     message = get_message("sensor_msgs/msg/LaserScan")()
     message.header.stamp = Time.from_nanoseconds(test.clock.now_ns())
     message.header.frame_id = frame
@@ -56,9 +56,9 @@ def scan(test, *ranges, frame="laser"):
 
 
 async def test_filter_chain_applies_in_order_and_keeps_input(test):
-    start(test, filter1=RANGE, filter2=BOUNDS)
+    start_filter(test, filter1=RANGE, filter2=BOUNDS)
     filtered = test.record("/scan_filtered")
-    input_scan = scan(test, 1.0, 2.0, 9.0, 3.0, 4.0)
+    input_scan = publish_scan(test, 1.0, 2.0, 9.0, 3.0, 4.0)
     for _ in range(2):
         test.publish("/scan", input_scan)
         await test.settle()
@@ -70,29 +70,29 @@ async def test_filter_chain_applies_in_order_and_keeps_input(test):
 
 
 async def test_empty_chain_passes_scan(test):
-    start(test)
+    start_filter(test)
     filtered = test.record("/scan_filtered")
-    test.publish("/scan", scan(test, 1.0))
+    test.publish("/scan", publish_scan(test, 1.0))
     await test.settle()
-    test.publish("/scan", scan(test, 1.0))
+    test.publish("/scan", publish_scan(test, 1.0))
     await test.settle()
     assert list(filtered.last.ranges) == [1.0]
 
 
 async def test_box_filter_waits_for_transform_of_laser(test):
-    start(test, filter1=BOX)
+    start_filter(test, filter1=BOX)
     filtered = test.record("/scan_filtered")
     for _ in range(2):
-        test.publish("/scan", scan(test, 0.5, 0.5, 0.5))
+        test.publish("/scan", publish_scan(test, 0.5, 0.5, 0.5))
         await test.settle()
     assert len(filtered) == 0
-    (text,) = logged(test, "WARN")
+    (text,) = logged_texts(test, "WARN")
     assert text.startswith("Dropping Scan: Transform unavailable")
     pose = np.array([[0.8, 0.0, 0.0, *quaternion_from_rpy((0.0, 0.0, pi))]])
     batch = TransformBatch(("base_link",), ("laser",), test.clock.now_ns(), pose)
     test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
     await test.settle()
-    test.publish("/scan", scan(test, 0.5, 2.5, 0.5))
+    test.publish("/scan", publish_scan(test, 0.5, 2.5, 0.5))
     await test.settle()
     assert list(filtered.last.ranges) == pytest.approx([nan, 2.5, nan], nan_ok=True)
 
@@ -108,14 +108,14 @@ async def test_box_filter_waits_for_transform_of_laser(test):
 )
 async def test_invalid_filter_chain_is_rejected(test, parameters, text):
     with pytest.raises(LinkwrightError) as caught:
-        start(test, filter1=parameters)
+        start_filter(test, filter1=parameters)
     assert text in str(caught.value)
     assert test.graph.node_names() == []
 
 
 async def test_unknown_parameters_and_filters_after_gap_are_reported(test):
-    start(test, filter1={**RANGE, "params": {"uper_threshold": 1.0}}, filter3=BOUNDS)
-    *gaps, first = logged(test, "WARN")
+    start_filter(test, filter1={**RANGE, "params": {"uper_threshold": 1.0}}, filter3=BOUNDS)
+    *gaps, first = logged_texts(test, "WARN")
     assert first.startswith(
         "'filter1.params.uper_threshold' is not a parameter of laser_filters/LaserScanRangeFilter; did"
     )
@@ -123,7 +123,7 @@ async def test_unknown_parameters_and_filters_after_gap_are_reported(test):
 
 
 async def test_lazy_chain_subscribes_only_while_subscribed(test):
-    running = start(test, filter1=RANGE, lazy_subscription=True)
+    running = start_filter(test, filter1=RANGE, lazy_subscription=True)
     assert test.graph.count_subscribers("/scan") == 0
     listener = test.graph.create_node("listener")
     listener.create_subscription("sensor_msgs/msg/LaserScan", "/scan_filtered", lambda _: None, 10)

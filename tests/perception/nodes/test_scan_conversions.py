@@ -27,15 +27,15 @@ async def test():
         yield graph
 
 
-def start(test, kind, **parameters):
+def start_node(test, kind, **parameters):
     return kind(test.graph, NodeOptions(parameters=parameters))
 
 
-def logged(test, level):
+def logged_texts(test, level):
     return [record.text for record in test.log if record.level.name == level]
 
 
-async def send(test, topic, message):
+async def publish_message(test, topic, message):
     """Publish, with a publisher that the node has found before."""
     if not any(publisher.name == topic for publisher in test.node.publishers):
         test.node.create_publisher(type(message), topic, 10)
@@ -50,7 +50,7 @@ def message_in_frame(test, kind, frame):
     return message
 
 
-def depth_image(test, depths, encoding="32FC1"):
+def publish_depth_image(test, depths, encoding="32FC1"):
     message = message_in_frame(test, "sensor_msgs/msg/Image", "camera")
     rows = np.asarray(depths, "<f4" if encoding == "32FC1" else "<u2")
     message.height, message.width = rows.shape
@@ -59,39 +59,39 @@ def depth_image(test, depths, encoding="32FC1"):
     return message
 
 
-def camera(test):
+def publish_camera_info(test):
     message = message_in_frame(test, "sensor_msgs/msg/CameraInfo", "camera")
     message.p = [4.0, 0.0, 2.0, 0.0, 0.0, 4.0, 1.5, 0.0, 0.0, 0.0, 1.0, 0.0]
     return message
 
 
 async def test_depth_image_becomes_scan(test):
-    start(test, DepthImageToLaserScan, range_min=0.1, output_frame="laser")
+    start_node(test, DepthImageToLaserScan, range_min=0.1, output_frame="laser")
     scan = test.record("/scan")
-    await send(test, "/depth", depth_image(test, np.full((3, 5), 2.0)))
+    await publish_message(test, "/depth", publish_depth_image(test, np.full((3, 5), 2.0)))
     assert len(scan) == 0
-    assert logged(test, "ERROR") == [
+    assert logged_texts(test, "ERROR") == [
         "Could not convert depth image to laserscan: no camera_info with a focal length has arrived"
     ]
-    await send(test, "/depth_camera_info", camera(test))
-    await send(test, "/depth", depth_image(test, np.full((3, 5), 2.0)))
+    await publish_message(test, "/depth_camera_info", publish_camera_info(test))
+    await publish_message(test, "/depth", publish_depth_image(test, np.full((3, 5), 2.0)))
     assert scan.last.ranges[2] == 2.0
     assert scan.last.ranges[0] == pytest.approx(hypot(2.0, 0.5))
     assert scan.last.header.frame_id == "laser"
     assert scan.last.scan_time == pytest.approx(0.033)
-    await send(test, "/depth", depth_image(test, np.full((3, 5), 1500), "16UC1"))
+    await publish_message(test, "/depth", publish_depth_image(test, np.full((3, 5), 1500), "16UC1"))
     assert scan.last.ranges[2] == pytest.approx(1.5)
     count = len(scan)
     await test.advance(10.0)
-    image_of_odd_size = depth_image(test, np.full((3, 5), 2.0))
+    image_of_odd_size = publish_depth_image(test, np.full((3, 5), 2.0))
     image_of_odd_size.encoding = "rgb8"
-    await send(test, "/depth", image_of_odd_size)
+    await publish_message(test, "/depth", image_of_odd_size)
     assert len(scan) == count
-    assert logged(test, "ERROR")[-1].endswith("Depth image has unsupported encoding: rgb8")
+    assert logged_texts(test, "ERROR")[-1].endswith("Depth image has unsupported encoding: rgb8")
 
 
 async def test_conversion_subscribes_only_while_subscribed(test):
-    running = start(test, DepthImageToLaserScan)
+    running = start_node(test, DepthImageToLaserScan)
     await test.settle()
     assert test.graph.count_subscribers("/depth") == 0
     listener = test.node.create_subscription(get_message("sensor_msgs/msg/LaserScan"), "scan", lambda _: None, 10)
@@ -103,7 +103,7 @@ async def test_conversion_subscribes_only_while_subscribed(test):
     running.close()
 
 
-def cloud(test, points, frame="camera"):
+def publish_cloud(test, points, frame="camera"):
     message = message_in_frame(test, "sensor_msgs/msg/PointCloud2", frame)
     kind = np.dtype({"names": ["x", "y", "z"], "formats": ["<f4"] * 3, "offsets": [4, 8, 12], "itemsize": 20})
     values = np.zeros(len(points), kind)
@@ -116,42 +116,42 @@ def cloud(test, points, frame="camera"):
     return message
 
 
-def place(test, parent, child, rpy):
+def publish_transform(test, parent, child, rpy):
     batch = TransformBatch((parent,), (child,), 0, np.array([[0.0, 0.0, 0.5, *quaternion_from_rpy(rpy)]]))
     test.publish("/tf_static", TFMessage(batch=batch), STATIC_TF_PUBLISHER_QOS)
 
 
 async def test_cloud_becomes_scan_in_target_frame(test):
     parameters = {"angle_increment": pi / 2, "min_height": 0.0, "max_height": 1.0, "range_max": 10.0}
-    start(test, PointCloudToLaserScan, target_frame="base_link", **parameters)
+    start_node(test, PointCloudToLaserScan, target_frame="base_link", **parameters)
     scan = test.record("/scan")
-    await send(test, "/cloud_in", cloud(test, [[0.1, 1.0, 0.0]]))
+    await publish_message(test, "/cloud_in", publish_cloud(test, [[0.1, 1.0, 0.0]]))
     assert len(scan) == 0
-    assert logged(test, "WARN")[0].startswith("Transform failure:")
-    place(test, "base_link", "camera", (0.0, 0.0, -pi / 2))
+    assert logged_texts(test, "WARN")[0].startswith("Transform failure:")
+    publish_transform(test, "base_link", "camera", (0.0, 0.0, -pi / 2))
     await test.settle()
-    await send(test, "/cloud_in", cloud(test, [[0.1, 1.0, 0.0], [0.1, 3.0, 0.0], [0.1, 0.5, 2.0]]))
+    await publish_message(test, "/cloud_in", publish_cloud(test, [[0.1, 1.0, 0.0], [0.1, 3.0, 0.0], [0.1, 0.5, 2.0]]))
     assert list(scan.last.ranges) == pytest.approx([inf, hypot(1.0, 0.1), inf, inf])
     assert scan.last.header.frame_id == "base_link"
 
 
 async def test_rays_without_points_exceed_range_with_inf_epsilon(test):
-    start(test, PointCloudToLaserScan, angle_increment=pi / 2, range_max=10.0, use_inf=False, inf_epsilon=2.0)
+    start_node(test, PointCloudToLaserScan, angle_increment=pi / 2, range_max=10.0, use_inf=False, inf_epsilon=2.0)
     scan = test.record("/scan")
-    await send(test, "/cloud_in", cloud(test, np.zeros((0, 3))))
-    await send(test, "/cloud_in", cloud(test, np.zeros((0, 3))))
+    await publish_message(test, "/cloud_in", publish_cloud(test, np.zeros((0, 3))))
+    await publish_message(test, "/cloud_in", publish_cloud(test, np.zeros((0, 3))))
     assert list(scan.last.ranges) == [12.0] * 4
 
 
 async def test_scan_becomes_cloud(test):
-    start(test, LaserScanToPointCloud, target_frame="base_link")
+    start_node(test, LaserScanToPointCloud, target_frame="base_link")
     clouds = test.record("/cloud")
-    place(test, "base_link", "laser", (0.0, 0.0, pi / 2))
+    publish_transform(test, "base_link", "laser", (0.0, 0.0, pi / 2))
     message = message_in_frame(test, "sensor_msgs/msg/LaserScan", "laser")
     message.angle_increment, message.range_min, message.range_max = 0.1, 0.1, 5.0
     message.ranges, message.intensities = [1.0, inf, 2.0], [7.0, 8.0, 9.0]
-    await send(test, "/scan_in", message)
-    await send(test, "/scan_in", message)
+    await publish_message(test, "/scan_in", message)
+    await publish_message(test, "/scan_in", message)
     points = read_points(clouds.last)
     assert points[0] == pytest.approx([0.0, 1.0, 0.5], abs=1e-6)
     assert len(points) == 2
@@ -163,6 +163,6 @@ async def test_scan_becomes_cloud(test):
 
 async def test_invalid_parameters_are_rejected(test):
     with pytest.raises(LinkwrightError, match="'angle_increment' of 'pointcloud_to_laserscan' cannot be '0"):
-        start(test, PointCloudToLaserScan, angle_increment=0.0)
+        start_node(test, PointCloudToLaserScan, angle_increment=0.0)
     with pytest.raises(LinkwrightError, match="parameter 'scan_height' of 'depthimage_to_laserscan' cannot be '0'"):
-        start(test, DepthImageToLaserScan, scan_height=0)
+        start_node(test, DepthImageToLaserScan, scan_height=0)

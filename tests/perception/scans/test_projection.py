@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from linkwright.perception.scans.projection import Pinhole, Rays, points_from_scan, scan_from_depths, scan_from_points
-from tests.perception.scans.test_scan_filters import ranges, scan
+from tests.perception.scans.test_scan_filters import approx_ranges, make_scan
 
 CAMERA = Pinhole(focal_length=4.0, center_column=2.0, center_row=1.5)
 
@@ -54,7 +54,7 @@ def test_nearest_point_within_heights_is_used_for_each_ray():
         ]
     )  # fmt: skip
     distances = scan_from_points(points, rays, 0.0, 1.0, inf)
-    assert list(distances) == ranges([inf, hypot(3.0, 0.1), hypot(1.0, 0.1), inf])
+    assert list(distances) == approx_ranges([inf, hypot(3.0, 0.1), hypot(1.0, 0.1), inf])
 
 
 def test_point_at_maximum_angle_is_ignored():
@@ -65,10 +65,10 @@ def test_point_at_maximum_angle_is_ignored():
 
 
 def test_scan_to_points_round_trip():
-    input_scan = scan(1.0, 2.0, nan, 20.0, 3.0, angle_min=-0.2)
+    input_scan = make_scan(1.0, 2.0, nan, 20.0, 3.0, angle_min=-0.2)
     points, places = points_from_scan(input_scan)
     assert places.tolist() == [0, 1, 4]
     assert np.linalg.norm(points, axis=1) == pytest.approx([1.0, 2.0, 3.0])
     rays = Rays(-0.25, 0.25, 0.1, 0.1, 10.0)
     back = scan_from_points(points.astype(float), rays, -1.0, 1.0, nan)
-    assert list(back) == ranges([1.0, 2.0, nan, nan, 3.0])
+    assert list(back) == approx_ranges([1.0, 2.0, nan, nan, 3.0])

@@ -9,7 +9,7 @@ import pytest
 from linkwright.rviz import RvizConfig, find_unsaved
 from linkwright.rviz.config.locations import RecentFiles, recovery_file, recovery_folder
 from tests.rviz.visualization.test_managers import open_own_page
-from tests.viewer.configured import edit, opened
+from tests.viewer.configured import open_configured, perform_edit
 
 
 def recovery_files() -> list[Path]:
@@ -24,7 +24,7 @@ async def change_alpha(client, alpha: float = 0.25) -> None:
 
 async def test_unsaved_changes_are_recovered_on_next_start(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (world, client):
+    async with open_configured(path=path) as (world, client):
         text = path.read_text()
         await change_alpha(client)
         (notice,) = world.viewer.keep_unsaved()
@@ -43,7 +43,7 @@ async def test_unsaved_changes_are_recovered_on_next_start(tmp_path):
 
 async def test_saving_removes_recovery_file(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (world, client):
+    async with open_configured(path=path) as (world, client):
         await change_alpha(client)
         world.viewer.keep_unsaved()
         assert len(recovery_files()) == 1
@@ -56,7 +56,7 @@ async def test_saving_removes_recovery_file(tmp_path):
 
 async def test_saving_recovered_file_elsewhere_removes_recovery_file(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (world, client):
+    async with open_configured(path=path) as (world, client):
         await change_alpha(client)
         world.viewer.keep_unsaved()
         (recovered,) = recovery_files()
@@ -76,10 +76,10 @@ async def test_saving_recovered_file_elsewhere_removes_recovery_file(tmp_path):
 
 async def test_no_recovery_file_without_edits(tmp_path):
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (world, client):
+    async with open_configured(path=path) as (world, client):
         assert world.viewer.keep_unsaved() == []
         await change_alpha(client)
-        await edit(client, "undo")
+        await perform_edit(client, "undo")
         assert world.viewer.keep_unsaved() == []
         # The user reverts the edit by hand.
         await client.send("show_panels", shown=["time"])
@@ -92,7 +92,7 @@ async def test_no_recovery_file_without_edits(tmp_path):
 
 
 async def test_untitled_displays_are_kept_for_recovery(tmp_path):
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         await change_alpha(client)
         (notice,) = world.viewer.keep_unsaved()
     assert [path.name for path in recovery_files()] == ["untitled.rviz"]
@@ -100,7 +100,7 @@ async def test_untitled_displays_are_kept_for_recovery(tmp_path):
 
 
 async def test_displays_of_own_page_have_separate_recovery_file(tmp_path):
-    async with opened(path=tmp_path / "a.rviz") as (world, client), open_own_page(world) as own_client:
+    async with open_configured(path=tmp_path / "a.rviz") as (world, client), open_own_page(world) as own_client:
         first = await own_client.opened()
         await change_alpha(client)
         await own_client.set(f"{first['tree']['displays'][0]['id']}/Alpha", 0.125)
@@ -133,7 +133,7 @@ async def test_unwritable_recovery_folder_is_reported(tmp_path, monkeypatch):
     blocked = tmp_path / "blocked"
     blocked.write_text("no folder")
     path = tmp_path / "a.rviz"
-    async with opened(path=path) as (world, client):
+    async with open_configured(path=path) as (world, client):
         await change_alpha(client)
         monkeypatch.setenv("XDG_STATE_HOME", str(blocked))
         (notice,) = world.viewer.keep_unsaved()

@@ -13,8 +13,8 @@ import pytest
 from linkwright.messages import TFMessage, TransformStamped, get_message
 from linkwright.rviz import RvizConfig
 from tests.rviz.clouds.test_clouds import LaserScan, make_cloud, make_depth_image, make_scan, xyz_array
-from tests.viewer.contents import contents
-from tests.viewer.scene import open_world, page
+from tests.viewer.contents import unpack_contents
+from tests.viewer.scene import open_page, open_world
 from tests.waiting import eventually
 
 Temperature = get_message("sensor_msgs/msg/Temperature")
@@ -50,11 +50,11 @@ def make_colored_cloud(count: int = 2):
 
 
 def drawn_points(display) -> list[list[float]]:
-    return [content.fields["positions"].reshape(-1, 3).tolist() for content in contents(display)]
+    return [content.fields["positions"].reshape(-1, 3).tolist() for content in unpack_contents(display)]
 
 
 def drawn_colors(display) -> list[list[int]]:
-    (content,) = contents(display)
+    (content,) = unpack_contents(display)
     return content.fields["colors"].reshape(-1, 4).tolist()
 
 
@@ -68,7 +68,7 @@ async def test_cloud_is_sent_with_pose_of_its_frame():
         world.move({("base", "lidar"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
         publisher.publish(make_cloud(xyz_array([(1, 0, 0)]), "lidar"))
         await world.settle()
-        (content,) = contents(world.display("PointCloud2"))
+        (content,) = unpack_contents(world.display("PointCloud2"))
         assert content.fields["kind"] == "cloud_points"
         assert content.fields["positions"].tolist() == [1, 0, 0]
         assert content.pose == [1, 2, 3, 0, 0, 0, 1]
@@ -91,7 +91,7 @@ async def test_cloud_with_rgb_field_is_shown_in_color():
 
 
 async def test_color_transformers_are_limited_to_fields_of_cloud():
-    async with open_world(make_config()) as world, page(world.viewer) as client:
+    async with open_world(make_config()) as world, open_page(world.viewer) as client:
         publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         publisher.publish(make_cloud(xyz_array([(0, 0, 0)], ("intensity", "f4"))))
         await world.settle()
@@ -172,7 +172,7 @@ async def test_points_remain_for_decay_time():
 
 
 async def test_zero_decay_time_keeps_only_newest_message():
-    async with open_world(make_config(Decay_Time="60")) as world, page(world.viewer) as client:
+    async with open_world(make_config(Decay_Time="60")) as world, open_page(world.viewer) as client:
         await client.opened()
         publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         display = world.display("PointCloud2")
@@ -187,7 +187,7 @@ async def test_zero_decay_time_keeps_only_newest_message():
 
 
 async def test_page_receives_fields_of_selected_point():
-    async with open_world(make_config()) as world, page(world.viewer) as client:
+    async with open_world(make_config()) as world, open_page(world.viewer) as client:
         await client.opened()
         publisher = world.graph.create_node("lidar").create_publisher(PointCloud2, "/points", 5)
         publisher.publish(make_colored_cloud())
@@ -269,7 +269,7 @@ async def test_scan_of_moving_scanner_is_deskewed():
         np.testing.assert_allclose(
             drawn_points(world.display("LaserScan"))[0], [[1, 0, 0], [3, 0, 0], [5, 0, 0]], atol=1e-6
         )
-        assert contents(world.display("LaserScan"))[0].pose == [0, 0, 0, 0, 0, 0, 1]
+        assert unpack_contents(world.display("LaserScan"))[0].pose == [0, 0, 0, 0, 0, 0, 1]
 
 
 @pytest.mark.parametrize(
@@ -325,21 +325,21 @@ async def test_depth_image_is_shown_once_camera_info_arrives():
         depths.publish(with_frame(make_depth_image([[2.0, 4.0]])))
         await world.settle()
         display = world.display("DepthCloud")
-        assert contents(display) == []
+        assert unpack_contents(display) == []
         assert world.status("DepthCloud")["Depth Camera Info"] == (
             "warn",
             "No CameraInfo received on [/depth/camera_info]",
         )
         infos.publish(make_camera_info(2, 1))
         await world.settle()
-        (content,) = contents(display)
+        (content,) = unpack_contents(display)
         assert content.fields["positions"].reshape(-1, 3).tolist() == [[0, 0, 2], [2, 0, 4]]
         assert content.fields["pixel"] == 0.5
         assert world.status("DepthCloud")["Depth Image Size"] == ("ok", "2 x 1")
         display.set_property(("Auto Size", "Auto Size Factor"), 3.0)
-        assert contents(display)[0].fields["pixel"] == 1.5
+        assert unpack_contents(display)[0].fields["pixel"] == 1.5
         display.set_property(("Auto Size",), False)
-        assert contents(display)[0].fields["pixel"] == 0.0
+        assert unpack_contents(display)[0].fields["pixel"] == 0.0
 
 
 async def test_depth_image_waits_for_color_image():
@@ -352,7 +352,7 @@ async def test_depth_image_waits_for_color_image():
         depths.publish(with_frame(make_depth_image([[2.0, 4.0]])))
         await world.settle()
         display = world.display("DepthCloud")
-        assert contents(display) == []
+        assert unpack_contents(display) == []
         image = Image(width=2, height=1, step=6, encoding="rgb8", data=bytes([1, 2, 3, 4, 5, 6]))
         color.publish(with_frame(image, "other"))
         await world.settle()

@@ -10,7 +10,7 @@ from linkwright.images.color_words import RGB_BY_COLOR_WORD
 from linkwright.messages import Time, get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays.class_colors import choose_class_color, read_class_colors
-from tests.viewer.contents import contents
+from tests.viewer.contents import unpack_contents
 from tests.viewer.scene import open_world
 from tests.waiting import eventually
 
@@ -61,7 +61,7 @@ async def displayed_fields(cls: str, message, extra: str = "") -> dict:
         world.move_arm()
         publish_detections(world, "/topic", message)
         await world.settle()
-        (content,) = contents(world.display(cls))
+        (content,) = unpack_contents(world.display(cls))
         return content.fields | {"frame": content.frame}
 
 
@@ -95,7 +95,7 @@ async def test_nonfinite_boxes_are_rejected():
     async with open_world(make_config(f"{PLUGINS}/BoundingBox3D")) as world:
         publish_detections(world, "/topic", make_box(float("nan")))
         await world.settle()
-        assert contents(world.display("BoundingBox3D")) == []
+        assert unpack_contents(world.display("BoundingBox3D")) == []
         assert "invalid floating point" in " ".join(text for _, text in world.status("BoundingBox3D").values())
 
 
@@ -160,7 +160,7 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
 
         async def settle_and_read() -> list:
             await world.settle()
-            facts = {content.fields["kind"]: content for content in contents(world.display("Detections"))}
+            facts = {content.fields["kind"]: content for content in unpack_contents(world.display("Detections"))}
             shown, boxes = facts.get("image_frame"), facts.get("image_boxes")
             return [shown and shown.stamp, boxes and boxes.stamp, boxes and boxes.fields["of_image"]]
 
@@ -175,7 +175,9 @@ async def test_image_is_shown_with_matching_detections(monkeypatch):
         detector.publish(detection_message(2, make_result("ball", 0.5)))
         assert await settle_and_read() == [2.0, 2.0, True]
         (boxes,) = [
-            content for content in contents(world.display("Detections")) if content.fields["kind"] == "image_boxes"
+            content
+            for content in unpack_contents(world.display("Detections"))
+            if content.fields["kind"] == "image_boxes"
         ]
         assert boxes.fields["boxes"].tolist() == [10, 20, 4, 6, 0]
         assert (boxes.fields["names"], boxes.fields["scores"].tolist()) == (["ball"], [0.5])
@@ -188,7 +190,7 @@ async def test_images_are_shown_without_waiting_if_detector_is_silent(monkeypatc
         publish_detections(world, "/found", detection_message(1, make_result("ball", 0.5)))
         publish_detections(world, "/topic", make_image(5))
         await world.settle()
-        assert [content.fields["kind"] for content in contents(world.display("Detections"))] == ["image_frame"]
+        assert [content.fields["kind"] for content in unpack_contents(world.display("Detections"))] == ["image_frame"]
 
 
 # --- the threshold -----------------------------------------------------------------------------------------------

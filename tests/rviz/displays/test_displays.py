@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.displays.catalog import display_classes, has_display
-from tests.viewer.scene import ARM, IDENTITY, open_world, page, rows_by_id
+from tests.viewer.scene import ARM, IDENTITY, open_page, open_world, rows_by_id
 
 
 def make_config(displays: str, fixed_frame: str = "base") -> RvizConfig:
@@ -22,7 +22,7 @@ GRID = "    - {Class: rviz_default_plugins/Grid, Enabled: true}\n"
 
 
 async def open_client(world):
-    async with page(world.viewer) as client:
+    async with open_page(world.viewer) as client:
         return await client.opened()
 
 
@@ -80,7 +80,7 @@ async def test_grid_properties_and_defaults_match_rviz():
 
 
 async def test_line_width_is_shown_only_for_billboards():
-    async with open_world(make_config(GRID)) as world, page(world.viewer) as client:
+    async with open_world(make_config(GRID)) as world, open_page(world.viewer) as client:
         opening = await client.opened()
         assert "display-1/Line Style/Line Width" not in rows_by_id(opening["tree"]["displays"][0]["properties"])
         await client.set("display-1/Line Style", "Billboards")
@@ -89,7 +89,7 @@ async def test_line_width_is_shown_only_for_billboards():
 
 
 async def test_grid_in_unknown_frame_is_reported():
-    async with open_world(make_config(GRID)) as world, page(world.viewer) as client:
+    async with open_world(make_config(GRID)) as world, open_page(world.viewer) as client:
         await client.opened()
         await client.set("display-1/Reference Frame", "/tip")
         status = await client.until("display_status", display="display-1")
@@ -127,7 +127,7 @@ async def test_tf_display_lists_frames():
 
 
 async def test_tf_frame_checkboxes_are_saved():
-    async with open_world(make_config(tf_display())) as world, page(world.viewer) as client:
+    async with open_world(make_config(tf_display())) as world, open_page(world.viewer) as client:
         world.move_arm()
         await wait_for_rows(client, "display-1/Frames/mark")
         await client.set("display-1/Frames/tip", False)
@@ -141,7 +141,7 @@ async def test_tf_frame_checkboxes_are_saved():
 
 
 async def test_disabled_frame_unchecks_all_enabled():
-    async with open_world(make_config(tf_display())) as world, page(world.viewer) as client:
+    async with open_world(make_config(tf_display())) as world, open_page(world.viewer) as client:
         world.move_arm()
         properties = (await client.until("display_properties", display="display-1"))["properties"]
         rows = rows_by_id(properties)
@@ -165,7 +165,7 @@ async def test_tf_frames_without_transform_are_reported():
 
 
 async def test_tf_filters_choose_frames():
-    async with open_world(make_config(tf_display())) as world, page(world.viewer) as client:
+    async with open_world(make_config(tf_display())) as world, open_page(world.viewer) as client:
         world.move_arm()
         await wait_for_rows(client, "display-1/Frames/mark")
 
@@ -231,7 +231,7 @@ async def test_disabled_display_has_no_status_until_enabled(cls):
         world.describe(ARM)
         world.move_arm()
         await world.settle()
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             before = (await client.opened())["tree"]["displays"][0]["status"]
             assert before
             await client.set("display-1/Enabled", False)

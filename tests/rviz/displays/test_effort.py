@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
-from tests.viewer.contents import contents
+from tests.viewer.contents import unpack_contents
 from tests.viewer.scene import open_world
 
 JointState = get_message("sensor_msgs/msg/JointState")
@@ -68,7 +68,7 @@ async def test_effort_ring_is_perpendicular_to_joint_axis():
         out = await describe_crane(world)
         out.publish(make_joint_state(lift=-5.0, spin=1.0, slide=2.0))
         await world.settle()
-        (content,) = contents(world.display("Effort"))
+        (content,) = unpack_contents(world.display("Effort"))
         assert (content.frame, content.pose) == ("", None)
         assert content.fields["joints"] == ["lift"]
         assert (content.fields["efforts"].tolist(), content.fields["limits"].tolist()) == ([-5], [10])
@@ -111,10 +111,10 @@ async def test_message_waits_for_transform_of_frame():
         out = await describe_crane(world)
         out.publish(make_joint_state(lift=1.0))
         await world.settle()
-        assert contents(world.display("Effort")) == []
+        assert unpack_contents(world.display("Effort")) == []
         level, text = world.status("Effort")["Transform"]
         assert (level, "[one/arm]" in text) == ("error", True)
         world.display("Effort").set_property(("TF Prefix",), "")
         out.publish(make_joint_state(lift=1.0))
         await world.settle()
-        assert len(contents(world.display("Effort"))) == 1
+        assert len(unpack_contents(world.display("Effort"))) == 1

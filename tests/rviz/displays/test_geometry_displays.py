@@ -12,7 +12,7 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
-from tests.viewer.contents import contents
+from tests.viewer.contents import unpack_contents
 from tests.viewer.scene import open_world
 
 INVALID_STATUS = ("error", "Message contained invalid floating point values (nans or infs)")
@@ -153,7 +153,7 @@ async def test_pose_is_sent_with_pose_of_its_frame():
         world.move({("base", "tip"): (1, 2, 3, 0, 0, 0, 1)}, static=True)
         create_publisher(world, "Pose").publish(make_message("geometry_msgs/msg/PoseStamped", pose=make_pose(4)))
         await world.settle()
-        (content,) = contents(world.display("Pose"))
+        (content,) = unpack_contents(world.display("Pose"))
         assert (content.frame, content.pose) == ("tip", [1, 2, 3, 0, 0, 0, 1])
         assert content.fields["poses"].tolist() == [4, 0, 0, 0, 0, 0, 1]
         assert content.fields["covariances"].size == 0
@@ -168,7 +168,7 @@ async def test_pose_with_covariance_sends_covariance():
         estimate.pose.covariance = np.arange(36.0)
         create_publisher(world, "PoseWithCovariance").publish(estimate)
         await world.settle()
-        (content,) = contents(world.display("PoseWithCovariance"))
+        (content,) = unpack_contents(world.display("PoseWithCovariance"))
         assert content.fields["covariances"].tolist() == list(range(36))
 
 
@@ -179,7 +179,7 @@ async def test_all_poses_of_array_are_sent():
             make_message("geometry_msgs/msg/PoseArray", poses=[make_pose(1), make_pose(2)])
         )
         await world.settle()
-        (content,) = contents(world.display("PoseArray"))
+        (content,) = unpack_contents(world.display("PoseArray"))
         assert content.fields["poses"].reshape(-1, 7)[:, 0].tolist() == [1, 2]
 
 
@@ -203,7 +203,7 @@ async def test_nav2_particle_cloud_sends_weights():
         out = create_publisher(world, "ParticleCloud")
         out.publish(make_message("nav2_msgs/msg/ParticleCloud", particles=particles))
         await world.settle()
-        (content,) = contents(world.display("ParticleCloud"))
+        (content,) = unpack_contents(world.display("ParticleCloud"))
         assert content.fields["poses"].reshape(-1, 7)[:, 0].tolist() == [1, 2]
         assert content.fields["weights"].tolist() == [0.25, 0.75]
         out.publish(make_message("nav2_msgs/msg/ParticleCloud", particles=[particle(weight=math.nan)]))
@@ -222,7 +222,7 @@ async def test_odometry_adds_arrow_after_distance_or_rotation():
         turned.pose.pose.orientation.z, turned.pose.pose.orientation.w = math.sin(0.1), math.cos(0.1)
         out.publish(turned)
         await world.settle()
-        marks = [content.fields["poses"][0] for content in contents(world.display("Odometry"))]
+        marks = [content.fields["poses"][0] for content in unpack_contents(world.display("Odometry"))]
         np.testing.assert_allclose(marks, [0, 0.12, 0.3, 0.3])
 
 
@@ -234,14 +234,14 @@ async def test_odometry_keep_limits_number_of_arrows():
             out.publish(make_odometry(x))
         await world.settle()
         display = world.display("Odometry")
-        assert sorted(content.fields["poses"][0] for content in contents(display)) == [3, 4]
+        assert sorted(content.fields["poses"][0] for content in unpack_contents(display)) == [3, 4]
         display.set_property(("Keep",), 0)
         for x in range(5, 9):
             out.publish(make_odometry(x))
         await world.settle()
-        assert [content.fields["poses"][0] for content in contents(display)] == [3, 4, 5, 6, 7, 8]
+        assert [content.fields["poses"][0] for content in unpack_contents(display)] == [3, 4, 5, 6, 7, 8]
         display.set_property(("Keep",), 3)
-        assert [content.fields["poses"][0] for content in contents(display)] == [6, 7, 8]
+        assert [content.fields["poses"][0] for content in unpack_contents(display)] == [6, 7, 8]
 
 
 async def test_odometry_rejects_invalid_quaternion():
@@ -252,7 +252,7 @@ async def test_odometry_rejects_invalid_quaternion():
         await world.settle()
         level, text = world.status("Odometry")["Message"]
         assert (level, text.startswith("Message contained unnormalized quaternion")) == ("error", True)
-        assert contents(world.display("Odometry")) == []
+        assert unpack_contents(world.display("Odometry")) == []
         out.publish(make_odometry(0))
         await world.settle()
         assert "Message" not in world.status("Odometry")
@@ -266,7 +266,7 @@ async def test_path_buffer_length_keeps_last_paths():
             stamped = [make_message("geometry_msgs/msg/PoseStamped", pose=make_pose(x)) for x in range(count)]
             out.publish(make_message("nav_msgs/msg/Path", poses=stamped))
         await world.settle()
-        paths = [content.fields["poses"].reshape(-1, 7) for content in contents(world.display("Path"))]
+        paths = [content.fields["poses"].reshape(-1, 7) for content in unpack_contents(world.display("Path"))]
         assert sorted(map(len, paths)) == [3, 4]
 
 
@@ -278,7 +278,7 @@ async def test_polygon_is_sent_as_corners():
         polygon.polygon.points = [corner(x=0.0, y=0.0, z=0.0), corner(x=1.0, y=0.0, z=0.0), corner(x=0.0, y=1.0, z=0.0)]
         create_publisher(world, "Polygon").publish(polygon)
         await world.settle()
-        (content,) = contents(world.display("Polygon"))
+        (content,) = unpack_contents(world.display("Polygon"))
         assert content.fields["points"].tolist() == [0, 0, 0, 1, 0, 0, 0, 1, 0]
 
 
@@ -301,7 +301,7 @@ async def test_range_length_is_zero_if_invalid(measured, min_range, max_range, s
         )
         create_publisher(world, "Range").publish(reading)
         await world.settle()
-        (content,) = contents(world.display("Range"))
+        (content,) = unpack_contents(world.display("Range"))
         assert content.fields["range"] == pytest.approx(shown)
         assert content.fields["field_of_view"] == pytest.approx(0.2)
 
@@ -323,7 +323,7 @@ async def test_linear_and_angular_vectors_are_sent(cls, part, linear, angular):
         out = create_publisher(world, cls)
         out.publish(vectors)
         await world.settle()
-        (content,) = contents(world.display(cls))
+        (content,) = unpack_contents(world.display(cls))
         assert (content.fields["linear"], content.fields["angular"]) == ([1.5, 0, 0], [0, 0, -2.0])
         getattr(getattr(vectors, part), linear).y = math.nan
         out.publish(vectors)
@@ -356,4 +356,4 @@ async def test_nonfinite_values_are_rejected(cls):
         create_publisher(world, cls).publish(instance)
         await world.settle()
         assert world.status(cls)["Message"] == INVALID_STATUS
-        assert contents(world.display(cls)) == []
+        assert unpack_contents(world.display(cls)) == []

@@ -10,7 +10,7 @@ import pytest
 
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
-from tests.viewer.contents import contents
+from tests.viewer.contents import unpack_contents
 from tests.viewer.scene import open_world
 
 GridMap = get_message("grid_map_msgs/msg/GridMap")
@@ -52,7 +52,7 @@ async def open_display(extra: str = ""):
         async def publish_and_settle(message: Any) -> dict[str, Any] | None:
             publisher.publish(message)
             await world.settle()
-            grid_contents = contents(world.display("GridMap"))
+            grid_contents = unpack_contents(world.display("GridMap"))
             return grid_contents[-1].fields if grid_contents else None
 
         yield world, publish_and_settle
@@ -117,7 +117,7 @@ async def test_rainbow_two_color_and_flat_color_modes():
         display = world.display("GridMap")
 
         def colors() -> list[list[int]]:
-            return contents(display)[-1].fields["colors"].reshape(-1, 4)[:, :3].tolist()
+            return unpack_contents(display)[-1].fields["colors"].reshape(-1, 4)[:, :3].tolist()
 
         display.set_property(("Invert Rainbow",), True)
         assert colors() == [last, first]
@@ -130,9 +130,9 @@ async def test_rainbow_two_color_and_flat_color_modes():
         display.set_property(("Color Transformer",), "FlatColor")
         assert colors() == [[200, 200, 200]] * 2
         display.set_property(("Height Transformer",), "Flat")
-        assert contents(display)[-1].fields["points"].reshape(-1, 3)[:, 2].tolist() == [0, 0]
+        assert unpack_contents(display)[-1].fields["points"].reshape(-1, 3)[:, 2].tolist() == [0, 0]
         display.set_property(("Color Transformer",), "None")
-        assert contents(display)[-1].fields["filled"] is False
+        assert unpack_contents(display)[-1].fields["filled"] is False
 
 
 async def test_color_layer_is_unpacked():

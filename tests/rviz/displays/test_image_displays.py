@@ -13,8 +13,8 @@ from linkwright.messages import get_message
 from linkwright.page.protocol.images import ImageSize
 from linkwright.rviz import RvizConfig
 from tests.images.test_images import Image, image
-from tests.viewer.contents import contents
-from tests.viewer.scene import open_world, page
+from tests.viewer.contents import unpack_contents
+from tests.viewer.scene import open_page, open_world
 from tests.waiting import eventually
 
 CameraInfo = get_message("sensor_msgs/msg/CameraInfo")
@@ -59,7 +59,7 @@ async def test_image_is_sent():
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(make_small_image(1, 2, 3))
         await world.settle()
-        (content,) = contents(world.display("Image"))
+        (content,) = unpack_contents(world.display("Image"))
         fields = content.fields
         assert (fields["kind"], fields["encoding"], fields["width"], fields["height"]) == ("image_frame", "gray", 3, 1)
         assert fields["data"].tolist() == [1, 2, 3]
@@ -73,7 +73,7 @@ async def test_image_is_reduced_to_panel_size():
 
         async def sizes() -> list[tuple[int, int]]:
             await world.settle()
-            return [(content.fields["columns"], content.fields["rows"]) for content in contents(display)]
+            return [(content.fields["columns"], content.fields["rows"]) for content in unpack_contents(display)]
 
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(image("mono8", 64, 48, bytes(64 * 48)))
@@ -92,9 +92,9 @@ async def test_nothing_is_sent_while_panel_is_hidden():
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(make_small_image(1, 2, 3))
         await world.settle()
-        assert contents(display) == []
+        assert unpack_contents(display) == []
         display.receive(ImageSize(display.id, 3, 1))
-        (content,) = contents(display)
+        (content,) = unpack_contents(display)
         assert content.fields["data"].tolist() == [1, 2, 3]
 
 
@@ -112,7 +112,7 @@ async def test_hidden_panel_unsubscribes_after_one_image():
         assert world.status("Image")["Topic"] == ("ok", "1 messages received"), "earlier messages are still counted"
         publisher.publish(make_small_image(4, 5, 6))
         await world.settle()
-        (content,) = contents(display)
+        (content,) = unpack_contents(display)
         assert content.fields["data"].tolist() == [4, 5, 6]
         display.receive(ImageSize(display.id, 0, 0))
         assert publisher.get_subscription_count() == 0
@@ -126,7 +126,7 @@ async def test_panel_of_closed_page_is_ignored():
     async with open_world(make_config("Image")) as world:
         publisher = world.graph.create_node("camera").create_publisher(Image, "/camera/image", 5)
         publisher.publish(make_small_image(1, 2, 3))
-        async with page(world.viewer) as only_client:
+        async with open_page(world.viewer) as only_client:
             await only_client.send("image_size", display=world.display("Image").id, width=30, height=18)
             await eventually(lambda: world.display("Image")._panel)
             assert publisher.get_subscription_count() == 1
@@ -134,7 +134,7 @@ async def test_panel_of_closed_page_is_ignored():
 
 
 async def test_largest_panel_determines_image_size(monkeypatch):
-    async with open_world(make_config("Image")) as world, page(world.viewer) as first:
+    async with open_world(make_config("Image")) as world, open_page(world.viewer) as first:
         display = world.display("Image")
         messages: list[ImageSize] = []
         monkeypatch.setattr(display, "receive", messages.append)
@@ -144,7 +144,7 @@ async def test_largest_panel_determines_image_size(monkeypatch):
 
         await first.send("image_size", display=display.id, width=30, height=18)
         await wait_for_size(30, 18)
-        async with page(world.viewer) as second:
+        async with open_page(world.viewer) as second:
             await second.send("image_size", display=display.id, width=20, height=50)
             await wait_for_size(30, 50)
         await wait_for_size(30, 18)
@@ -169,11 +169,11 @@ async def test_range_properties_are_shown_for_16_bit_images():
         publisher.publish(image("16UC1", 2, 1, np.array([0, 1000], "<u2").tobytes()))
         await world.settle()
         assert row_names(display) == {"Topic", "Normalize Range", "Median window"}
-        assert contents(display)[0].fields["data"].tolist() == [0, 255]
+        assert unpack_contents(display)[0].fields["data"].tolist() == [0, 255]
         display.set_property(("Normalize Range",), False)
         assert row_names(display) == {"Topic", "Normalize Range", "Min Value", "Max Value"}
         display.set_property(("Max Value",), 2000.0)
-        assert contents(display)[0].fields["data"].tolist() == [0, 127]
+        assert unpack_contents(display)[0].fields["data"].tolist() == [0, 127]
 
 
 async def test_compressed_image_is_sent_unchanged():
@@ -182,7 +182,7 @@ async def test_compressed_image_is_sent_unchanged():
         data = b"\xff\xd8\xff\xe0" + bytes(30)
         publisher.publish(CompressedImage(format="jpeg", data=data))
         await world.settle()
-        (content,) = contents(world.display("Image"))
+        (content,) = unpack_contents(world.display("Image"))
         assert content.fields["encoding"] == "file"
         assert content.fields["data"].tobytes() == data
         assert world.status("Image")["Image"] == ("error", "The image file is truncated")
@@ -206,7 +206,7 @@ async def test_compressed_images_are_accepted_on_any_topic(comes_first):
         await eventually(lambda: publisher.get_subscription_count() == 1)
         publisher.publish(CompressedImage(format="jpeg", data=data))
         await world.settle()
-        assert contents(display)[0].fields["data"].tobytes() == data
+        assert unpack_contents(display)[0].fields["data"].tobytes() == data
         assert world.status("Image")["Topic"] == ("ok", "1 messages received")
 
 
@@ -218,7 +218,7 @@ async def test_compressed_depths_are_accepted_on_any_topic():
         PIL.Image.fromarray(np.array([[0, 1000]], np.uint16)).save(file, "png")
         publisher.publish(CompressedImage(format="16UC1; compressedDepth png", data=bytes(12) + file.getvalue()))
         await world.settle()
-        assert contents(world.display("Image"))[0].fields["data"].tolist() == [0, 255]
+        assert unpack_contents(world.display("Image"))[0].fields["data"].tolist() == [0, 255]
 
 
 def make_camera_info(width: int = 4, height: int = 2, **fields):
@@ -241,7 +241,7 @@ async def test_camera_display_waits_for_camera_info():
         assert world.status("Camera")["Camera Info"] == ("warn", text)
         infos.publish(make_camera_info())
         await world.settle()
-        (content,) = contents(world.display("Camera"))
+        (content,) = unpack_contents(world.display("Camera"))
         assert content.pose == [1, 2, 3, 0, 0, 0, 1]
         assert content.fields["camera"] == {
             "width": 4.0,
@@ -266,7 +266,7 @@ async def test_malformed_camera_info_is_reported():
             infos.publish(message)
             images.publish(make_small_image(1, 2))
             await world.settle()
-            assert contents(world.display("Camera"))[0].fields["camera"] is None
+            assert unpack_contents(world.display("Camera"))[0].fields["camera"] is None
             return world.status("Camera")["Camera Info"]
 
         invalid_info = make_camera_info()
@@ -283,7 +283,7 @@ async def test_malformed_camera_info_is_reported():
 
 
 async def test_other_displays_can_be_hidden_from_camera():
-    async with open_world(make_config("Camera")) as world, page(world.viewer) as client:
+    async with open_world(make_config("Camera")) as world, open_page(world.viewer) as client:
         await client.opened()
         display = world.display("Camera")
 

@@ -14,7 +14,7 @@ from linkwright.page.protocol.markers import MarkerFeedback
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.markers import BadMarkerError
 from linkwright.rviz.markers.interactive import read_interactive_marker
-from tests.viewer.contents import contents
+from tests.viewer.contents import unpack_contents
 from tests.viewer.scene import open_world
 from tests.waiting import eventually
 
@@ -75,7 +75,9 @@ class MarkerServer:
 def contents_by_name(world) -> dict[str, dict]:
     """Return a page's content by kind and name."""
     (display,) = world.viewer.displays
-    return {f"{content.fields['kind']} {content.fields['name']}": content.fields for content in contents(display)}
+    return {
+        f"{content.fields['kind']} {content.fields['name']}": content.fields for content in unpack_contents(display)
+    }
 
 
 def display_status(world) -> dict[str, tuple[str, str]]:

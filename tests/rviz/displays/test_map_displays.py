@@ -11,8 +11,8 @@ from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from tests.skipping import skipping
-from tests.viewer.contents import contents
-from tests.viewer.scene import open_world, page
+from tests.viewer.contents import unpack_contents
+from tests.viewer.scene import open_page, open_world
 from tests.waiting import eventually
 
 OccupancyGrid = get_message("nav_msgs/msg/OccupancyGrid")
@@ -51,19 +51,19 @@ def make_update(x: int, y: int, width: int, height: int, data):
 
 
 def drawn_cells(display) -> list[list[int]]:
-    (content,) = contents(display)
+    (content,) = unpack_contents(display)
     fields = content.fields
     return fields["cells"].view(np.int8).reshape(fields["height"], fields["width"]).tolist()
 
 
 async def test_map_is_sent_and_follows_its_frame():
-    async with open_world(make_config()) as world, page(world.viewer) as client:
+    async with open_world(make_config()) as world, open_page(world.viewer) as client:
         await client.opened()
         publisher = world.graph.create_node("map").create_publisher(OccupancyGrid, "/map", 1)
         assert world.status("Map")["Message"] == ("warn", "No map received")
         publisher.publish(make_grid(data=[0, 100, -1, 50, -128, 127]))
         await world.settle()
-        (content,) = contents(world.display("Map"))
+        (content,) = unpack_contents(world.display("Map"))
         assert (content.frame, content.pose) == ("base", None)
         assert content.fields["kind"] == "occupancy_map"
         assert content.fields["origin"] == [-1, 0, 0, 0, 0, 0, 1]
@@ -153,7 +153,7 @@ async def test_invalid_maps_are_reported_with_messages_of_rviz():
         async def status(message) -> tuple[str, str]:
             publisher.publish(message)
             await world.settle()
-            assert contents(world.display("Map")) == []
+            assert unpack_contents(world.display("Map")) == []
             return world.status("Map")["Map"]
 
         assert await status(make_grid(0, 4)) == ("error", "Map is zero-sized (0x4)")
@@ -178,7 +178,7 @@ async def test_update_topic_follows_map_topic():
 
 
 async def test_default_update_topic_is_not_written_to_file():
-    async with open_world(make_config()) as world, page(world.viewer) as client:
+    async with open_world(make_config()) as world, open_page(world.viewer) as client:
         await client.opened()
         manager, display = world.viewer.manager, world.display("Map")
         text = manager.config.text()
@@ -205,9 +205,9 @@ async def test_use_timestamp_keeps_map_at_its_stamp():
         display = world.display("Map")
         publisher.publish(make_grid(frame="map"))
         await world.settle()
-        assert contents(display)[0].pose is None
+        assert unpack_contents(display)[0].pose is None
         display.set_property(("Use Timestamp",), True)
-        assert contents(display)[0].pose == [1, 2, 0, 0, 0, 0, 1]
+        assert unpack_contents(display)[0].pose == [1, 2, 0, 0, 0, 0, 1]
 
 
 async def test_map_without_frame_is_in_map_frame():
@@ -218,7 +218,7 @@ async def test_map_without_frame_is_in_map_frame():
         assert world.status("Map")["Transform"][1].startswith("Could not transform from [map] to [base]")
         world.move({("base", "map"): (0, 0, 0, 0, 0, 0, 1)}, static=True)
         await world.settle()
-        assert contents(world.display("Map"))[0].frame == "map"
+        assert unpack_contents(world.display("Map"))[0].frame == "map"
 
 
 # --- GridCells -------------------------------------------------------------------------------------------------------
@@ -235,7 +235,7 @@ async def test_grid_cells_are_sent():
         publisher = world.graph.create_node("map").create_publisher(GridCells, "/map", 1)
         publisher.publish(make_cell_grid(1.0, 2.0))
         await world.settle()
-        (content,) = contents(world.display("GridCells"))
+        (content,) = unpack_contents(world.display("GridCells"))
         fields = content.fields
         assert fields["positions"].tolist() == [1, 0, 0, 2, 0, 0]
         assert (fields["kind"], fields["width"], fields["height"]) == ("cell_grid", 0.5, 0.25)
@@ -249,7 +249,7 @@ async def test_invalid_grid_cells_are_reported_with_messages_of_rviz():
             publisher.publish(make_cell_grid(1.0))
             publisher.publish(message)
             await world.settle()
-            assert contents(world.display("GridCells")) == []
+            assert unpack_contents(world.display("GridCells")) == []
             return world.status("GridCells")["Topic"]
 
         text = "Message contained invalid floating point values (nans or infs)"

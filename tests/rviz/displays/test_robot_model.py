@@ -10,7 +10,7 @@ from linkwright.graph import DESCRIPTION_QOS
 from linkwright.messages import String
 from linkwright.rviz import RvizConfig
 from tests.page.test_files import write_file, write_package
-from tests.viewer.scene import ARM, World, open_world, page, rows_by_id
+from tests.viewer.scene import ARM, World, open_page, open_world, rows_by_id
 
 ARM_WITH_MESH = ARM.replace('<box size="1 2 3"/>', '<mesh filename="package://robot/meshes/arm.stl"/>')
 
@@ -25,7 +25,7 @@ def make_config(extra: str = "") -> RvizConfig:
 
 
 async def open_client(world):
-    async with page(world.viewer) as client:
+    async with open_page(world.viewer) as client:
         return await client.opened()
 
 
@@ -112,7 +112,7 @@ async def test_all_links_enabled_sets_all_links():
     async with open_world(make_config()) as world:
         world.describe(ARM)
         await world.settle()
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             await client.set("display-1/Links/All Links Enabled", False)
             for name in ("Links/base", "Links/tip", "Joints/turn"):
@@ -162,7 +162,7 @@ async def test_undo_reverts_all_links_set_by_checkbox(box):
 
         before, text = boxes(), world.viewer.config.text()
         assert before == [True, False, False, False]
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             value = not display.properties.get(*box.split("/"))
             await client.set(f"display-1/{box}", value)
@@ -214,7 +214,7 @@ async def test_joint_and_mass_properties_come_from_description():
 
 
 async def test_new_description_replaces_robot_and_frames():
-    async with open_world(make_config()) as world, page(world.viewer) as client:
+    async with open_world(make_config()) as world, open_page(world.viewer) as client:
         world.describe(ARM)
         world.move_arm()
         await client.until("robot_scene", revision=1)
@@ -244,7 +244,7 @@ async def test_repeated_description_changes_nothing():
     async with open_world(make_config()) as world:
         world.describe(ARM)
         await world.settle()
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             world.describe(ARM)
             assert [message for message in await client.drain() if isinstance(message, dict)] == []
@@ -278,7 +278,7 @@ async def test_tf_prefix_is_prepended_to_frames():
         world.describe(ARM)
         await world.settle()
         assert world.status("RobotModel")["tip"][1] == "No transform from [one/tip] to [base]"
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             await client.set("display-1/TF Prefix", "")
             scene = await client.until("robot_scene")
@@ -300,7 +300,7 @@ async def test_latched_description_is_received_with_any_topic_settings(topic):
 
 
 async def test_changed_description_topic_is_subscribed():
-    async with open_world(make_config()) as world, page(world.viewer) as client:
+    async with open_world(make_config()) as world, open_page(world.viewer) as client:
         await client.opened()
         await client.set("display-1/Description Topic", "/other")
         await client.until("property_changed", id="display-1/Description Topic")
@@ -321,7 +321,7 @@ async def test_description_may_come_from_xacro_file(tmp_path):
     )
     async with (
         open_world(make_config(f", Description Source: File, Description File: {path}")) as world,
-        page(world.viewer) as client,
+        open_page(world.viewer) as client,
     ):
         scene = await client.until("robot_scene", revision=1)
         (link,) = scene["links"]
@@ -364,7 +364,7 @@ async def test_mesh_errors_of_pages_are_shown_in_status(tmp_path):
     async with open_world(make_config(), packages={"robot": share}) as world:
         world.describe(ARM_WITH_MESH)
         await world.settle()
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             url = (await client.opened())["robot_scene"]["links"][0]["visuals"][0]["url"]
 
             async def report_mesh_error(error, address=url, link="base"):

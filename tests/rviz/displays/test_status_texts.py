@@ -8,7 +8,7 @@ from pathlib import Path
 import linkwright.rviz
 from linkwright.diagnostics import Diagnostic, phrase
 from tests.rviz.displays.test_topic_display import make_config
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 
 RVIZ = Path(linkwright.rviz.__file__).parent
 _TEXT_OF = {"set_status_row": 2, "refuse": 0, "_refuse": 1, "StatusRow": 2}
@@ -54,10 +54,10 @@ async def test_statuses_are_sent_in_language_of_page():
     texts_by_language = {"zh": "订阅出错：话题名为空", "en": "Error subscribing: Empty topic name"}
     async with open_world(make_config()) as world:
         for language, text in silent.items():
-            async with page(world.viewer, f"&language={language}") as client:
+            async with open_page(world.viewer, f"&language={language}") as client:
                 (display,) = (await client.opened())["tree"]["displays"]
                 assert [row["text"] for row in display["status"]] == [text]
-        async with page(world.viewer, "&language=zh-CN") as chinese, page(world.viewer) as other:
+        async with open_page(world.viewer, "&language=zh-CN") as chinese, open_page(world.viewer) as other:
             await chinese.opened()
             await other.opened()
             await other.set(f"{display['id']}/Topic", "")
@@ -71,8 +71,8 @@ async def test_statuses_are_sent_in_language_of_page():
 async def test_findings_are_sent_in_language_of_page():
     async with (
         open_world(make_config()) as world,
-        page(world.viewer, "&language=zh") as chinese,
-        page(world.viewer) as other,
+        open_page(world.viewer, "&language=zh") as chinese,
+        open_page(world.viewer) as other,
     ):
         await chinese.opened()
         await other.opened()

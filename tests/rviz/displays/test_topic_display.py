@@ -13,7 +13,7 @@ from linkwright.graph.endpoints.base import Endpoint, EndpointKind
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from tests.skipping import skipping
-from tests.viewer.contents import contents
+from tests.viewer.contents import unpack_contents
 from tests.viewer.scene import open_world
 from tests.waiting import eventually
 
@@ -52,7 +52,7 @@ def make_point_at(stamp_ns: int, frame: str) -> PointStamped:
 
 def sent_points(world) -> list[list[float]]:
     """Return the points of the frames for a page, in the fixed frame, oldest first."""
-    shown = sorted(contents(world.display("PointStamped")), key=lambda content: content.key)
+    shown = sorted(unpack_contents(world.display("PointStamped")), key=lambda content: content.key)
     assert all(content.fields["kind"] == "point_marks" for content in shown)
     return [
         (content.fields["positions"] @ rotation_matrix(content.pose[3:]).T + content.pose[:3]).tolist()

@@ -11,8 +11,8 @@ from PIL import Image
 from linkwright.graph import DESCRIPTION_QOS, SENSOR_DATA_QOS, TF_QOS
 from linkwright.messages import Header, String, TFMessage, TransformBatch, get_message
 from linkwright.rviz import RvizConfig
-from tests.viewer.contents import contents
-from tests.viewer.scene import IDENTITY, open_world, page
+from tests.viewer.contents import unpack_contents
+from tests.viewer.scene import IDENTITY, open_page, open_world
 from tests.waiting import eventually
 
 SCAN = get_message("sensor_msgs/msg/LaserScan")
@@ -70,7 +70,9 @@ class Simulation:
 
 
 def sent_message(world, kind: str):
-    return next((content for content in contents(world.display("World")) if content.fields["kind"] == kind), None)
+    return next(
+        (content for content in unpack_contents(world.display("World")) if content.fields["kind"] == kind), None
+    )
 
 
 def sent_links(world) -> int:
@@ -149,7 +151,7 @@ async def test_world_is_placed_by_robot_frame_without_world_frame():
 
 
 async def test_world_without_transforms_has_own_frame_and_no_warning():
-    async with open_world(make_config("world")) as world, page(world.viewer) as opened:
+    async with open_world(make_config("world")) as world, open_page(world.viewer) as opened:
         await Simulation(world).describe(WORLD)
         await opened.until("display_status", display="global", level="ok")
         assert world.status("World")["Frame"] == ("ok", "The world is placed at the frame 'world'")
@@ -159,7 +161,7 @@ async def test_world_without_transforms_has_own_frame_and_no_warning():
 
 
 async def test_tf_frames_are_placed_in_world_as_fixed_frame():
-    async with open_world(make_config("world")) as world, page(world.viewer):
+    async with open_world(make_config("world")) as world, open_page(world.viewer):
         simulation = Simulation(world)
         await simulation.describe(WORLD)
         world.move({("odom", "base"): (3, 0, 0.5, *IDENTITY[3:])})

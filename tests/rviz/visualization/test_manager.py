@@ -8,14 +8,22 @@ from linkwright.graph import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from linkwright.messages import get_message
 from linkwright.rviz import RvizConfig
 from linkwright.rviz.visualization import display_tree
-from tests.viewer.configured import TEXT, PointStamped, edit, entries, names, opened, undo
-from tests.viewer.scene import ARM, open_world, page
+from tests.viewer.configured import (
+    TEXT,
+    PointStamped,
+    display_entries,
+    display_names,
+    open_configured,
+    perform_edit,
+    undo_edit,
+)
+from tests.viewer.scene import ARM, open_page, open_world
 
 String = get_message("std_msgs/msg/String")
 
 
 async def test_groups_contain_display_rows():
-    async with opened() as (_, client):
+    async with open_configured() as (_, client):
         displays = client.first["tree"]["displays"]
         assert [(display["name"], display["group"]) for display in displays] == [
             ("Grid", None),
@@ -27,7 +35,7 @@ async def test_groups_contain_display_rows():
 
 
 async def test_disabled_group_disables_its_displays():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         assert publisher.get_subscription_count() == 1
         await client.set("display-2/Enabled", False)
@@ -35,7 +43,7 @@ async def test_disabled_group_disables_its_displays():
         assert publisher.get_subscription_count() == 0
         assert world.display("PointStamped").config.checked
         assert "Enabled: false" in world.viewer.config.text()
-        state = await undo(client)
+        state = await undo_edit(client)
         assert publisher.get_subscription_count() == 1
         assert (state["unsaved"], state["undo"], state["redo"]) == (False, None, {"kind": "disable", "name": "Marks"})
         assert world.viewer.config.text() == TEXT
@@ -95,7 +103,7 @@ async def test_fade_time_is_shortest_of_tf_displays():
 
 
 async def test_display_choices_are_sent():
-    async with opened() as (_, client):
+    async with open_configured() as (_, client):
         await client.send("request_display_choices")
         message = (await client.until("display_choices"))["classes"]
         classes = {choice["cls"]: choice["messages"] for choice in message}
@@ -105,7 +113,7 @@ async def test_display_choices_are_sent():
 
 
 async def test_display_is_added_and_undone():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         await client.send("add_display", cls="rviz_default_plugins/Axes", name="Axes", group="display-2", topic=None)
         tree = await client.until("tree")
         assert [(display["name"], display["group"], display["id"]) for display in tree["displays"]][3] == (
@@ -113,16 +121,16 @@ async def test_display_is_added_and_undone():
             "display-2",
             "display-5",
         )
-        assert entries(world)[1]["Displays"][1] == {
+        assert display_entries(world)[1]["Displays"][1] == {
             "Class": "rviz_default_plugins/Axes",
             "Enabled": True,
             "Name": "Axes",
             "Value": True,
         }
-        state = await undo(client)
+        state = await undo_edit(client)
         assert (state["undo"], state["redo"]["name"], state["unsaved"]) == (None, "Axes", False)
         assert world.viewer.config.text() == TEXT
-        await undo(client, "redo")
+        await undo_edit(client, "redo")
         assert [display.id for display in world.viewer.displays] == [
             "display-1",
             "display-2",
@@ -133,20 +141,20 @@ async def test_display_is_added_and_undone():
 
 
 async def test_display_for_topic_uses_qos_of_publishers():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         qos = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
         publisher = world.graph.create_node("sensor").create_publisher(PointStamped, "/found", qos)
         await client.send("request_display_choices")
         topics = (await client.until("display_choices"))["topics"]
         cls = "rviz_default_plugins/PointStamped"
         assert {"topic": "/found", "message": "geometry_msgs/msg/PointStamped", "classes": [cls]} in topics
-        await edit(client, "add_display", cls=cls, name="Found", group=None, topic="/found")
+        await perform_edit(client, "add_display", cls=cls, name="Found", group=None, topic="/found")
         assert publisher.get_subscription_count() == 1
-        assert entries(world)[-1]["Topic"] == {"Reliability Policy": "Best Effort", "Value": "/found"}
+        assert display_entries(world)[-1]["Topic"] == {"Reliability Policy": "Best Effort", "Value": "/found"}
 
 
 async def test_robot_model_is_added_by_description_topic():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         qos = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         node = world.graph.create_node("robot_state_publisher")
         publisher = node.create_publisher(String, "/other/robot_description", qos)
@@ -156,31 +164,31 @@ async def test_robot_model_is_added_by_description_topic():
         topic_entry = next(topic for topic in topics if topic["topic"] == "/other/robot_description")
         cls = "rviz_default_plugins/RobotModel"
         assert cls in topic_entry["classes"]
-        await edit(client, "add_display", cls=cls, name="Other", group=None, topic="/other/robot_description")
-        assert entries(world)[-1]["Description Topic"]["Value"] == "/other/robot_description"
+        await perform_edit(client, "add_display", cls=cls, name="Other", group=None, topic="/other/robot_description")
+        assert display_entries(world)[-1]["Description Topic"]["Value"] == "/other/robot_description"
         assert publisher.get_subscription_count() == 1
 
 
 async def test_removed_displays_unsubscribe_and_undo_restores_them():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         await client.set("display-3/Alpha", 0.25)
         await client.until("property_changed", id="display-3/Alpha")
         text = world.viewer.config.text()
-        await edit(client, "remove_displays", displays=["display-2", "display-3"])
-        assert names(world) == ["Grid", "Radar"]
+        await perform_edit(client, "remove_displays", displays=["display-2", "display-3"])
+        assert display_names(world) == ["Grid", "Radar"]
         assert publisher.get_subscription_count() == 0
-        await undo(client)
-        assert names(world) == ["Grid", "Marks", "Clicks", "Radar"]
+        await undo_edit(client)
+        assert display_names(world) == ["Grid", "Marks", "Clicks", "Radar"]
         assert publisher.get_subscription_count() == 1
         assert world.viewer.config.text() == text
-        await undo(client)  # undo the earlier edit of the display, which is a new object since it was restored
+        await undo_edit(client)  # undo the earlier edit of the display, which is a new object since it was restored
         assert world.viewer.displays[2].properties.number("Alpha") == 0.5
         assert world.viewer.config.text() == TEXT
 
 
 async def test_removed_robot_model_is_restored_by_undo():
-    async with open_world(RvizConfig.for_model("base")) as world, page(world.viewer) as client:
+    async with open_world(RvizConfig.for_model("base")) as world, open_page(world.viewer) as client:
         await client.opened()
         world.describe(ARM)
         await client.until("robot_scene", revision=1)
@@ -193,7 +201,7 @@ async def test_removed_robot_model_is_restored_by_undo():
 
 
 async def test_displays_are_duplicated_with_contents():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         await client.send("duplicate_displays", displays=["display-2", "display-3", "display-4"])
         tree = await client.until("tree")
         assert [(display["name"], display["group"]) for display in tree["displays"]] == [
@@ -205,18 +213,18 @@ async def test_displays_are_duplicated_with_contents():
             ("Radar", None),
             ("Radar", None),
         ]
-        assert entries(world)[1] == entries(world)[2]
-        assert entries(world)[3] == entries(world)[4]
-        await undo(client)
+        assert display_entries(world)[1] == display_entries(world)[2]
+        assert display_entries(world)[3] == display_entries(world)[4]
+        await undo_edit(client)
         assert world.viewer.config.text() == TEXT
 
 
 async def test_displays_are_renamed():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         await client.send("rename_display", display="display-4", name="  Far   radar ")
         assert (await client.until("tree"))["displays"][3]["name"] == "Far radar"
         assert (await client.until("configuration"))["undo"] == {"kind": "rename", "name": "Far radar"}
-        await undo(client)
+        await undo_edit(client)
         assert world.viewer.config.text() == TEXT
         await client.send("rename_display", display="display-4", name=" ")
         assert (await client.until("configuration_refused"))["question"] is None
@@ -242,7 +250,7 @@ async def test_displays_are_renamed():
     ],
 )
 async def test_displays_are_moved(displays, group, before, expected):
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         await client.send("move_displays", displays=displays, group=group, before=before)
         await client.until("tree")
 
@@ -250,12 +258,12 @@ async def test_displays_are_moved(displays, group, before, expected):
             return display.config.group.name if display.config.group else None
 
         assert [(display.config.name, group_name(display)) for display in world.viewer.displays] == expected
-        await undo(client)
+        await undo_edit(client)
         assert world.viewer.config.text() == TEXT
 
 
 async def test_display_moved_out_of_disabled_group_is_enabled():
-    async with opened(
+    async with open_configured(
         TEXT.replace("      Enabled: true\n      Name: Marks", "      Enabled: false\n      Name: Marks")
     ) as (
         world,
@@ -263,25 +271,25 @@ async def test_display_moved_out_of_disabled_group_is_enabled():
     ):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         assert publisher.get_subscription_count() == 0
-        await edit(client, "move_displays", displays=["display-3"], group=None, before=None)
+        await perform_edit(client, "move_displays", displays=["display-3"], group=None, before=None)
         assert publisher.get_subscription_count() == 1
-        await undo(client)
+        await undo_edit(client)
         assert publisher.get_subscription_count() == 0
 
 
 async def test_invalid_group_moves_are_refused():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         for group in ("display-2", "display-1"):
             await client.send("move_displays", displays=["display-2"], group=group, before=None)
             assert "cannot be put into" in (await client.until("configuration_refused"))["message"]
         await client.send("add_display", cls="rviz_default_plugins/Axes", name="Axes", group="display-1", topic=None)
         assert "cannot be put into" in (await client.until("configuration_refused"))["message"]
         assert world.viewer.config.text() == TEXT
-        assert names(world) == ["Grid", "Marks", "Clicks", "Radar"]
+        assert display_names(world) == ["Grid", "Marks", "Clicks", "Radar"]
 
 
 async def test_displays_are_grouped():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         await client.send("group_displays", displays=["display-1", "display-3", "display-4"], name="All")
         tree = await client.until("tree")
         assert [(display["name"], display["group"]) for display in tree["displays"]] == [
@@ -291,14 +299,14 @@ async def test_displays_are_grouped():
             ("Radar", "display-5"),
             ("Marks", None),
         ]
-        await undo(client)
+        await undo_edit(client)
         assert world.viewer.config.text() == TEXT
 
 
 async def test_group_nesting_depth_is_limited():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         for depth in range(display_tree.MAX_NESTING):
-            await edit(client, "group_displays", displays=["display-1"], name=f"Group {depth}")
+            await perform_edit(client, "group_displays", displays=["display-1"], name=f"Group {depth}")
         await client.send("group_displays", displays=["display-1"], name="Too deep")
         assert "nested" in (await client.until("configuration_refused"))["message"]
         innermost = next(display for display in world.viewer.displays if display.id == "display-1").config.group
@@ -311,8 +319,8 @@ async def test_group_nesting_depth_is_limited():
 
 async def test_number_of_displays_is_limited(monkeypatch):
     monkeypatch.setattr(display_tree, "MAX_DISPLAYS", 6)
-    async with opened() as (world, client):
-        await edit(client, "duplicate_displays", displays=["display-2"])  # a group and its display
+    async with open_configured() as (world, client):
+        await perform_edit(client, "duplicate_displays", displays=["display-2"])  # a group and its display
         for kind, fields in (
             ("duplicate_displays", {"displays": ["display-1"]}),
             ("group_displays", {"displays": ["display-1"], "name": "All"}),
@@ -327,18 +335,18 @@ async def test_number_of_displays_is_limited(monkeypatch):
 
 
 async def test_drag_is_undone_in_one_step():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         for alpha in (0.1, 0.2, 0.3):
             await client.set("display-1/Alpha", alpha)
         await client.until("property_changed", id="display-1/Alpha", value=0.3)
-        assert entries(world)[0]["Alpha"] == 0.3
-        state = await undo(client)
+        assert display_entries(world)[0]["Alpha"] == 0.3
+        state = await undo_edit(client)
         rows = {row["name"]: row for row in (await wait_for_rows(client, world, "display-1"))}
         assert rows["Alpha"]["value"] == 0.5
         assert world.viewer.config.text() == TEXT
         assert state["redo"] == {"kind": "set", "name": "Alpha"}
-        await undo(client, "redo")
-        assert entries(world)[0]["Alpha"] == 0.3
+        await undo_edit(client, "redo")
+        assert display_entries(world)[0]["Alpha"] == 0.3
 
 
 async def wait_for_rows(client, world, identity: str) -> list[dict]:
@@ -350,7 +358,7 @@ async def wait_for_rows(client, world, identity: str) -> list[dict]:
 
 async def test_all_links_checkbox_is_undone_with_its_effects():
     config = RvizConfig.for_model("base")
-    async with open_world(config) as world, page(world.viewer) as client:
+    async with open_world(config) as world, open_page(world.viewer) as client:
         await client.opened()
         world.describe(ARM)
         await client.until("robot_scene", revision=1)
@@ -360,19 +368,19 @@ async def test_all_links_checkbox_is_undone_with_its_effects():
         await client.until("configuration")
         robot = world.display("RobotModel")
         assert not robot.properties.flag("Links", "base")
-        await undo(client)
+        await undo_edit(client)
         assert robot.properties.flag("Links", "base")
         assert not robot.properties.flag("Links", "tip")
-        await undo(client, "redo")
+        await undo_edit(client, "redo")
         assert not robot.properties.flag("Links", "base")
 
 
 async def test_fixed_frame_change_is_undone():
-    async with opened() as (world, client):
+    async with open_configured() as (world, client):
         await client.set("global/Fixed Frame", "odom")
         await client.until("configuration")
         assert world.viewer._node.get_parameter("fixed_frame").value == "odom"
-        await undo(client)
+        await undo_edit(client)
         assert world.viewer.manager.fixed_frame == "base"
         assert world.viewer._node.get_parameter("fixed_frame").value == "base"
         assert world.viewer.manager.frames.fixed_frame == "base"

@@ -7,8 +7,8 @@ from contextlib import asynccontextmanager
 import aiohttp
 
 from linkwright.rviz.visualization import manager
-from tests.viewer.configured import TEXT, PointStamped, opened
-from tests.viewer.scene import Client, page
+from tests.viewer.configured import TEXT, PointStamped, open_configured
+from tests.viewer.scene import Client, open_page
 from tests.waiting import eventually
 
 
@@ -20,7 +20,7 @@ async def open_own_page(world, key: str = "0123456789abcdef"):
 
 
 async def test_pages_share_displays():
-    async with opened() as (world, first), page(world.viewer) as second:
+    async with open_configured() as (world, first), open_page(world.viewer) as second:
         await second.opened()
         await first.send("remove_displays", displays=["display-1"])
         assert [display["name"] for display in (await second.until("tree"))["displays"]] == ["Marks", "Clicks", "Radar"]
@@ -31,7 +31,7 @@ async def test_pages_share_displays():
 
 async def test_page_may_have_own_displays(monkeypatch):
     monkeypatch.setattr(manager, "LINGERING_S", 0.05)
-    async with opened() as (world, shared):
+    async with open_configured() as (world, shared):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         async with open_own_page(world) as own_client:
             opening = await own_client.opened()
@@ -59,7 +59,7 @@ async def test_page_may_have_own_displays(monkeypatch):
 
 async def test_number_of_lingering_own_displays_is_limited(monkeypatch):
     monkeypatch.setattr(manager, "MAX_LINGERING", 2)
-    async with opened() as (world, _):
+    async with open_configured() as (world, _):
         publisher = world.graph.create_node("clicks").create_publisher(PointStamped, "/clicked_point", 5)
         for number in range(5):
             async with open_own_page(world, f"page-number-{number}") as client:
@@ -71,7 +71,7 @@ async def test_number_of_lingering_own_displays_is_limited(monkeypatch):
 
 
 async def test_page_with_invalid_key_shares_displays():
-    async with opened() as (world, _):
+    async with open_configured() as (world, _):
         for key in ("short", "../../../etc/passwd", "x" * 100):
             async with open_own_page(world, key) as client:
                 assert (await client.opened())["configuration"]["is_own"] is False

@@ -11,7 +11,7 @@ from linkwright.geometry.single import Pose
 from linkwright.geometry.solids import shape_properties
 from linkwright.sdf.editing import Change, EditError, add_include, add_light, add_shape, change, delete
 from linkwright.sdf.editing.shapes import solid_properties
-from tests.sdf.editing.texts import PLAIN, is_rejected_by_simulators, world_text, world_with
+from tests.sdf.editing.texts import PLAIN_WORLD, is_rejected_by_simulators, world_text, world_with
 
 POSE = (1.0, 2.0, 3.0, 0.0, 0.0, 0.5)
 SIZES = {"box": (1, 2, 3), "cylinder": (0.1, 2), "sphere": (0.3,), "wall": (4, 0.2, 1), "ramp": (2, 1, 0.5)}
@@ -19,14 +19,14 @@ SIZES = {"box": (1, 2, 3), "cylinder": (0.1, 2), "sphere": (0.3,), "wall": (4, 0
 
 @pytest.mark.parametrize("kind", SIZES)
 def test_added_shape_is_read_back(kind):
-    world = world_text(PLAIN)
+    world = world_text(PLAIN_WORLD)
     text, name = add_shape(world, kind, POSE, SIZES[kind])
     entity = text.entities[name]
     assert (entity.shape.kind, entity.shape.size) == (kind, SIZES[kind])
     assert entity.pose.pose == Pose(POSE[:3], POSE[3:])
     assert entity.is_static == (kind in ("wall", "ramp"))
     assert not is_rejected_by_simulators(text)
-    assert delete(text, [name]).text == PLAIN
+    assert delete(text, [name]).text == PLAIN_WORLD
     usual, name = add_shape(world, kind, POSE)
     larger = change(usual, [Change(name, size=SIZES[kind], static=False)])
     assert larger.entities[name].shape.size == SIZES[kind]
@@ -56,8 +56,8 @@ def test_added_ramp_has_mass_properties_of_wedge():
 
 
 def test_added_elements_follow_last_with_same_indentation():
-    text, _ = add_light(world_text(PLAIN), "point", POSE)
-    assert text.text.startswith(PLAIN[: PLAIN.index("  </world>")])
+    text, _ = add_light(world_text(PLAIN_WORLD), "point", POSE)
+    assert text.text.startswith(PLAIN_WORLD[: PLAIN_WORLD.index("  </world>")])
     assert '    <light name="point_light" type="point">\n      <pose>1 2 3 0 0 0.5</pose>\n' in text.text
     text, _ = add_shape(world_text("<sdf version='1.6'><world name='w'/></sdf>"), "box", POSE)
     assert "<world name='w'>\n  <model name=\"box\">\n    <pose>" in text.text
@@ -79,7 +79,7 @@ def test_added_include_gets_unique_name(tmp_path):
     folder = tmp_path / "crate"
     folder.mkdir()
     (folder / "model.sdf").write_text("<sdf version='1.6'><model name='box'><link name='l'/></model></sdf>")
-    text, name = add_include(world_text(PLAIN, str(tmp_path)), " model://crate ", POSE)
+    text, name = add_include(world_text(PLAIN_WORLD, str(tmp_path)), " model://crate ", POSE)
     assert name == "box_2"
     lines = ("<uri>model://crate</uri>", "<name>box_2</name>", "<pose>1 2 3 0 0 0.5</pose>")
     assert "    <include>\n      " + "\n      ".join(lines) + "\n    </include>\n" in text.text

@@ -9,7 +9,7 @@ import pytest
 
 from linkwright.geometry.single import rotate
 from linkwright.sdf.editing import Change, EditError, change, copy, delete
-from tests.sdf.editing.texts import BOX, PLAIN, world_text, world_with
+from tests.sdf.editing.texts import BOX_MODEL, PLAIN_WORLD, world_text, world_with
 
 
 def changed_lines(old: str, new: str) -> list[str]:
@@ -24,7 +24,7 @@ def lines_changed_by(text: str, *changes: Change) -> list[str]:
 
 
 def test_world_entities_are_listed():
-    entities = world_text(PLAIN).entities
+    entities = world_text(PLAIN_WORLD).entities
     assert list(entities) == ["ground_plane", "box", "lamp"]
     assert [entity.kind for entity in entities.values()] == ["model", "model", "light"]
     assert entities["ground_plane"].is_static
@@ -35,14 +35,14 @@ def test_world_entities_are_listed():
 
 
 def test_pose_change_replaces_only_changed_numbers():
-    assert lines_changed_by(PLAIN, Change("box", pose=(2.0, 1.5, 0.25, 0, 0, pi / 2))) == [
+    assert lines_changed_by(PLAIN_WORLD, Change("box", pose=(2.0, 1.5, 0.25, 0, 0, pi / 2))) == [
         "- <pose>2 0 0.250 0 0 0</pose>",
         "+ <pose>2 1.5 0.250 0 0 1.570796327</pose>",
     ]
 
 
 def test_missing_pose_is_inserted():
-    assert lines_changed_by(PLAIN, Change("ground_plane", pose=(0, 0, -1, 0, 0, 0))) == [
+    assert lines_changed_by(PLAIN_WORLD, Change("ground_plane", pose=(0, 0, -1, 0, 0, 0))) == [
         "- <include><uri>model://ground_plane</uri></include>",
         "+ <include><uri>model://ground_plane</uri><pose>0 0 -1 0 0 0</pose></include>",
     ]
@@ -102,7 +102,7 @@ def test_unknown_pose_frame_is_reported():
 
 
 def test_resizing_changes_collision_visual_and_inertia():
-    assert [line for line in lines_changed_by(PLAIN, Change("box", size=(0.5, 0.5, 1.0))) if line[0] == "+"] == [
+    assert [line for line in lines_changed_by(PLAIN_WORLD, Change("box", size=(0.5, 0.5, 1.0))) if line[0] == "+"] == [
         "+ <mass>4</mass>",
         "+ <inertia><ixx>0.416667</ixx><iyy>0.416667</iyy><izz>0.166667</izz></inertia>",
         *["+ <geometry><box><size>0.5 0.5 1</size></box></geometry>"] * 2,
@@ -112,18 +112,18 @@ def test_resizing_changes_collision_visual_and_inertia():
 @pytest.mark.parametrize("size", [(1, 1), (1, 1, 0), (1, 1, -1), (1, 1, float("nan")), ()])
 def test_invalid_size_is_rejected(size):
     with pytest.raises(EditError, match="is not a valid size for a box"):
-        change(world_text(PLAIN), [Change("box", size=size)])
+        change(world_text(PLAIN_WORLD), [Change("box", size=size)])
 
 
 def test_included_model_has_no_size_or_color():
     with pytest.raises(EditError, match="'ground_plane' cannot be resized"):
-        change(world_text(PLAIN), [Change("ground_plane", size=(1, 1, 1))])
+        change(world_text(PLAIN_WORLD), [Change("ground_plane", size=(1, 1, 1))])
     with pytest.raises(EditError, match="the color of 'ground_plane' cannot be changed"):
-        change(world_text(PLAIN), [Change("ground_plane", color=(1, 1, 1, 1))])
+        change(world_text(PLAIN_WORLD), [Change("ground_plane", color=(1, 1, 1, 1))])
 
 
 def test_color_replaces_material_script():
-    text = PLAIN.replace(
+    text = PLAIN_WORLD.replace(
         "<material><ambient>0.9 0.4 0.1 1</ambient><diffuse>0.9 0.4 0.1 1</diffuse></material>",
         "<material><script><uri>file://media/gazebo.material</uri><name>Gazebo/Red</name></script></material>",
     )
@@ -131,21 +131,23 @@ def test_color_replaces_material_script():
     recolored = change(world_text(text), [Change("box", color=(0, 1, 0, 0.5))])
     assert "<material><ambient>0 1 0 0.5</ambient><diffuse>0 1 0 0.5</diffuse></material>" in recolored.text
     assert recolored.entities["box"].shape.color == (0, 1, 0, 0.5)
-    assert lines_changed_by(PLAIN, Change("lamp", color=(1, 0, 0, 1)))[-1] == "+ <diffuse>1 0 0 1</diffuse>"
+    assert lines_changed_by(PLAIN_WORLD, Change("lamp", color=(1, 0, 0, 1)))[-1] == "+ <diffuse>1 0 0 1</diffuse>"
 
 
 def test_static_flag_is_set_and_cleared():
-    static_text = change(world_text(PLAIN), [Change("box", static=True), Change("ground_plane", static=False)])
+    static_text = change(world_text(PLAIN_WORLD), [Change("box", static=True), Change("ground_plane", static=False)])
     assert static_text.entities["box"].is_static
     assert not static_text.entities["ground_plane"].is_static
     assert "<pose>2 0 0.250 0 0 0</pose>\n      <static>true</static>\n" in static_text.text
-    plain_model = PLAIN.replace(PLAIN[PLAIN.index("        <inertial>") : PLAIN.index("        <collision")], "")
+    plain_model = PLAIN_WORLD.replace(
+        PLAIN_WORLD[PLAIN_WORLD.index("        <inertial>") : PLAIN_WORLD.index("        <collision")], ""
+    )
     static_text = change(world_text(plain_model), [Change("box", static=True)])
     moves = change(static_text, [Change("box", static=False, size=(1.0, 1.0, 1.0))])
     assert "<static>false</static>" in moves.text
     assert moves.world.models[0].links[0].inertial.inertia.ixx == pytest.approx(1 / 6, abs=1e-6)
     with pytest.raises(EditError, match="'lamp' is a light"):
-        change(world_text(PLAIN), [Change("lamp", static=True)])
+        change(world_text(PLAIN_WORLD), [Change("lamp", static=True)])
 
 
 def test_renaming_updates_references():
@@ -180,30 +182,30 @@ def test_renaming_updates_references():
 )
 def test_invalid_names_are_rejected(name, reason):
     with pytest.raises(EditError, match=reason):
-        change(world_text(PLAIN), [Change("box", new_name=name)])
+        change(world_text(PLAIN_WORLD), [Change("box", new_name=name)])
 
 
 def test_include_is_renamed_without_other_changes():
-    renamed = change(world_text(PLAIN), [Change("ground_plane", new_name="floor", static=True)])
+    renamed = change(world_text(PLAIN_WORLD), [Change("ground_plane", new_name="floor", static=True)])
     assert "<include><uri>model://ground_plane</uri><name>floor</name></include>" in renamed.text
     assert list(renamed.entities) == ["floor", "box", "lamp"]
 
 
 def test_copies_get_unique_names_and_offset():
-    text, names = copy(world_text(PLAIN), ["box", "lamp", "ground_plane"], (1, 0, 0))
+    text, names = copy(world_text(PLAIN_WORLD), ["box", "lamp", "ground_plane"], (1, 0, 0))
     assert names == ["box_2", "lamp_2", "ground_plane_2"]
     assert text.entities["box_2"].world_pose == pytest.approx((3, 0, 0.25, 0, 0, 0, 1))
     assert text.entities["lamp_2"].world_pose[:3] == (1, 0, 3)
-    assert BOX.replace("'box'", "'box_2'").replace(">2 0 0.250", ">3 0 0.250") in text.text
+    assert BOX_MODEL.replace("'box'", "'box_2'").replace(">2 0 0.250", ">3 0 0.250") in text.text
     with_copies, names = copy(text, ["box_2", "box"], (0, 1, 0))
     assert names == ["box_3", "box_4"]
-    assert delete(with_copies, ["box_2", "box_3", "box_4", "lamp_2", "ground_plane_2"]).text == PLAIN
+    assert delete(with_copies, ["box_2", "box_3", "box_4", "lamp_2", "ground_plane_2"]).text == PLAIN_WORLD
 
 
 def test_deleting_removes_only_lines_of_entity():
-    assert delete(world_text(PLAIN), ["box"]).text == PLAIN.replace(BOX, "")
+    assert delete(world_text(PLAIN_WORLD), ["box"]).text == PLAIN_WORLD.replace(BOX_MODEL, "")
     with pytest.raises(EditError, match="there is no model or light 'crate' in the world's file"):
-        delete(world_text(PLAIN), ["crate"])
+        delete(world_text(PLAIN_WORLD), ["crate"])
 
 
 def test_referenced_entity_is_deleted_only_with_its_references():
@@ -217,7 +219,7 @@ def test_referenced_entity_is_deleted_only_with_its_references():
 
 
 def test_line_endings_are_preserved():
-    text = world_text(PLAIN.replace("\n", "\r\n"))
+    text = world_text(PLAIN_WORLD.replace("\n", "\r\n"))
     edited, _ = copy(change(text, [Change("lamp", color=(1, 1, 1, 1)), Change("box", static=True)]), ["box"], (1, 0, 0))
     assert "\n" not in edited.text.replace("\r\n", "")
 

@@ -7,10 +7,10 @@ import pytest
 from linkwright.sdf.editing import EditError, WorldText, add_shape, change, group, ungroup
 from linkwright.sdf.editing.changing import Change
 from linkwright.sdf.frames import placed_links
-from tests.sdf.editing.texts import BOX, PLAIN, world_text, world_with
+from tests.sdf.editing.texts import BOX_MODEL, PLAIN_WORLD, world_text, world_with
 
-OTHER_BOX = BOX.replace("'box'", "'crate'").replace(">2 0 0.250 0 0 0<", ">4 1 0.25 0 0 1.5<")
-TWO_BOXES = PLAIN.replace(BOX, f"{BOX}    <!-- between -->\n{OTHER_BOX}")
+OTHER_BOX = BOX_MODEL.replace("'box'", "'crate'").replace(">2 0 0.250 0 0 0<", ">4 1 0.25 0 0 1.5<")
+TWO_BOXES = PLAIN_WORLD.replace(BOX_MODEL, f"{BOX_MODEL}    <!-- between -->\n{OTHER_BOX}")
 
 
 def link_poses(world: WorldText) -> dict[str, tuple[float, ...]]:
@@ -30,7 +30,7 @@ def test_group_is_a_model_and_members_keep_poses():
 
 
 def test_ungrouping_restores_text():
-    original = PLAIN.replace(BOX, BOX + OTHER_BOX).replace("0.250", "0.25")
+    original = PLAIN_WORLD.replace(BOX_MODEL, BOX_MODEL + OTHER_BOX).replace("0.250", "0.25")
     text, names = ungroup(group(world_text(original), ["box", "crate"], "pile"), "pile")
     assert names == ["box", "crate"]
     assert text.text == original
@@ -71,7 +71,7 @@ def test_relative_poses_are_preserved():
 
 
 def test_included_models_can_be_grouped_and_static_group_is_static():
-    text = world_text(PLAIN.replace(BOX, ""))
+    text = world_text(PLAIN_WORLD.replace(BOX_MODEL, ""))
     text, wall = add_shape(text, "wall", (1, 0, 0.5, 0, 0, 0))
     grouped = group(text, ["ground_plane", wall], "floor")
     assert grouped.entities["floor"].is_static
@@ -98,9 +98,9 @@ def test_invalid_group_is_rejected(names, reason):
 
 def test_ungrouping_other_models_is_rejected():
     with pytest.raises(EditError, match="'box' cannot be ungrouped: it contains more than models"):
-        ungroup(world_text(PLAIN), "box")
+        ungroup(world_text(PLAIN_WORLD), "box")
     with pytest.raises(EditError, match="'ground_plane' is not a group"):
-        ungroup(world_text(PLAIN), "ground_plane")
+        ungroup(world_text(PLAIN_WORLD), "ground_plane")
     grouped = group(world_text(TWO_BOXES), ["box", "crate"], "g").text
     with_frame = grouped.replace("    <light", '    <frame name="f" attached_to="g"/>\n    <light')
     with pytest.raises(EditError, match="another element refers to it"):

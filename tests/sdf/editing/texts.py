@@ -12,7 +12,7 @@ from linkwright.sdf.reader import read
 from linkwright.sdf.resources import ResourceFinder
 from linkwright.sdf.text import parse_as_gazebo
 
-BOX = """\
+BOX_MODEL = """\
     <model name='box'><!-- in single quotes -->
       <pose>2 0 0.250 0 0 0</pose>
       <link name="link">
@@ -30,7 +30,7 @@ BOX = """\
       </link>
     </model>
 """
-PLAIN = f"""\
+PLAIN_WORLD = f"""\
 <?xml version="1.0"?>
 <!-- -- dashes, which XML forbids -->
 <sdf version="1.6">
@@ -38,7 +38,7 @@ PLAIN = f"""\
     <include><uri>model://ground_plane</uri></include>
 
     <!-- the box -->
-{BOX}
+{BOX_MODEL}
     <light type="point" name="lamp">
       <pose>0 0 3 0 0 0</pose>
     </light>

@@ -11,7 +11,7 @@ from linkwright.packages import PackageFinder
 from linkwright.sdf.editing import Change, EditError, change
 from linkwright.sdf.resources import model_file
 from linkwright.simulation.page.modeling.edited_world import EditedWorld
-from tests.sdf.editing.texts import PLAIN
+from tests.sdf.editing.texts import PLAIN_WORLD
 
 NO_PACKAGES = PackageFinder(start=Path("/nonexistent"), environment={})
 
@@ -33,7 +33,7 @@ def rename_world(path: Path, name: str = "机器人 é") -> EditedWorld:
 )
 @pytest.mark.parametrize("newline", ["\n", "\r\n"])
 def test_save_keeps_encoding_bom_and_line_ends(tmp_path, bom, encoding, declared_encoding, newline):
-    text = PLAIN.replace("<!-- the box -->", "<!-- ü -->").replace("\n", newline)
+    text = PLAIN_WORLD.replace("<!-- the box -->", "<!-- ü -->").replace("\n", newline)
     if declared_encoding:
         text = text.replace('version="1.0"', f'version="1.0" encoding="{declared_encoding}"')
     path = tmp_path / "w.world"
@@ -49,18 +49,18 @@ def test_save_keeps_encoding_bom_and_line_ends(tmp_path, bom, encoding, declared
 
 def test_change_without_effect_adds_no_undo_step(tmp_path):
     path = tmp_path / "w.world"
-    path.write_text(PLAIN)
+    path.write_text(PLAIN_WORLD)
     world = EditedWorld.from_file(path, NO_PACKAGES)
     world.edit(lambda text: change(text, [Change("box", pose=(2, 0, 0.25, 0, 0, 0), size=(0.5, 0.5, 0.5))]))
     assert (world.can_undo, world.is_unsaved) == (False, False)
     world.undo()
     world.redo()
-    assert world.world.text == PLAIN
+    assert world.world.text == PLAIN_WORLD
 
 
 def test_new_change_clears_redo(tmp_path):
     path = tmp_path / "w.world"
-    path.write_text(PLAIN)
+    path.write_text(PLAIN_WORLD)
     world = rename_world(path, "a")
     world.undo()
     assert (world.can_undo, world.can_redo, world.is_unsaved) == (False, True, False)
@@ -70,7 +70,7 @@ def test_new_change_clears_redo(tmp_path):
 
 def test_save_does_not_overwrite_other_files(tmp_path):
     path, other = tmp_path / "w.world", tmp_path / "other.world"
-    path.write_text(PLAIN)
+    path.write_text(PLAIN_WORLD)
     other.write_text("mine")
     world = rename_world(path)
     with pytest.raises(EditError, match=r"the file '.*other\.world' already exists: choose another name"):
@@ -80,7 +80,7 @@ def test_save_does_not_overwrite_other_files(tmp_path):
     for name in ("", "w.txt", "w.world.xacro", "a\0.world", "~nonexistent-user/w.world"):
         with pytest.raises(EditError, match=r"it must end in \.world or \.sdf"):
             world.save(name)
-    assert (other.read_text(), path.read_text()) == ("mine", PLAIN)
+    assert (other.read_text(), path.read_text()) == ("mine", PLAIN_WORLD)
     world.save(str(path))
     assert not world.is_unsaved
     path.unlink()
@@ -90,7 +90,9 @@ def test_save_does_not_overwrite_other_files(tmp_path):
 
 def test_xacro_world_is_saved_expanded_to_new_file(tmp_path):
     path = tmp_path / "w.world.xacro"
-    source = PLAIN.replace("-- dashes", "dashes").replace("<sdf ", '<sdf xmlns:xacro="http://www.ros.org/wiki/xacro" ')
+    source = PLAIN_WORLD.replace("-- dashes", "dashes").replace(
+        "<sdf ", '<sdf xmlns:xacro="http://www.ros.org/wiki/xacro" '
+    )
     path.write_text(source.replace(">2 0 0.250", ">${1 + 1} 0 0.250"))
     world = rename_world(path)
     assert (world.file, world.path) == (None, tmp_path / "w.world")
@@ -108,7 +110,7 @@ def test_shipped_worlds_are_not_overwritten(tmp_path):
     import linkwright
 
     shipped_path = Path(linkwright.__file__).parent / "w.world"
-    assert EditedWorld(PLAIN, shipped_path, NO_PACKAGES).file is None
+    assert EditedWorld(PLAIN_WORLD, shipped_path, NO_PACKAGES).file is None
     path = model_file(Path(linkwright.__file__).parent / "sdf" / "models" / "sun")
     with pytest.raises(EditError, match="there is no world in"):
         EditedWorld.from_file(path, NO_PACKAGES)
@@ -116,13 +118,13 @@ def test_shipped_worlds_are_not_overwritten(tmp_path):
 
 def test_unsaved_changes_are_stored(tmp_path):
     path, folder = tmp_path / "w.world", tmp_path / "state" / "unsaved"
-    path.write_bytes(codecs.BOM_UTF8 + PLAIN.encode())
+    path.write_bytes(codecs.BOM_UTF8 + PLAIN_WORLD.encode())
     diagnostics = [rename_world(path, name).store_unsaved(folder) for name in ("a", "b")]
     (file,) = folder.iterdir()
     assert [diagnostic.code for diagnostic in diagnostics] == ["RVIZ301", "RVIZ301"]
     assert f"'{path}'" in diagnostics[0].message
     assert f"'{file}'" in diagnostics[0].message
-    assert file.read_bytes() == codecs.BOM_UTF8 + PLAIN.replace("'box'", "'b'").encode()
+    assert file.read_bytes() == codecs.BOM_UTF8 + PLAIN_WORLD.replace("'box'", "'b'").encode()
     (tmp_path / "file").touch()
     diagnostic = rename_world(path).store_unsaved(tmp_path / "file" / "unsaved")
     assert (diagnostic.code, "cannot write" in diagnostic.message) == ("RVIZ104", True)

@@ -13,8 +13,8 @@ import pytest
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import get_message, get_service
 from linkwright.rviz.config.locations import recovery_folder
-from tests.sdf.editing.texts import BOX, PLAIN
-from tests.viewer.scene import open_world, page
+from tests.sdf.editing.texts import BOX_MODEL, PLAIN_WORLD
+from tests.viewer.scene import open_page, open_world
 from tests.waiting import eventually
 
 STRING = get_message("std_msgs/msg/String")
@@ -36,7 +36,7 @@ class FakeSimulator:
             self.node.declare_parameter("world", str(path))
         latched = QoSProfile(1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
         self.description = self.node.create_publisher(STRING, "/world_description", latched)
-        self.description.publish(STRING(data=PLAIN))
+        self.description.publish(STRING(data=PLAIN_WORLD))
         self.requests: list[tuple[str, object]] = []
         self.refusal = ""
         for name, service_type in SERVICES.items():
@@ -67,14 +67,14 @@ async def modeling_session(path: Path | None = None, *, loads: bool = True):
     """Run a simulation of the world in a file, with a page that edits it."""
     async with open_world() as world:
         simulation = FakeSimulator(world, path, loads=loads)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.until("modeling_state", available=True)
             await client.send("set_modeling", active=True)
             client.state = await client.until("modeling_state", active=True)
             yield simulation, client, world
 
 
-def write_world(tmp_path: Path, text: str = PLAIN) -> Path:
+def write_world(tmp_path: Path, text: str = PLAIN_WORLD) -> Path:
     path = tmp_path / "my.world"
     path.write_bytes(text.encode())
     return path
@@ -85,7 +85,7 @@ def make_change(name: str, **fields) -> dict:
 
 
 async def test_modeling_is_unavailable_without_simulation():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         state = (await client.opened())["modeling_state"]
         assert (state["available"], state["active"], state["entities"]) == (False, False, [])
         await client.send("set_modeling", active=True)
@@ -120,16 +120,16 @@ async def test_changes_are_loaded_undone_and_saved(tmp_path):
         state = await client.until("modeling_state", unsaved=True)
         assert (state["can_undo"], state["can_redo"]) == (True, False)
         resource = await simulation.last_loaded()
-        assert (resource.uri, resource.resource_string) == (str(path), PLAIN.replace(">2 0 0.250", ">3 0 0.250"))
-        assert path.read_text() == PLAIN
+        assert (resource.uri, resource.resource_string) == (str(path), PLAIN_WORLD.replace(">2 0 0.250", ">3 0 0.250"))
+        assert path.read_text() == PLAIN_WORLD
         await client.send("undo_world")
         assert (await client.until("modeling_state", can_redo=True))["unsaved"] is False
-        assert (await simulation.last_loaded(2)).resource_string == PLAIN
+        assert (await simulation.last_loaded(2)).resource_string == PLAIN_WORLD
         await client.send("redo_world")
         await client.until("modeling_state", can_redo=False, unsaved=True)
         await client.send("save_world", path=None)
         await client.until("modeling_state", unsaved=False, can_undo=True)
-        assert path.read_text() == PLAIN.replace(">2 0 0.250", ">3 0 0.250")
+        assert path.read_text() == PLAIN_WORLD.replace(">2 0 0.250", ">3 0 0.250")
         assert path.stat().st_mode & 0o777 == 0o640
 
 
@@ -167,14 +167,14 @@ async def test_modeling_messages_edit_entities(tmp_path):
 
 
 async def test_new_entity_gets_unused_name(tmp_path):
-    async with modeling_session(write_world(tmp_path, PLAIN.replace(BOX, ""))) as (_, client, _):
+    async with modeling_session(write_world(tmp_path, PLAIN_WORLD.replace(BOX_MODEL, ""))) as (_, client, _):
         assert [entity["name"] for entity in client.state["entities"]] == ["ground_plane", "lamp"]
         await client.send("add_entity", shape="box", address="", pose=POSE, size=[])
         assert (await client.until("modeling_state", unsaved=True))["entities"][-1]["name"] == "box_2"
 
 
 async def test_pages_share_edited_world(tmp_path):
-    async with modeling_session(write_world(tmp_path)) as (_, client, world), page(world.viewer) as other:
+    async with modeling_session(write_world(tmp_path)) as (_, client, world), open_page(world.viewer) as other:
         assert (await other.opened())["modeling_state"]["active"] is True
         await client.send("delete_entities", names=["box"])
         assert len((await other.until("modeling_state", unsaved=True))["entities"]) == 2
@@ -205,16 +205,16 @@ async def test_world_without_file_is_saved_to_new_file(tmp_path):
     async with modeling_session() as (simulation, client, _):
         assert client.state["file"] is None
         await client.send("delete_entities", names=["box"])
-        assert (await simulation.last_loaded()).resource_string == PLAIN.replace(BOX, "")
+        assert (await simulation.last_loaded()).resource_string == PLAIN_WORLD.replace(BOX_MODEL, "")
         await client.send("save_world", path=None)
         assert "no file yet" in (await client.until("simulation_notice"))["text"]
         path = tmp_path / "new.world"
         await client.send("save_world", path=str(path))
         assert (await client.until("modeling_state", file=str(path)))["unsaved"] is False
-        assert path.read_text() == PLAIN.replace(BOX, "")
+        assert path.read_text() == PLAIN_WORLD.replace(BOX_MODEL, "")
 
 
-@pytest.mark.parametrize("text", [None, PLAIN.replace('name="w"', 'name="other"'), "<sdf"])
+@pytest.mark.parametrize("text", [None, PLAIN_WORLD.replace('name="w"', 'name="other"'), "<sdf"])
 async def test_missing_or_different_world_file_is_ignored(tmp_path, text):
     path = tmp_path / "none.world" if text is None else write_world(tmp_path, text)
     async with modeling_session(path) as (_, client, _):
@@ -225,13 +225,13 @@ async def test_missing_or_different_world_file_is_ignored(tmp_path, text):
 async def test_externally_changed_file_is_reloaded_or_not_overwritten(tmp_path):
     path = write_world(tmp_path)
     async with modeling_session(path) as (_, client, _):
-        path.write_text(PLAIN.replace("'box'", "'crate'"))
+        path.write_text(PLAIN_WORLD.replace("'box'", "'crate'"))
         await client.send("delete_entities", names=["crate"])
         assert len((await client.until("modeling_state"))["entities"]) == 2
-        path.write_text(PLAIN)
+        path.write_text(PLAIN_WORLD)
         await client.send("save_world", path=None)
         assert "was changed by another program" in (await client.until("simulation_notice"))["text"]
-        assert path.read_text() == PLAIN
+        assert path.read_text() == PLAIN_WORLD
         await client.send("save_world", path="other.world")
         assert (await client.until("modeling_state"))["file"] == str(tmp_path / "other.world")
 
@@ -243,6 +243,6 @@ async def test_unsaved_changes_are_kept_at_exit(tmp_path):
         await client.send("delete_entities", names=["box"])
         await client.until("modeling_state", unsaved=True)
         (notice,) = world.viewer.keep_unsaved()
-    assert (notice.code, path.read_text()) == ("RVIZ301", PLAIN)
+    assert (notice.code, path.read_text()) == ("RVIZ301", PLAIN_WORLD)
     files = list(recovery_folder().glob("my-*.world"))
-    assert [file.read_text() for file in files if str(file) in notice.message] == [PLAIN.replace(BOX, "")]
+    assert [file.read_text() for file in files if str(file) in notice.message] == [PLAIN_WORLD.replace(BOX_MODEL, "")]

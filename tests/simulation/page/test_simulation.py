@@ -8,7 +8,7 @@ import pytest
 
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.messages import Time, get_message, get_service
-from tests.viewer.scene import open_world, page
+from tests.viewer.scene import open_page, open_world
 from tests.waiting import eventually
 
 STATE = get_message("simulation_interfaces/msg/SimulationState")
@@ -71,13 +71,13 @@ async def open_simulation():
     async with open_world() as world:
         simulation = FakeSimulator(world)
         simulation.state.publish(STATE(state=1))
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.until("simulation_status", present=True)
             yield simulation, client
 
 
 async def test_simulation_is_absent_without_simulator():
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         assert (await client.opened())["simulation_status"]["present"] is False
 
 
@@ -85,7 +85,7 @@ async def test_simulation_features_are_created_on_demand():
     def kinds(viewer) -> set[str]:
         return {type(feature).__name__ for feature in viewer._features}
 
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         assert not (await client.opened())["modeling_state"]["available"]
         needless = {"SimulationFeature", "ModelingFeature", "RecordingFeature", "ComparisonFeature", "PointsFeature"}
         assert not needless & kinds(world.viewer)
@@ -176,7 +176,7 @@ async def test_missing_service_is_reported():
     async with open_world() as world:
         node = world.graph.create_node("gazebo")
         node.create_publisher(STATE, "/simulation_state", 1).publish(STATE(state=1))
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.until("simulation_status", present=True)
             await client.send("control_simulation", action="pause")
             assert (await client.until("simulation_notice"))["text"] == "there is no service '/pause_physics'"

@@ -87,7 +87,7 @@ async def run_arm(text: str, topic: str = "/robot_description"):
 
 
 @pytest.fixture
-def file(tmp_path):
+def write_parameter_file(tmp_path):
     """Return a function that writes the parameters for a kind of command.
 
     It returns the plugin's element.
@@ -102,8 +102,8 @@ def file(tmp_path):
     return write
 
 
-async def test_position_commands_set_the_joint_despite_its_reduction(file):
-    async with run_arm(robot_urdf("position", file("position"))) as (world, log):
+async def test_position_commands_set_the_joint_despite_its_reduction(write_parameter_file):
+    async with run_arm(robot_urdf("position", write_parameter_file("position"))) as (world, log):
         states = Recording(world.graph, world.server.node, "/joint_states")
         await world.advance(0.3)
         assert world.state[0] == pytest.approx(0.0, abs=0.01)  # held before any controller starts
@@ -120,15 +120,15 @@ async def test_position_commands_set_the_joint_despite_its_reduction(file):
         assert "the commanded position 0.3 is outside its limits" in limit  # its velocity limit
 
 
-async def test_joint_without_command_falls_only_with_effort_interface(file):
+async def test_joint_without_command_falls_only_with_effort_interface(write_parameter_file):
     for kind, is_held in (("effort", False), ("velocity", True)):
-        async with run_arm(robot_urdf(kind, file(kind))) as (world, _):
+        async with run_arm(robot_urdf(kind, write_parameter_file(kind))) as (world, _):
             await world.advance(0.3)
             assert (abs(world.state[0]) < 0.05) is is_held, kind
 
 
-async def test_wheel_without_controller_is_free_for_other_plugins(file):
-    text = robot_urdf("velocity", file("velocity"), effort=100.0).replace("revolute", "continuous")
+async def test_wheel_without_controller_is_free_for_other_plugins(write_parameter_file):
+    text = robot_urdf("velocity", write_parameter_file("velocity"), effort=100.0).replace("revolute", "continuous")
     async with run_arm(text) as (world, _):
         await world.advance(0.3)
         assert world.state[0] > 0.2
@@ -138,8 +138,8 @@ async def test_wheel_without_controller_is_free_for_other_plugins(file):
         assert world.state[1] == pytest.approx(0.0, abs=0.12)
 
 
-async def test_effort_commands_push_the_joint_within_its_limit(file):
-    async with run_arm(robot_urdf("effort", file("effort"), effort=3.0)) as (world, log):
+async def test_effort_commands_push_the_joint_within_its_limit(write_parameter_file):
+    async with run_arm(robot_urdf("effort", write_parameter_file("effort"), effort=3.0)) as (world, log):
         states = Recording(world.graph, world.server.node, "/joint_states")
         await world.start_controllers()
         await world.move(-100.0)
@@ -148,8 +148,8 @@ async def test_effort_commands_push_the_joint_within_its_limit(file):
         assert any("the commanded effort -100 is outside its limits; -3 is sent instead" in str(r.text) for r in log)
 
 
-async def test_velocity_commands_turn_the_joint_within_its_limits(file):
-    async with run_arm(robot_urdf("velocity", file("velocity"), effort=100.0)) as (world, _):
+async def test_velocity_commands_turn_the_joint_within_its_limits(write_parameter_file):
+    async with run_arm(robot_urdf("velocity", write_parameter_file("velocity"), effort=100.0)) as (world, _):
         await world.start_controllers()
         await world.move(0.5)
         await world.advance(0.4)
@@ -159,8 +159,8 @@ async def test_velocity_commands_turn_the_joint_within_its_limits(file):
 
 
 @pytest.mark.parametrize(("kind", "gains"), [("position", "p: 60.0, d: 6.0"), ("velocity", "p: 10.0")])
-async def test_gains_make_a_pid_controller_push_the_joint(file, kind, gains):
-    async with run_arm(robot_urdf(kind, file(kind, gains))) as (world, _):
+async def test_gains_make_a_pid_controller_push_the_joint(write_parameter_file, kind, gains):
+    async with run_arm(robot_urdf(kind, write_parameter_file(kind, gains))) as (world, _):
         await world.start_controllers()
         await world.move(0.3)
         await world.advance(0.8)
@@ -178,8 +178,8 @@ async def test_gains_make_a_pid_controller_push_the_joint(file, kind, gains):
         ("p: 30.0, d: 6.0, i: 100.0, i_clamp_max: 5.0", False),
     ],
 )
-async def test_integral_of_pid_acts_within_its_clamp(file, gains, is_reached):
-    async with run_arm(robot_urdf("position", file("position", gains))) as (world, _):
+async def test_integral_of_pid_acts_within_its_clamp(write_parameter_file, gains, is_reached):
+    async with run_arm(robot_urdf("position", write_parameter_file("position", gains))) as (world, _):
         await world.start_controllers()
         await world.move(0.3)
         await world.advance(2.0)
@@ -194,10 +194,13 @@ def test_antiwindup_selects_the_strategy(value, strategy):
 
 
 @pytest.mark.parametrize(("legacy", "node"), [("", "/gazebo_ros_control"), ("false", "/r1/gazebo_ros_control")])
-async def test_gains_are_in_the_root_namespace_unless_legacy_mode_is_off(file, legacy, node):
+async def test_gains_are_in_the_root_namespace_unless_legacy_mode_is_off(write_parameter_file, legacy, node):
     mode = f"<legacyModeNS>{legacy}</legacyModeNS>" if legacy else ""
     for node_name, has_pid in ((node, True), ("/r2/gazebo_ros_control", False)):
-        extra = file("position", "p: 60.0, d: 6.0", node_name) + f"<robotNamespace>/r1</robotNamespace>{mode}"
+        extra = (
+            write_parameter_file("position", "p: 60.0, d: 6.0", node_name)
+            + f"<robotNamespace>/r1</robotNamespace>{mode}"
+        )
         async with run_arm(robot_urdf("position", extra), "/r1/robot_description") as (world, _):
             world.manager = "/r1/controller_manager"
             await world.start_controllers()
@@ -206,8 +209,8 @@ async def test_gains_are_in_the_root_namespace_unless_legacy_mode_is_off(file, l
             assert (world.state[0] > 0.32) is has_pid
 
 
-async def test_pid_of_continuous_joint_turns_the_shortest_way(file):
-    text = robot_urdf("position", file("position", "p: 60.0, d: 6.0")).replace("revolute", "continuous")
+async def test_pid_of_continuous_joint_turns_the_shortest_way(write_parameter_file):
+    text = robot_urdf("position", write_parameter_file("position", "p: 60.0, d: 6.0")).replace("revolute", "continuous")
     text = text.replace('velocity="4"', 'velocity="0"')  # without a limit, the whole command arrives at once
     async with run_arm(text) as (world, _):
         await world.start_controllers()
@@ -216,52 +219,57 @@ async def test_pid_of_continuous_joint_turns_the_shortest_way(file):
         assert world.state[0] == pytest.approx(6.0 - tau + 0.2 * 9.81 / 60.0, abs=0.05)
 
 
-async def test_gains_without_p_or_for_efforts_are_ignored(file):
-    async with run_arm(robot_urdf("position", file("position", "d: 6.0"))) as (world, _):
+async def test_gains_without_p_or_for_efforts_are_ignored(write_parameter_file):
+    async with run_arm(robot_urdf("position", write_parameter_file("position", "d: 6.0"))) as (world, _):
         await world.start_controllers()
         await world.move(0.3)
         await world.advance(0.3)
         assert world.state[0] == pytest.approx(0.3, abs=0.01)
-    async with run_arm(robot_urdf("effort", file("effort", "p: 60.0"))) as (world, _):
+    async with run_arm(robot_urdf("effort", write_parameter_file("effort", "p: 60.0"))) as (world, _):
         await world.start_controllers()
         await world.move(-0.2 * 9.81)
         assert not world.server.plugins("arm")[0]._systems[0].has_pids
 
 
-async def test_gain_that_is_not_a_number_is_reported(file):
-    async with run_arm(robot_urdf("position", file("position", "p: stiff"))) as (_, log):
+async def test_gain_that_is_not_a_number_is_reported(write_parameter_file):
+    async with run_arm(robot_urdf("position", write_parameter_file("position", "p: stiff"))) as (_, log):
         warnings = [record.text for record in log if record.level == LogLevel.WARN]
         assert "the PID parameter p of joint 'swing' is not a number: 'stiff'" in warnings
 
 
-async def test_soft_limits_stop_position_commands_and_slow_velocities(file):
+async def test_soft_limits_stop_position_commands_and_slow_velocities(write_parameter_file):
     safety = SOFT_LIMITS.format(k_position=20.0, k_velocity=10.0)
-    async with run_arm(robot_urdf("position", file("position"), safety)) as (world, _):
+    async with run_arm(robot_urdf("position", write_parameter_file("position"), safety)) as (world, _):
         await world.start_controllers()
         await world.move(0.4)
         await world.advance(1.0)
         assert world.state[0] == pytest.approx(0.2, abs=0.01)
 
 
-async def test_control_period_is_the_period_of_updates(file):
+async def test_control_period_is_the_period_of_updates(write_parameter_file):
     rates = {}
     for period in ("", "<controlPeriod>0.02</controlPeriod>", "<controlPeriod>0.0001</controlPeriod>"):
-        async with run_arm(robot_urdf("position", file("position") + period)) as (world, log):
+        async with run_arm(robot_urdf("position", write_parameter_file("position") + period)) as (world, log):
             rates[period] = world.server.plugins("arm")[0]._manager.update_rate
             is_reported = any("is shorter than the step of the simulation" in str(record.text) for record in log)
             assert is_reported is ("0.0001" in period)
     assert list(rates.values()) == pytest.approx([1000.0, 50.0, 1000.0])
 
 
-async def test_update_rate_of_manager_applies_without_control_period(file, tmp_path):
+async def test_update_rate_of_manager_applies_without_control_period(write_parameter_file, tmp_path):
     rate = tmp_path / "rate.yaml"
     rate.write_text("controller_manager: {ros__parameters: {update_rate: 200}}\n")
-    async with run_arm(robot_urdf("position", f"{file('position')}<parameters>{rate}</parameters>")) as (world, _):
+    async with run_arm(
+        robot_urdf("position", f"{write_parameter_file('position')}<parameters>{rate}</parameters>")
+    ) as (world, _):
         assert world.server.plugins("arm")[0]._manager.update_rate == 200.0
 
 
-async def test_description_is_searched_for_in_outer_namespaces(file):
-    extra = file("position") + "<robotNamespace>/team/r1</robotNamespace><robotParam>arm_description</robotParam>"
+async def test_description_is_searched_for_in_outer_namespaces(write_parameter_file):
+    extra = (
+        write_parameter_file("position")
+        + "<robotNamespace>/team/r1</robotNamespace><robotParam>arm_description</robotParam>"
+    )
     for topic, is_found in (
         ("/team/r1/arm_description", True),
         ("/team/arm_description", True),
@@ -276,8 +284,8 @@ async def test_description_is_searched_for_in_outer_namespaces(file):
 
 
 @pytest.mark.parametrize("kind", TYPES)
-async def test_emergency_stop_holds_positions_and_stops_velocities_and_efforts(file, kind):
-    extra = file(kind) + "<eStopTopic>e_stop</eStopTopic>"
+async def test_emergency_stop_holds_positions_and_stops_velocities_and_efforts(write_parameter_file, kind):
+    extra = write_parameter_file(kind) + "<eStopTopic>e_stop</eStopTopic>"
     async with run_arm(robot_urdf(kind, extra, effort=100.0)) as (world, _):
         publisher = world.node.create_publisher("std_msgs/msg/Bool", "/e_stop", 10)
         await world.start_controllers()
@@ -297,8 +305,8 @@ async def test_emergency_stop_holds_positions_and_stops_velocities_and_efforts(f
         assert world.state[0] > stopped + 0.05
 
 
-async def test_other_robot_simulator_is_replaced_with_a_warning(file):
-    extra = file("position") + "<robotSimType>my_robot/MyRobotHWSim</robotSimType>"
+async def test_other_robot_simulator_is_replaced_with_a_warning(write_parameter_file):
+    extra = write_parameter_file("position") + "<robotSimType>my_robot/MyRobotHWSim</robotSimType>"
     async with run_arm(robot_urdf("position", extra)) as (world, log):
         assert "the robot simulator 'my_robot/MyRobotHWSim' is not available; DefaultRobotHWSim is used" in [
             record.text for record in log
@@ -306,8 +314,8 @@ async def test_other_robot_simulator_is_replaced_with_a_warning(file):
         await world.start_controllers()
 
 
-async def test_position_is_kept_when_world_restarts(file):
-    async with run_arm(robot_urdf("position", file("position"))) as (world, _):
+async def test_position_is_kept_when_world_restarts(write_parameter_file):
+    async with run_arm(robot_urdf("position", write_parameter_file("position"))) as (world, _):
         await world.start_controllers()
         await world.move(0.3)
         await world.advance(0.3)

@@ -12,7 +12,7 @@ import pytest
 from linkwright.graph import DurabilityPolicy, QoSProfile
 from linkwright.page.protocol.voice import MAX_LOST_SAMPLES, unpack_sound
 from linkwright.speech.page import floor
-from tests.viewer.scene import Client, World, open_world, page
+from tests.viewer.scene import Client, World, open_page, open_world
 from tests.waiting import eventually
 
 BLOCK = np.arange(1600, dtype=np.int16)
@@ -57,7 +57,7 @@ class SoundRecorder:
 
 @asynccontextmanager
 async def sound_session() -> AsyncIterator[tuple[World, Client, SoundRecorder]]:
-    async with open_world() as world, page(world.viewer) as client:
+    async with open_world() as world, open_page(world.viewer) as client:
         await client.opened()
         yield world, client, SoundRecorder(world)
 
@@ -70,7 +70,7 @@ def publishers(world: World) -> list[int]:
 async def test_voice_requires_node_that_understands_commands(topic, present):
     async with open_world() as world:
         world.graph.create_node("other").create_publisher("std_msgs/msg/String", topic, 10)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.send("watch_voice", watched=True)
             assert (await client.until("voice_node"))["present"] is present
 
@@ -122,7 +122,7 @@ async def test_sound_topics_exist_while_microphone_is_open():
 async def test_closed_page_releases_button():
     async with open_world() as world:
         ears = SoundRecorder(world)
-        async with page(world.viewer) as client:
+        async with open_page(world.viewer) as client:
             await client.opened()
             await client.send("talk", mode="held")
             await eventually(lambda: ears.button_states == [True])
@@ -142,7 +142,7 @@ async def test_late_subscriber_gets_button_state():
 
 
 async def test_page_that_holds_button_talks():
-    async with sound_session() as (world, first, ears), page(world.viewer) as second:
+    async with sound_session() as (world, first, ears), open_page(world.viewer) as second:
         for client in (first, second):
             await client.send("watch_voice", watched=True)
             await client.until("voice_state", talking="nobody")
@@ -163,7 +163,7 @@ async def test_page_that_holds_button_talks():
 
 
 async def test_second_page_waits_for_button():
-    async with sound_session() as (world, first, ears), page(world.viewer) as second:
+    async with sound_session() as (world, first, ears), open_page(world.viewer) as second:
         await second.send("watch_voice", watched=True)
         await first.send("talk", mode="held")
         await second.until("voice_state", talking="another")

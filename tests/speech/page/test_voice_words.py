@@ -14,7 +14,7 @@ from linkwright.speech.commands.command_file import DEFAULT_FILE, read_command_f
 from linkwright.speech.enrolled.words import Words, find_words_path
 from tests.speech.page.test_voice import frame
 from tests.speech.voices import WORDS, say
-from tests.viewer.scene import Client, open_world, page
+from tests.viewer.scene import Client, open_page, open_world
 
 STRINGS = Path(__file__).parents[3] / "frontend" / "src" / "strings"
 
@@ -27,7 +27,7 @@ def _own_file(tmp_path, monkeypatch):
 @asynccontextmanager
 async def open_pages() -> AsyncIterator[tuple[Client, Client]]:
     """Open two pages with the words; the first one's microphone is open."""
-    async with open_world() as world, page(world.viewer) as client, page(world.viewer) as other:
+    async with open_world() as world, open_page(world.viewer) as client, open_page(world.viewer) as other:
         for client_page in (client, other):
             await client_page.opened()
             await client_page.send("watch_words", watched=True)

@@ -1,4 +1,4 @@
-"""The shipped network on rendered images of our worlds."""
+"""The shipped network on rendered images of Linkwright's worlds."""
 
 from __future__ import annotations
 

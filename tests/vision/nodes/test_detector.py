@@ -301,42 +301,42 @@ IMAGE, COMPRESSED = "sensor_msgs/msg/Image", "sensor_msgs/msg/CompressedImage"
 
 
 @pytest.fixture
-def warnings(test):
+def logged_warnings(test):
     """Return the warnings."""
     return lambda: [record.text for record in test.log if record.level is LogLevel.WARN]
 
 
-async def test_unpublished_topic_is_reported_once_with_image_topics(test, start, warnings):
+async def test_unpublished_topic_is_reported_once_with_image_topics(test, start, logged_warnings):
     await start(model="colors")
     test.record("/yolo/detections")
     test.record("/yolo/debug_image")
     test.node.create_publisher(get_message(IMAGE), "/camera/image_raw", 1)
     await test.advance(30.0)
-    assert warnings() == [
+    assert logged_warnings() == [
         "no images arrive: no node publishes '/yolo/image_raw'",
         "images are published on '/camera/image_raw': set the topic with the parameter 'input_image_topic'",
     ]
 
 
-async def test_topic_type_mismatch_is_reported(test, start, warnings):
+async def test_topic_type_mismatch_is_reported(test, start, logged_warnings):
     await start(DarknetRosNode, namespace="/", network={"weights": "colors"}, remappings=[("~/images", "/camera")])
     test.record("/detector_node/detections")
     test.node.create_publisher(get_message(COMPRESSED), "/camera", 1)
     test.node.create_publisher(get_message(IMAGE), "/kinect/image_raw", 1)
     await test.advance(11.0)
-    assert warnings()[-2:] == [
+    assert logged_warnings()[-2:] == [
         f"no images arrive: the type of '/camera' is '{COMPRESSED}', not '{IMAGE}'",
         "images are published on '/kinect/image_raw': remap '/camera'",
     ]
 
 
-async def test_incompatible_qos_is_reported(test, start, warnings):
+async def test_incompatible_qos_is_reported(test, start, logged_warnings):
     await start(model="colors", image_reliability=1)
     test.record("/yolo/detections")
     best_effort = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
     test.node.create_publisher(get_message(IMAGE), "/yolo/image_raw", best_effort)
     await test.advance(11.0)
-    assert warnings()[-2:] == [
+    assert logged_warnings()[-2:] == [
         (
             "no images arrive: the publisher of '/yolo/image_raw' offers best-effort reliability, but this "
             "node requests reliable"
@@ -345,29 +345,29 @@ async def test_incompatible_qos_is_reported(test, start, warnings):
     ]
 
 
-async def test_stopped_camera_is_reported_and_later_each_time(test, start, warnings):
+async def test_stopped_camera_is_reported_and_later_each_time(test, start, logged_warnings):
     await start(model="colors")
     recording = test.record("/yolo/detections")
     await test.settle()
     stopped = "no image has arrived on '/yolo/image_raw' for {} s".format
     await detect_in_image(test, recording, "/yolo/image_raw", make_image())
     await test.advance(9.0)
-    assert warnings() == []
+    assert logged_warnings() == []
     await test.advance(3.0)
-    assert warnings() == [stopped(5)]
+    assert logged_warnings() == [stopped(5)]
     await detect_in_image(test, recording, "/yolo/image_raw", make_image())
     await test.advance(5.0)
     assert [record.text for record in test.log][-1] == "images are arriving"
     await test.advance(7.0)
-    assert warnings() == [stopped(5)]
+    assert logged_warnings() == [stopped(5)]
     await test.advance(5.0)
-    assert warnings() == [stopped(5), stopped(10)]
+    assert logged_warnings() == [stopped(5), stopped(10)]
 
 
-async def test_missing_images_are_not_reported_without_subscribers(test, start, warnings):
+async def test_missing_images_are_not_reported_without_subscribers(test, start, logged_warnings):
     await start(model="colors")
     await test.advance(30.0)
-    assert warnings() == []
+    assert logged_warnings() == []
 
 
 # --- loading of the detector ----------------------------------------------------------------------------------------

@@ -130,42 +130,44 @@ def test_services_become_ready_and_unavailable(processes):
 
 
 def test_duplicate_node_name_is_reported(processes):
-    ours = processes("robot")
+    linkwright_process = processes("robot")
     processes("robot")
-    ours.spin_until(lambda: any("exact name '/robot'" in text for text in ours.warnings()))
+    linkwright_process.spin_until(lambda: any("exact name '/robot'" in text for text in linkwright_process.warnings()))
 
 
 @pytest.mark.parametrize("its_process_goes_on", [False, True])
 def test_killed_publisher_is_lost_and_closed_one_is_not(processes, programs, its_process_goes_on):
-    ours = processes("ours")
+    linkwright_process = processes("ours")
     lost: list[str] = []
-    subscription = ours.node.create_subscription(Int32, "flood", print, 10)
+    subscription = linkwright_process.node.create_subscription(Int32, "flood", print, 10)
     subscription.watch_lost(lambda publisher: lost.append(publisher.node.name))
     other = processes("other")
     left = other.graph.create_node("left")
     left.create_publisher(Int32, "flood", 10)
     victim = programs("linkwright_program", "victim")
-    ours.spin_until(lambda: subscription.get_publisher_count() == 2)
-    ours.spin_until(lambda: live_session_count(ours) == 2)  # before that, the way a session ends is unknown
+    linkwright_process.spin_until(lambda: subscription.get_publisher_count() == 2)
+    linkwright_process.spin_until(
+        lambda: live_session_count(linkwright_process) == 2
+    )  # before that, the way a session ends is unknown
     if its_process_goes_on:
         left.destroy_node()
     else:
         other.close()
-    ours.spin_until(lambda: subscription.get_publisher_count() == 1)
+    linkwright_process.spin_until(lambda: subscription.get_publisher_count() == 1)
     victim.kill()
-    ours.spin_until(lambda: lost)
+    linkwright_process.spin_until(lambda: lost)
     assert lost == ["victim"]
 
 
 def test_ended_sessions_are_no_longer_watched(processes):
     """Many sessions join and leave during the months that a robot runs."""
-    ours = processes("ours")
-    subscription = ours.node.create_subscription(Int32, "flood", print, 10)
+    linkwright_process = processes("ours")
+    subscription = linkwright_process.node.create_subscription(Int32, "flood", print, 10)
     subscription.watch_lost(print)
     for name in ("one", "two"):
         other = processes(name)
         other.node.create_publisher(Int32, "flood", 10)
         session = other.transport._zenoh_engine._session_id
-        ours.spin_until(lambda session=session: liveliness_listeners(ours, session) == 2)
+        linkwright_process.spin_until(lambda session=session: liveliness_listeners(linkwright_process, session) == 2)
         other.close()
-        ours.spin_until(lambda session=session: liveliness_listeners(ours, session) == 0)
+        linkwright_process.spin_until(lambda session=session: liveliness_listeners(linkwright_process, session) == 0)

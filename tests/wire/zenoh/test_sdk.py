@@ -26,7 +26,7 @@ pytestmark = pytest.mark.skipif(not PYTHON, reason="LINKWRIGHT_ZENOH_SDK_PYTHON 
 
 
 @pytest.fixture
-def peer(programs, router_port, monkeypatch):
+def start_peer(programs, router_port, monkeypatch):
     """Start a program with the SDK that connects to a session of Linkwright.
 
     There is no router.
@@ -42,7 +42,7 @@ def peer(programs, router_port, monkeypatch):
 
 
 def ask_while_spinning(process, question):
-    """Ask the peer a question, and run our callbacks until it answers."""
+    """Ask the peer a question, and run callbacks until it answers."""
     answers = []
     thread = threading.Thread(target=lambda: answers.append(question()))
     thread.start()
@@ -51,12 +51,12 @@ def ask_while_spinning(process, question):
     return answers[0]
 
 
-def test_messages_work_in_both_directions(processes, peer):
+def test_messages_work_in_both_directions(processes, start_peer):
     process = processes("ours")
     texts = []
     process.node.create_subscription(String, "from_sdk", lambda message: texts.append(message.data), KEEP_ALL)
     publisher = process.node.create_publisher(String, "to_sdk", KEEP_ALL)
-    sdk_peer = peer()
+    sdk_peer = start_peer()
     process.spin_until(lambda: publisher.get_subscription_count() == 1)
     sdk_peer.ask_until(bool, "has_subscription")
     sdk_peer.ask("publish", 0, 100)
@@ -67,9 +67,9 @@ def test_messages_work_in_both_directions(processes, peer):
     assert sdk_peer.ask_until(lambda heard: len(heard) == 1000, "received") == [str(number) for number in range(1000)]
 
 
-def test_sdk_and_linkwright_discover_endpoints(processes, peer):
+def test_sdk_and_linkwright_discover_endpoints(processes, start_peer):
     process = processes("ours")
-    sdk_peer = peer()
+    sdk_peer = start_peer()
     process.spin_until(lambda: "sdk" in process.node.get_node_names())
     process.spin_until(lambda: ("/flip_sdk", ["std_srvs/srv/SetBool"]) in process.node.get_service_names_and_types())
     (endpoint,) = process.node.get_publishers_info_by_topic("/from_sdk")
@@ -79,7 +79,7 @@ def test_sdk_and_linkwright_discover_endpoints(processes, peer):
     assert not process.node.count_publishers("/from_sdk")
 
 
-def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, peer):
+def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, start_peer):
     process = processes("ours")
     served = []
 
@@ -89,16 +89,16 @@ def test_thousand_calls_of_sdk_clients_get_their_own_responses(processes, peer):
         return response
 
     process.node.create_service(SetBool, "flip", flip)
-    sdk_peer = peer()
+    sdk_peer = start_peer()
     message = ask_while_spinning(process, lambda: sdk_peer.ask("call", CLIENT_COUNT, CALL_COUNT // CLIENT_COUNT))
     assert message == [[f"{number % 2 == 0} flipped" for number in range(CALL_COUNT // CLIENT_COUNT)]] * CLIENT_COUNT
     assert len(served) == CALL_COUNT
 
 
-def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes, peer):
+def test_thousand_calls_of_linkwright_clients_get_their_own_responses(processes, start_peer):
     process = processes("ours")
     clients = [process.node.create_client(SetBool, "flip_sdk") for _ in range(CLIENT_COUNT)]
-    sdk_peer = peer()
+    sdk_peer = start_peer()
     process.spin_until(lambda: all(client.service_is_ready() for client in clients))
     answers = [[] for _ in clients]
     waiting = [None for _ in clients]

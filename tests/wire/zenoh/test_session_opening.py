@@ -169,7 +169,7 @@ def certificates(tmp_path_factory) -> Certificates:
 
 
 @pytest.fixture
-def obstacle_at(certificates) -> Callable[..., str]:
+def find_obstacle(certificates) -> Callable[..., str]:
     port = certificates.serve()
 
     def ask(host: str = "localhost", **names: str) -> str:
@@ -178,15 +178,15 @@ def obstacle_at(certificates) -> Callable[..., str]:
     return ask
 
 
-def test_invalid_certificates_are_reported(obstacle_at):
-    assert not obstacle_at()
-    assert "the certificate of tls/localhost" in obstacle_at(authority="other")
-    assert "is not accepted: " in obstacle_at(authority="other")
-    assert "not valid for '127.0.0.1'" in obstacle_at("127.0.0.1")
-    assert "other.pem': " in obstacle_at(certificate="other", key="other")
-    assert "refuses the certificate" in obstacle_at(certificate="other", key="other")
-    assert "are not a certificate and its key in PEM" in obstacle_at(key="other")
-    missing = obstacle_at(key="missing")
+def test_invalid_certificates_are_reported(find_obstacle):
+    assert not find_obstacle()
+    assert "the certificate of tls/localhost" in find_obstacle(authority="other")
+    assert "is not accepted: " in find_obstacle(authority="other")
+    assert "not valid for '127.0.0.1'" in find_obstacle("127.0.0.1")
+    assert "other.pem': " in find_obstacle(certificate="other", key="other")
+    assert "refuses the certificate" in find_obstacle(certificate="other", key="other")
+    assert "are not a certificate and its key in PEM" in find_obstacle(key="other")
+    missing = find_obstacle(key="missing")
     assert missing.startswith("cannot read '")
     assert "missing-key.pem': No such file" in missing
 

@@ -63,23 +63,26 @@ def test_closing_latched_publisher_does_not_wait_for_callbacks(processes):
         result.set()
         time.sleep(0.3)  # the callback then needs the lock
 
-    with open_session(build_config(read_settings())) as ours, open_session(build_config(read_settings())) as theirs:
+    with (
+        open_session(build_config(read_settings())) as linkwright_session,
+        open_session(build_config(read_settings())) as other_session,
+    ):
 
         def announce(name: str, number: str, qos: QoSProfile) -> OutgoingTopic:
             publisher = node.create_publisher(String, name, qos)
             names = (EndpointKind.PUBLISHER, name, "std_msgs::msg::dds_::String_", "RIHS01_00")
-            token = Token(0, str(ours.zid()), "0", number, NodeIdentity("ours", "/"), *names)
-            return OutgoingTopic(publisher, token, ours, changed)
+            token = Token(0, str(linkwright_session.zid()), "0", number, NodeIdentity("ours", "/"), *names)
+            return OutgoingTopic(publisher, token, linkwright_session, changed)
 
         latched, other = announce("/kept", "1", TRANSIENT_LOCAL), announce("/other", "2", QoSProfile(10))
         history_key = f"{latched.token.data_key}/@adv/**"
-        wait_until(lambda: list(theirs.liveliness().get(history_key)))
-        listener = theirs.declare_subscriber(other.token.data_key)
+        wait_until(lambda: list(other_session.liveliness().get(history_key)))
+        listener = other_session.declare_subscriber(other.token.data_key)
         assert result.wait(TIMEOUT_S)
         start = time.monotonic()
         latched.close()
         assert time.monotonic() - start < 5.0
-        wait_until(lambda: not list(theirs.liveliness().get(history_key)))
+        wait_until(lambda: not list(other_session.liveliness().get(history_key)))
         other.close()
         listener.undeclare()
 
