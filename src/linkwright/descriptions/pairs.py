@@ -83,7 +83,7 @@ class Model:
         return self.finder.resolve(uri, self.path.parent)
 
     def normalizer(self, other: Model) -> Callable[[str], str]:
-        """Return a function that makes this description's texts comparable with another description's.
+        """Return a function that makes texts comparable with another description's texts.
 
         Paths in the folder of a commit are then equal to those in the working tree.
         """

@@ -14,7 +14,7 @@ from linkwright.files.git_repository import GitRepository
 from linkwright.files.scratch_folders import ScratchFolder
 from linkwright.packages import PackageFinder
 from linkwright.packages.manifest import SourceScan
-from linkwright.packages.share_layout import share_of_sources
+from linkwright.packages.share_layout import find_share_of_sources
 
 
 class CommitFiles:
@@ -25,7 +25,7 @@ class CommitFiles:
     files of the computer.
 
     Args:
-        repository: the repository.
+        repository: the git repository of the commit.
         commit: the hash of the commit.
         name: the commit in git's notation, for users.
         must_be_complete: whether it is an error if git cannot write some of the files.
@@ -63,7 +63,10 @@ class CommitFiles:
         return {name: value for name, value in vars(self).items() if name != "_folder"}
 
     def finder(self, folder: Path) -> PackageFinder:
-        """Return a finder for a file's folder that finds the commit's packages, and others from the working tree."""
+        """Return a finder for a file's folder.
+
+        It finds the commit's packages, and other packages in the working tree.
+        """
         return self._finder.starting_at([folder, self._repository_root, Path.cwd()])
 
     @cached_property
@@ -75,7 +78,7 @@ class CommitFiles:
     def packages(self) -> Mapping[str, Path]:
         """The share folders of the commit's packages, by the name of the package."""
         source_folders = SourceScan(self.root.parent).packages()
-        return {name: share_of_sources(name, folder) for name, folder in source_folders.items()}
+        return {name: find_share_of_sources(name, folder) for name, folder in source_folders.items()}
 
     def label(self, file: str) -> str:
         """Return the name that git uses for a file of the commit, such as ``HEAD:robots/arm.urdf``.
@@ -90,7 +93,7 @@ class CommitFiles:
 
     @property
     def normalize(self) -> Callable[[str], str]:
-        """A function that makes the commit's paths comparable with another commit's or the working tree's."""
+        """A function that makes the commit's paths comparable with those of other trees."""
         return _path_normalizer(self.packages, self.root)
 
     def normalizer_for(self, finder: PackageFinder) -> Callable[[str], str]:
@@ -111,7 +114,7 @@ class CommitFiles:
 
 
 def leads_outside(path: Path, root: Path) -> bool:
-    """Return whether a symbolic link points outside the files of a commit, or into git's own folder.
+    """Return whether a symbolic link leaves the files of a commit, or enters git's folder.
 
     Args:
         path: a path below the root.

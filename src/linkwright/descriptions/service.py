@@ -160,7 +160,7 @@ class DescriptionLibrary:
         """Store a description, so that it can be found by its text.
 
         Args:
-            description: the description.
+            description: the description to store.
             text: the key under which to store it, or None for the description's own text.
             packages: the finder of the description's packages, if the rest of the program may use other packages.
 
@@ -307,7 +307,7 @@ def robot_of_text(text: str, name: str) -> Reading:
     If the text has no errors, warnings that gz would print are left out of the findings.
 
     Args:
-        text: the text.
+        text: the text of a model in SDF.
         name: the name of the file in messages.
     """
     from linkwright.sdf.includes import resolve_includes

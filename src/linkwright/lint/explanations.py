@@ -50,7 +50,7 @@ def is_explained(element: Element | None, tag: str) -> bool:
 
 
 def _find_comments(element: Element | None, *, on_same_lines: bool) -> list[str]:
-    """Return the comments directly above an element or, if `on_same_lines` is set, on its lines."""
+    """Return the comments above an element or, if `on_same_lines` is set, on its lines."""
     element_span = element_range(element) if element is not None else None
     if element is None or element.source is None or element_span is None:
         return []

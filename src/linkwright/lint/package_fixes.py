@@ -31,7 +31,7 @@ _FIRST_IMPORT = lazy_pattern(r"^(import|from)[ \t]", re.MULTILINE)
 
 
 def make_dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
-    """Return the fix that adds dependencies to ``package.xml``, or None if this is not possible.
+    """Return the fix that adds dependencies to ``package.xml``, or None if it is impossible.
 
     The new lines follow the last dependency that is not only for tests or documentation, or else the license. They have
     its indentation.
@@ -72,7 +72,7 @@ def make_setup_file_fix(package: PackageContext, setup: SetupFile, destination: 
     The result is None if the position of the new entry is uncertain.
 
     Args:
-        package: the package.
+        package: the package that contains the file.
         setup: its ``setup.py``.
         destination: the folder relative to the prefix; an empty string for the share folder of the package.
         file: the path of the file in the package.
@@ -113,10 +113,10 @@ def make_cmake_folder_fix(source: SourceText, folder: str, *, safe: bool) -> Fix
 
 def _find_last_folders(source: SourceText) -> Iterator[Token]:
     """Yield the last folder of each unconditional command that installs into the share folder."""
-    from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, statements
+    from linkwright.packages.readers.cmake_syntax import BLOCK_ENDS, parse_statements
 
     depth = 0
-    for statement in statements(source):
+    for statement in parse_statements(source):
         depth += statement.name in BLOCK_ENDS
         depth -= statement.name in BLOCK_ENDS.values()
         if depth == 0 and statement.name == "install":

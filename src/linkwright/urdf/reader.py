@@ -38,7 +38,7 @@ _WITHOUT_AXIS = replace(JOINT, children=tuple(child for child in JOINT.children 
 
 
 def read_link(element: Element, materials: MaterialTable, findings: UrdfReport) -> Link:
-    """Return a link with its readable parts, and add the materials that it defines to the table."""
+    """Return a link with its readable parts, and add its materials to the table."""
     name = element.attributes.get("name")
     if name is None:
         findings.missing_attribute(element, LINK, LINK.attributes[0], element)

@@ -57,7 +57,7 @@ class _Node:
 
     @property
     def is_verbatim(self) -> bool:
-        """Whether whitespace in the content may be significant, so that the content must not change.
+        """Whether whitespace in the content may be significant and must not change.
 
         This is the case if the content is only whitespace or includes text, or if the element has ``xml:space``.
         """

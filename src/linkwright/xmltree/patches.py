@@ -1,4 +1,4 @@
-"""Minimal changes to an XML text: the ranges of elements in the text, and their replacement.
+"""Minimal changes to an XML text: ranges of elements, and their replacement.
 
 Everything outside the ranges, including formatting and comments, is unchanged.
 """

@@ -1,6 +1,6 @@
 """Serialize a tree to XML text.
 
-The format is the same as from ros/xacro 2.1 on Python up to 3.12: minidom's ``toprettyxml`` with an indentation of two
+The output matches that of ros/xacro 2.1 on Python up to 3.12: minidom's ``toprettyxml`` with an indentation of two
 spaces, attributes in alphabetical order, no texts of only whitespace, and elements that contain only text on one line.
 This writer produces the same format on every Python version.
 """

@@ -17,8 +17,8 @@ from linkwright.packages.readers.xacro_calls.call import (
     CallingFile,
     Inclusion,
     XacroCall,
-    launch_choice,
-    launch_names,
+    find_launch_names,
+    name_launch_choice,
 )
 from linkwright.packages.readers.xacro_calls.texts import (
     MAX_VARIATIONS,
@@ -26,11 +26,11 @@ from linkwright.packages.readers.xacro_calls.texts import (
     Selection,
     Share,
     Text,
+    generate_selections,
+    generate_variations,
+    make_share_mark,
     resolve,
-    selections,
-    share_mark,
     split_mark,
-    variations,
 )
 
 _MAX_DEPTH = 4
@@ -132,7 +132,7 @@ class ArgumentSets:
 
 @dataclass(eq=False)
 class _CalledDescription:
-    """A description, and the files that may expand it, each with the name of the file's package."""
+    """A description, and the files that may expand it, each with its package name."""
 
     path: Path
     finder: PackageFinder
@@ -151,11 +151,11 @@ class _CalledDescription:
 
     def _call_sets(self, call: XacroCall, file: CallingFile, launch_values: Mapping[str, str]) -> Iterator[ArgumentSet]:
         first_set: ArgumentSet | None = None
-        for selection in selections(call.path, file.choices, launch_values):
+        for selection in generate_selections(call.path, file.choices, launch_values):
             path = resolve(call.path, file.choices, selection)
             if path is None or not self._is_target(_without_quotes(path) if call.is_command else path, file):
                 continue
-            for variation, is_certain in variations(call.arguments.values(), file.choices, selection):
+            for variation, is_certain in generate_variations(call.arguments.values(), file.choices, selection):
                 argument_set = self._argument_set(call, file, variation, is_certain=is_certain)
                 first_set = first_set or argument_set
                 changed_choices = {name for name, row in variation.rows.items() if row != selection.rows.get(name, 0)}
@@ -163,7 +163,7 @@ class _CalledDescription:
                     argument_set,
                     varied=_varied_arguments(call, argument_set, first_set),
                     is_mixed=any(selection.rows.values()) and bool(changed_choices),
-                    is_offered=bool(changed_choices) and changed_choices <= launch_names(file.choices).keys(),
+                    is_offered=bool(changed_choices) and changed_choices <= find_launch_names(file.choices).keys(),
                 )
         if first_set is None and _has_placeholder(call.path):
             yield self._argument_set(call, file, Selection({}, launch_values), is_certain=False)
@@ -227,13 +227,13 @@ class _CalledDescription:
             share = self.finder.find(package)
             if share is None:
                 return None
-            value = value.replace(share_mark(package), str(share))
+            value = value.replace(make_share_mark(package), str(share))
         return value
 
     # --- launch arguments -----------------------------------------------------------------------------------
 
     def _launches(self, package: str | None, file: CallingFile, depth: int = 0) -> list[dict[str, str]]:
-        """Return the launch arguments with which a file is launched, directly or by including files.
+        """Return the launch arguments of a file, for each way in which it is launched.
 
         Returns:
             For each way to launch the file, the values of the launch arguments, by the names of their choices.
@@ -248,8 +248,8 @@ class _CalledDescription:
                 continue
             for outer_values in self._launches(including_package, including_file, depth + 1):
                 selection = Selection({}, outer_values)
-                texts = {launch_choice(name): text for name, text in inclusion.arguments.items()}
-                inherited_texts = {name: (Placeholder(name),) for name in launch_names(including_file.choices)}
+                texts = {name_launch_choice(name): text for name, text in inclusion.arguments.items()}
+                inherited_texts = {name: (Placeholder(name),) for name in find_launch_names(including_file.choices)}
                 values = {
                     name: value
                     for name, text in {**inherited_texts, **texts}.items()

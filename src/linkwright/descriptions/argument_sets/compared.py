@@ -17,7 +17,7 @@ _CONDITIONS = frozenset({"xacro:if", "xacro:unless"})
 
 
 def compared_values(documents: Iterable[Document]) -> tuple[ArgumentSet, ...]:
-    """Return an uncertain argument set for each value that a condition compares with an argument.
+    """Return an uncertain argument set for each value to which a condition compares one.
 
     An argument is also recognized through a property that contains it, as in
     ``<xacro:property name="side" value="$(arg side)"/>``. Macro parameters are not followed.

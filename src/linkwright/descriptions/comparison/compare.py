@@ -134,7 +134,7 @@ class _Comparer:
 
     @cached_property
     def _by_contents(self) -> _Comparer:
-        """A comparison of descriptions by the contents of their mesh files, not by the names of the files."""
+        """A comparison by the contents of mesh files instead of their names."""
         return _Comparer(self.old.by_contents(), self.new.by_contents())
 
     def _is_same_link(self, old: Link, new: Link) -> bool:

@@ -1,4 +1,7 @@
-"""The comparison of XML elements by content: attributes, texts and children, matched by tag and name."""
+"""The comparison of XML elements by content.
+
+Attributes, texts and children are compared. Elements are matched by tag and name.
+"""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ class Fact:
 
 @dataclass(slots=True)
 class Block:
-    """Properties that are added or removed together, such as the properties in an ``<inertial>``.
+    """Properties that are added or removed together, such as those in an ``<inertial>``.
 
     Attributes:
         name: the tag; empty for the properties that every joint has.

@@ -1,4 +1,4 @@
-"""The ``<ros2_control>`` elements of two descriptions: their renames, and the interfaces that they offer."""
+"""The ``<ros2_control>`` elements of two descriptions: renames and interfaces."""
 
 from __future__ import annotations
 
@@ -12,7 +12,10 @@ _MIN_COMMON = 0.5
 
 
 def renamed_hardware(old: Sequence[Element], new: Sequence[Element]) -> Iterator[tuple[Element, Element]]:
-    """Yield the pairs of ``<ros2_control>`` elements with different names that share at least half their interfaces."""
+    """Yield the pairs of renamed ``<ros2_control>`` elements.
+
+    The two share at least half of their interfaces.
+    """
     old_names, new_names = ({_name_of(element) for element in _select_hardware(elements)} for elements in (old, new))
     unmatched = [element for element in _select_hardware(new) if _name_of(element) not in old_names]
     for element in _select_hardware(old):
@@ -25,7 +28,9 @@ def renamed_hardware(old: Sequence[Element], new: Sequence[Element]) -> Iterator
 
 
 def interfaces_of(elements: Iterable[Element]) -> set[tuple[str, str]]:
-    """Return the interfaces of hardware as pairs: the name of the joint, sensor or GPIO, and the interface name.
+    """Return the interfaces of hardware as pairs.
+
+    A pair consists of the name of the joint, sensor or GPIO, and the interface name.
 
     A state interface has the name ``state NAME``, because controllers claim commands and states separately.
     """

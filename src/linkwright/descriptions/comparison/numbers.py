@@ -10,7 +10,10 @@ _NUMBER = lazy_pattern(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
 def comparable_text(text: str) -> str:
-    """Return a text with single spaces and normalized numbers: ``1.0`` becomes ``1``, and ``-0`` becomes ``0``."""
+    """Return a text with single spaces and normalized numbers.
+
+    For example, ``1.0`` becomes ``1``, and ``-0`` becomes ``0``.
+    """
     return " ".join(map(_comparable_word, text.split()))
 
 

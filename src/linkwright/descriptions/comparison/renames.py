@@ -42,7 +42,7 @@ class _Side:
     """The unmatched links of one robot, with their neighbors and properties.
 
     Attributes:
-        robot: the robot.
+        robot: the old or the new robot.
         names: the names of the links without a match.
         parents: the parent joint of each link.
         children: the child joints of each link.
@@ -204,7 +204,10 @@ def _by_key(names: Iterable[str], keys_of: Callable[[str], Iterator[Key]]) -> di
 
 
 def _shape_key(link: Link, normalize: Callable[[str], str]) -> Hashable:
-    """Return a key that is equal for links with the same shapes, regardless of their poses and colors."""
+    """Return a key that is equal for links with the same shapes.
+
+    Poses and colors are ignored.
+    """
     blocks: list[Block] = [*visual_blocks(link), *collision_blocks(link)]
     facts = ((block.name, block.facts["geometry"]) for block in blocks)
     return tuple(
@@ -213,7 +216,10 @@ def _shape_key(link: Link, normalize: Callable[[str], str]) -> Hashable:
 
 
 def _are_different_sides(old_name: str, new_name: str) -> bool:
-    """Return whether two names differ in their numbers or side words, so that they denote two similar parts."""
+    """Return whether two names differ in their numbers or side words.
+
+    Such names denote two similar parts.
+    """
     old_sides, new_sides = (
         sorted(word for word in _words(name) if word in _SIDES | _CORNERS or word.isdigit() or len(word) == 1)
         for name in (old_name, new_name)

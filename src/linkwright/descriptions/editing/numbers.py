@@ -58,6 +58,6 @@ def pi_fraction(angle: float) -> str | None:
 
 
 def degrees_text(angle: float) -> str | None:
-    """Return an angle as a text in degrees, for ``radians()``, or None if the text is not short."""
+    """Return an angle as a short text in degrees, for ``radians()``, or None."""
     text = shortest_text(degrees(angle), _EXACT_DEGREES)
     return text if len(text.lstrip("-").replace(".", "")) <= 5 else None
