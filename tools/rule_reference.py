@@ -91,7 +91,8 @@ def _index() -> str:
     parts = [INDEX]
     for start, (name, heading, _) in GROUPS.items():
         rows = [
-            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} | {_escaped(make_rule_page(rule).title)} "
+            f"| [{rule.code}](rules/{name}.md#{rule.code.lower()}) | {rule.name} "
+            f"| {_escaped(make_rule_page(rule).title)} "
             f"| {rule.severity.value} | {'' if rule.default else 'off'} |"
             for rule in _rules(start)
         ]

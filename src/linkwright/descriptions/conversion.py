@@ -75,7 +75,7 @@ def as_sdf(
         world = examine_world(path, arguments=arguments, packages=finder)
         if world.sdf is None:
             return ConversionResult(None, world.diagnostics, world.files)
-        sdf = replace(world.sdf, worlds=tuple(map(_in_saved_state, world.sdf.worlds)))
+        sdf = replace(world.sdf, worlds=tuple(map(_apply_saved_state, world.sdf.worlds)))
         return ConversionResult(_relocate_paths(sdf, path.parent, folder), world.diagnostics, world.files)
     from linkwright.sdf.from_urdf import model_from_robot
     from linkwright.sdf.worlds import Sdf
@@ -90,7 +90,7 @@ def as_sdf(
     return ConversionResult(_relocate_paths(sdf, path.parent, folder), diagnostics, description.files)
 
 
-def _in_saved_state(world: World) -> World:
+def _apply_saved_state(world: World) -> World:
     """Return a world in its saved state, with gravity in the element of SDF 1.6 and later."""
     from linkwright.sdf.saved import with_saved_state
     from linkwright.sdf.worlds import find_gravity

@@ -94,7 +94,7 @@ class CommitFiles:
     @property
     def normalize(self) -> Callable[[str], str]:
         """A function that makes the commit's paths comparable with those of other trees."""
-        return _path_normalizer(self.packages, self.root)
+        return _make_path_normalizer(self.packages, self.root)
 
     def normalizer_for(self, finder: PackageFinder) -> Callable[[str], str]:
         """Return a function that makes the working tree's paths comparable with this commit's.
@@ -103,7 +103,7 @@ class CommitFiles:
             finder: the finder of the working tree's packages.
         """
         shares = {name: share for name in self.packages if (share := finder.find(name)) is not None}
-        return _path_normalizer(shares, self._repository_root)
+        return _make_path_normalizer(shares, self._repository_root)
 
     def _remove_outward_links(self, links: Sequence[str]) -> Iterator[str]:
         for link in links:
@@ -149,12 +149,12 @@ def file_in_commit(path: Path, name: str) -> tuple[CommitFiles, Path]:
     commit = repository.commit(name)
     relative_path = real_path.relative_to(repository.root)
     if not repository.contains(commit, relative_path.as_posix()):
-        relative_path = _path_before_rename(repository, commit, relative_path, name)
+        relative_path = _find_path_before_rename(repository, commit, relative_path, name)
     files = CommitFiles(repository, commit, name)
     return files, files.root / relative_path
 
 
-def _path_before_rename(repository: GitRepository, commit: str, relative_path: Path, name: str) -> Path:
+def _find_path_before_rename(repository: GitRepository, commit: str, relative_path: Path, name: str) -> Path:
     """Return the path that a file of the working tree had in a commit, before it was renamed.
 
     The renaming need not be staged.
@@ -185,7 +185,7 @@ def _path_before_rename(repository: GitRepository, commit: str, relative_path: P
     raise LinkwrightError(Diagnostic("CLI344", message, hint=hint))
 
 
-def _path_normalizer(shares: Mapping[str, Path], top: Path) -> Callable[[str], str]:
+def _make_path_normalizer(shares: Mapping[str, Path], top: Path) -> Callable[[str], str]:
     replacements: Sequence[tuple[str, str]] = [
         *((str(share), f"package://{name}") for name, share in shares.items()),
         (str(top), "."),

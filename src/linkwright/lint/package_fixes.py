@@ -14,7 +14,7 @@ from pathlib import PurePosixPath
 from linkwright.lint.fix import Edit, Fix
 from linkwright.loading.deferred import lazy_pattern
 from linkwright.loading.lean_typing import TYPE_CHECKING
-from linkwright.xmltree.patches import element_range, line_ending
+from linkwright.xmltree.patches import find_element_range, line_ending
 
 if TYPE_CHECKING:
     from linkwright.diagnostics import SourceText
@@ -40,7 +40,7 @@ def make_dependency_fix(manifest: Manifest, names: list[str]) -> Fix | None:
     dependencies = manifest.dependencies
     run_time = [dependency for dependency in dependencies if dependency.tag not in ("test_depend", "doc_depend")]
     last = (run_time or dependencies)[-1].element if dependencies else manifest.root.first("license")
-    last_range = None if last is None else element_range(last)
+    last_range = None if last is None else find_element_range(last)
     if source is None or last is None or last_range is None:
         return None
     line = source.text.rfind("\n", 0, last.offset) + 1

@@ -22,7 +22,7 @@ from linkwright.sdf.frames import transform_of
 from linkwright.sdf.models import Include, Model
 from linkwright.sdf.poses import MODEL, SEPARATOR
 from linkwright.xmltree import Element
-from linkwright.xmltree.patches import Replacement, apply, escaped, indentation, line_ending
+from linkwright.xmltree.patches import Replacement, apply, escape, indentation, line_ending
 
 _INDENT_STEP = "  "
 _POSITION_DIGITS = 3
@@ -70,7 +70,7 @@ def group(world: WorldText, names: Sequence[str], name: str) -> WorldText:
     inner_indent = outer_indent + _INDENT_STEP
     static_element = f"{newline}{inner_indent}<static>true</static>" if entities[0].is_static else ""
     pose_element = f"<pose>{format_lengths((x, y, z, 0.0, 0.0, 0.0))}</pose>"
-    group_start = f'<model name="{escaped(name)}">{newline}{inner_indent}{pose_element}{static_element}'
+    group_start = f'<model name="{escape(name)}">{newline}{inner_indent}{pose_element}{static_element}'
     member_texts = []
     for entity in sorted(entities, key=lambda entity: entity.element.offset):
         begin, end = writing.find_element_offsets(entity.element)

@@ -13,14 +13,14 @@ from linkwright.sdf.editing.shapes import format_length, format_lengths, make_el
 from linkwright.xmltree import Element
 from linkwright.xmltree.patches import (
     Replacement,
-    block,
-    element_range,
-    escaped,
+    escape,
+    extend_to_whole_lines,
+    find_element_range,
     find_start_tag,
+    format_block,
     indentation,
-    insertion,
     line_ending,
-    whole_lines,
+    make_insertion,
 )
 from linkwright.xmltree.positions import attribute_name_range, attribute_value_range
 
@@ -43,7 +43,7 @@ def find_element_offsets(element: Element) -> tuple[int, int]:
     Raises:
         EditError: the element comes from an XML entity.
     """
-    element_span = element_range(element)
+    element_span = find_element_range(element)
     if element_span is None:
         raise EditError(phrase("<{tag}> cannot be edited because it comes from an XML entity", tag=element.tag))
     return element_span
@@ -66,11 +66,11 @@ def make_text_edits(element: Element, value: str) -> list[Replacement]:
     tag = find_start_tag(element)
     assert tag is not None, "its content is known"
     if tag.is_empty_element:
-        return [Replacement(tag.insertion_offset, tag.end, f">{escaped(value)}</{element.tag}>")]
+        return [Replacement(tag.insertion_offset, tag.end, f">{escape(value)}</{element.tag}>")]
     old = text[start:end]
     if "<" not in old and old.strip():
         start, end = start + len(old) - len(old.lstrip()), start + len(old.rstrip())
-    return [] if text[start:end] == escaped(value) else [Replacement(start, end, escaped(value))]
+    return [] if text[start:end] == escape(value) else [Replacement(start, end, escape(value))]
 
 
 def make_number_edits(element: Element, numbers: Sequence[float]) -> list[Replacement]:
@@ -129,7 +129,9 @@ def make_insertion_edit(
         EditError: the owner comes from an XML entity.
     """
     preceding_children = [child for child in owner.elements() if child.tag in after]
-    edit = insertion(owner, new_elements, after=preceding_children[-1] if preceding_children else None, first=first)
+    edit = make_insertion(
+        owner, new_elements, after=preceding_children[-1] if preceding_children else None, first=first
+    )
     if edit is None:
         raise EditError(phrase("<{tag}> cannot be edited because it comes from an XML entity", tag=owner.tag))
     return edit
@@ -146,8 +148,8 @@ def make_attribute_edits(element: Element, name: str, value: str) -> list[Replac
         find_element_offsets(element)
         tag = find_start_tag(element)
         assert tag is not None, "its range is known"
-        return [Replacement(tag.insertion_offset, tag.insertion_offset, f' {name}="{escaped(value)}"')]
-    escaped_value = escaped(value)
+        return [Replacement(tag.insertion_offset, tag.insertion_offset, f' {name}="{escape(value)}"')]
+    escaped_value = escape(value)
     if text[value_range[0] - 1] == "'":
         escaped_value = escaped_value.replace("&quot;", '"').replace("'", "&apos;")
     return [Replacement(*value_range, escaped_value)]
@@ -175,7 +177,7 @@ def make_attribute_removal_edits(element: Element, name: str) -> list[Replacemen
 
 def make_removal_edit(element: Element) -> Replacement:
     """Return the edit that removes an element and the lines that become empty."""
-    return Replacement(*whole_lines(get_source_text(element), *find_element_offsets(element)), "")
+    return Replacement(*extend_to_whole_lines(get_source_text(element), *find_element_offsets(element)), "")
 
 
 def make_replacement_edit(element: Element, new_elements: list[Element]) -> Replacement:
@@ -188,7 +190,7 @@ def make_replacement_edit(element: Element, new_elements: list[Element]) -> Repl
     text, (start, end) = get_source_text(element), find_element_offsets(element)
     indent = indentation(text, start)
     separator = "" if indent is None else f"{line_ending(text)}{indent}"
-    return Replacement(start, end, separator.join(block(element) for element in new_elements))
+    return Replacement(start, end, separator.join(format_block(element) for element in new_elements))
 
 
 def make_pose_edits(element: Element, pose: Pose) -> list[Replacement]:
